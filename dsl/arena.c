@@ -1,0 +1,93 @@
+#include "dsl/arena.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK_SIZE = 64 * 1024, ALIGNMENT = _Alignof(max_align_t) };
+
+typedef struct chunk {
+  struct chunk *next;
+  size_t used, size;
+  _Alignas(max_align_t) unsigned char bytes[];
+} chunk;
+
+struct arena {
+  chunk *first;
+};
+
+static void end_without_memory(size_t size) {
+  fprintf(stderr, "perilat: out of memory (%zu bytes asked for)\n", size);
+  exit(2);
+}
+
+void *must_alloc(size_t size) {
+  void *memory = malloc(size ? size : 1);
+  if (!memory) end_without_memory(size);
+  return memory;
+}
+
+void *must_calloc(size_t count, size_t size) {
+  void *memory = calloc(count ? count : 1, size ? size : 1);
+  if (!memory) end_without_memory(count * size);
+  return memory;
+}
+
+void *must_realloc(void *old, size_t size) {
+  void *memory = realloc(old, size ? size : 1);
+  if (!memory) end_without_memory(size);
+  return memory;
+}
+
+static void add_chunk(arena *a, size_t size) {
+  chunk *added = must_calloc(1, sizeof(chunk) + size);
+  added->size = size;
+  added->next = a->first;
+  a->first = added;
+}
+
+arena *arena_new(void) {
+  return must_calloc(1, sizeof(arena));
+}
+
+void arena_free(arena *a) {
+  if (!a) return;
+  for (chunk *c = a->first; c;) {
+    chunk *next = c->next;
+    free(c);
+    c = next;
+  }
+  free(a);
+}
+
+void *arena_alloc(arena *a, size_t size) {
+  if (size > SIZE_MAX / 2) end_without_memory(size);
+  size_t rounded = (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT;
+  if (!a->first || a->first->size - a->first->used < rounded)
+    add_chunk(a, rounded > CHUNK_SIZE ? rounded : CHUNK_SIZE);
+  void *memory = a->first->bytes + a->first->used;
+  a->first->used += rounded;
+  return memory;
+}
+
+char *arena_text(arena *a, const char *text, size_t length) {
+  char *copy = arena_alloc(a, length + 1);
+  if (length) memcpy(copy, text, length);
+  copy[length] = '\0';
+  return copy;
+}
+
+char *arena_printf(arena *a, const char *format, ...) {
+  va_list values, again;
+  va_start(values, format);
+  va_copy(again, values);
+  int length = vsnprintf(NULL, 0, format, values);
+  va_end(values);
+  size_t size = length < 0 ? 1 : (size_t)length + 1;
+  char *text = arena_alloc(a, size);
+  if (length >= 0) vsnprintf(text, size, format, again);
+  va_end(again);
+  return text;
+}

@@ -1,0 +1,25 @@
+/* Region allocator: trees, interned names and IR nodes live until their arena is freed.
+   Running out of memory ends the program with a message; no call returns NULL. */
+#ifndef PERILAT_DSL_ARENA_H
+#define PERILAT_DSL_ARENA_H
+
+#include <stddef.h>
+
+typedef struct arena arena;
+
+arena *arena_new(void);
+void arena_free(arena *a);
+
+/* Zeroed memory of `size` bytes, aligned for any scalar type. */
+void *arena_alloc(arena *a, size_t size);
+/* NUL-terminated copy of `length` bytes of `text`. */
+char *arena_text(arena *a, const char *text, size_t length);
+/* Formatted string. */
+char *arena_printf(arena *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* malloc, realloc and calloc that end the program with a message instead of returning NULL. */
+void *must_alloc(size_t size);
+void *must_calloc(size_t count, size_t size);
+void *must_realloc(void *old, size_t size);
+
+#endif

@@ -1,0 +1,224 @@
+#include "dsl/diagnostics.h"
+
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/arena.h"
+
+/* Longer source lines are cut to this many characters around the caret. */
+enum { LINE_WIDTH = 160, LEFT_OF_CARET = 60, NAME_LENGTH = 64 };
+
+/* Nobody reads more than this at once. */
+enum { MOST_PRINTED = 100 };
+
+static const struct {
+  const char *name;
+  severity severity;
+} codes[DIAG_COUNT] = {
+#define X(code, name, severity) {name, severity},
+#include "dsl/diagnostic_codes.h"
+#undef X
+};
+
+const char *diag_name(diag_code code) {
+  return codes[code].name;
+}
+severity diag_severity(diag_code code) {
+  return codes[code].severity;
+}
+
+static char *format_text(const char *format, va_list values) {
+  va_list again;
+  va_copy(again, values);
+  int length = vsnprintf(NULL, 0, format, values);
+  char *text = must_calloc(length < 0 ? 1 : (size_t)length + 1, 1);
+  if (length >= 0) vsnprintf(text, (size_t)length + 1, format, again);
+  va_end(again);
+  return text;
+}
+
+void diag_begin(diagnostics *d, source_set *sources) {
+  *d = (diagnostics){.sources = sources};
+}
+
+void diag_clear(diagnostics *d) {
+  for (int i = 0; i < d->count; i++) {
+    free(d->items[i].message);
+    free(d->items[i].note);
+    free(d->items[i].hint);
+  }
+  free(d->items);
+  *d = (diagnostics){.sources = d->sources};
+}
+
+void diag_report(diagnostics *d, diag_code code, span where, const char *format, ...) {
+  va_list values;
+  va_start(values, format);
+  char *message = format_text(format, values);
+  va_end(values);
+  d->items = must_realloc(d->items, ((size_t)d->count + 1) * sizeof(diagnostic));
+  d->items[d->count++] = (diagnostic){.code = code, .where = where, .message = message};
+  if (diag_severity(code) == SEVERITY_ERROR) d->errors++;
+}
+
+void diag_note(diagnostics *d, span where, const char *format, ...) {
+  if (!d->count) return;
+  va_list values;
+  va_start(values, format);
+  diagnostic *last = &d->items[d->count - 1];
+  free(last->note);
+  last->note = format_text(format, values);
+  last->note_where = where;
+  va_end(values);
+}
+
+void diag_hint(diagnostics *d, const char *format, ...) {
+  if (!d->count) return;
+  va_list values;
+  va_start(values, format);
+  diagnostic *last = &d->items[d->count - 1];
+  free(last->hint);
+  last->hint = format_text(format, values);
+  va_end(values);
+}
+
+void diag_suggest(diagnostics *d, const char *name, const char *const *candidates, int count) {
+  const char *nearest = nearest_name(name, candidates, count);
+  if (nearest) diag_hint(d, "did you mean `%s`?", nearest);
+}
+
+/* --- nearest name --- */
+
+static int least(int a, int b) {
+  return a < b ? a : b;
+}
+
+/* Changes, insertions, deletions and swaps of neighbours that turn a into b. */
+static int edit_distance(const char *a, const char *b) {
+  int length_a = (int)strlen(a), length_b = (int)strlen(b);
+  int rows[3][NAME_LENGTH + 1];
+  int *before = rows[0], *last = rows[1], *now = rows[2];
+  for (int j = 0; j <= length_b; j++)
+    last[j] = j;
+  for (int i = 1; i <= length_a; i++) {
+    now[0] = i;
+    for (int j = 1; j <= length_b; j++) {
+      int change = last[j - 1] + (a[i - 1] != b[j - 1]);
+      now[j] = least(change, least(last[j], now[j - 1]) + 1);
+      if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+        now[j] = least(now[j], before[j - 2] + 1);
+    }
+    int *oldest = before;
+    before = last;
+    last = now;
+    now = oldest;
+  }
+  return last[length_b];
+}
+
+const char *nearest_name(const char *name, const char *const *candidates, int count) {
+  size_t length = strlen(name);
+  if (length == 0 || length > NAME_LENGTH) return NULL;
+  for (int i = 0; i < count; i++)
+    if (strcasecmp(name, candidates[i]) == 0) return candidates[i];
+  const char *nearest = NULL;
+  int nearest_distance = length < 2 ? 0 : (int)(length + 2) / 3;
+  for (int i = 0; i < count; i++) {
+    if (strlen(candidates[i]) > NAME_LENGTH || strlen(candidates[i]) < 2) continue;
+    int distance = edit_distance(name, candidates[i]);
+    if (distance > nearest_distance || (nearest && distance == nearest_distance)) continue;
+    nearest = candidates[i];
+    nearest_distance = distance;
+  }
+  return nearest;
+}
+
+/* --- printing --- */
+
+static bool continues(char byte) {
+  return ((unsigned char)byte & 0xC0) == 0x80;
+}
+
+static bool located(const diagnostics *d, span where) {
+  return d->sources && where.file < d->sources->count;
+}
+
+/* The line's bytes from `from` to `to`; what a terminal could take for a command becomes a blank.
+ */
+static void print_bytes(FILE *out, const char *text, size_t from, size_t to) {
+  for (size_t i = from; i < to; i++) {
+    unsigned char byte = (unsigned char)text[i];
+    fputc(byte == '\t' ? '\t' : byte < 32 || byte == 127 ? ' ' : byte, out);
+  }
+}
+
+/* One source line with the part of `where` that lies on it underlined. */
+static void print_line(const diagnostics *d, span where, FILE *out) {
+  size_t length;
+  const char *line = source_line(d->sources, where.file, where.begin, &length);
+  size_t line_begin = (size_t)(line - d->sources->items[where.file].text);
+  size_t begin = where.begin - line_begin < length ? where.begin - line_begin : length;
+  size_t end = where.end > line_begin + length ? length : where.end - line_begin;
+  if (where.end <= where.begin) end = begin;
+
+  size_t from = 0, to = length;
+  if (length > LINE_WIDTH) {
+    from = begin > LEFT_OF_CARET ? begin - LEFT_OF_CARET : 0;
+    to = from + LINE_WIDTH < length ? from + LINE_WIDTH : length;
+    while (from > 0 && continues(line[from]))
+      from--;
+    while (to < length && continues(line[to]))
+      to++;
+  }
+  if (end > to) end = to;
+
+  int number = source_place(d->sources, where.file, where.begin).line;
+  int digits = fprintf(out, "  %d", number);
+  fprintf(out, " | %s", from > 0 ? "..." : "");
+  print_bytes(out, line, from, to);
+  fprintf(out, "%s\n%*s | %s", to < length ? "..." : "", digits, "", from > 0 ? "   " : "");
+  for (size_t i = from; i < begin; i++)
+    if (!continues(line[i])) fputc(line[i] == '\t' ? '\t' : ' ', out);
+  fputc('^', out);
+  for (size_t i = begin + 1; i < end; i++)
+    if (!continues(line[i])) fputc('~', out);
+  fputc('\n', out);
+}
+
+static void print_one(const diagnostics *d, span where, const char *kind, const char *message,
+                      const char *name, FILE *out) {
+  bool here = located(d, where);
+  if (here) {
+    place at = source_place(d->sources, where.file, where.begin);
+    fprintf(out, "%s:%d:%d: ", d->sources->items[where.file].name, at.line, at.column);
+  }
+  fprintf(out, "%s: %s", kind, message);
+  if (name) fprintf(out, " [%s]", name);
+  fputc('\n', out);
+  if (here) print_line(d, where, out);
+}
+
+static int by_place(const void *a, const void *b) {
+  const diagnostic *x = *(const diagnostic *const *)a, *y = *(const diagnostic *const *)b;
+  if (x->where.file != y->where.file) return x->where.file < y->where.file ? -1 : 1;
+  if (x->where.begin != y->where.begin) return x->where.begin < y->where.begin ? -1 : 1;
+  return x < y ? -1 : x > y; /* as reported: both lie in one array */
+}
+
+void diag_print(const diagnostics *d, FILE *out) {
+  const diagnostic **order = must_calloc((size_t)d->count, sizeof(*order));
+  for (int i = 0; i < d->count; i++)
+    order[i] = &d->items[i];
+  qsort(order, (size_t)d->count, sizeof(*order), by_place);
+  for (int i = 0; i < d->count && i < MOST_PRINTED; i++) {
+    const diagnostic *one = order[i];
+    bool error = diag_severity(one->code) == SEVERITY_ERROR;
+    print_one(d, one->where, error ? "error" : "warning", one->message, diag_name(one->code), out);
+    if (one->hint) fprintf(out, "  hint: %s\n", one->hint);
+    if (one->note) print_one(d, one->note_where, "note", one->note, NULL, out);
+  }
+  if (d->count > MOST_PRINTED) fprintf(out, "and %d more like these\n", d->count - MOST_PRINTED);
+  free(order);
+}

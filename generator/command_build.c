@@ -1,0 +1,164 @@
+/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime with deck, law and kernel
+   built in. Running a solver needs no compiler. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/c_text.h"
+#include "generator/commands.h"
+#include "generator/model.h"
+#include "generator/run.h"
+
+#define ERROR_LENGTH 8192
+#define DECK_LIMIT   ((size_t)16 << 20)
+
+static bool build_law(const char *path, const char *output) {
+  model m;
+  char error[ERROR_LENGTH], chosen[512];
+  bool good = model_open(&m, path, NULL, 0) && model_plan(&m);
+  diag_print(&m.said, stderr);
+  if (good) {
+    snprintf(chosen, sizeof chosen, "%s.so", m.law->tree->name);
+    output = output ? output : chosen;
+    good = toolchain_build(m.c_text, output, error, sizeof error);
+    if (good)
+      printf("written %s (key %s)\n", output, m.key);
+    else
+      fprintf(stderr, "perilat: error: %s\n", error);
+  }
+  model_close(&m);
+  return good;
+}
+
+/* --- solvers ------------------------------------------------------------------------------------ */
+
+/* What the deck's only lattice is made of, with its options decided. */
+typedef struct deck_law {
+  model model;
+  bool opened;
+  char name[512];   /* as the deck gives it */
+  char choices[512];/* ";option=choice;..." */
+} deck_law;
+
+static void list_choices(const law *l, char *text, size_t size) {
+  size_t used = (size_t)snprintf(text, size, ";");
+  for (int k = 0; k < l->options.count && used < size; k++)
+    used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
+}
+
+static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law *out) {
+  arena *memory = arena_new();
+  source_set sources = {NULL, 0};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  int file = source_add(&sources, deck_path, deck_text, strlen(deck_text));
+  deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
+  bool good = k && run_open_material(&k->materials[0], deck_path, &out->model, &said);
+  out->opened = k != NULL && out->model.memory != NULL;
+  if (good) {
+    snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);
+    list_choices(out->model.law, out->choices, sizeof out->choices);
+  }
+  diag_print(&said, stderr);
+  diag_clear(&said);
+  source_clear(&sources);
+  arena_free(memory);
+  return good;
+}
+
+static void put_string(c_text *out, const char *name, const char *text) {
+  c_text_add(out, "static const char %s[] = ", name);
+  c_text_string(out, text);
+  c_text_add(out, ";\n");
+}
+
+static const char solver_main[] =
+    "typedef struct built_in_law {\n  const char *model;\n  const pl_law *law;\n"
+    "  const char *law_text, *c_text;\n  const char *choices;\n} built_in_law;\n"
+    "int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,\n"
+    "                        const built_in_law *laws, int law_count);\n"
+    "int main(int argc, char **argv) {\n"
+    "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
+    "                                solver_kernel_text, solver_choices}};\n"
+    "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1);\n}\n";
+
+/* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
+static char *solver_text(const deck_law *l, const char *deck_name, const char *deck_text) {
+  c_text out = {NULL, 0, 0};
+  c_text_add(&out, "%s\n/* --- the solver --- */\n\n", l->model.c_text);
+  put_string(&out, "solver_deck_name", deck_name);
+  put_string(&out, "solver_deck", deck_text);
+  put_string(&out, "solver_model", l->name);
+  put_string(&out, "solver_law_text", l->model.sources.items[0].text);
+  put_string(&out, "solver_kernel_text", l->model.c_text);
+  put_string(&out, "solver_choices", l->choices);
+  c_text_add(&out, "%s", solver_main);
+  return out.text;
+}
+
+static bool build_solver(const char *path, const char *output) {
+  char error[ERROR_LENGTH];
+  size_t length;
+  if (!output) {
+    fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
+    return false;
+  }
+  char *deck_text = read_text_file(path, DECK_LIMIT, &length, error, sizeof error);
+  if (!deck_text) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    return false;
+  }
+  deck_law l = {.opened = false};
+  bool good = open_deck_law(path, deck_text, &l);
+  if (good) {
+    char *text = solver_text(&l, path, deck_text);
+    good = toolchain_build_program(text, output, error, sizeof error);
+    free(text);
+    if (good)
+      printf("written %s: runs the deck %s without a compiler\n", output, path);
+    else
+      fprintf(stderr, "perilat: error: %s\n", error);
+  }
+  if (l.opened)
+    model_close(&l.model);
+  free(deck_text);
+  return good;
+}
+
+static bool ends_in(const char *text, const char *tail) {
+  size_t n = strlen(text), m = strlen(tail);
+  return n >= m && strcmp(text + n - m, tail) == 0;
+}
+
+int command_build(int argc, char **argv) {
+  static const char *const options[] = {"-o"};
+  const char *path = NULL, *output = NULL, *value;
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    if ((value = option_value(argc, argv, &at, "-o", &bad)))
+      output = value;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("build", argv[at], options, 1);
+    else if (path) {
+      fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n", argv[at]);
+      bad = 1;
+    } else
+      path = argv[at++];
+  }
+  if (bad)
+    return 1;
+  if (!path) {
+    fputs("perilat: error: `perilat build` needs a law or a deck\n", stderr);
+    return 1;
+  }
+  if (output && (strcmp(output, path) == 0)) {
+    fputs("perilat: error: the output would overwrite the input\n", stderr);
+    return 1;
+  }
+  if (ends_in(path, ".nml"))
+    return build_solver(path, output) ? 0 : 1;
+  char *found = model_find(path, NULL);
+  bool good = build_law(found ? found : path, output);
+  free(found);
+  return good ? 0 : 1;
+}

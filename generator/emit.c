@@ -1,0 +1,787 @@
+#include "generator/emit.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/c_text.h"
+#include "generator/prelude.h"
+
+#define LONGEST_INLINE                                                                             \
+  6 /* operations written into one expression before it is broken into lines                       \
+     */
+
+/* --- what a function is written from ---------------------------------------------------------- */
+
+/* The functions differ in where inputs come from and in how the loop, if any, runs. */
+typedef enum scope_kind { IN_PREPARE, IN_BOUNDS, IN_ROWS, IN_LIST, IN_STATES } scope_kind;
+
+typedef struct emitter {
+  const kernel_plan *plan;
+  const ir *graph;
+  c_text *out;
+  int node_count;
+  int *uniform_of; /* [node_count] index in `uniforms`, or -1 */
+
+  /* the function being written */
+  scope_kind scope;
+  const pass_root *roots;
+  int root_count;
+  c_names names;
+  unsigned char *needed; /* [node_count] */
+  int *uses;             /* [node_count] by needed nodes and roots */
+  ir_node *user;         /* [node_count] the last of them; IR_NONE: a root */
+  int *size;             /* [node_count] operations written in place of the node */
+  const char **name;     /* [node_count] NULL: written in place */
+} emitter;
+
+static bool in_loop(const emitter *e) {
+  return e->scope >= IN_ROWS;
+}
+
+/* A value loaded from `uniforms`; in `prepare` the same node is computed. */
+static bool is_uniform(const emitter *e, ir_node n) {
+  return in_loop(e) && e->uniform_of[n] >= 0;
+}
+
+static bool is_input(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_INPUT && !is_uniform(e, n);
+}
+
+static bool is_ends_input(const emitter *e, ir_node n, ends_input which) {
+  return is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+         ir_input_index(e->graph, n) == (int)which;
+}
+
+static bool is_constant(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_CONSTANT;
+}
+
+/* --- names of inputs -------------------------------------------------------------------------- */
+
+/* X(ends input, strip member, component, index) */
+#define ENDS_ARRAYS(X)                                                                             \
+  X(U_IX, displacement_i, 0, NEAR)                                                                 \
+  X(U_IY, displacement_i, 1, NEAR)                                                                 \
+  X(PHI_I, displacement_i, 2, NEAR)                                                                \
+  X(U_JX, displacement_j, 0, FAR)                                                                  \
+  X(U_JY, displacement_j, 1, FAR)                                                                  \
+  X(PHI_J, displacement_j, 2, FAR)                                                                 \
+  X(V_IX, velocity_i, 0, NEAR) X(V_IY, velocity_i, 1, NEAR) X(OMEGA_I, velocity_i, 2, NEAR)        \
+      X(V_JX, velocity_j, 0, FAR) X(V_JY, velocity_j, 1, FAR) X(OMEGA_J, velocity_j, 2, FAR)       \
+          X(CHORD_X, chord, 0, BOND) X(CHORD_Y, chord, 1, BOND)
+
+typedef enum array_index { NEAR, FAR, BOND } array_index; /* particle i, particle j, the bond */
+
+typedef struct ends_array {
+  const char *member;
+  int component;
+  array_index index;
+} ends_array;
+
+static const ends_array ends_arrays[ENDS_COUNT] = {
+#define X(code, member, component, index) [ENDS_##code] = {#member, component, index},
+    ENDS_ARRAYS(X)
+#undef X
+};
+
+/* Members of pl_bond_class behind the quantities of a lattice. */
+static const char *const class_members[QUANTITY_COUNT] = {
+    [QUANTITY_S] = "bonds->s",
+    [QUANTITY_SPACING] = "bonds->spacing",
+    [QUANTITY_T] = "bonds->t",
+    [QUANTITY_V] = "bonds->V",
+    [QUANTITY_M_BOND] = "pl_min(bonds->mass_i, bonds->mass_j)",
+    [QUANTITY_M_END_I] = "bonds->mass_i",
+    [QUANTITY_M_END_J] = "bonds->mass_j",
+    [QUANTITY_AREA] = "bonds->area",
+    [QUANTITY_SHELL] = "bonds->shell",
+    [QUANTITY_N_FAMILY] = "bonds->n",
+};
+
+/* Place of the kinematic quantities among the planes of `states`. */
+static const int states_plane[QUANTITY_COUNT] = {
+    [QUANTITY_STRETCH] = 0, [QUANTITY_STRETCH_RATE] = 1, [QUANTITY_THETA_I] = 2,
+    [QUANTITY_THETA_J] = 3, [QUANTITY_LENGTH] = 4,
+};
+#define STATES_FIELDS 5
+
+/* --- a function's nodes ----------------------------------------------------------------------- */
+
+static void use_node(emitter *e, ir_node n, ir_node user) {
+  e->needed[n] = 1;
+  e->uses[n]++;
+  e->user[n] = user;
+}
+
+static int operand_count(const emitter *e, ir_node n) {
+  return is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
+}
+
+/* Marks what the roots need; nodes only refer to earlier ones, so one walk down is enough. */
+static void find_needed(emitter *e) {
+  for (int k = 0; k < e->root_count; k++)
+    use_node(e, e->roots[k].node, IR_NONE);
+  for (ir_node n = e->node_count - 1; n >= 0; n--)
+    for (int k = 0; e->needed[n] && k < operand_count(e, n); k++)
+      use_node(e, ir_operand(e->graph, n, k), n);
+}
+
+/* A condition asked directly by a select or inside another condition; `a and (b or c)` nests to the
+ * right only. */
+static bool is_inline_condition(const emitter *e, ir_node n, ir_node user) {
+  ir_op op = ir_operation(e->graph, n),
+        asking = user == IR_NONE ? IR_ADD : ir_operation(e->graph, user);
+  bool asked = ir_operand(e->graph, user == IR_NONE ? n : user, 0) == n;
+  if (op == IR_AND || op == IR_OR) return (asking == IR_AND || asking == IR_OR) && !asked;
+  return asking == IR_AND || asking == IR_OR || asking == IR_NOT || (asking == IR_SELECT && asked);
+}
+
+/* May be part of a longer expression. A select goes into the last place of another one, as a chain
+   of cases. Values that a select chooses from are computed on lines of their own when they divide,
+   so that no compiler thinks of branching. */
+static bool is_inline(const emitter *e, ir_node n) {
+  ir_op op = ir_operation(e->graph, n);
+  if (op == IR_CONSTANT) return true;
+  if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE || is_uniform(e, n))
+    return false;
+  ir_node user = e->user[n];
+  bool chosen = user == IR_NONE || ir_operation(e->graph, user) == IR_SELECT;
+  switch (op) {
+  case IR_ADD:
+  case IR_SUB:
+  case IR_MUL:
+  case IR_NEG:
+  case IR_ABS:
+    return true;
+  case IR_DIV:
+    return !chosen;
+  case IR_SELECT:
+    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n;
+  default:
+    return ir_is_logical(e->graph, n) && is_inline_condition(e, n, user);
+  }
+}
+
+static const char *wished_name(const emitter *e, ir_node n, char *space, size_t size) {
+  const char *given = ir_name(e->graph, n);
+  if (ir_operation(e->graph, n) == IR_INPUT && ir_input_source(e->graph, n) == IR_FROM_FIELD)
+    snprintf(space, size, "old_%s", given ? given : "field");
+  else if (given)
+    return given;
+  else
+    snprintf(space, size, "v%d", (int)n);
+  return space;
+}
+
+/* The model's names first, so that they stay as they are; then those of the nameless. */
+static void choose_names(emitter *e) {
+  char space[128];
+  for (ir_node n = 0; n < e->node_count; n++) {
+    if (!e->needed[n]) continue;
+    e->size[n] = 1;
+    for (int k = 0; k < operand_count(e, n); k++) {
+      ir_node operand = ir_operand(e->graph, n, k);
+      e->size[n] += is_inline(e, operand) ? e->size[operand] : 0;
+    }
+  }
+  for (int named = 1; named >= 0; named--)
+    for (ir_node n = 0; n < e->node_count; n++)
+      if (e->needed[n] && (ir_name(e->graph, n) != NULL) == named && !is_inline(e, n))
+        e->name[n] = c_names_make(&e->names, wished_name(e, n, space, sizeof space));
+}
+
+static void scope_open(emitter *e, scope_kind scope, const pass_root *roots, int root_count) {
+  static const char *const own[] = {
+      "law",       "uniforms",   "strip",       "count",        "q",
+      "flags",     "i",          "j",           "in",           "out",
+      "bonds",     "present",    "lower",       "upper",        "low_open",
+      "high_open", "parameters", "present_bit", "protected_bit"};
+  size_t n = (size_t)e->node_count + 1;
+  e->scope = scope;
+  e->roots = roots;
+  e->root_count = root_count;
+  e->names = (c_names){0};
+  for (size_t k = 0; k < sizeof own / sizeof *own; k++)
+    c_names_reserve(&e->names, own[k]);
+  e->needed = must_calloc(n, 1);
+  e->uses = must_calloc(n, sizeof *e->uses);
+  e->user = must_calloc(n, sizeof *e->user);
+  e->size = must_calloc(n, sizeof *e->size);
+  e->name = must_calloc(n, sizeof *e->name);
+  find_needed(e);
+  choose_names(e);
+}
+
+static void scope_close(emitter *e) {
+  c_names_clear(&e->names);
+  free(e->needed);
+  free(e->uses);
+  free(e->user);
+  free(e->size);
+  free(e->name);
+}
+
+/* --- expressions ------------------------------------------------------------------------------ */
+
+/* How tightly an expression holds together; C's precedences, highest for names and calls. */
+enum { LEVEL_CHOICE = 1, LEVEL_COMPARE = 5, LEVEL_SUM, LEVEL_PRODUCT, LEVEL_SIGN, LEVEL_ATOM };
+
+static void write_expression(emitter *e, ir_node n);
+
+static int level_of(ir_op op) {
+  switch (op) {
+  case IR_ADD:
+  case IR_SUB:
+    return LEVEL_SUM;
+  case IR_MUL:
+  case IR_DIV:
+    return LEVEL_PRODUCT;
+  case IR_NEG:
+    return LEVEL_SIGN;
+  case IR_LT:
+  case IR_LE:
+  case IR_EQ:
+  case IR_AND:
+  case IR_OR:
+  case IR_NOT:
+  case IR_SELECT:
+    return LEVEL_CHOICE;
+  default:
+    return LEVEL_ATOM;
+  }
+}
+
+/* Writes node n as an operand that must hold together at least as tightly as `level`. The
+   parentheses are those that keep the order of evaluation of the graph. */
+static void write_operand(emitter *e, ir_node n, int level) {
+  if (is_constant(e, n))
+    c_text_number(e->out, ir_value(e->graph, n));
+  else if (e->name[n])
+    c_text_add(e->out, "%s", e->name[n]);
+  else if (level_of(ir_operation(e->graph, n)) >= level)
+    write_expression(e, n);
+  else {
+    c_text_add(e->out, "(");
+    write_expression(e, n);
+    c_text_add(e->out, ")");
+  }
+}
+
+static void write_infix(emitter *e, ir_node n, const char *sign, int left, int right) {
+  write_operand(e, ir_operand(e->graph, n, 0), left);
+  c_text_add(e->out, "%s", sign);
+  write_operand(e, ir_operand(e->graph, n, 1), right);
+}
+
+static void write_comparison(emitter *e, ir_node n) {
+  ir_op op = ir_operation(e->graph, n);
+  write_infix(e, n, op == IR_LT ? " < " : op == IR_LE ? " <= " : " == ", LEVEL_SUM, LEVEL_SUM);
+}
+
+/* Logical nodes are doubles, 0 or 1, made by choices: gcc turns integers made of several
+   comparisons into branches, and then the loop does not vectorise. This writes node n as C's
+   condition. */
+static void write_condition(emitter *e, ir_node n) {
+  ir_op op = ir_operation(e->graph, n);
+  if (!e->name[n] && (op == IR_LT || op == IR_LE || op == IR_EQ)) {
+    write_comparison(e, n);
+  } else if (!e->name[n] && op == IR_NOT) {
+    c_text_add(e->out, "!(");
+    write_condition(e, ir_operand(e->graph, n, 0));
+    c_text_add(e->out, ")");
+  } else {
+    write_operand(e, n, LEVEL_SUM);
+    c_text_add(e->out, " != 0.0");
+  }
+}
+
+static void write_logical(emitter *e, ir_node n) {
+  switch (ir_operation(e->graph, n)) {
+  case IR_AND:
+    write_condition(e, ir_operand(e->graph, n, 0));
+    c_text_add(e->out, " ? ");
+    write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
+    c_text_add(e->out, " : 0.0");
+    break;
+  case IR_OR:
+    write_condition(e, ir_operand(e->graph, n, 0));
+    c_text_add(e->out, " ? 1.0 : ");
+    write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
+    break;
+  case IR_NOT:
+    write_condition(e, ir_operand(e->graph, n, 0));
+    c_text_add(e->out, " ? 0.0 : 1.0");
+    break;
+  default:
+    write_comparison(e, n);
+    c_text_add(e->out, " ? 1.0 : 0.0");
+  }
+}
+
+static void write_select(emitter *e, ir_node n) {
+  write_condition(e, ir_operand(e->graph, n, 0));
+  c_text_add(e->out, " ? ");
+  write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
+  ir_node otherwise = ir_operand(e->graph, n, 2);
+  bool chain = !e->name[otherwise] && ir_operation(e->graph, otherwise) == IR_SELECT;
+  c_text_add(e->out, chain ? "\n        : " : " : ");
+  write_operand(e, otherwise, LEVEL_CHOICE);
+}
+
+static void write_call(emitter *e, ir_node n) {
+  ir_op op = ir_operation(e->graph, n);
+  c_text_add(e->out, "pl_%s(", ir_op_name(op));
+  for (int k = 0; k < ir_arity(op); k++) {
+    c_text_add(e->out, k ? ", " : "");
+    write_operand(e, ir_operand(e->graph, n, k), LEVEL_CHOICE);
+  }
+  c_text_add(e->out, ")");
+}
+
+static void write_expression(emitter *e, ir_node n) {
+  switch (ir_operation(e->graph, n)) {
+  case IR_ADD:
+    write_infix(e, n, " + ", LEVEL_SUM, LEVEL_PRODUCT);
+    break;
+  case IR_SUB:
+    write_infix(e, n, " - ", LEVEL_SUM, LEVEL_PRODUCT);
+    break;
+  case IR_MUL:
+    write_infix(e, n, "*", LEVEL_PRODUCT, LEVEL_ATOM);
+    break;
+  case IR_DIV:
+    write_infix(e, n, "/", LEVEL_PRODUCT, LEVEL_ATOM);
+    break;
+  case IR_NEG:
+    c_text_add(e->out, "-");
+    write_operand(e, ir_operand(e->graph, n, 0), LEVEL_ATOM);
+    break;
+  case IR_LT:
+  case IR_LE:
+  case IR_EQ:
+  case IR_AND:
+  case IR_OR:
+  case IR_NOT:
+    write_logical(e, n);
+    break;
+  case IR_SELECT:
+    write_select(e, n);
+    break;
+  default:
+    write_call(e, n);
+  }
+}
+
+/* "line 12" of the model file; nothing for lines of included files, whose numbers would mislead. */
+static void write_line_end(emitter *e, ir_node n) {
+  span where = ir_where(e->graph, n);
+  const law *l = e->plan->law;
+  if (where.end && where.file == l->tree->name_where.file)
+    c_text_add(e->out, "; /* line %d */\n", source_place(l->sources, where.file, where.begin).line);
+  else
+    c_text_add(e->out, ";\n");
+}
+
+/* --- inputs ----------------------------------------------------------------------------------- */
+
+static const ends_array *ends_array_of(const emitter *e, ir_node n) {
+  return &ends_arrays[ir_input_index(e->graph, n)];
+}
+
+/* `const double *restrict at_u_ix = strip->displacement_i[0];` */
+static void write_array(emitter *e, ir_node n) {
+  int index = ir_input_index(e->graph, n);
+  c_text_add(e->out, "  const double *restrict at_%s = ", e->name[n]);
+  if (ir_input_source(e->graph, n) == IR_FROM_ENDS)
+    c_text_add(e->out, "strip->%s[%d];\n", ends_array_of(e, n)->member,
+               ends_array_of(e, n)->component);
+  else if (ir_input_source(e->graph, n) == IR_FROM_FIELD)
+    c_text_add(e->out, "in[%d];\n", STATES_FIELDS + index);
+  else
+    c_text_add(e->out, "in[%d];\n", states_plane[index]);
+}
+
+/* What stands before the loop: values that are the same for all bonds, and the arrays of the
+ * others. */
+static void write_inputs_before_loop(emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++) {
+    if (!e->needed[n] || is_constant(e, n)) continue;
+    if (is_uniform(e, n)) {
+      c_text_add(e->out, "  const double %s = uniforms[%d]", e->name[n], e->uniform_of[n]);
+      write_line_end(e, n);
+    } else if (is_ends_input(e, n, ENDS_TIME_STEP)) {
+      c_text_add(e->out, "  const double %s = strip->time_step;\n", e->name[n]);
+    } else if (is_input(e, n) && !is_ends_input(e, n, ENDS_PROTECTED)) {
+      bool of_strip = e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD;
+      if (!of_strip) /* a strip's fields are also written: write_field_arrays */
+        write_array(e, n);
+    }
+  }
+}
+
+static void write_loop_input(emitter *e, ir_node n) {
+  if (is_ends_input(e, n, ENDS_PROTECTED))
+    c_text_add(e->out, "(flags[q] & protected_bit) != 0 ? 1.0 : 0.0");
+  else if (e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD)
+    c_text_add(e->out, "at_field_%d[q]", ir_input_index(e->graph, n));
+  else {
+    bool gathered = e->scope == IN_LIST && ends_array_of(e, n)->index != BOND;
+    const char *index = !gathered ? "q" : ends_array_of(e, n)->index == NEAR ? "i[q]" : "j[q]";
+    c_text_add(e->out, "at_%s[%s]", e->name[n], index);
+  }
+}
+
+static void write_body_input(emitter *e, ir_node n) {
+  int index = ir_input_index(e->graph, n);
+  if (ir_input_source(e->graph, n) == IR_FROM_PARAMETER)
+    c_text_add(e->out, "parameters[%d]", index);
+  else if (ir_input_source(e->graph, n) == IR_FROM_ENDS)
+    c_text_add(e->out, "bonds->chord[%d]", index == ENDS_CLASS_CHORD_X ? 0 : 1);
+  else
+    c_text_add(e->out, "%s", class_members[index]);
+}
+
+/* --- lines ------------------------------------------------------------------------------------ */
+
+/* One line for each node that has a name here, in the order of the graph. */
+static void write_lines(emitter *e) {
+  const char *indent = in_loop(e) ? "    " : "  ";
+  for (ir_node n = 0; n < e->node_count; n++) {
+    if (!e->needed[n] || !e->name[n] || is_uniform(e, n) || is_ends_input(e, n, ENDS_TIME_STEP))
+      continue;
+    c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
+    if (!is_input(e, n))
+      write_expression(e, n);
+    else if (in_loop(e))
+      write_loop_input(e, n);
+    else
+      write_body_input(e, n);
+    write_line_end(e, n);
+  }
+}
+
+/* --- passes over strips ----------------------------------------------------------------------- */
+
+static const pass_root *find_root(const emitter *e, pass_target target, int index) {
+  for (int k = 0; k < e->root_count; k++)
+    if (e->roots[k].target == target && e->roots[k].index == index) return &e->roots[k];
+  return NULL;
+}
+
+static bool reads(const emitter *e, ir_source from, int index) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && is_input(e, n) && ir_input_source(e->graph, n) == from &&
+        ir_input_index(e->graph, n) == index)
+      return true;
+  return false;
+}
+
+/* X(target, member, array name, how it is stored) */
+#define STRIP_TARGETS(X)                                                                           \
+  X(TO_FORCE, "force[%d]", "at_force_%d", ZERO)                                                    \
+  X(TO_FIELD, "field[%d]", "at_field_%d", KEEP)                                                    \
+  X(TO_DISSIPATED_STATE, "dissipated_state", "at_dissipated_state", ADD)                           \
+  X(TO_DISSIPATED_RATE, "dissipated_rate", "at_dissipated_rate", ADD)                              \
+  X(TO_OBSERVED, "observed[%d]", "at_observed_%d", ZERO)
+
+typedef enum store_kind { ZERO, KEEP, ADD } store_kind; /* what an absent bond leaves behind */
+
+typedef struct strip_target {
+  const char *member, *array;
+  store_kind store;
+} strip_target;
+
+static const strip_target strip_targets[] = {
+#define X(target, member, array, store) [target] = {member, array, store},
+    STRIP_TARGETS(X)
+#undef X
+};
+
+/* A format of the table with its index, where it has one. */
+static void write_indexed(emitter *e, const char *format, int index) {
+  const char *mark = strstr(format, "%d");
+  if (mark)
+    c_text_add(e->out, "%.*s%d%s", (int)(mark - format), format, index, mark + 2);
+  else
+    c_text_add(e->out, "%s", format);
+}
+
+static void write_target_array(emitter *e, pass_target target, int index, const char *qualifier) {
+  c_text_add(e->out, "  %sdouble *restrict ", qualifier);
+  write_indexed(e, strip_targets[target].array, index);
+  c_text_add(e->out, " = strip->");
+  write_indexed(e, strip_targets[target].member, index);
+  c_text_add(e->out, ";\n");
+}
+
+static void write_output_arrays(emitter *e) {
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    if (!find_root(e, TO_FIELD, f) && reads(e, IR_FROM_FIELD, f))
+      write_target_array(e, TO_FIELD, f, "const ");
+  for (int k = 0; k < e->root_count; k++)
+    write_target_array(e, e->roots[k].target, e->roots[k].index, "");
+}
+
+/* Absent bonds are evaluated too (no branch), and what they gave is dropped here. */
+static void write_store(emitter *e, const pass_root *r) {
+  const strip_target *target = &strip_targets[r->target];
+  c_text_add(e->out, "    ");
+  write_indexed(e, target->array, r->index);
+  c_text_add(e->out, target->store == ADD ? "[q] += present != 0 ? " : "[q] = present != 0 ? ");
+  write_operand(e, r->node, LEVEL_SUM);
+  c_text_add(e->out, " : ");
+  if (target->store == KEEP) {
+    write_indexed(e, target->array, r->index);
+    c_text_add(e->out, "[q];\n");
+  } else
+    c_text_add(e->out, "0.0;\n");
+}
+
+static void write_loop_begin(emitter *e) {
+  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
+}
+
+static void write_strip_head(emitter *e, const char *name, bool rare) {
+  c_text_add(
+      e->out,
+      "%sstatic void %s(const pl_law *law, const double *uniforms, const pl_strip *strip) {\n"
+      "  (void)law, (void)uniforms;\n"
+      "  const long count = %s;\n"
+      "  const int64_t *restrict flags = strip->flags;\n"
+      "  const int64_t present_bit = PL_PRESENT(strip->direction);\n",
+      rare ? "PL_RARE " : "", name,
+      e->scope == IN_LIST ? "strip->count" : "strip->count / PL_LANES * PL_LANES");
+  if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
+    c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
+  if (e->scope == IN_LIST)
+    c_text_add(e->out, "  const int32_t *restrict i = strip->i, *restrict j = strip->j;\n"
+                       "  (void)i, (void)j;\n");
+  if (!e->root_count) c_text_add(e->out, "  (void)flags, (void)present_bit;\n");
+  write_inputs_before_loop(e);
+  write_output_arrays(e);
+}
+
+static void write_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name) {
+  scope_open(e, scope, p->roots, p->root_count);
+  write_strip_head(e, name, p->kind == PASS_LIST_OBSERVE);
+  write_loop_begin(e);
+  write_lines(e);
+  if (p->root_count) c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
+  for (int k = 0; k < p->root_count; k++)
+    write_store(e, &p->roots[k]);
+  c_text_add(e->out, "  }\n}\n\n");
+  scope_close(e);
+}
+
+/* --- the law alone ---------------------------------------------------------------------------- */
+
+/* `states` and `tangent`. Planes without a root (moments of a central law) are zero. */
+static void write_states_pass(emitter *e, const pass *p, const char *name, int planes) {
+  scope_open(e, IN_STATES, p->roots, p->root_count);
+  c_text_add(e->out,
+             "PL_RARE static void %s(const pl_law *law, const double *uniforms, long count,\n"
+             "    const double *const *in, double *const *out) {\n"
+             "  (void)law, (void)uniforms, (void)in;\n",
+             name);
+  write_inputs_before_loop(e);
+  for (int k = 0; k < planes; k++)
+    c_text_add(e->out, "  double *restrict at_out_%d = out[%d];\n", k, k);
+  write_loop_begin(e);
+  write_lines(e);
+  for (int k = 0; k < planes; k++) {
+    const pass_root *r = find_root(e, TO_OUT, k);
+    c_text_add(e->out, "    at_out_%d[q] = ", k);
+    if (r)
+      write_operand(e, r->node, LEVEL_CHOICE);
+    else
+      c_text_add(e->out, "0.0");
+    c_text_add(e->out, ";\n");
+  }
+  c_text_add(e->out, "  }\n}\n\n");
+  scope_close(e);
+}
+
+/* --- parameters ------------------------------------------------------------------------------- */
+
+static void write_prepare(emitter *e) {
+  int count = e->plan->uniform_count;
+  pass_root *roots = must_calloc((size_t)count + 1, sizeof *roots);
+  for (int k = 0; k < count; k++)
+    roots[k] = (pass_root){e->plan->uniforms[k], TO_OUT, k};
+  scope_open(e, IN_PREPARE, roots, count);
+  c_text_add(e->out, "PL_RARE static void prepare(const pl_law *law, const double *parameters,\n"
+                     "    const pl_bond_class *bonds, double *uniforms) {\n"
+                     "  (void)law, (void)parameters, (void)bonds, (void)uniforms;\n");
+  write_lines(e);
+  for (int k = 0; k < count; k++) {
+    c_text_add(e->out, "  uniforms[%d] = ", k);
+    write_operand(e, roots[k].node, LEVEL_CHOICE);
+    c_text_add(e->out, ";\n");
+  }
+  c_text_add(e->out, "}\n\n");
+  scope_close(e);
+  free(roots);
+}
+
+/* `lower[3] = 0.0; low_open[3] = 1;` */
+static void write_bound(emitter *e, int parameter, pass_target target, const char *value,
+                        const char *open, bool is_open, const char *sign) {
+  const pass_root *r = find_root(e, target, parameter);
+  c_text_add(e->out, "  %s[%d] = ", value, parameter);
+  if (r)
+    write_operand(e, r->node, LEVEL_CHOICE);
+  else
+    c_text_add(e->out, "%s__builtin_inf()", sign);
+  c_text_add(e->out, ", %s[%d] = %d;\n", open, parameter, !r || is_open);
+}
+
+static void write_bounds(emitter *e) {
+  const pass *p = &e->plan->passes[PASS_BOUNDS];
+  const symbol_list *parameters = &e->plan->law->parameters;
+  scope_open(e, IN_BOUNDS, p->roots, p->root_count);
+  c_text_add(
+      e->out,
+      "PL_RARE static void bounds(const pl_law *law, const double *parameters, double *lower,\n"
+      "    double *upper, unsigned char *low_open, unsigned char *high_open) {\n"
+      "  (void)law, (void)parameters, (void)lower, (void)upper, (void)low_open, "
+      "(void)high_open;\n");
+  write_lines(e);
+  for (int k = 0; k < parameters->count; k++) {
+    const bounds *in = &parameters->items[k]->declared->in;
+    write_bound(e, k, TO_LOWER, "lower", "low_open", in->lower_open, "-");
+    write_bound(e, k, TO_UPPER, "upper", "high_open", in->upper_open, "");
+  }
+  c_text_add(e->out, "}\n\n");
+  scope_close(e);
+}
+
+/* --- the table of facts ----------------------------------------------------------------------- */
+
+static void write_symbol(emitter *e, const symbol *s) {
+  char si[64];
+  dim_unit(s->dim, si, sizeof si);
+  c_text_add(e->out, "    {");
+  c_text_string(e->out, s->name);
+  c_text_add(e->out, ", ");
+  c_text_string(e->out, si);
+  c_text_add(e->out, ", ");
+  c_text_string(e->out, s->doc);
+  c_text_add(e->out, ", ");
+  c_text_number(e->out, s->initial);
+}
+
+static void write_parameters(emitter *e) {
+  const symbol_list *list = &e->plan->law->parameters;
+  if (!list->count) return;
+  c_text_add(e->out, "static const pl_parameter law_parameters[] = {\n");
+  for (int k = 0; k < list->count; k++) {
+    write_symbol(e, list->items[k]);
+    c_text_add(e->out, ", %d},\n", list->items[k]->has_default);
+  }
+  c_text_add(e->out, "};\n\n");
+}
+
+static void write_fields(emitter *e, const symbol_list *list, const char *name) {
+  if (!list->count) return;
+  c_text_add(e->out, "static const pl_field %s[] = {\n", name);
+  for (int k = 0; k < list->count; k++) {
+    const symbol *s = list->items[k];
+    write_symbol(e, s);
+    c_text_add(e->out, ", %s},\n",
+               s->kind == SYMBOL_DAMAGE  ? "PL_FIELD_DAMAGE"
+               : s->kind == SYMBOL_STATE ? "PL_FIELD_STATE"
+                                         : "PL_FIELD_OUTPUT");
+  }
+  c_text_add(e->out, "};\n\n");
+}
+
+static void write_table(emitter *e, const char *member, const char *array, int count) {
+  c_text_add(e->out, "    .%s_count = %d,\n    .%ss = %s,\n", member, count, member,
+             count ? array : "0");
+}
+
+static void write_descriptor(emitter *e, const char *key) {
+  const kernel_plan *p = e->plan;
+  c_text_add(e->out,
+             "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .kind = %d,\n"
+             "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
+             p->kind, p->dimensions, p->dof, p->force_planes);
+  c_text_string(e->out, p->law->tree->name);
+  c_text_add(e->out, ",\n    .key = ");
+  c_text_string(e->out, key);
+  c_text_add(e->out, ",\n");
+  write_table(e, "parameter", "law_parameters", p->law->parameters.count);
+  write_table(e, "field", "law_fields", p->law->fields.count);
+  write_table(e, "output", "law_outputs", p->law->outputs.count);
+  c_text_add(e->out, "    .uniform_count = %d,\n    .flops_per_bond = ", p->uniform_count);
+  c_text_number(e->out, p->flops_per_bond);
+  c_text_add(e->out, ",\n    .divisions_per_bond = ");
+  c_text_number(e->out, p->divisions_per_bond);
+  c_text_add(e->out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
+}
+
+/* X(pass, function and member of pl_law, scope) */
+#define STRIP_PASSES(X)                                                                            \
+  X(PASS_ROWS, rows, IN_ROWS)                                                                      \
+  X(PASS_ROWS_LEDGER, rows_ledger, IN_ROWS)                                                        \
+  X(PASS_ROWS_OBSERVE, rows_observe, IN_ROWS)                                                      \
+  X(PASS_LIST, list, IN_LIST)                                                                      \
+  X(PASS_LIST_LEDGER, list_ledger, IN_LIST) X(PASS_LIST_OBSERVE, list_observe, IN_LIST)
+
+static void write_entry(emitter *e, const char *key) {
+  write_descriptor(e, key);
+#define X(pass, name, scope) c_text_add(e->out, "    .%s = %s,\n", #name, #name);
+  STRIP_PASSES(X)
+#undef X
+  c_text_add(e->out, "    .states = states,\n    .tangent = tangent,\n};\n\n"
+                     "const pl_law *perilat_kernel(void);\n"
+                     "const pl_law *perilat_kernel(void) { return &the_law; }\n");
+}
+
+/* --- the whole text --------------------------------------------------------------------------- */
+
+/* Bonds of a strip share no output, whatever the pointers look like. */
+static const char own_macros[] =
+    "\n#if defined(__clang__)\n"
+    "#define PL_INDEPENDENT _Pragma(\"clang loop vectorize(assume_safety)\")\n"
+    "#else\n"
+    "#define PL_INDEPENDENT _Pragma(\"GCC ivdep\")\n"
+    "#endif\n"
+    "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n\n";
+
+static void write_prelude(emitter *e) {
+  c_text_add(e->out, "/* Written by perilat. */\n"
+                     "#pragma GCC diagnostic push\n"
+                     "#pragma GCC diagnostic ignored \"-Wunused-function\"\n");
+  c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
+  c_text_add(e->out, "#pragma GCC diagnostic pop\n%s", own_macros);
+}
+
+static void find_uniforms(emitter *e) {
+  e->uniform_of = must_calloc((size_t)e->node_count + 1, sizeof *e->uniform_of);
+  for (int n = 0; n < e->node_count; n++)
+    e->uniform_of[n] = -1;
+  for (int k = 0; k < e->plan->uniform_count; k++)
+    e->uniform_of[e->plan->uniforms[k]] = k;
+}
+
+char *emit_kernel(const kernel_plan *p, const char *key) {
+  c_text out = {0};
+  emitter e = {.plan = p, .graph = p->graph, .out = &out, .node_count = ir_count(p->graph)};
+  find_uniforms(&e);
+  write_prelude(&e);
+  write_parameters(&e);
+  write_fields(&e, &p->law->fields, "law_fields");
+  write_fields(&e, &p->law->outputs, "law_outputs");
+  write_prepare(&e);
+  write_bounds(&e);
+#define X(pass, name, scope) write_strip_pass(&e, scope, &p->passes[pass], #name);
+  STRIP_PASSES(X)
+#undef X
+  write_states_pass(&e, &p->passes[PASS_STATES], "states", 3 + p->law->fields.count);
+  write_states_pass(&e, &p->passes[PASS_TANGENT], "tangent", 12);
+  write_entry(&e, key);
+  free(e.uniform_of);
+  return out.text;
+}

@@ -1,0 +1,12 @@
+/* Plan to C: one self-contained source text (elementary functions and kernel.h are written into it), one function a
+   pass, the model's own names, the source line in a comment. Loops are branch-free and unit-stride on rows. */
+#ifndef PERILAT_GENERATOR_EMIT_H
+#define PERILAT_GENERATOR_EMIT_H
+
+#include "generator/passes.h"
+
+/* malloc'ed text. `key` goes into the descriptor. No text of the law reaches C other than checked identifiers
+   and numbers; descriptions are written as escaped string literals. */
+char *emit_kernel(const kernel_plan *p, const char *key);
+
+#endif

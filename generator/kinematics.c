@@ -1,0 +1,129 @@
+#include "generator/kinematics.h"
+
+#include "dsl/builtins.h"
+
+static const char *const input_names[ENDS_COUNT] = {
+#define X(code, name) [ENDS_##code] = name,
+    ENDS_INPUTS(X)
+#undef X
+};
+
+const char *kinematics_input_name(ends_input which) {
+  return input_names[which];
+}
+
+ir_node kinematics_input(ir *g, ends_input which) {
+  bool of_class = which == ENDS_CLASS_CHORD_X || which == ENDS_CLASS_CHORD_Y;
+  return ir_input(g, IR_FROM_ENDS, (int)which, input_names[which], of_class ? ON_BODY : ON_BOND);
+}
+
+/* Names are for readers of dumps and of generated C; these values have no line in a model. */
+static ir_node named(ir *g, ir_node n, const char *name) {
+  ir_set_name(g, n, name, (span){0, 0, 0});
+  return n;
+}
+
+typedef struct vector {
+  ir_node x, y;
+} vector;
+
+static vector inputs(ir *g, ends_input x, ends_input y) {
+  vector v = {kinematics_input(g, x), kinematics_input(g, y)};
+  return v;
+}
+
+static vector difference(ir *g, vector a, vector b, const char *name_x, const char *name_y) {
+  vector v = {named(g, ir_sub(g, a.x, b.x), name_x), named(g, ir_sub(g, a.y, b.y), name_y)};
+  return v;
+}
+
+static vector sum(ir *g, vector a, vector b) {
+  vector v = {ir_add(g, a.x, b.x), ir_add(g, a.y, b.y)};
+  return v;
+}
+
+/* Nodes are made one statement at a time: C leaves the order of arguments open, and the graph shall
+   not depend on who compiled this. */
+static ir_node dot(ir *g, vector a, vector b) {
+  ir_node x = ir_mul(g, a.x, b.x);
+  ir_node y = ir_mul(g, a.y, b.y);
+  return ir_add(g, x, y);
+}
+
+static ir_node cross(ir *g, vector a, vector b) {
+  ir_node xy = ir_mul(g, a.x, b.y);
+  ir_node yx = ir_mul(g, a.y, b.x);
+  return ir_sub(g, xy, yx);
+}
+
+/* Rotation of an end less the chord's. The chord's rotation comes from C x d (d: relative
+   displacement), which equals C x c but does not cancel when d is small. */
+static void end_rotations(ir *g, bond_kinematics *k, vector chord, vector d, vector now) {
+  ir_node phi = ir_make(g, IR_ATAN2, cross(g, chord, d), dot(g, chord, now), IR_NONE);
+  named(g, phi, "chord_rotation");
+  ir_node phi_i = kinematics_input(g, ENDS_PHI_I), phi_j = kinematics_input(g, ENDS_PHI_J);
+  k->theta_i = ir_make(g, IR_WRAP_ANGLE, ir_sub(g, phi_i, phi), IR_NONE, IR_NONE);
+  k->theta_j = ir_make(g, IR_WRAP_ANGLE, ir_sub(g, phi_j, phi), IR_NONE, IR_NONE);
+  named(g, k->theta_i, "theta_i");
+  named(g, k->theta_j, "theta_j");
+}
+
+static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
+  ir_node chord_rate = ir_mul(g, cross(g, e, dv), k->per_length);
+  named(g, chord_rate, "chord_rotation_rate");
+  k->theta_rate_i = ir_sub(g, kinematics_input(g, ENDS_OMEGA_I), chord_rate);
+  k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
+}
+
+/* Costs one square root and two divisions where the chord is uniform (three otherwise): 1/L and the
+   stretch share the reciprocal of L s (L + s), and the angle needs one inside atan2. Divisions are
+   what this loop is made of. */
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
+  bond_kinematics k = {0};
+  vector chord = uniform_chord ? inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)
+                               : inputs(g, ENDS_CHORD_X, ENDS_CHORD_Y);
+  k.s = uniform_chord ? ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY)
+                      : named(g, ir_make(g, IR_SQRT, dot(g, chord, chord), IR_NONE, IR_NONE), "s");
+  vector d =
+      difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
+  vector now = sum(g, chord, d);
+  named(g, now.x, "c_x");
+  named(g, now.y, "c_y");
+  k.length = named(g, ir_make(g, IR_SQRT, dot(g, now, now), IR_NONE, IR_NONE), "length");
+
+  ir_node one = ir_constant(g, 1);
+  ir_node twice_s_mean = ir_mul(g, k.s, ir_add(g, k.length, k.s)); /* s (L + s), m^2 */
+  ir_node shared = named(g, ir_div(g, one, ir_mul(g, k.length, twice_s_mean)), "shared");
+  k.per_length = named(g, ir_mul(g, shared, twice_s_mean), "per_length");
+  ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
+  k.stretch = named(g, ir_mul(g, growth, ir_mul(g, shared, k.length)), "stretch");
+  vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
+  k.e_x = named(g, e.x, "e_x");
+  k.e_y = named(g, e.y, "e_y");
+
+  vector dv = difference(g, inputs(g, ENDS_V_JX, ENDS_V_JY), inputs(g, ENDS_V_IX, ENDS_V_IY),
+                         "dv_x", "dv_y");
+  k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), ir_div(g, one, k.s)), "stretch_rate");
+  k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
+  if (rotations) {
+    end_rotations(g, &k, chord, d, now);
+    rotation_rates(g, &k, e, dv);
+  }
+  return k;
+}
+
+bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i,
+                              ir_node M_j) {
+  bond_forces f = {ir_mul(g, N, k->e_x), ir_mul(g, N, k->e_y), IR_NONE, IR_NONE};
+  if (M_i != IR_NONE) {
+    /* n = (-e_y, e_x) */
+    ir_node shear = named(g, ir_mul(g, ir_add(g, M_i, M_j), k->per_length), "V");
+    f.f_x = ir_add(g, f.f_x, ir_mul(g, shear, k->e_y));
+    f.f_y = ir_sub(g, f.f_y, ir_mul(g, shear, k->e_x));
+    f.moment_i = named(g, ir_neg(g, M_i), "moment_i");
+    f.moment_j = named(g, ir_neg(g, M_j), "moment_j");
+  }
+  named(g, f.f_x, "f_x");
+  named(g, f.f_y, "f_y");
+  return f;
+}

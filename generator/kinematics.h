@@ -1,0 +1,69 @@
+/* What a bond sees of its two ends, as IR: stretch, rates and co-rotational end rotations out of
+   particle displacements, and particle forces out of the law's N, V, M. Written once as dataflow,
+   so that it is shared by interpreter and emitter, and shares subexpressions with the law. */
+#ifndef PERILAT_GENERATOR_KINEMATICS_H
+#define PERILAT_GENERATOR_KINEMATICS_H
+
+#include "generator/ir.h"
+
+/* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
+   rate of end i or j. CHORD: reference chord of this bond (lists); CLASS_CHORD: the same chord for
+   a whole strip (rows; pl_bond_class). PROTECTED: 1 where the damage of the bond stays as it is,
+   else 0 (a number; the graph asks 0 < protected). TIME_STEP: s, of the strip; ON_BOND because
+   `prepare` does not know it. */
+#define ENDS_INPUTS(X)                                                                             \
+  X(U_IX, "u_ix")                                                                                  \
+  X(U_IY, "u_iy")                                                                                  \
+  X(PHI_I, "phi_i")                                                                                \
+  X(U_JX, "u_jx")                                                                                  \
+  X(U_JY, "u_jy")                                                                                  \
+  X(PHI_J, "phi_j")                                                                                \
+  X(V_IX, "v_ix")                                                                                  \
+  X(V_IY, "v_iy")                                                                                  \
+  X(OMEGA_I, "omega_i")                                                                            \
+  X(V_JX, "v_jx")                                                                                  \
+  X(V_JY, "v_jy")                                                                                  \
+  X(OMEGA_J, "omega_j")                                                                            \
+  X(CHORD_X, "chord_x")                                                                            \
+  X(CHORD_Y, "chord_y")                                                                            \
+  X(CLASS_CHORD_X, "class_chord_x")                                                                \
+  X(CLASS_CHORD_Y, "class_chord_y")                                                                \
+  X(PROTECTED, "protected")                                                                        \
+  X(TIME_STEP, "time_step")
+
+typedef enum ends_input {
+#define X(code, name) ENDS_##code,
+  ENDS_INPUTS(X)
+#undef X
+  ENDS_COUNT
+} ends_input;
+
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body, all others on the
+   bond. */
+ir_node kinematics_input(ir *g, ends_input which);
+const char *kinematics_input_name(ends_input which);
+
+typedef struct bond_kinematics {
+  ir_node stretch, stretch_rate, theta_i, theta_j, length;
+  ir_node s;                          /* reference length, m */
+  ir_node e_x, e_y;                   /* present direction, i to j */
+  ir_node per_length;                 /* 1/length, 1/m */
+  ir_node theta_rate_i, theta_rate_j; /* rad/s */
+} bond_kinematics;
+
+/* 2D. uniform_chord: the chord is the same along a strip (rows), so what depends on it alone is
+   hoisted; otherwise s is computed from the chord of each bond. Without rotations the angles are
+   IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
+   rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
+   (-pi, pi]. */
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord);
+
+/* Forces on end i and moments on both ends (the particle receives minus the end moments):
+   F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes
+   the bond's moment balance exact. M_i, M_j = IR_NONE: a central force. */
+typedef struct bond_forces {
+  ir_node f_x, f_y, moment_i, moment_j; /* what the particles receive; on j the force is opposite */
+} bond_forces;
+bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i, ir_node M_j);
+
+#endif

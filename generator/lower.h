@@ -1,0 +1,55 @@
+/* Checked law to IR: results, new field values and outputs as functions of parameters, quantities
+   and old fields. Functions are expanded at their calls; options are decided; damage is made
+   non-decreasing and kept in [0, 1]. */
+#ifndef PERILAT_GENERATOR_LOWER_H
+#define PERILAT_GENERATOR_LOWER_H
+
+#include "dsl/law.h"
+#include "generator/ir.h"
+
+typedef enum lower_mode {
+  LOWER_STEP,        /* fields read below their rule have their new value */
+  LOWER_PROTECTABLE, /* the same, but a damage stays old where the input ENDS_PROTECTED is not 0 */
+  LOWER_FROZEN       /* fields keep the value at hand everywhere: the elastic law of a given state */
+} lower_mode;
+
+typedef struct lowered_law {
+  ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
+  ir_node W;        /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs; /* [law->outputs.count] */
+} lowered_law;
+
+/* Adds the law's nodes to g. Quantities become inputs IR_FROM_QUANTITY, fields IR_FROM_FIELD.
+   Arrays live in `memory`. diff(f, x) and forces derived from `energy W` hold every state and
+   damage (old and new) that is not x itself:
+     N = dW/dL = (dW/dstretch)/s, M_i = dW/dtheta_i, M_j = dW/dtheta_j
+   `force V` gives M_i = M_j = V L/2. A damage rule that is not a number gives a damage that is not
+   a number: it is found, not clamped away. False with a NOT_SUPPORTED diagnostic for what cannot be
+   compiled yet (state laws). */
+bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
+               diagnostics *d);
+
+/* The input node of a built-in quantity. Stretch, its rate, theta_i, theta_j and length vary from
+   bond to bond; the others are those of a bond class. */
+ir_node lower_quantity(ir *g, builtin_quantity q);
+/* The input node of parameter or field k. */
+ir_node lower_parameter(ir *g, const law *l, int k);
+ir_node lower_field(ir *g, const law *l, int k);
+/* A bound of a parameter as IR over the parameters; infinite without an expression. */
+ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite);
+
+/* Stored energy of a bond (J) in a frozen law at zero rate, as a function of its kinematics: the
+   law's `energy` if it has one; half of force times deformation where the forces are homogeneous of
+   degree one (linear, also piecewise); from the stress-free point where N is affine in the stretch
+   alone; otherwise Gauss integration along the straight path from rest (4 points: exact for forces
+   up to degree 7). */
+ir_node lower_stored_energy(const law *l, ir *g, const lowered_law *frozen);
+
+/* Power (W) of the parts of the results that vanish at zero rate: (N - N at zero rate) dL/dt, and
+   the moments' with the given rates of theta_i and theta_j (rad/s; unused for central laws).
+   IR_NONE if there are none. */
+ir_node lower_rate_power(const law *l, ir *g, const lowered_law *frozen, ir_node theta_rate_i,
+                         ir_node theta_rate_j);
+
+#endif

@@ -1,0 +1,71 @@
+/* perilat: one program, one subcommand a task. */
+#include <stdio.h>
+#include <string.h>
+
+#include "dsl/diagnostics.h"
+#include "generator/commands.h"
+#include "generator/version.h"
+
+static const struct {
+  const char *name, *arguments, *purpose;
+  int (*run)(int argc, char **argv);
+} commands[] = {
+#define X(name, arguments, purpose) {#name, arguments, purpose, command_##name},
+    COMMANDS(X)
+#undef X
+};
+enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
+
+static void print_command_help(FILE *out, int k) {
+  fprintf(out, "usage: perilat %s %s\n  %s\n", commands[k].name, commands[k].arguments, commands[k].purpose);
+}
+
+static int print_help(FILE *out) {
+  fputs("perilat: compiler and simulator for particle-lattice material laws\n\n"
+        "usage: perilat COMMAND ...\n\n",
+        out);
+  for (int k = 0; k < COMMAND_COUNT; k++)
+    fprintf(out, "  %-6s %s\n         perilat %s %s\n", commands[k].name, commands[k].purpose, commands[k].name,
+            commands[k].arguments);
+  fputs("\n  perilat COMMAND --help   the usage of one command\n"
+        "  perilat --version\n\n"
+        "Exit status: 0 done, 1 the input is wrong, 2 the run failed.\n",
+        out);
+  return 0;
+}
+
+static int unknown_command(const char *name) {
+  const char *names[COMMAND_COUNT];
+  for (int k = 0; k < COMMAND_COUNT; k++)
+    names[k] = commands[k].name;
+  const char *near = nearest_name(name, names, COMMAND_COUNT);
+  fprintf(stderr, "perilat: error: there is no command `%s`", name);
+  if (near)
+    fprintf(stderr, "; did you mean `%s`?", near);
+  fputs("\n  perilat --help lists the commands\n", stderr);
+  return 1;
+}
+
+int main(int argc, char **argv) {
+  if (argc < 2) {
+    print_help(stderr);
+    return 1;
+  }
+  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help"))
+    return print_help(stdout);
+  if (!strcmp(argv[1], "--version")) {
+    printf("perilat %s\n", perilat_version);
+    return 0;
+  }
+  for (int k = 0; k < COMMAND_COUNT; k++) {
+    if (strcmp(argv[1], commands[k].name) != 0)
+      continue;
+    for (int a = 2; a < argc; a++)
+      if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
+        print_command_help(stdout, k);
+        return 0;
+      }
+    return commands[k].run(argc - 2, argv + 2);
+  }
+  return unknown_command(argv[1]);
+}

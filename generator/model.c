@@ -1,0 +1,220 @@
+#include "generator/model.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "dsl/parse.h"
+#include "generator/emit.h"
+
+#define MODEL_LIMIT ((size_t)1 << 20)
+#define PATH_LIMIT 4096
+
+static double seconds_now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
+  struct stat about;
+  if (stat(path, &about) != 0) {
+    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
+    return NULL;
+  }
+  if (!S_ISREG(about.st_mode)) {
+    snprintf(error, size, "cannot read `%s`: it is not a file", path);
+    return NULL;
+  }
+  if ((size_t)about.st_size > limit) {
+    snprintf(error, size, "cannot read `%s`: it is longer than %zu MiB", path, limit >> 20);
+    return NULL;
+  }
+  FILE *in = fopen(path, "rb");
+  if (!in) {
+    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
+    return NULL;
+  }
+  char *text = must_alloc((size_t)about.st_size + 1);
+  *length = fread(text, 1, (size_t)about.st_size, in);
+  bool failed = ferror(in) != 0;
+  fclose(in);
+  text[*length] = 0;
+  if (failed) {
+    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
+    free(text);
+    return NULL;
+  }
+  return text;
+}
+
+/* --- finding ------------------------------------------------------------------------------------ */
+
+static bool is_file(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode);
+}
+
+static bool ends_in_plm(const char *name) {
+  size_t n = strlen(name);
+  return n > 4 && strcmp(name + n - 4, ".plm") == 0;
+}
+
+/* folder/name[.plm], when there is such a file. */
+static char *try_path(const char *folder, const char *name) {
+  char path[PATH_LIMIT];
+  int n = snprintf(path, sizeof path, "%s%s%s%s", folder, *folder ? "/" : "", name,
+                   ends_in_plm(name) ? "" : ".plm");
+  return n > 0 && (size_t)n < sizeof path && is_file(path) ? strdup(path) : NULL;
+}
+
+static void folder_of(const char *path, char *folder, size_t size) {
+  const char *slash = strrchr(path, '/');
+  if (slash)
+    snprintf(folder, size, "%.*s", (int)(slash - path), path);
+  else
+    snprintf(folder, size, ".");
+}
+
+/* models/ in `from` and in the folders above it. */
+static char *try_parents(const char *from, const char *name) {
+  char folder[PATH_LIMIT];
+  snprintf(folder, sizeof folder, "%s/models", from);
+  for (int up = 0; up < 6; up++) {
+    char *found = try_path(folder, name);
+    if (found)
+      return found;
+    char next[PATH_LIMIT];
+    size_t stem = strlen(folder) - strlen("models");
+    if ((size_t)snprintf(next, sizeof next, "%.*s../models", (int)stem, folder) >= sizeof next)
+      return NULL;
+    memcpy(folder, next, sizeof folder);
+  }
+  return NULL;
+}
+
+static char *try_program_tree(const char *name) {
+  char program[PATH_LIMIT], folder[PATH_LIMIT], models[PATH_LIMIT + 32];
+  ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+  if (n <= 0)
+    return NULL;
+  program[n] = 0;
+  folder_of(program, folder, sizeof folder);
+  static const char *const relative[] = {"../models", "../share/perilat/models", "models"};
+  for (size_t k = 0; k < sizeof relative / sizeof *relative; k++) {
+    snprintf(models, sizeof models, "%s/%s", folder, relative[k]);
+    char *found = try_path(models, name);
+    if (found)
+      return found;
+  }
+  return NULL;
+}
+
+char *model_find(const char *name, const char *beside) {
+  char *found = NULL;
+  if (ends_in_plm(name))
+    found = is_file(name) ? strdup(name) : NULL;
+  if (!found && beside) {
+    char folder[PATH_LIMIT];
+    folder_of(beside, folder, sizeof folder);
+    found = try_path(folder, name);
+    found = found ? found : try_parents(folder, name);
+  }
+  if (!found && getenv("PERILAT_MODELS"))
+    found = try_path(getenv("PERILAT_MODELS"), name);
+  if (!found)
+    found = try_path("", name);
+  if (!found)
+    found = try_parents(".", name);
+  return found ? found : try_program_tree(name);
+}
+
+/* --- opening ------------------------------------------------------------------------------------ */
+
+/* include "x.plm": beside the including file, then wherever models are found. */
+static char *read_include(void *context, const char *name, const char *from, char **found) {
+  (void)context;
+  char *path = model_find(name, from);
+  if (!path)
+    return NULL;
+  size_t length;
+  char error[PATH_LIMIT + 128];
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  if (text)
+    *found = path;
+  else
+    free(path);
+  return text;
+}
+
+bool model_open(model *m, const char *path, const law_choice *choices, int choice_count) {
+  double begun = seconds_now();
+  memset(m, 0, sizeof *m);
+  m->memory = arena_new();
+  m->path = strdup(path);
+  diag_begin(&m->said, &m->sources);
+  size_t length;
+  char error[PATH_LIMIT + 128];
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  int file = source_add(&m->sources, path, text ? text : "", text ? length : 0);
+  free(text);
+  if (!text) {
+    diag_report(&m->said, DIAG_FILE, (span){0, 0, (uint16_t)file}, "%s", error);
+    return false;
+  }
+  parse_options options = {read_include, NULL};
+  m->tree = parse_model(m->memory, &m->sources, file, &options, &m->said);
+  if (!m->tree || m->said.errors)
+    return false;
+  m->law = law_check(m->memory, m->tree, &m->sources, choices, choice_count, &m->said);
+  m->seconds_front = seconds_now() - begun;
+  return m->law && !m->said.errors;
+}
+
+bool model_plan(model *m) {
+  double begun = seconds_now();
+  m->plan = plan_kernel(m->law, &m->said);
+  if (!m->plan)
+    return false;
+  char *unkeyed = emit_kernel(m->plan, "");
+  m->key = toolchain_key(unkeyed);
+  free(unkeyed);
+  m->c_text = emit_kernel(m->plan, m->key);
+  m->seconds_front += seconds_now() - begun;
+  return true;
+}
+
+const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size) {
+  *note = NULL;
+  if (!interpret && !toolchain_compiler())
+    *note = "no C compiler was found: the law runs on the interpreter, many times slower "
+            "(install gcc or clang, or set PERILAT_CC)";
+  if (interpret || *note) {
+    m->interpreted = plan_interpreted(m->plan, m->key);
+    return m->interpreted;
+  }
+  double begun = seconds_now();
+  if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size))
+    return NULL;
+  m->seconds_kernel = seconds_now() - begun;
+  return m->loaded.law;
+}
+
+void model_close(model *m) {
+  if (m->interpreted)
+    plan_interpreted_free(m->interpreted);
+  if (m->loaded.law)
+    toolchain_unload(&m->loaded);
+  if (m->plan)
+    plan_free(m->plan);
+  free(m->c_text);
+  free(m->key);
+  free(m->path);
+  diag_clear(&m->said);
+  source_clear(&m->sources);
+  arena_free(m->memory);
+  memset(m, 0, sizeof *m);
+}

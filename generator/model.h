@@ -1,0 +1,41 @@
+/* A model file on its way to a kernel: found, read, parsed, checked, planned, compiled (or interpreted). The only place
+   where the front end meets the file system. */
+#ifndef PERILAT_GENERATOR_MODEL_H
+#define PERILAT_GENERATOR_MODEL_H
+
+#include "dsl/law.h"
+#include "generator/passes.h"
+#include "generator/toolchain.h"
+
+typedef struct model {
+  arena *memory;
+  source_set sources;
+  diagnostics said;       /* all diagnostics so far; the caller prints them */
+  char *path;             /* of the model file; NULL when it was not found */
+  tree *tree;
+  law *law;
+  kernel_plan *plan;
+  char *c_text;           /* emitted C */
+  char *key;
+  pl_law *interpreted;    /* the plan on the interpreter */
+  loaded_kernel loaded;   /* the compiled kernel, when there is one */
+  double seconds_front, seconds_kernel; /* text to plan; plan to loaded kernel */
+} model;
+
+/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: as given; beside `beside`
+   (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
+   this program's source or installation tree. */
+char *model_find(const char *name, const char *beside);
+
+/* Reads, parses, checks. False on errors; they are in m->said. The model must be closed in any case. */
+bool model_open(model *m, const char *path, const law_choice *choices, int choice_count);
+/* Plans the kernel and emits its C (m->said on errors). */
+bool model_plan(model *m);
+/* Kernel for the runtime: compiled; without a C compiler interpreted, and *note says so. NULL with `error`. */
+const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
+void model_close(model *m);
+
+/* Whole text of a file (malloc'ed, NUL-terminated), or NULL with a sentence in error. Refuses folders and files over limit. */
+char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size);
+
+#endif

@@ -1,0 +1,430 @@
+#include "generator/passes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/rewrite.h"
+
+enum { KINEMATIC_COUNT = 5, RESULTS = 3, RATES_OF_TANGENT = 4 };
+
+/* stretch, stretch_rate, theta_i, theta_j, length: the order of pl_law.states. */
+static const builtin_quantity kinematic_quantities[KINEMATIC_COUNT] = {
+    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
+
+static const char *const pass_names[PASS_COUNT] = {
+    [PASS_ROWS] = "rows",
+    [PASS_ROWS_LEDGER] = "rows_ledger",
+    [PASS_ROWS_OBSERVE] = "rows_observe",
+    [PASS_LIST] = "list",
+    [PASS_LIST_LEDGER] = "list_ledger",
+    [PASS_LIST_OBSERVE] = "list_observe",
+    [PASS_STATES] = "states",
+    [PASS_TANGENT] = "tangent",
+    [PASS_BOUNDS] = "bounds",
+};
+
+typedef struct planner {
+  kernel_plan *plan;
+  lowered_law step;   /* protectable, reciprocals shared */
+  lowered_law frozen; /* as lowered */
+} planner;
+
+/* One law seen on one topology: everything in terms of what particles have. */
+typedef struct topology {
+  bond_kinematics k;
+  lowered_law step;
+  ir_node stored;     /* J, with the fields at hand */
+  ir_node rate_power; /* W, with the fields at hand; IR_NONE */
+  ir_node *outputs;   /* with the fields at hand */
+} topology;
+
+/* --- substitution ------------------------------------------------------------------------ */
+
+static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, const ir_node *to,
+                       int pairs) {
+  for (int k = 0; k < count; k++)
+    if (nodes[k] != IR_NONE) ir_substitute(g, &nodes[k], 1, from, to, pairs, &nodes[k]);
+}
+
+static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,
+                           const ir_node *to, int pairs) {
+  ir_node *results[RESULTS] = {&p->N, &p->M_i, &p->M_j};
+  for (int k = 0; k < RESULTS; k++)
+    substitute(g, results[k], 1, from, to, pairs);
+  substitute(g, p->fields, l->fields.count, from, to, pairs);
+}
+
+static ir_node *copy_nodes(arena *memory, const ir_node *nodes, int count) {
+  ir_node *copy = arena_alloc(memory, ((size_t)count + 1) * sizeof *copy);
+  memcpy(copy, nodes, (size_t)count * sizeof *copy);
+  return copy;
+}
+
+/* Shares reciprocals among all that a step computes, once for all passes, so that they agree to the
+   bit. */
+static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
+  int fields = l->fields.count;
+  size_t field_bytes = (size_t)fields * sizeof(ir_node);
+  ir_node *all = must_alloc(RESULTS * sizeof *all + field_bytes);
+  all[0] = p->N;
+  all[1] = p->M_i; /* IR_NONE stays IR_NONE */
+  all[2] = p->M_j;
+  memcpy(all + RESULTS, p->fields, field_bytes);
+  rewrite_reciprocals(g, all, RESULTS + fields, all);
+  p->N = all[0];
+  p->M_i = all[1];
+  p->M_j = all[2];
+  memcpy(p->fields, all + RESULTS, field_bytes);
+  free(all);
+}
+
+/* --- topologies -------------------------------------------------------------------------- */
+
+/* Law-level inputs and the kinematics that take their place. */
+static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, ir_node *from,
+                           ir_node *to) {
+  const ir_node values[KINEMATIC_COUNT] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
+                                           k->length};
+  int pairs = 0;
+  for (int q = 0; q < KINEMATIC_COUNT; q++) {
+    if (values[q] == IR_NONE) continue;
+    from[pairs] = lower_quantity(g, kinematic_quantities[q]);
+    to[pairs++] = values[q];
+  }
+  if (!uniform_chord) {
+    from[pairs] = lower_quantity(g, QUANTITY_S);
+    to[pairs++] = k->s;
+  }
+  return pairs;
+}
+
+static topology see_topology(planner *p, bool uniform_chord) {
+  ir *g = p->plan->graph;
+  const law *l = p->plan->law;
+  arena *memory = p->plan->memory;
+  topology t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, uniform_chord)};
+  ir_node from[KINEMATIC_COUNT + 1], to[KINEMATIC_COUNT + 1];
+  int pairs = kinematic_pairs(g, &t.k, uniform_chord, from, to);
+  t.step = p->step;
+  t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
+  substitute_law(g, l, &t.step, from, to, pairs);
+
+  t.stored = lower_stored_energy(l, g, &p->frozen);
+  rewrite_reciprocals(g, &t.stored, 1, &t.stored);
+  substitute(g, &t.stored, 1, from, to, pairs);
+  t.rate_power = lower_rate_power(l, g, &p->frozen, t.k.theta_rate_i, t.k.theta_rate_j);
+  if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
+  substitute(g, &t.rate_power, 1, from, to, pairs);
+  t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
+  rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
+  substitute(g, t.outputs, l->outputs.count, from, to, pairs);
+  return t;
+}
+
+/* The same node with the new fields in place of those at hand. */
+static ir_node with_new_fields(planner *p, const topology *t, ir_node n) {
+  ir *g = p->plan->graph;
+  int fields = p->plan->law->fields.count;
+  ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
+  for (int k = 0; k < fields; k++)
+    at_hand[k] = lower_field(g, p->plan->law, k);
+  ir_substitute(g, &n, 1, at_hand, t->step.fields, fields, &result);
+  free(at_hand);
+  return result;
+}
+
+/* --- passes ------------------------------------------------------------------------------ */
+
+static pass *begin_pass(planner *p, pass_kind kind, int most_roots) {
+  pass *a = &p->plan->passes[kind];
+  a->kind = kind;
+  a->name = pass_names[kind];
+  a->roots = arena_alloc(p->plan->memory, ((size_t)most_roots + 1) * sizeof *a->roots);
+  a->root_count = 0;
+  return a;
+}
+
+static void write_root(pass *a, ir_node node, pass_target target, int index) {
+  a->roots[a->root_count++] = (pass_root){node, target, index};
+}
+
+static void plan_step(planner *p, const topology *t, pass_kind kind) {
+  int fields = p->plan->law->fields.count;
+  pass *a = begin_pass(p, kind, PL_MAX_PLANES + fields + 2);
+  bond_forces f = kinematics_forces(p->plan->graph, &t->k, t->step.N, t->step.M_i, t->step.M_j);
+  ir_node planes[] = {f.f_x, f.f_y, f.moment_i, f.moment_j};
+  for (int k = 0; k < p->plan->force_planes; k++)
+    write_root(a, planes[k], TO_FORCE, k);
+  for (int k = 0; k < fields; k++)
+    write_root(a, t->step.fields[k], TO_FIELD, k);
+}
+
+/* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
+   with the new ones, both at the present deformation. Lost to rate terms: their power over the
+   step. */
+static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
+  ir *g = p->plan->graph;
+  plan_step(p, t, kind);
+  pass *a = &p->plan->passes[kind];
+  ir_node kept = with_new_fields(p, t, t->stored), zero = ir_constant(g, 0);
+  ir_node lost = kept == t->stored ? zero : ir_sub(g, t->stored, kept);
+  ir_node rate_lost = zero;
+  if (t->rate_power != IR_NONE)
+    rate_lost =
+        ir_mul(g, with_new_fields(p, t, t->rate_power), kinematics_input(g, ENDS_TIME_STEP));
+  write_root(a, lost, TO_DISSIPATED_STATE, 0);
+  write_root(a, rate_lost, TO_DISSIPATED_RATE, 0);
+}
+
+static void plan_observe(planner *p, const topology *t, pass_kind kind) {
+  int outputs = p->plan->law->outputs.count;
+  pass *a = begin_pass(p, kind, 1 + outputs);
+  write_root(a, t->stored, TO_OBSERVED, 0);
+  for (int k = 0; k < outputs; k++)
+    write_root(a, t->outputs[k], TO_OBSERVED, 1 + k);
+}
+
+/* The step law of a bond that is not protected. */
+static lowered_law unprotected_step(planner *p) {
+  ir *g = p->plan->graph;
+  const law *l = p->plan->law;
+  lowered_law bare = p->step;
+  bare.fields = copy_nodes(p->plan->memory, p->step.fields, l->fields.count);
+  ir_node from = kinematics_input(g, ENDS_PROTECTED), to = ir_constant(g, 0);
+  substitute_law(g, l, &bare, &from, &to, 1);
+  return bare;
+}
+
+static void plan_states(planner *p, const lowered_law *bare) {
+  int fields = p->plan->law->fields.count;
+  pass *a = begin_pass(p, PASS_STATES, RESULTS + fields);
+  ir_node results[RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < RESULTS; k++)
+    write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
+  for (int k = 0; k < fields; k++)
+    write_root(a, bare->fields[k], TO_OUT, RESULTS + k);
+}
+
+/* d(result)/d(stretch): the present length follows the stretch, L = s (1 + stretch). */
+static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
+  ir_node direct = ir_derivative(g, result, lower_quantity(g, by));
+  if (by != QUANTITY_STRETCH) return direct;
+  ir_node by_length = ir_derivative(g, result, lower_quantity(g, QUANTITY_LENGTH));
+  return ir_add(g, direct, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
+}
+
+static void plan_tangent(planner *p, const lowered_law *bare) {
+  ir *g = p->plan->graph;
+  pass *a = begin_pass(p, PASS_TANGENT, RESULTS * RATES_OF_TANGENT);
+  ir_node results[RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < RESULTS; k++)
+    for (int q = 0; q < RATES_OF_TANGENT; q++) {
+      ir_node d =
+          results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], kinematic_quantities[q]);
+      rewrite_zero(g, &d, 1, NULL, 0, &d);
+      write_root(a, d, TO_OUT, k * RATES_OF_TANGENT + q);
+    }
+}
+
+static void plan_bounds(planner *p) {
+  const law *l = p->plan->law;
+  pass *a = begin_pass(p, PASS_BOUNDS, 2 * l->parameters.count);
+  for (int k = 0; k < l->parameters.count; k++) {
+    const bounds *in = &l->parameters.items[k]->declared->in;
+    write_root(a, lower_bound(p->plan->graph, l, in->lower, -INFINITY), TO_LOWER, k);
+    write_root(a, lower_bound(p->plan->graph, l, in->upper, INFINITY), TO_UPPER, k);
+  }
+}
+
+/* --- what is hoisted --------------------------------------------------------------------- */
+
+static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
+  if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
+}
+
+static void mark_hoisted_of_pass(const ir *g, const pass *a, unsigned char *hoisted) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (int k = 0; k < a->root_count; k++) {
+    ir_mark(g, &a->roots[k].node, 1, needed);
+    mark_hoisted(g, a->roots[k].node, hoisted);
+  }
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      mark_hoisted(g, ir_operand(g, n, k), hoisted);
+  }
+  free(needed);
+}
+
+static void hoist(kernel_plan *p) {
+  int count = ir_count(p->graph);
+  unsigned char *hoisted = must_calloc((size_t)count + 1, 1);
+  for (int k = 0; k < PASS_COUNT; k++)
+    if (k != PASS_BOUNDS) mark_hoisted_of_pass(p->graph, &p->passes[k], hoisted);
+  for (ir_node n = 0; n < count; n++)
+    p->uniform_count += hoisted[n];
+  p->uniforms = arena_alloc(p->memory, ((size_t)p->uniform_count + 1) * sizeof *p->uniforms);
+  int at = 0;
+  for (ir_node n = 0; n < count; n++)
+    if (hoisted[n]) p->uniforms[at++] = n;
+  free(hoisted);
+}
+
+static ir_cost cost_of(const kernel_plan *p, const pass *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, ON_PARTICLE);
+  free(nodes);
+  return cost;
+}
+
+/* --- the plan ---------------------------------------------------------------------------- */
+
+static bool lower_both(planner *p, diagnostics *d) {
+  kernel_plan *plan = p->plan;
+  if (!lower_law(plan->law, plan->graph, LOWER_PROTECTABLE, plan->memory, &p->step, d) ||
+      !lower_law(plan->law, plan->graph, LOWER_FROZEN, plan->memory, &p->frozen, d))
+    return false;
+  share_reciprocals(plan->graph, plan->law, &p->step);
+  return true;
+}
+
+kernel_plan *plan_kernel(const law *l, diagnostics *d) {
+  kernel_plan *plan = must_calloc(1, sizeof *plan);
+  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  plan->law = l;
+  plan->graph = ir_new();
+  ir_set_sources(plan->graph, l->sources);
+  plan->memory = arena_new();
+  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
+  plan->dimensions = 2;
+  plan->dof = micropolar ? 3 : 2;
+  plan->force_planes = micropolar ? 4 : 2;
+  planner p = {.plan = plan};
+  if (!lower_both(&p, d)) {
+    plan_free(plan);
+    return NULL;
+  }
+  topology rows = see_topology(&p, true), list = see_topology(&p, false);
+  plan_step(&p, &rows, PASS_ROWS);
+  plan_ledger(&p, &rows, PASS_ROWS_LEDGER);
+  plan_observe(&p, &rows, PASS_ROWS_OBSERVE);
+  plan_step(&p, &list, PASS_LIST);
+  plan_ledger(&p, &list, PASS_LIST_LEDGER);
+  plan_observe(&p, &list, PASS_LIST_OBSERVE);
+  lowered_law bare = unprotected_step(&p);
+  plan_states(&p, &bare);
+  plan_tangent(&p, &bare);
+  plan_bounds(&p);
+  hoist(plan);
+  ir_cost cost = cost_of(plan, &plan->passes[PASS_ROWS]);
+  plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
+  plan->divisions_per_bond = cost.divisions;
+  return plan;
+}
+
+void plan_free(kernel_plan *p) {
+  if (!p) return;
+  ir_free(p->graph);
+  arena_free(p->memory);
+  free(p);
+}
+
+/* --- printing ---------------------------------------------------------------------------- */
+
+static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
+  static const char *const planes[] = {"force x", "force y", "moment on i", "moment on j"};
+  const law *l = p->law;
+  switch (r->target) {
+  case TO_FORCE:
+    return planes[r->index];
+  case TO_FIELD:
+    return l->fields.items[r->index]->name;
+  case TO_DISSIPATED_STATE:
+    return "dissipated by states";
+  case TO_DISSIPATED_RATE:
+    return "dissipated by rates";
+  case TO_OBSERVED:
+    return r->index == 0 ? "stored energy" : l->outputs.items[r->index - 1]->name;
+  case TO_LOWER:
+  case TO_UPPER:
+    snprintf(text, size, "%s bound of %s", r->target == TO_LOWER ? "lower" : "upper",
+             l->parameters.items[r->index]->name);
+    return text;
+  default:
+    snprintf(text, size, "out %d", r->index);
+    return text;
+  }
+}
+
+static void dump_reads(const kernel_plan *p, const pass *a, FILE *out, int *read_count) {
+  const ir *g = p->graph;
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (int k = 0; k < a->root_count; k++)
+    ir_mark(g, &a->roots[k].node, 1, needed);
+  fputs("  reads ", out);
+  *read_count = 0;
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    bool local = ir_operation(g, n) == IR_INPUT && ir_place(g, n) > ON_BODY;
+    if (!needed[n] || (!local && a->kind != PASS_BOUNDS) || ir_operation(g, n) != IR_INPUT)
+      continue;
+    fprintf(out, " %s", ir_name(g, n));
+    ++*read_count;
+  }
+  fputc('\n', out);
+  free(needed);
+}
+
+static void dump_pass(const kernel_plan *p, const pass *a, FILE *out) {
+  int read_count = 0;
+  char text[128];
+  fprintf(out, "pass %s\n", a->name);
+  dump_reads(p, a, out, &read_count);
+  fputs("  writes", out);
+  for (int k = 0; k < a->root_count; k++)
+    fprintf(out, "%s %s", k ? "," : "", target_name(p, &a->roots[k], text, sizeof text));
+  ir_cost c = cost_of(p, a);
+  fprintf(out,
+          "\n  cost   %d additions, %d multiplications, %d selects, %d divisions and roots, "
+          "%d functions; %d bytes\n",
+          c.additions, c.multiplications, c.selects, c.divisions, c.functions,
+          8 * (read_count + a->root_count));
+}
+
+void plan_dump(const kernel_plan *p, FILE *out) {
+  fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, %d force planes\n",
+          p->law->tree->name, p->kind == PL_MICROPOLAR ? "micropolar bond" : "central bond",
+          p->dimensions, p->dof, p->force_planes);
+  fprintf(out, "computed once for each bond class: %d values\n", p->uniform_count);
+  for (int k = 0; k < p->uniform_count; k++) {
+    ir_node n = p->uniforms[k];
+    fprintf(out, "  uniform %-3d %%%d %s %s\n", k, n, ir_op_name(ir_operation(p->graph, n)),
+            ir_name(p->graph, n) ? ir_name(p->graph, n) : "");
+  }
+  for (int k = 0; k < PASS_COUNT; k++)
+    dump_pass(p, &p->passes[k], out);
+}
+
+static void dump_pass_nodes(const kernel_plan *p, const pass *a, FILE *out) {
+  arena *memory = arena_new();
+  char text[128];
+  ir_node *nodes = arena_alloc(memory, ((size_t)a->root_count + 1) * sizeof *nodes);
+  const char **names = arena_alloc(memory, ((size_t)a->root_count + 1) * sizeof *names);
+  for (int k = 0; k < a->root_count; k++) {
+    const char *name = target_name(p, &a->roots[k], text, sizeof text);
+    nodes[k] = a->roots[k].node;
+    names[k] = arena_text(memory, name, strlen(name));
+  }
+  fprintf(out, "pass %s\n", a->name);
+  ir_dump(p->graph, nodes, names, a->root_count, out);
+  fputc('\n', out);
+  arena_free(memory);
+}
+
+void plan_dump_ir(const kernel_plan *p, FILE *out) {
+  for (int k = 0; k < PASS_COUNT; k++)
+    dump_pass_nodes(p, &p->passes[k], out);
+}

@@ -1,0 +1,79 @@
+/* The functions of a kernel, as roots in one graph: what each reads, writes and costs. The emitter
+   writes them as C, the interpreter evaluates them; both walk the same nodes. */
+#ifndef PERILAT_GENERATOR_PASSES_H
+#define PERILAT_GENERATOR_PASSES_H
+
+#include "generator/kinematics.h"
+#include "generator/lower.h"
+#include "runtime/kernel.h"
+
+typedef enum pass_kind {
+  PASS_ROWS,
+  PASS_ROWS_LEDGER,
+  PASS_ROWS_OBSERVE,
+  PASS_LIST,
+  PASS_LIST_LEDGER,
+  PASS_LIST_OBSERVE,
+  PASS_STATES,
+  PASS_TANGENT,
+  PASS_BOUNDS,
+  PASS_COUNT
+} pass_kind;
+
+/* What a root is written to. `present` is the bond's PL_PRESENT bit; the graph does not know of it.
+   Protection is in the graph (ENDS_PROTECTED), because the force must use the damage that stays. */
+typedef enum pass_target {
+  TO_FORCE,            /* force[index] = present ? node : 0 */
+  TO_FIELD,            /* field[index] = present ? node : field[index] */
+  TO_DISSIPATED_STATE, /* dissipated_state += present ? node : 0 */
+  TO_DISSIPATED_RATE,  /* dissipated_rate += present ? node : 0 */
+  TO_OBSERVED,         /* observed[index] = present ? node : 0 */
+  TO_OUT,              /* out[index] = node */
+  TO_LOWER,
+  TO_UPPER             /* lower[index], upper[index] = node; infinite where there is no bound */
+} pass_target;
+
+/* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
+   (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
+   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, in[0..4].
+   IR_FROM_FIELD k: field[k], or in[5 + k]. IR_FROM_ENDS: all strips. */
+typedef struct pass_root {
+  ir_node node;
+  pass_target target;
+  int index; /* force plane, field, observed plane, out plane, parameter */
+} pass_root;
+
+typedef struct pass {
+  pass_kind kind;
+  const char *name;
+  pass_root *roots;
+  int root_count;
+} pass;
+
+typedef struct kernel_plan {
+  const law *law;
+  ir *graph;
+  pass passes[PASS_COUNT];
+  int kind, dimensions, dof, force_planes;
+  ir_node *uniforms; /* [uniform_count] ascending: values hoisted into `prepare`. All nodes, inputs
+                        too but no constants, with ir_place <= ON_BODY that a local node or a root
+                        of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
+                        and nothing before it */
+  int uniform_count;
+  double flops_per_bond, divisions_per_bond; /* of PASS_ROWS without what is hoisted */
+  arena *memory;
+} kernel_plan;
+
+/* Plans all passes of a pairwise law in 2D. NULL with diagnostics when it cannot be compiled. */
+kernel_plan *plan_kernel(const law *l, diagnostics *d);
+void plan_free(kernel_plan *p);
+void plan_dump(const kernel_plan *p, FILE *out); /* --dump=passes */
+/* --dump=ir: the nodes of every pass, with their names and lines. */
+void plan_dump_ir(const kernel_plan *p, FILE *out);
+
+/* The plan on the interpreter, behind the same interface as a compiled kernel, for any number of
+   threads. The plan must outlive it. */
+pl_law *plan_interpreted(const kernel_plan *p, const char *key);
+void plan_interpreted_free(pl_law *law);
+
+#endif

@@ -1,0 +1,10 @@
+# Writes the texts of kernel.h and elementary.h as C string constants: emitted kernels are self-contained.
+file(WRITE ${OUT} "/* Generated from runtime/kernel.h and generator/elementary.h. */\n#include \"generator/prelude.h\"\n")
+foreach(pair "kernel_h;runtime/kernel.h" "elementary_h;generator/elementary.h")
+  list(GET pair 0 name)
+  list(GET pair 1 path)
+  file(READ ${SOURCE_DIR}/${path} hex HEX)
+  string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")
+  string(REGEX REPLACE "((0x..,){24})" "\\1\n" bytes "${bytes}")
+  file(APPEND ${OUT} "const char prelude_${name}[] = {\n${bytes}0};\n")
+endforeach()

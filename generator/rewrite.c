@@ -1,0 +1,230 @@
+#include "generator/rewrite.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+
+/* --- rebuilding -------------------------------------------------------------------------- */
+
+typedef struct rebuilding rebuilding;
+/* What node `old` becomes when its operands have become `operand`. */
+typedef ir_node (*rebuild_rule)(const rebuilding *r, ir_node old, const ir_node *operand);
+
+struct rebuilding {
+  ir *graph;
+  rebuild_rule rule;
+  const ir_node *inputs; /* rewrite_zero */
+  int input_count;
+  const unsigned char *shared; /* rewrite_reciprocals: denominators of several divisions */
+};
+
+static unsigned char *marks_of(const ir *g, const ir_node *roots, int root_count) {
+  unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
+  ir_mark(g, roots, root_count, marks);
+  return marks;
+}
+
+static bool is_constant(const ir *g, ir_node n, double value) {
+  return ir_operation(g, n) == IR_CONSTANT && ir_value(g, n) == value;
+}
+
+static void rebuild(const rebuilding *r, const ir_node *roots, int root_count, ir_node *out) {
+  ir *g = r->graph;
+  int count = ir_count(g); /* nodes made on the way are above it */
+  unsigned char *marks = marks_of(g, roots, root_count);
+  ir_node *become = must_alloc(((size_t)count + 1) * sizeof *become);
+  for (ir_node n = 0; n < count; n++) {
+    if (!marks[n]) continue;
+    ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      operand[k] = become[ir_operand(g, n, k)];
+    become[n] = r->rule(r, n, operand);
+    if (ir_name(g, n) && ir_arity(ir_operation(g, become[n])) > 0)
+      ir_set_name(g, become[n], ir_name(g, n), ir_where(g, n));
+  }
+  for (int k = 0; k < root_count; k++)
+    out[k] = roots[k] == IR_NONE ? IR_NONE : become[roots[k]];
+  free(become);
+  free(marks);
+}
+
+static ir_node again(ir *g, ir_node old, const ir_node *operand) {
+  ir_op op = ir_operation(g, old);
+  return ir_arity(op) == 0 ? old : ir_make(g, op, operand[0], operand[1], operand[2]);
+}
+
+/* --- zero -------------------------------------------------------------------------------- */
+
+static ir_node zero_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  for (int k = 0; k < r->input_count; k++)
+    if (old == r->inputs[k]) return ir_constant(g, 0);
+  switch (ir_operation(g, old)) {
+  case IR_MUL:
+    if (is_constant(g, operand[0], 0) || is_constant(g, operand[1], 0)) return ir_constant(g, 0);
+    break;
+  case IR_DIV:
+    if (is_constant(g, operand[0], 0)) return ir_constant(g, 0);
+    break;
+  case IR_SUB:
+    if (operand[0] == operand[1]) return ir_constant(g, 0);
+    break;
+  default:
+    break;
+  }
+  return again(g, old, operand);
+}
+
+void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *inputs,
+                  int input_count, ir_node *out) {
+  rebuilding r = {.graph = g, .rule = zero_rule, .inputs = inputs, .input_count = input_count};
+  rebuild(&r, roots, root_count, out);
+}
+
+/* --- reciprocals ------------------------------------------------------------------------- */
+
+static bool is_uniform(const ir *g, ir_node n) {
+  return ir_place(g, n) <= ON_BODY;
+}
+
+static ir_node reciprocal_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  if (ir_operation(g, old) != IR_DIV || is_uniform(g, old)) return again(g, old, operand);
+  ir_node below = ir_operand(g, old, 1);
+  if (!is_uniform(g, below) && !r->shared[below]) return again(g, old, operand);
+  return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
+}
+
+/* 1 for each node that two or more of the needed divisions divide by. */
+static unsigned char *shared_denominators(const ir *g, const unsigned char *marks) {
+  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!marks[n] || ir_operation(g, n) != IR_DIV) continue;
+    unsigned char *use = &uses[ir_operand(g, n, 1)];
+    *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
+  }
+  for (ir_node n = 0; n < ir_count(g); n++)
+    uses[n] = uses[n] >= 2;
+  return uses;
+}
+
+void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out) {
+  unsigned char *marks = marks_of(g, roots, root_count);
+  unsigned char *shared = shared_denominators(g, marks);
+  rebuilding r = {.graph = g, .rule = reciprocal_rule, .shared = shared};
+  rebuild(&r, roots, root_count, out);
+  free(shared);
+  free(marks);
+}
+
+/* --- questions --------------------------------------------------------------------------- */
+
+bool rewrite_depends(const ir *g, const ir_node *roots, int root_count, const ir_node *nodes,
+                     int node_count) {
+  unsigned char *marks = marks_of(g, roots, root_count);
+  bool found = false;
+  for (int k = 0; k < node_count; k++)
+    found |= nodes[k] != IR_NONE && marks[nodes[k]];
+  free(marks);
+  return found;
+}
+
+static bool is_zero_degree(double degree) {
+  return degree == REWRITE_ZERO;
+}
+
+/* Degree of a sum, a choice or a comparison of two parts: theirs, when they agree. */
+static double common_degree(double a, double b) {
+  if (is_zero_degree(a)) return b;
+  if (is_zero_degree(b) || a == b) return a;
+  return NAN;
+}
+
+static double degree_of_power(const ir *g, ir_node n, double base, double exponent) {
+  ir_node power = ir_operand(g, n, 1);
+  if (base == 0 && exponent == 0) return 0;
+  if (ir_operation(g, power) != IR_CONSTANT || ir_value(g, power) <= 0) return NAN;
+  return is_zero_degree(base) ? REWRITE_ZERO : base * ir_value(g, power);
+}
+
+/* Functions without a degree of their own: of a pure constant they are constant; some vanish at
+   zero. */
+static double degree_of_function(ir_op op, double a) {
+  if (!is_zero_degree(a)) return a == 0 ? 0 : NAN;
+  bool vanishes = op == IR_SIN || op == IR_TAN || op == IR_TANH || op == IR_WRAP_ANGLE;
+  return vanishes ? REWRITE_ZERO : 0;
+}
+
+static double degree_of_product(ir_op op, double a, double b) {
+  if (is_zero_degree(a)) return REWRITE_ZERO;
+  if (op == IR_MUL) return is_zero_degree(b) ? REWRITE_ZERO : a + b;
+  return is_zero_degree(b) ? NAN : a - b;
+}
+
+static double degree_of(const ir *g, ir_node n, const double *degree) {
+  ir_op op = ir_operation(g, n);
+  double a = 0, b = 0, c = 0;
+  if (ir_arity(op) > 0) a = degree[ir_operand(g, n, 0)];
+  if (ir_arity(op) > 1) b = degree[ir_operand(g, n, 1)];
+  if (ir_arity(op) > 2) c = degree[ir_operand(g, n, 2)];
+  switch (op) {
+  case IR_CONSTANT:
+    return ir_value(g, n) == 0 ? REWRITE_ZERO : 0;
+  case IR_INPUT:
+    return 0;
+  case IR_ADD:
+  case IR_SUB:
+  case IR_MIN:
+  case IR_MAX:
+    return common_degree(a, b);
+  case IR_MUL:
+  case IR_DIV:
+    return degree_of_product(op, a, b);
+  case IR_NEG:
+  case IR_ABS:
+    return a;
+  case IR_SIGN:
+    return is_zero_degree(a) ? a : 0 * a; /* NAN stays */
+  case IR_SQRT:
+    return is_zero_degree(a) ? a : a / 2;
+  case IR_CBRT:
+    return is_zero_degree(a) ? a : a / 3;
+  case IR_POW:
+    return degree_of_power(g, n, a, b);
+  case IR_LT:
+  case IR_LE:
+  case IR_EQ:
+  case IR_ATAN2:
+    return 0 * common_degree(a, b); /* the same whatever the scale */
+  case IR_AND:
+  case IR_OR:
+    return isnan(a) || isnan(b) ? NAN : 0;
+  case IR_NOT:
+    return isnan(a) ? NAN : 0;
+  case IR_SELECT:
+    return isnan(a) ? NAN : common_degree(b, c);
+  case IR_FAMILY_SUM:
+  case IR_FAMILY_MAX:
+  case IR_FAMILY_MIN:
+    return a;
+  default:
+    return degree_of_function(op, a);
+  }
+}
+
+double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count) {
+  unsigned char *marks = marks_of(g, &f, 1);
+  double *degree = must_calloc((size_t)f + 1, sizeof *degree);
+  for (ir_node n = 0; n <= f; n++) {
+    if (!marks[n]) continue;
+    degree[n] = degree_of(g, n, degree);
+    for (int k = 0; k < count; k++)
+      if (n == x[k]) degree[n] = 1;
+  }
+  double result = degree[f];
+  free(degree);
+  free(marks);
+  return result;
+}

@@ -1,0 +1,44 @@
+/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told before, during and after.
+   A stand-alone solver made by `perilat build` is this same run with deck and kernels built in. */
+#ifndef PERILAT_GENERATOR_RUN_H
+#define PERILAT_GENERATOR_RUN_H
+
+#include "generator/model.h"
+#include "runtime/deck.h"
+#include "runtime/kernel.h"
+
+/* A law that is already compiled into the program (stand-alone solvers). */
+typedef struct built_in_law {
+  const char *model;         /* as the deck names it */
+  const pl_law *law;
+  const char *law_text, *c_text;
+  const char *choices;       /* "onset=rankine;..." decided when it was built */
+} built_in_law;
+
+typedef struct run_options {
+  const char *deck_path;     /* file, or the name of the built-in deck */
+  const char *deck_text;     /* built-in deck, or NULL: read the file */
+  const built_in_law *laws;  /* NULL: compile the deck's models */
+  int law_count;
+  deck_override *overrides;
+  int override_count;
+  int threads;               /* 0: as the deck or the machine says */
+  bool resume;
+  bool interpret;            /* no compiler: run on the interpreter */
+  bool check_kernel;         /* compare kernel and interpreter on random states first */
+  bool check_only;           /* `perilat check deck.nml`: everything but the run */
+  bool profile;
+} run_options;
+
+/* Exit status: 0 done (also when stopped by Ctrl-C: what there is has been written), 1 the input is wrong, 2 the run failed. */
+int run_deck(const run_options *o);
+
+/* Opens the law of a material with the options that the deck chooses (these are taken out of its assignments); prints the
+   law's own diagnostics, adds the deck's to `said`. The model must be closed when out->memory is set. */
+bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said);
+
+/* main() of a stand-alone solver. */
+int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
+                        const built_in_law *laws, int law_count);
+
+#endif

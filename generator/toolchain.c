@@ -1,0 +1,507 @@
+#include "generator/toolchain.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <spawn.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "dsl/arena.h"
+#include "generator/sha256.h"
+
+extern char **environ;
+
+#define LONGEST_PATH   PATH_MAX
+#define MOST_ARGUMENTS 128
+
+/* --- the compiler ----------------------------------------------------------------------------- */
+
+static bool is_program(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISREG(about.st_mode) && access(path, X_OK) == 0;
+}
+
+/* Where the first word of `command` is, as a shell would find it. */
+static bool find_program(const char *command, char *path, size_t size) {
+  size_t length = strcspn(command, " \t");
+  if (memchr(command, '/', length)) {
+    snprintf(path, size, "%.*s", (int)length, command);
+    return length && is_program(path);
+  }
+  const char *folders = getenv("PATH");
+  while (length && folders && *folders) {
+    size_t n = strcspn(folders, ":");
+    snprintf(path, size, "%.*s/%.*s", (int)n, folders, (int)length, command);
+    if (n && is_program(path)) return true;
+    folders += n + (folders[n] == ':');
+  }
+  return false;
+}
+
+static const char *setting(const char *name) {
+  const char *value = getenv(name);
+  while (value && (*value == ' ' || *value == '\t'))
+    value++;
+  return value && *value ? value : NULL;
+}
+
+const char *toolchain_compiler(void) {
+  static const char *const usual[] = {"cc", "gcc", "clang"};
+  char path[LONGEST_PATH];
+  const char *chosen = setting("PERILAT_CC");
+  if (chosen) /* who names a compiler gets that one or none */
+    return find_program(chosen, path, sizeof path) ? chosen : NULL;
+  chosen = setting("CC");
+  if (chosen && find_program(chosen, path, sizeof path)) return chosen;
+  for (size_t k = 0; k < sizeof usual / sizeof *usual; k++)
+    if (find_program(usual[k], path, sizeof path)) return usual[k];
+  return NULL;
+}
+
+/* Lines of /proc/cpuinfo about one processor: model and instruction sets. Empty where there is
+ * none. */
+static void read_processor(char *text, size_t size) {
+  char line[4096];
+  *text = 0;
+  FILE *in = fopen("/proc/cpuinfo", "r");
+  while (in && fgets(line, sizeof line, in) && *line != '\n') {
+    bool wanted = strncmp(line, "model name", 10) == 0 || strncmp(line, "flags", 5) == 0 ||
+                  strncmp(line, "Features", 8) == 0 || strncmp(line, "vendor_id", 9) == 0 ||
+                  strncmp(line, "CPU", 3) == 0;
+    size_t used = strlen(text);
+    if (wanted) snprintf(text + used, size - used, "%s", line);
+  }
+  if (in) fclose(in);
+}
+
+/* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
+   interpreter's bits need -ffp-contract=off. Combining more than two instructions takes gcc a third
+   of its time on these loops and gains nothing. */
+#define COMMON_FLAGS                                                                               \
+  "-std=gnu11 -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off "             \
+  "--param max-combine-insns=2 -fPIC -shared"
+
+const char *toolchain_flags(void) {
+  char processor[8192];
+  read_processor(processor, sizeof processor);
+  return strstr(processor, " avx512f") ? COMMON_FLAGS " -mprefer-vector-width=512" : COMMON_FLAGS;
+}
+
+/* --- running it ------------------------------------------------------------------------------- */
+
+typedef struct arguments {
+  char *text; /* the words, cut apart in place */
+  char *words[MOST_ARGUMENTS + 1];
+  int count;
+} arguments;
+
+/* Appends the words of `text`, which must outlive the arguments. */
+static void add_words(arguments *a, char *text) {
+  for (char *rest, *word = strtok_r(text, " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
+    if (a->count < MOST_ARGUMENTS) a->words[a->count++] = word;
+}
+
+static void drop_word(arguments *a, const char *word) {
+  int kept = 0;
+  for (int k = 0; k < a->count; k++)
+    if (strcmp(a->words[k], word) != 0) a->words[kept++] = a->words[k];
+  a->count = kept;
+}
+
+/* Runs a program without a shell, both its outputs into `log`. Its exit status; 127 when it cannot
+   be started; 128 + signal. */
+static int run(arguments *a, const char *log) {
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, 1, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_adddup2(&actions, 1, 2);
+  a->words[a->count] = NULL;
+  pid_t child;
+  int failed = posix_spawnp(&child, a->words[0], &actions, NULL, a->words, environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (failed) return 127;
+  int status;
+  while (waitpid(child, &status, 0) < 0)
+    if (errno != EINTR) return 127;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+/* First `size - 1` bytes of a file; empty when it cannot be read. */
+static void read_head(const char *path, char *text, size_t size) {
+  FILE *in = fopen(path, "rb");
+  size_t n = in ? fread(text, 1, size - 1, in) : 0;
+  text[n] = 0;
+  if (in) fclose(in);
+}
+
+/* --- folders and files ------------------------------------------------------------------------ */
+
+static bool is_usable_folder(const char *path) {
+  struct stat about;
+  return stat(path, &about) == 0 && S_ISDIR(about.st_mode) && access(path, W_OK | X_OK) == 0;
+}
+
+/* Makes the folder and those above it. */
+static bool make_folder(const char *path) {
+  char part[LONGEST_PATH];
+  if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return false;
+  for (char *c = part + 1; *c; c++) {
+    if (*c != '/') continue;
+    *c = 0;
+    mkdir(part, 0777);
+    *c = '/';
+  }
+  mkdir(part, 0700);
+  return is_usable_folder(path);
+}
+
+/* A folder that only this user can write to: somebody else's files there would be loaded as
+ * programs. */
+static bool make_private_folder(const char *path) {
+  struct stat about;
+  mkdir(path, 0700);
+  return lstat(path, &about) == 0 && S_ISDIR(about.st_mode) && about.st_uid == geteuid() &&
+         (about.st_mode & 077) == 0 && is_usable_folder(path);
+}
+
+static void use_temporary_folder(char *path, size_t size) {
+  const char *parent = setting("TMPDIR");
+  if (!parent || !is_usable_folder(parent)) parent = "/tmp";
+  for (int k = 0; k < 100; k++) {
+    snprintf(path, size, "%s/perilat-%ld-%d", parent, (long)geteuid(), k);
+    if (make_private_folder(path)) return;
+  }
+}
+
+const char *toolchain_cache(void) {
+  static _Thread_local char path[LONGEST_PATH]; /* the answer, until the thread's next call */
+  const char *given = setting("PERILAT_CACHE"), *xdg = setting("XDG_CACHE_HOME"),
+             *home = setting("HOME");
+  int length = -1;
+  if (given)
+    length = snprintf(path, sizeof path, "%s", given);
+  else if (xdg)
+    length = snprintf(path, sizeof path, "%s/perilat", xdg);
+  else if (home)
+    length = snprintf(path, sizeof path, "%s/.cache/perilat", home);
+  if (length < 0 || length >= (int)sizeof path || !make_folder(path))
+    use_temporary_folder(path, sizeof path);
+  return path;
+}
+
+/* An empty file of a name of its own beside `path`; the same folder, so that it can be renamed. */
+static bool make_temporary(const char *path, const char *ending, char *temporary, size_t size) {
+  int length = snprintf(temporary, size, "%s.XXXXXX%s", path, ending);
+  if (length < 0 || (size_t)length >= size) return false;
+  int file = mkstemps(temporary, (int)strlen(ending));
+  return file >= 0 && close(file) == 0;
+}
+
+static bool write_file(const char *path, const char *mode, const void *data, size_t size) {
+  FILE *out = fopen(path, mode);
+  if (!out) return false;
+  bool done = fwrite(data, 1, size, out) == size;
+  return fclose(out) == 0 && done;
+}
+
+/* Whole or not at all, also for a second run that writes the same file. */
+static bool put_file(const char *path, const char *text) {
+  char temporary[LONGEST_PATH];
+  if (!make_temporary(path, ".tmp", temporary, sizeof temporary)) return false;
+  if (write_file(temporary, "wb", text, strlen(text)) && rename(temporary, path) == 0) return true;
+  unlink(temporary);
+  return false;
+}
+
+/* --- the seal: a digest behind the end of a cached object, where the loader does not look ----- */
+
+static const char seal_mark[8] = "PERILAT";
+#define SEAL_SIZE (sizeof seal_mark + SHA256_SIZE)
+
+static void digest_of(const void *data, size_t size, unsigned char digest[SHA256_SIZE]) {
+  sha256 h;
+  sha256_begin(&h);
+  sha256_add(&h, data, size);
+  sha256_end(&h, digest);
+}
+
+/* Whole file (malloc'ed), or NULL. */
+static unsigned char *read_file(const char *path, size_t *size) {
+  FILE *in = fopen(path, "rb");
+  struct stat about;
+  if (!in || fstat(fileno(in), &about) != 0 || !S_ISREG(about.st_mode)) {
+    if (in) fclose(in);
+    return NULL;
+  }
+  unsigned char *data = must_alloc((size_t)about.st_size + 1);
+  *size = fread(data, 1, (size_t)about.st_size, in);
+  fclose(in);
+  return data;
+}
+
+static bool seal(const char *path) {
+  size_t size;
+  unsigned char *data = read_file(path, &size), end[SEAL_SIZE];
+  if (!data) return false;
+  memcpy(end, seal_mark, sizeof seal_mark);
+  digest_of(data, size, end + sizeof seal_mark);
+  free(data);
+  return write_file(path, "ab", end, sizeof end);
+}
+
+/* A cut or altered object would end the program when it is loaded or, worse, run. */
+static bool is_sealed(const char *path) {
+  size_t size;
+  unsigned char *data = read_file(path, &size), digest[SHA256_SIZE];
+  bool sound = false;
+  if (data && size > SEAL_SIZE) {
+    const unsigned char *end = data + size - SEAL_SIZE;
+    digest_of(data, size - SEAL_SIZE, digest);
+    sound = memcmp(end, seal_mark, sizeof seal_mark) == 0 &&
+            memcmp(end + sizeof seal_mark, digest, sizeof digest) == 0;
+  }
+  free(data);
+  return sound;
+}
+
+/* --- key -------------------------------------------------------------------------------------- */
+
+/* First line of `compiler --version`; empty when it does not answer. */
+static void read_version(const char *compiler, char *version, size_t size) {
+  char log[LONGEST_PATH], base[LONGEST_PATH - 16];
+  *version = 0;
+  snprintf(base, sizeof base, "%s/version", toolchain_cache());
+  if (!make_temporary(base, ".log", log, sizeof log)) return;
+  arguments a = {0};
+  char *words = strdup(compiler), option[] = "--version";
+  add_words(&a, words);
+  add_words(&a, option);
+  if (run(&a, log) == 0) read_head(log, version, size);
+  version[strcspn(version, "\n")] = 0;
+  free(words);
+  unlink(log);
+}
+
+/* The length goes in too, so that no two lists of texts look the same. */
+static void add_text(sha256 *h, const char *text) {
+  uint64_t length = strlen(text);
+  sha256_add(h, &length, sizeof length);
+  sha256_add(h, text, (size_t)length);
+}
+
+char *toolchain_key(const char *text) {
+  char path[LONGEST_PATH] = "", version[512] = "", processor[8192];
+  const char *compiler = toolchain_compiler();
+  if (compiler) {
+    find_program(compiler, path, sizeof path);
+    read_version(compiler, version, sizeof version);
+  }
+  read_processor(processor, sizeof processor);
+  const uint64_t layout[] = {PL_KERNEL_ABI, sizeof(pl_law), sizeof(pl_strip),
+                             sizeof(pl_bond_class)};
+  unsigned char digest[SHA256_SIZE];
+  sha256 h;
+  sha256_begin(&h);
+  add_text(&h, text);
+  add_text(&h, compiler ? compiler : "");
+  add_text(&h, path);
+  add_text(&h, version);
+  add_text(&h, toolchain_flags());
+  add_text(&h, processor);
+  sha256_add(&h, layout, sizeof layout);
+  sha256_end(&h, digest);
+  char *key = must_alloc(2 * SHA256_SIZE + 1);
+  for (int k = 0; k < SHA256_SIZE; k++)
+    snprintf(key + 2 * k, 3, "%02x", digest[k]);
+  return key;
+}
+
+/* --- compiling -------------------------------------------------------------------------------- */
+
+/* A shared object, or with `libraries` a program that is linked with them. */
+static int compile(const char *source, const char *object, const char *libraries, const char *log) {
+  arguments a = {0};
+  const char *compiler = toolchain_compiler();
+  char *words = strdup(compiler), *flags = strdup(toolchain_flags());
+  char *object_path = strdup(object), *source_path = strdup(source);
+  char output_option[] = "-o", mathematics[] = "-lm"; /* fma, where the processor has none */
+  char *linked = strdup(libraries ? libraries : "");
+  add_words(&a, words);
+  add_words(&a, flags);
+  if (libraries) drop_word(&a, "-shared");
+  if (a.count + 4 <= MOST_ARGUMENTS / 2) {
+    a.words[a.count++] = output_option;
+    a.words[a.count++] = object_path; /* whole, blanks and all */
+    a.words[a.count++] = source_path;
+    add_words(&a, linked);
+    a.words[a.count++] = mathematics;
+  }
+  int status = run(&a, log);
+  free(linked);
+  free(words);
+  free(flags);
+  free(object_path);
+  free(source_path);
+  return status;
+}
+
+static void explain_failure(int status, const char *source, const char *log, char *error,
+                            size_t size) {
+  char said[600];
+  read_head(log, said, sizeof said);
+  if (status == 127)
+    snprintf(error, size, "the C compiler `%s` could not be started", toolchain_compiler());
+  else
+    snprintf(error, size,
+             "internal error: `%s` refused the generated C (status %d); the source is kept as "
+             "`%s`; it begins:\n%s",
+             toolchain_compiler(), status, source, said);
+}
+
+/* Compiles `source` to `path`, whole or not at all. */
+static bool compile_to(const char *source, const char *path, const char *libraries, bool sealed,
+                       char *error, size_t size) {
+  char object[LONGEST_PATH], log[LONGEST_PATH];
+  if (!toolchain_compiler()) {
+    snprintf(error, size, "there is no C compiler (install gcc or clang, or set PERILAT_CC)");
+    return false;
+  }
+  if (!make_temporary(path, ".tmp", object, sizeof object)) {
+    snprintf(error, size, "cannot write beside `%s`: %s", path, strerror(errno));
+    return false;
+  }
+  snprintf(log, sizeof log, "%.*s.log", (int)strlen(object) - 4, object);
+  int status = compile(source, object, libraries, log);
+  if (status) explain_failure(status, source, log, error, size);
+  unlink(log);
+  bool done =
+      !status && (!sealed || seal(object)) && chmod(object, 0755) == 0 && rename(object, path) == 0;
+  if (!status && !done) snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
+  if (!done) unlink(object);
+  return done;
+}
+
+static bool build(const char *c_text, const char *libraries, const char *path, char *error,
+                  size_t size) {
+  char source[LONGEST_PATH], base[LONGEST_PATH - 16];
+  snprintf(base, sizeof base, "%s/build", toolchain_cache());
+  if (!make_temporary(base, ".c", source, sizeof source) ||
+      !write_file(source, "wb", c_text, strlen(c_text))) {
+    snprintf(error, size, "cannot write a file in `%s`: %s", toolchain_cache(), strerror(errno));
+    return false;
+  }
+  bool done = compile_to(source, path, libraries, false, error, size);
+  if (done) unlink(source);
+  return done;
+}
+
+bool toolchain_build(const char *c_text, const char *path, char *error, size_t size) {
+  return build(c_text, NULL, path, error, size);
+}
+
+/* The folder with this program's static libraries: where it was built, or lib/ beside bin/ where it is installed. */
+static bool find_libraries(char *folder, size_t size) {
+  static const char *const relative[] = {"", "/../lib"};
+  char program[LONGEST_PATH], probe[LONGEST_PATH + 64];
+  ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
+  program[n > 0 ? n : 0] = 0;
+  char *slash = strrchr(program, '/');
+  if (slash) *slash = 0;
+  for (size_t k = 0; slash && k < sizeof relative / sizeof *relative; k++) {
+    snprintf(folder, size, "%s%s", program, relative[k]);
+    snprintf(probe, sizeof probe, "%s/libperilat_runtime.a", folder);
+    if (access(probe, R_OK) == 0) return true;
+  }
+  return false;
+}
+
+bool toolchain_build_program(const char *c_text, const char *path, char *error, size_t size) {
+  char folder[LONGEST_PATH], libraries[LONGEST_PATH + 4096];
+  if (!find_libraries(folder, sizeof folder)) {
+    snprintf(error, size,
+             "a solver is linked with libperilat_runtime.a, which is not beside this program");
+    return false;
+  }
+  snprintf(libraries, sizeof libraries,
+           "-L%s -lperilat_generator -lperilat_runtime -lperilat_generator -lperilat_runtime "
+           "-lperilat_dsl -fopenmp %s",
+           folder, PERILAT_LINK_LIBRARIES);
+  return build(c_text, libraries, path, error, size);
+}
+
+/* --- loading ---------------------------------------------------------------------------------- */
+
+static bool check_law(const pl_law *law, const char *path, const char *key, char *error,
+                      size_t size) {
+  if (!law)
+    snprintf(error, size, "`%s` is not a kernel of perilat", path);
+  else if (law->abi != PL_KERNEL_ABI)
+    snprintf(error, size,
+             "`%s` was built for version %d of the kernel interface, not %d: build it again", path,
+             law->abi, PL_KERNEL_ABI);
+  else if (key && strcmp(law->key, key) != 0)
+    snprintf(error, size, "`%s` is the kernel of another law, compiler or processor", path);
+  else
+    return true;
+  return false;
+}
+
+bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error,
+                    size_t size) {
+  *out = (loaded_kernel){0};
+  char *full =
+      realpath(path, NULL); /* a bare name would be looked for among the system's libraries */
+  if (!full) {
+    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
+    return false;
+  }
+  void *handle = dlopen(full, RTLD_NOW | RTLD_LOCAL);
+  if (!handle) {
+    snprintf(error, size, "cannot load `%s`: %s", path, dlerror());
+    free(full);
+    return false;
+  }
+  pl_kernel_entry entry;
+  *(void **)&entry = dlsym(handle, PL_KERNEL_ENTRY);
+  const pl_law *law = entry ? entry() : NULL;
+  if (!check_law(law, path, key_or_null, error, size)) {
+    dlclose(handle);
+    free(full);
+    return false;
+  }
+  *out = (loaded_kernel){.law = law, .handle = handle, .path = full};
+  return true;
+}
+
+bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, char *error,
+                    size_t size) {
+  char object[LONGEST_PATH], source[LONGEST_PATH];
+  const char *cache = toolchain_cache();
+  snprintf(object, sizeof object, "%s/%s.so", cache, key);
+  snprintf(source, sizeof source, "%s/%s.c", cache, key);
+  if (is_sealed(object) && toolchain_open(object, key, out, error, size)) {
+    out->from_cache = true;
+    return true;
+  }
+  *out = (loaded_kernel){0};
+  if (!put_file(source, c_text)) {
+    snprintf(error, size, "cannot write `%s`: %s", source, strerror(errno));
+    return false;
+  }
+  return compile_to(source, object, NULL, true, error, size) &&
+         toolchain_open(object, key, out, error, size);
+}
+
+void toolchain_unload(loaded_kernel *k) {
+  if (k->handle) dlclose(k->handle);
+  free(k->path);
+  *k = (loaded_kernel){0};
+}

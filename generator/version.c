@@ -1,0 +1,2 @@
+#include "generator/version.h"
+const char perilat_version[] = PERILAT_VERSION;

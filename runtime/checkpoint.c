@@ -1,0 +1,208 @@
+#include "runtime/checkpoint.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <libgen.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "dsl/arena.h"
+
+static const char magic[8] = "PLATCKP1"; /* the digit is the version of the layout */
+
+typedef struct stream { /* a file and the checksum of what has passed */
+  FILE *file;
+  const char *path;
+  uint64_t sum;
+  char *error;
+  size_t error_size;
+} stream;
+
+static bool fail(stream *s, const char *what) {
+  snprintf(s->error, s->error_size, "%s: %s", s->path, what);
+  return false;
+}
+
+/* FNV-1a, 64 bits. */
+static uint64_t checksum(uint64_t sum, const void *data, size_t bytes) {
+  const unsigned char *at = data;
+  for (size_t k = 0; k < bytes; k++)
+    sum = (sum ^ at[k]) * UINT64_C(0x100000001b3);
+  return sum;
+}
+
+#define CHECKSUM_START UINT64_C(0xcbf29ce484222325)
+
+/* --- writing
+ * -------------------------------------------------------------------------------------------------
+ */
+
+static bool put(stream *s, const void *data, size_t bytes) {
+  s->sum = checksum(s->sum, data, bytes);
+  if (fwrite(data, 1, bytes, s->file) == bytes) return true;
+  return fail(s, strerror(errno));
+}
+
+static bool put_size(stream *s, size_t bytes) {
+  const uint64_t n = bytes;
+  return put(s, &n, sizeof n);
+}
+
+static bool put_all(stream *s, const char *fingerprint, const checkpoint_part *parts, int count) {
+  bool good = put(s, magic, sizeof magic) && put_size(s, strlen(fingerprint)) &&
+              put(s, fingerprint, strlen(fingerprint)) && put_size(s, (size_t)count);
+  for (int k = 0; good && k < count; k++)
+    good = put_size(s, parts[k].bytes);
+  for (int k = 0; good && k < count; k++)
+    good = put(s, parts[k].data, parts[k].bytes);
+  const uint64_t sum = s->sum;
+  return good && put(s, &sum, sizeof sum);
+}
+
+/* A rename is on the disk only when its folder is. */
+static bool sync_folder(stream *s, const char *path) {
+  char *copy = must_alloc(strlen(path) + 1);
+  strcpy(copy, path);
+  const int folder = open(dirname(copy), O_RDONLY | O_DIRECTORY);
+  free(copy);
+  if (folder < 0) return fail(s, strerror(errno));
+  const bool good =
+      fsync(folder) == 0 || errno == EINVAL; /* some file systems cannot sync folders */
+  close(folder);
+  return good || fail(s, strerror(errno));
+}
+
+static bool write_temporary(stream *s, const char *fingerprint, const checkpoint_part *parts,
+                            int count) {
+  s->file = fopen(s->path, "wb");
+  if (!s->file) return fail(s, strerror(errno));
+  bool good = put_all(s, fingerprint, parts, count);
+  if (good && (fflush(s->file) != 0 || fsync(fileno(s->file)) != 0))
+    good = fail(s, strerror(errno));
+  if (fclose(s->file) != 0 && good) good = fail(s, strerror(errno));
+  return good;
+}
+
+bool checkpoint_write(const char *path, const char *fingerprint, const checkpoint_part *parts,
+                      int count, char *error, size_t size) {
+  char *temporary = must_alloc(strlen(path) + 5);
+  sprintf(temporary, "%s.tmp", path);
+  stream s = {.path = temporary, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  bool good = write_temporary(&s, fingerprint, parts, count);
+  if (good && rename(temporary, path) != 0) good = fail(&s, strerror(errno));
+  if (!good) remove(temporary);
+  if (good) good = sync_folder(&s, path);
+  free(temporary);
+  return good;
+}
+
+/* --- reading
+ * -------------------------------------------------------------------------------------------------
+ */
+
+static bool get(stream *s, void *data, size_t bytes) {
+  if (fread(data, 1, bytes, s->file) != bytes) return fail(s, "the checkpoint is cut short");
+  s->sum = checksum(s->sum, data, bytes);
+  return true;
+}
+
+static bool open_file(stream *s) {
+  s->file = fopen(s->path, "rb");
+  return s->file || fail(s, strerror(errno));
+}
+
+static bool get_fingerprint(stream *s, const char *fingerprint) {
+  uint64_t length;
+  if (!get(s, &length, sizeof length)) return false;
+  if (length != strlen(fingerprint))
+    return fail(s, "the checkpoint belongs to another deck, law or kernel");
+  char *found = must_alloc((size_t)length + 1);
+  bool good = get(s, found, (size_t)length);
+  if (good && memcmp(found, fingerprint, (size_t)length) != 0)
+    good = fail(s, "the checkpoint belongs to another deck, law or kernel");
+  free(found);
+  return good;
+}
+
+/* Everything before the parts' sizes. */
+static bool get_head(stream *s, const char *fingerprint, uint64_t *count) {
+  char found[sizeof magic];
+  if (!get(s, found, sizeof found)) return false;
+  if (memcmp(found, magic, sizeof magic - 1) != 0)
+    return fail(s, "this is not a checkpoint of perilat");
+  if (found[sizeof magic - 1] != magic[sizeof magic - 1])
+    return fail(s, "the checkpoint was written by another version of perilat");
+  return get_fingerprint(s, fingerprint) && get(s, count, sizeof *count);
+}
+
+/* Reads to the end: the last eight bytes must be the sum of all before. */
+static bool check_whole(stream *s) {
+  unsigned char block[1 << 16];
+  fseeko(s->file, 0, SEEK_END);
+  off_t left = ftello(s->file) - (off_t)sizeof(uint64_t);
+  rewind(s->file);
+  s->sum = CHECKSUM_START;
+  if (left < 0) return fail(s, "the checkpoint is cut short");
+  while (left > 0) {
+    const size_t bytes = left > (off_t)sizeof block ? sizeof block : (size_t)left;
+    if (!get(s, block, bytes)) return false;
+    left -= (off_t)bytes;
+  }
+  const uint64_t sum = s->sum;
+  uint64_t found;
+  if (!get(s, &found, sizeof found)) return false;
+  if (found != sum) return fail(s, "the checkpoint is damaged (its checksum is wrong)");
+  rewind(s->file);
+  return true;
+}
+
+static bool get_parts(stream *s, const char *fingerprint, const checkpoint_part *parts, int count) {
+  uint64_t found, bytes;
+  if (!get_head(s, fingerprint, &found)) return false;
+  bool fits = found == (uint64_t)count;
+  for (int k = 0; fits && k < count; k++) {
+    if (!get(s, &bytes, sizeof bytes)) return false;
+    fits = bytes == parts[k].bytes;
+  }
+  if (!fits) return fail(s, "the checkpoint holds a state of another size");
+  for (int k = 0; k < count; k++)
+    if (!get(s, parts[k].data, parts[k].bytes)) return false;
+  return true;
+}
+
+/* A file's magic and fingerprint are looked at first: "another deck" says more than "damaged". */
+static bool open_checked(stream *s, const char *fingerprint) {
+  uint64_t count;
+  if (!open_file(s)) return false;
+  if (!get_head(s, fingerprint, &count)) return false;
+  rewind(s->file);
+  return check_whole(s);
+}
+
+bool checkpoint_read(const char *path, const char *fingerprint, const checkpoint_part *parts,
+                     int count, char *error, size_t size) {
+  stream s = {.path = path, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  const bool good = open_checked(&s, fingerprint) && get_parts(&s, fingerprint, parts, count);
+  if (s.file) fclose(s.file);
+  return good;
+}
+
+static bool peek(stream *s, const char *fingerprint, void *data, size_t bytes) {
+  uint64_t count, first;
+  if (!get_head(s, fingerprint, &count)) return false;
+  if (count < 1 || !get(s, &first, sizeof first)) return fail(s, "the checkpoint holds nothing");
+  if (first != bytes || fseeko(s->file, (off_t)((count - 1) * sizeof first), SEEK_CUR) != 0)
+    return fail(s, "the checkpoint holds a state of another size");
+  return get(s, data, bytes);
+}
+
+bool checkpoint_peek(const char *path, const char *fingerprint, void *data, size_t bytes,
+                     char *error, size_t size) {
+  stream s = {.path = path, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  const bool good = open_checked(&s, fingerprint) && peek(&s, fingerprint, data, bytes);
+  if (s.file) fclose(s.file);
+  return good;
+}

@@ -1,0 +1,32 @@
+/* A checkpoint: named blocks of memory in one file that is either whole or not there. Written under
+   a temporary name, forced to the disk, renamed; the last eight bytes are a checksum of all before.
+   Bytes are those of this kind of machine: a checkpoint is for going on, not for keeping. */
+#ifndef PERILAT_RUNTIME_CHECKPOINT_H
+#define PERILAT_RUNTIME_CHECKPOINT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+typedef struct checkpoint_part {
+  const char *name; /* for messages */
+  void *data;
+  size_t bytes;
+} checkpoint_part;
+
+/* `fingerprint` says what the state belongs to (deck, laws, kernel); a file with another one is
+   refused. False with a sentence in `error` when it cannot be written; an older file of that name
+   then stays as it was. */
+bool checkpoint_write(const char *path, const char *fingerprint, const checkpoint_part *parts,
+                      int count, char *error, size_t size);
+
+/* Reads the parts back. They are touched only when the file is whole, of this fingerprint, and
+   every part has its size. */
+bool checkpoint_read(const char *path, const char *fingerprint, const checkpoint_part *parts,
+                     int count, char *error, size_t size);
+
+/* The first `bytes` of part 0 alone, after the same checks of the file (not of the other parts):
+   what the sizes of the others depend on. */
+bool checkpoint_peek(const char *path, const char *fingerprint, void *data, size_t bytes,
+                     char *error, size_t size);
+
+#endif

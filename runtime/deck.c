@@ -1,0 +1,235 @@
+#include "runtime/deck.h"
+
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/deck_check.h"
+#include "runtime/deck_set.h"
+#include "runtime/deck_value.h"
+#include "runtime/namelist.h"
+
+enum { MOST_ERRORS = 100 };
+
+span deck_where(const deck_item *item, const char *key) {
+  for (int i = 0; i < item->key_count; i++)
+    if (strcasecmp(item->keys[i].name, key) == 0) return item->keys[i].value_where;
+  return item->where;
+}
+
+#define FIND(group)                                                                                \
+  int deck_find_##group(const deck *k, const char *name) {                                         \
+    for (int i = 0; i < k->group##_count; i++)                                                     \
+      if (k->group##s[i].name && strcmp(k->group##s[i].name, name) == 0) return i;                 \
+    return -1;                                                                                     \
+  }
+FIND(region)
+FIND(lattice)
+FIND(monitor)
+
+/* --- one group --- */
+
+static void copy_places(arena *a, const namelist_group *from, deck_item *item) {
+  deck_key *keys = arena_alloc(a, (size_t)from->key_count * sizeof(*keys));
+  for (int i = 0; i < from->key_count; i++) {
+    const namelist_key *key = &from->keys[i];
+    keys[i] = (deck_key){key->name, key->name_where, key->value_where};
+  }
+  item->where = from->where;
+  item->keys = keys;
+  item->key_count = from->key_count;
+}
+
+static void report_unknown(deck_reader *r, const deck_group_info *info, const namelist_key *key) {
+  static const char *const synonyms[][2] = {
+      {"dt", "step"}, {"time_step", "step"}, {"position", "at"}, {"center", "centre"}};
+  diag_report(r->d, DIAG_UNKNOWN_KEY, key->name_where, "`&%s` has no key `%s`", info->name,
+              key->name);
+  for (int i = 0; i < 4; i++)
+    if (strcasecmp(key->name, synonyms[i][0]) == 0 && deck_key_find(info, synonyms[i][1]) >= 0) {
+      diag_hint(r->d, "did you mean `%s`?", synonyms[i][1]);
+      return;
+    }
+  const char *names[DECK_MOST_KEYS];
+  deck_suggest(r->d, key->name, names, deck_key_names(info, names), "its keys are");
+}
+
+static bool is_repeated(deck_reader *r, const namelist_group *from, const namelist_key *key) {
+  const namelist_key *first = namelist_find(from, key->name);
+  if (first == key) return false;
+  diag_report(r->d, DIAG_DUPLICATE_KEY, key->name_where, "`%s` is given twice in this `&%s`",
+              key->name, from->name);
+  diag_note(r->d, first->name_where, "it is given here");
+  if (strcmp(first->name, key->name) != 0)
+    diag_hint(r->d, "upper and lower case are the same here");
+  return true;
+}
+
+/* A required key that was only misspelt is not missing as well. */
+static bool is_misspelt(const namelist_group *from, const deck_group_info *info, const char *name) {
+  if (info->open) return false;
+  for (int i = 0; i < from->key_count; i++)
+    if (deck_key_find(info, from->keys[i].name) < 0 && nearest_name(from->keys[i].name, &name, 1))
+      return true;
+  return false;
+}
+
+static void read_keys(deck_reader *r, const namelist_group *from, const deck_group_info *info,
+                      void *item) {
+  for (int i = 0; i < from->key_count; i++) {
+    const namelist_key *key = &from->keys[i];
+    if (is_repeated(r, from, key)) continue;
+    int k = deck_key_find(info, key->name);
+    if (k >= 0 && !key->broken)
+      deck_field_read(r->memory, &info->keys[k], key, item, r->d);
+    else if (k < 0 && !info->open)
+      report_unknown(r, info, key);
+  }
+  if (from->broken) return; /* what seems missing may stand in the part that could not be read */
+  for (int k = 0; k < info->key_count; k++) {
+    const deck_key_info *key = &info->keys[k];
+    if (!key->required || namelist_find(from, key->name) || is_misspelt(from, info, key->name))
+      continue;
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` has no `%s`", info->name, key->name);
+    bool has_unit = key->unit && strcmp(key->unit, "1") != 0;
+    diag_hint(r->d, "%s: %s%s%s%s", key->name, key->doc, has_unit ? " (" : "",
+              has_unit ? key->unit : "", has_unit ? ")" : "");
+  }
+}
+
+/* Fills `item`, which begins with a deck_item. True when its keys can be looked at together. */
+static bool read_item(deck_reader *r, const namelist_group *from, deck_group_kind kind,
+                      deck_item *item) {
+  int errors = r->d->errors;
+  copy_places(r->memory, from, item);
+  deck_defaults(r->memory, &deck_groups[kind], item);
+  read_keys(r, from, &deck_groups[kind], item);
+  item->faulty = from->broken || r->d->errors > errors;
+  return !item->faulty;
+}
+
+/* --- the groups of a kind --- */
+
+static bool is_kind(const namelist_group *g, deck_group_kind kind) {
+  return strcmp(g->name, deck_groups[kind].name) == 0;
+}
+
+static int count_kind(const namelist *n, deck_group_kind kind) {
+  int count = 0;
+  for (int i = 0; i < n->group_count; i++)
+    count += is_kind(&n->groups[i], kind);
+  return count;
+}
+
+static bool too_many_errors(const deck_reader *r) {
+  return r->d->errors > MOST_ERRORS;
+}
+
+#define READ_LIST(group)                                                                           \
+  static void read_##group##s(deck_reader *r, const namelist *n) {                                 \
+    size_t count = (size_t)count_kind(n, DECK_GROUP_##group);                                      \
+    r->k->group##s = arena_alloc(r->memory, count * sizeof(deck_##group));                         \
+    for (int i = 0; i < n->group_count && !too_many_errors(r); i++) {                              \
+      const namelist_group *from = &n->groups[i];                                                  \
+      if (!is_kind(from, DECK_GROUP_##group)) continue;                                            \
+      deck_##group *item = &r->k->group##s[r->k->group##_count];                                   \
+      int errors = r->d->errors;                                                                   \
+      if (read_item(r, from, DECK_GROUP_##group, &item->item)) deck_check_##group(r, from, item);  \
+      item->item.faulty |= r->d->errors > errors;                                                  \
+      r->k->group##_count++;                                                                       \
+    }                                                                                              \
+  }
+DECK_LISTS(READ_LIST)
+
+#define READ_SINGLE(group)                                                                         \
+  static void read_##group(deck_reader *r, const namelist *n) {                                    \
+    deck_##group *item = &r->k->group;                                                             \
+    const namelist_group *first = NULL;                                                            \
+    deck_defaults(r->memory, &deck_groups[DECK_GROUP_##group], item);                              \
+    for (int i = 0; i < n->group_count && !too_many_errors(r); i++) {                              \
+      const namelist_group *from = &n->groups[i];                                                  \
+      if (!is_kind(from, DECK_GROUP_##group)) continue;                                            \
+      if (first) {                                                                                 \
+        report_second(r, from, first);                                                             \
+        continue;                                                                                  \
+      }                                                                                            \
+      first = from;                                                                                \
+      if (read_item(r, from, DECK_GROUP_##group, &item->item)) deck_check_##group(r, from, item);  \
+    }                                                                                              \
+  }
+
+static void report_second(deck_reader *r, const namelist_group *second,
+                          const namelist_group *first) {
+  diag_report(r->d, DIAG_DUPLICATE_NAME, second->where, "a deck has one `&%s`", second->name);
+  diag_note(r->d, first->where, "it is given here");
+}
+
+READ_SINGLE(simulation)
+READ_SINGLE(output)
+READ_SINGLE(checkpoint)
+
+static void report_unknown_groups(deck_reader *r, const namelist *n) {
+  const char *names[DECK_GROUP_COUNT];
+  for (int i = 0; i < n->group_count && !too_many_errors(r); i++) {
+    const namelist_group *g = &n->groups[i];
+    if (deck_group_find(g->name) >= 0) continue;
+    diag_report(r->d, DIAG_UNKNOWN_GROUP, g->where, "there is no group `&%s`", g->name);
+    if (strcmp(g->name, "cut") == 0)
+      diag_hint(r->d, "a cut-out is a `&notch`, with cut_bonds = .false. when bonds may span it");
+    else
+      deck_suggest(r->d, g->name, names, deck_group_names(names), "the groups are");
+  }
+}
+
+/* --- the deck --- */
+
+static const char *without_ending(arena *a, const char *path, const char *ending) {
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  size_t length = strlen(name), tail = strlen(ending);
+  if (length > tail && strcmp(name + length - tail, ending) == 0) length -= tail;
+  return arena_text(a, name, length);
+}
+
+static void set_computed_defaults(deck_reader *r) {
+  deck *k = r->k;
+  const char *name = without_ending(r->memory, k->name, ".nml");
+  if (!k->simulation.title) k->simulation.title = name;
+  if (!k->output.result) k->output.result = arena_printf(r->memory, "%s.h5", name);
+  if (k->output.sample <= 0) k->output.sample = k->simulation.end_time / 2000;
+}
+
+/* A name that could not be read may be the one that a reference means. */
+static bool all_names_known(const deck *k, const namelist *n) {
+  bool known = !n->broken;
+  for (int i = 0; i < k->lattice_count; i++)
+    known &= k->lattices[i].name != NULL;
+  for (int i = 0; i < k->region_count; i++)
+    known &= k->regions[i].name != NULL;
+  for (int i = 0; i < k->monitor_count; i++)
+    known &= k->monitors[i].name != NULL;
+  return known;
+}
+
+deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                int override_count, diagnostics *d) {
+  int errors = d->errors;
+  namelist *n = namelist_read(a, sources, file, d);
+  deck_set(a, sources, n, overrides, override_count, d);
+
+  deck *k = arena_alloc(a, sizeof(*k));
+  k->name = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
+  k->simulation.item.where.file = k->output.item.where.file = k->checkpoint.item.where.file =
+      (uint16_t)file;
+  deck_reader r = {a, d, k, true};
+  report_unknown_groups(&r, n);
+#define X(group, identity, single, open, doc)                                                      \
+  r.names_known = all_names_known(k, n);                                                           \
+  READ_##single(group);
+#define READ_true(group)  read_##group(&r, n)
+#define READ_false(group) read_##group##s(&r, n)
+  DECK_GROUPS(X)
+#undef X
+  set_computed_defaults(&r);
+  if (!n->broken && !too_many_errors(&r)) deck_check_whole(&r);
+  return d->errors > errors ? NULL : k;
+}

@@ -1,0 +1,229 @@
+/* A deck: Fortran namelist groups read into plain structures, every value in SI, every item with
+   its place in the text so that later errors (an empty region, say) can point at the line. Reading
+   a deck touches no other file and checks what can be checked without lattices or laws. */
+#ifndef PERILAT_RUNTIME_DECK_H
+#define PERILAT_RUNTIME_DECK_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "dsl/arena.h"
+#include "dsl/diagnostics.h"
+#include "dsl/units.h"
+#include "runtime/time_function.h"
+
+typedef struct deck_key { /* where a key was written, for messages about its value */
+  const char *name;
+  span name_where, value_where;
+} deck_key;
+
+typedef struct deck_item { /* what every group has */
+  span where;              /* of the group's name */
+  const deck_key *keys;
+  int key_count;
+  bool faulty; /* while reading: some of it was reported */
+} deck_item;
+
+/* Place of a key's value in the item, or of the group when the key was not written. */
+span deck_where(const deck_item *item, const char *key);
+
+typedef struct deck_lattice {
+  deck_item item;
+  const char *name;
+  const char *kind;                           /* "hexagonal" */
+  double spacing;                             /* m */
+  double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
+  double origin[2];                           /* m: a point that is a lattice site; default 0, 0 */
+  double thickness;                           /* m */
+  double stiffness_thickness, mass_thickness; /* m; default: thickness */
+  const char *setting;                        /* "plane_stress" (default) or "plane_strain" */
+} deck_lattice;
+
+typedef struct deck_assignment { /* parameter = value in a &material */
+  const char *name;              /* as written */
+  double value;                  /* SI */
+  bool has_unit;
+  dimension dim;    /* when has_unit */
+  const char *word; /* a string that is not a number: an option's choice; else NULL */
+  span name_where, value_where;
+} deck_assignment;
+
+typedef struct deck_material {
+  deck_item item;
+  const char *lattice; /* name */
+  const char *model;   /* name in models/ or a path ending in .plm */
+  deck_assignment *assignments;
+  int assignment_count;
+} deck_material;
+
+typedef enum shape_kind { SHAPE_POINT, SHAPE_RECTANGLE, SHAPE_DISC, SHAPE_POLYGON } shape_kind;
+
+typedef struct deck_shape {
+  shape_kind kind;
+  double at[2];              /* point: position; the nearest site within `within` is meant */
+  double within;             /* point: m; default half a spacing (0 here: not given) */
+  double corner[2], size[2]; /* rectangle: lower left, extent; m */
+  double centre[2], radius, inner_radius; /* disc; m */
+  const double *points;                   /* polygon: x1, y1, x2, y2, ...; m */
+  int point_count;                        /* pairs, at least 3 */
+} deck_shape;
+
+typedef struct deck_body { /* adds sites */
+  deck_item item;
+  const char *lattice;
+  deck_shape shape;
+} deck_body;
+
+typedef struct deck_notch { /* removes sites, and bonds whose chord crosses it */
+  deck_item item;
+  const char *lattice;
+  deck_shape shape;
+  bool cut_bonds; /* default true */
+} deck_notch;
+
+typedef struct deck_region {
+  deck_item item;
+  const char *name;
+  const char *lattice; /* filled in when the deck has only one */
+  deck_shape shape;
+} deck_region;
+
+enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4 };
+
+typedef struct deck_support {
+  deck_item item;
+  const char *region;
+  int fix; /* bits */
+} deck_support;
+
+typedef struct deck_drive { /* prescribed motion: velocity or displacement; free before `start` */
+  deck_item item;
+  const char *region;
+  int component; /* 0 x, 1 y, 2 rotation */
+  bool is_displacement;
+  time_function motion; /* m/s or m (rad/s, rad) */
+} deck_drive;
+
+typedef struct deck_force { /* total force on the region, shared equally by its particles */
+  deck_item item;
+  const char *region;
+  int component;       /* 0, 1; 2: moment in N*m */
+  time_function force; /* N */
+} deck_force;
+
+typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without
+                                    resultant; N*m */
+  deck_item item;
+  const char *region;
+  time_function moment; /* positive: counter-clockwise on the body */
+} deck_end_moment;
+
+typedef struct deck_protect { /* bonds that touch a particle within radius * spacing of the region:
+                                 no damage */
+  deck_item item;
+  const char *region;
+  double radius; /* in spacings; default 0: the region's own particles */
+} deck_protect;
+
+typedef struct deck_damping { /* kind 'mass': force -rate * mass * velocity on every particle */
+  deck_item item;
+  double rate;        /* 1/s */
+  double from, until; /* s; until may be infinite */
+} deck_damping;
+
+typedef struct deck_stop {
+  deck_item item;
+  const char *monitor;
+  bool below;   /* else above; compared with the monitor's absolute value */
+  double level; /* in the monitor's unit, or a fraction when of_peak */
+  bool of_peak; /* level times the largest absolute value so far */
+  double after; /* s: not before; default 0 */
+} deck_stop;
+
+typedef enum monitor_kind {
+  MONITOR_REACTION, /* N: force that a support or drive exerts on the body, on the support: `scale`
+                     * = -1
+                     */
+  MONITOR_DISPLACEMENT, /* m: mean over the region */
+  MONITOR_VELOCITY,     /* m/s: mean over the region */
+  MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
+  MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
+  MONITOR_BROKEN        /* count of bonds with damage 1 */
+} monitor_kind;
+
+typedef struct deck_monitor {
+  deck_item item;
+  const char *name;
+  monitor_kind kind;
+  const char *region;
+  const char *between[2];
+  int component;
+  double average; /* s: mean over this time before each sample; 0: value at the sample */
+  double zero_at; /* s: the value then is subtracted; negative: never */
+  double above;   /* DAMAGED; default 0 */
+  double scale;   /* factor on the value; default 1 (-1: downward load positive) */
+} deck_monitor;
+
+typedef struct deck_output {
+  deck_item item;
+  const char *result; /* path; default: the deck's file name with .h5, in the working directory */
+  int frames;         /* default 20 */
+  double sample;      /* s: history interval; default end_time/2000 */
+  const char *
+      *fields; /* "displacement", "velocity", "rotation", "force", "damage", "energy", law fields */
+  int field_count;
+  bool energy; /* ledger on: default true */
+} deck_output;
+
+typedef struct deck_checkpoint {
+  deck_item item;
+  double interval; /* seconds of wall time; default 600; 0: only when stopped */
+} deck_checkpoint;
+
+typedef struct deck_simulation {
+  deck_item item;
+  const char *title;
+  double end_time;    /* s */
+  double step;        /* s; 0: auto */
+  double step_safety; /* default 0.25 */
+  int threads;        /* 0: as the machine offers */
+} deck_simulation;
+
+typedef struct deck {
+  const char *name; /* of the source */
+  deck_simulation simulation;
+  deck_output output;
+  deck_checkpoint checkpoint;
+#define DECK_LISTS(X)                                                                              \
+  X(lattice)                                                                                       \
+  X(material)                                                                                      \
+  X(body) X(notch) X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping)      \
+      X(stop) X(monitor)
+#define X(group)                                                                                   \
+  deck_##group *group##s;                                                                          \
+  int group##_count;
+  DECK_LISTS(X)
+#undef X
+} deck;
+
+/* "group.key=value" as given by --set; a group that occurs several times is named group[k] (from 1)
+   or, where groups have a name, group[name]. */
+typedef struct deck_override {
+  const char *text;
+} deck_override;
+
+/* Reads sources->items[file]. NULL on errors (all are reported). Overrides become sources of their
+   own, named
+   "--set", so that errors in them point at their text. */
+deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                int override_count, diagnostics *d);
+
+/* Every group and key with its value, unit, default and meaning, as Markdown. */
+void deck_reference(FILE *out);
+
+/* Index of the named thing, or -1. */
+int deck_find_region(const deck *k, const char *name);
+int deck_find_lattice(const deck *k, const char *name);
+int deck_find_monitor(const deck *k, const char *name);
+
+#endif

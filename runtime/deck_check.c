@@ -1,0 +1,486 @@
+#include "runtime/deck_check.h"
+
+#include <ctype.h>
+#include <math.h>
+#include <string.h>
+
+#include "runtime/deck_load.h"
+#include "runtime/deck_value.h"
+
+static const char *const component_names[] = {"x", "y", "rotation"};
+
+/* --- names --- */
+
+/* Names of one kind of group, for suggestions. */
+#define NAMES_OF(group)                                                                            \
+  static const char **group##_names(const deck_reader *r) {                                        \
+    const deck *k = r->k;                                                                          \
+    const char **names = arena_alloc(r->memory, ((size_t)k->group##_count + 1) * sizeof(*names));  \
+    for (int i = 0; i < k->group##_count; i++)                                                     \
+      names[i] = k->group##s[i].name;                                                              \
+    return names;                                                                                  \
+  }
+NAMES_OF(lattice)
+NAMES_OF(region)
+NAMES_OF(monitor)
+
+static bool known(deck_reader *r, bool found, span where, const char *kind, const char *name,
+                  const char **names, int count) {
+  if (found || !r->names_known) return found;
+  diag_report(r->d, DIAG_UNKNOWN_NAME, where, "there is no %s `%s`", kind,
+              deck_shown(r->memory, name));
+  char intro[32];
+  snprintf(intro, sizeof(intro), "the deck's %ss are", kind);
+  deck_suggest(r->d, name, names, count, intro);
+  return false;
+}
+
+static bool lattice_known(deck_reader *r, const deck_item *item, const char *name) {
+  return known(r, deck_find_lattice(r->k, name) >= 0, deck_where(item, "lattice"), "lattice", name,
+               lattice_names(r), r->k->lattice_count);
+}
+
+static bool region_known(deck_reader *r, span where, const char *name) {
+  return known(r, deck_find_region(r->k, name) >= 0, where, "region", name, region_names(r),
+               r->k->region_count);
+}
+
+static bool item_region_known(deck_reader *r, const deck_item *item, const char *name) {
+  return region_known(r, deck_where(item, "region"), name);
+}
+
+static void name_is_new(deck_reader *r, const char *kind, const char *name, const deck_item *item,
+                        const deck_item *first) {
+  if (!first) return;
+  diag_report(r->d, DIAG_DUPLICATE_NAME, deck_where(item, "name"), "a %s `%s` exists already", kind,
+              deck_shown(r->memory, name));
+  diag_note(r->d, deck_where(first, "name"), "it is named here");
+}
+
+/* Names of faulty items may be missing. */
+static bool same(const char *a, const char *b) {
+  return a && b && strcmp(a, b) == 0;
+}
+
+static bool is_one_of(const char *name, const char *const *words, int count) {
+  for (int i = 0; i < count; i++)
+    if (strcmp(words[i], name) == 0) return true;
+  return false;
+}
+
+/* --- times --- */
+
+static void warn_late(deck_reader *r, const deck_item *item, const char *key, double time) {
+  double end = r->k->simulation.end_time;
+  if (end <= 0 || time < end) return; /* 0: the end is not known */
+  diag_report(r->d, DIAG_DECK_WARNING, deck_where(item, key),
+              "`%s` is not before the end of the run", key);
+}
+
+/* --- shapes --- */
+
+enum {
+  A_POINT = 1 << SHAPE_POINT,
+  A_RECTANGLE = 1 << SHAPE_RECTANGLE,
+  A_DISC = 1 << SHAPE_DISC,
+  A_POLYGON = 1 << SHAPE_POLYGON
+};
+static const char *const shape_words[] = {"a point", "a rectangle", "a disc", "a polygon"};
+static const deck_key_use shape_uses[] = {
+    {"at", A_POINT, true},           {"within", A_POINT, false}, {"corner", A_RECTANGLE, true},
+    {"size", A_RECTANGLE, true},     {"centre", A_DISC, true},   {"radius", A_DISC, true},
+    {"inner_radius", A_DISC, false}, {"points", A_POLYGON, true}};
+
+static void check_polygon(deck_reader *r, const deck_item *item, deck_shape *shape) {
+  span where = deck_where(item, "points");
+  int values = shape->point_count; /* as read; coordinates come in pairs */
+  shape->point_count = values / 2;
+  if (values % 2) {
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                "`points` holds pairs x, y, but the number of values is odd (%d)", values);
+    return;
+  }
+  if (values < 6) {
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a polygon has at least 3 points; here are %d",
+                values / 2);
+    return;
+  }
+  double area = 0, extent = 0;
+  const double *p = shape->points;
+  for (int i = 2; i < values; i += 2) {
+    int next = (i + 2) % values;
+    area += (p[i] - p[0]) * (p[next + 1] - p[1]) - (p[next] - p[0]) * (p[i + 1] - p[1]);
+    extent = fmax(extent, fmax(fabs(p[i] - p[0]), fabs(p[i + 1] - p[1])));
+  }
+  if (fabs(area) <= 1e-12 * extent * extent)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "this polygon has no area");
+}
+
+static void check_shape(deck_reader *r, const namelist_group *from, const deck_item *item,
+                        deck_shape *shape) {
+  int count = (int)(sizeof(shape_uses) / sizeof(shape_uses[0]));
+  if (!deck_keys_fit(from, shape_uses, count, (int)shape->kind, shape_words[shape->kind], r->d))
+    return;
+  if (shape->kind == SHAPE_POLYGON) check_polygon(r, item, shape);
+  if (shape->kind == SHAPE_DISC && shape->inner_radius >= shape->radius)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "inner_radius"),
+                "`inner_radius` must be less than `radius`");
+}
+
+/* --- groups, in the order of DECK_GROUPS --- */
+
+void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simulation *item) {
+  (void)from;
+  if (item->step > item->end_time)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "step"),
+                "`step` is longer than the run");
+}
+
+void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  static const char *const taken[] = {"time",  "energy", "displacement", "velocity",
+                                      "force", "damage", "rotation",     "."};
+  (void)from;
+  if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
+  if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
+  span where = deck_where(&item->item, "name");
+  if (is_one_of(item->name, taken, 8))
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a lattice cannot be called `%s`: the result has a field of that name", item->name);
+  else if (strchr(item->name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a lattice's name must not hold `/`");
+  int first = deck_find_lattice(r->k, item->name);
+  name_is_new(r, "lattice", item->name, &item->item,
+              first < 0 ? NULL : &r->k->lattices[first].item);
+}
+
+static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assignment *a) {
+  if (!deck_values_counted(key, 1, r->d)) return false;
+  const namelist_value *v = &key->values[0];
+  *a = (deck_assignment){
+      .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
+  const char *text = v->kind == NAMELIST_TEXT ? v->text + strspn(v->text, " \t") : "0";
+  if (isalpha((unsigned char)*text) || *text == '_') {
+    a->word = text;
+    return true;
+  }
+  deck_quantity q;
+  if (!deck_quantity_read(v, key->name, &q, r->d)) return false;
+  a->value = q.value;
+  a->has_unit = q.has_unit;
+  a->dim = q.dim;
+  return true;
+}
+
+static const deck_material *material_of(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->material_count; i++)
+    if (same(k->materials[i].lattice, lattice)) return &k->materials[i];
+  return NULL;
+}
+
+void deck_check_material(deck_reader *r, const namelist_group *from, deck_material *item) {
+  item->assignments = arena_alloc(r->memory, (size_t)from->key_count * sizeof(*item->assignments));
+  for (int i = 0; i < from->key_count; i++) {
+    if (deck_key_find(&deck_groups[DECK_GROUP_material], from->keys[i].name) >= 0) continue;
+    if (read_assignment(r, &from->keys[i], &item->assignments[item->assignment_count]))
+      item->assignment_count++;
+  }
+  if (!lattice_known(r, &item->item, item->lattice)) return;
+  const deck_material *first = material_of(r->k, item->lattice);
+  if (!first) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
+              "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
+  diag_note(r->d, first->item.where, "it is given here");
+}
+
+void deck_check_body(deck_reader *r, const namelist_group *from, deck_body *item) {
+  lattice_known(r, &item->item, item->lattice);
+  check_shape(r, from, &item->item, &item->shape);
+}
+
+void deck_check_notch(deck_reader *r, const namelist_group *from, deck_notch *item) {
+  lattice_known(r, &item->item, item->lattice);
+  check_shape(r, from, &item->item, &item->shape);
+}
+
+void deck_check_region(deck_reader *r, const namelist_group *from, deck_region *item) {
+  check_shape(r, from, &item->item, &item->shape);
+  int first = deck_find_region(r->k, item->name);
+  name_is_new(r, "region", item->name, &item->item, first < 0 ? NULL : &r->k->regions[first].item);
+  if (item->lattice) {
+    lattice_known(r, &item->item, item->lattice);
+  } else if (r->k->lattice_count == 1) {
+    item->lattice = r->k->lattices[0].name;
+  } else if (r->names_known && r->k->lattice_count > 1) {
+    diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&region` needs `lattice` here");
+    diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+  }
+}
+
+void deck_check_support(deck_reader *r, const namelist_group *from, deck_support *item) {
+  (void)from;
+  item_region_known(r, &item->item, item->region);
+}
+
+/* A particle cannot follow two motions; regions that overlap are found when their particles are
+ * known. */
+static void check_other_motions(deck_reader *r, const deck_drive *item) {
+  const deck *k = r->k;
+  span where = deck_where(&item->item, "component"), other = {0};
+  bool conflict = false;
+  for (int i = 0; i < k->support_count && !conflict; i++) {
+    conflict = !k->supports[i].item.faulty && same(k->supports[i].region, item->region) &&
+               (k->supports[i].fix & 1 << item->component);
+    other = deck_where(&k->supports[i].item, "fix");
+  }
+  for (int i = 0; i < k->drive_count && !conflict; i++) {
+    conflict = !k->drives[i].item.faulty && same(k->drives[i].region, item->region) &&
+               k->drives[i].component == item->component;
+    other = deck_where(&k->drives[i].item, "component");
+  }
+  if (!conflict) return;
+  const char *component = component_names[item->component];
+  diag_report(r->d, DIAG_CONFLICT, where, "`%s` of region `%s` has two motions", component,
+              deck_shown(r->memory, item->region));
+  diag_note(r->d, other, "the other one");
+}
+
+/* The one of two keys that was written, or NULL after a message. */
+static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
+                                  const char *second) {
+  const namelist_key *a = namelist_find(from, first), *b = namelist_find(from, second);
+  if (a && b) {
+    diag_report(r->d, DIAG_CONFLICT, b->name_where, "`%s` and `%s` exclude each other", first,
+                second);
+    diag_note(r->d, a->name_where, "`%s` is given here", first);
+  } else if (!a && !b) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` needs `%s` or `%s`", from->name, first,
+                second);
+  }
+  return a && b ? NULL : a ? a : b;
+}
+
+void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
+  bool rotates = item->component == 2;
+  item_region_known(r, &item->item, item->region);
+  check_other_motions(r, item);
+  const namelist_key *key = either(r, from, "velocity", "displacement");
+  if (!key) return;
+  item->is_displacement = key == namelist_find(from, "displacement");
+  const char *unit_text = item->is_displacement ? (rotates ? "1" : "m") : rotates ? "1/s" : "m/s";
+  if (!deck_load_read(r->memory, from, key, unit_text, &item->motion, r->d)) {
+    if (rotates && r->d->items[r->d->count - 1].code == DIAG_UNITS)
+      diag_hint(r->d, "a rotation is in rad, its velocity in rad/s");
+    return;
+  }
+  warn_late(r, &item->item, "start", item->motion.start);
+  if (!item->is_displacement || item->motion.shape != TIME_CONSTANT) return;
+  diag_report(r->d, DIAG_DECK_WARNING, key->name_where, "this displacement comes all at once");
+  diag_hint(r->d, "give a `rise`, e.g. rise = '1 ms'");
+}
+
+void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *item) {
+  item_region_known(r, &item->item, item->region);
+  const namelist_key *key = either(r, from, "force", "moment");
+  const namelist_key *component = namelist_find(from, "component");
+  if (!key) return;
+  bool rotates = key == namelist_find(from, "moment");
+  item->component = rotates ? 2 : 0;
+  if (component) item->component = deck_choice_read(r->memory, component, "x|y|rotation", r->d);
+  if (item->component < 0) return;
+  if (!component && !rotates) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
+    diag_hint(r->d, "component = 'x' or 'y'");
+    return;
+  }
+  if (rotates != (item->component == 2)) {
+    diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
+                key->name, component_names[item->component]);
+    diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
+    return;
+  }
+  if (deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d))
+    warn_late(r, &item->item, "start", item->force.start);
+}
+
+void deck_check_end_moment(deck_reader *r, const namelist_group *from, deck_end_moment *item) {
+  item_region_known(r, &item->item, item->region);
+  if (deck_load_read(r->memory, from, namelist_find(from, "moment"), "N*m", &item->moment, r->d))
+    warn_late(r, &item->item, "start", item->moment.start);
+}
+
+void deck_check_protect(deck_reader *r, const namelist_group *from, deck_protect *item) {
+  (void)from;
+  item_region_known(r, &item->item, item->region);
+}
+
+void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping *item) {
+  if (!namelist_find(from, "until")) item->until = INFINITY;
+  warn_late(r, &item->item, "from", item->from);
+  if (item->until > item->from) return;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "until"),
+              "`until` must be later than `from`");
+}
+
+enum {
+  OF_REGION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
+  OF_PAIR = 1 << MONITOR_OPENING,
+  OF_DAMAGE = 1 << MONITOR_DAMAGED
+};
+static const char *const monitor_words[] = {"a reaction monitor", "a displacement monitor",
+                                            "a velocity monitor", "an opening monitor",
+                                            "a damaged monitor",  "a broken monitor"};
+static const deck_key_use monitor_uses[] = {{"region", OF_REGION, true},
+                                            {"between", OF_PAIR, true},
+                                            {"component", OF_REGION | OF_PAIR, true},
+                                            {"above", OF_DAMAGE, false}};
+
+static bool is_identifier(const char *name) {
+  bool good = isalpha((unsigned char)*name) || *name == '_';
+  for (const char *p = name; *p; p++)
+    good &= isalnum((unsigned char)*p) || *p == '_';
+  return good;
+}
+
+static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
+  static const char *const taken[] = {"time", "energy"};
+  span where = deck_where(&item->item, "name");
+  if (is_one_of(item->name, taken, 2))
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a monitor cannot be called `%s`: the result has a history of that name",
+                item->name);
+  else if (!is_identifier(item->name)) {
+    diag_report(r->d, DIAG_BAD_VALUE, where, "`%s` cannot be the name of a monitor",
+                deck_shown(r->memory, item->name));
+    diag_hint(r->d, "use letters, digits and `_`, and begin with a letter");
+  }
+  int first = deck_find_monitor(r->k, item->name);
+  name_is_new(r, "monitor", item->name, &item->item,
+              first < 0 ? NULL : &r->k->monitors[first].item);
+}
+
+/* Forces come from supports and drives only; without any along the component a reaction is 0 for
+ * ever. */
+static void check_reaction(deck_reader *r, const deck_monitor *item) {
+  bool found = false;
+  for (int i = 0; i < r->k->support_count; i++)
+    found |= r->k->supports[i].item.faulty || r->k->supports[i].fix & 1 << item->component;
+  for (int i = 0; i < r->k->drive_count; i++)
+    found |= r->k->drives[i].item.faulty || r->k->drives[i].component == item->component;
+  if (found || !r->names_known) return;
+  diag_report(r->d, DIAG_CONFLICT, item->item.where,
+              "this reaction is always 0: no `&support` or `&drive` acts on `%s`",
+              component_names[item->component]);
+}
+
+void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor *item) {
+  check_monitor_name(r, item);
+  if (!deck_keys_fit(from, monitor_uses, 4, (int)item->kind, monitor_words[item->kind], r->d))
+    return;
+  if (!namelist_find(from, "zero_at")) item->zero_at = -1;
+  warn_late(r, &item->item, "zero_at", item->zero_at);
+  if (item->region) item_region_known(r, &item->item, item->region);
+  if (item->kind == MONITOR_REACTION) check_reaction(r, item);
+  if (item->kind != MONITOR_OPENING) return;
+  const namelist_key *between = namelist_find(from, "between");
+  for (int i = 0; i < 2; i++)
+    region_known(r, between->values[i].where, item->between[i]);
+}
+
+/* Unit of a monitor's values. */
+static const char *monitor_unit(const deck_monitor *m) {
+  bool rotates = m->component == 2;
+  switch (m->kind) {
+  case MONITOR_REACTION:
+    return rotates ? "N*m" : "N";
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_OPENING:
+    return rotates ? "1" : "m";
+  case MONITOR_VELOCITY:
+    return rotates ? "1/s" : "m/s";
+  default:
+    return "1";
+  }
+}
+
+static void check_level(deck_reader *r, const namelist_key *key, deck_stop *item,
+                        const char *unit_text) {
+  const namelist_value *v = &key->values[0];
+  if (!deck_values_counted(key, 1, r->d) ||
+      !deck_real_read(v, key->name, unit_text, BOUND_NOT_NEGATIVE, &item->level, r->d))
+    return;
+  if (item->of_peak && (item->level <= 0 || item->level >= 1))
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, v->where,
+                "a fraction of the peak must be greater than 0 and less than 1");
+}
+
+void deck_check_stop(deck_reader *r, const namelist_group *from, deck_stop *item) {
+  const namelist_key *of = namelist_find(from, "of"), *key = either(r, from, "below", "above");
+  warn_late(r, &item->item, "after", item->after);
+  bool found =
+      known(r, deck_find_monitor(r->k, item->monitor) >= 0, deck_where(&item->item, "monitor"),
+            "monitor", item->monitor, monitor_names(r), r->k->monitor_count);
+  if (!key || !found) return;
+  item->below = key == namelist_find(from, "below");
+  item->of_peak = of != NULL;
+  if (of && !item->below) {
+    diag_report(r->d, DIAG_CONFLICT, of->name_where, "`of = 'peak'` goes with `below` only");
+    diag_hint(r->d, "no value is above the largest one so far");
+    return;
+  }
+  const deck_monitor *m = &r->k->monitors[deck_find_monitor(r->k, item->monitor)];
+  if (!m->item.faulty) check_level(r, key, item, of ? "1" : monitor_unit(m));
+}
+
+void deck_check_output(deck_reader *r, const namelist_group *from, deck_output *item) {
+  enum { MOST_SAMPLES = 10000000 };
+  double end = r->k->simulation.end_time;
+  (void)from;
+  if (end <= 0 || item->sample <= 0) return;
+  if (item->sample > end)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
+                "`sample` is longer than the run");
+  else if (end / item->sample > MOST_SAMPLES)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
+                "`sample` gives %.3g samples; the most is %d", end / item->sample, MOST_SAMPLES);
+}
+
+void deck_check_checkpoint(deck_reader *r, const namelist_group *from, deck_checkpoint *item) {
+  (void)r;
+  (void)from;
+  (void)item;
+}
+
+/* --- the whole deck --- */
+
+/* A faulty item may be the one that is missed. */
+static bool has_body(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->body_count; i++)
+    if (k->bodys[i].item.faulty || same(k->bodys[i].lattice, lattice)) return true;
+  return false;
+}
+
+static bool has_material(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->material_count; i++)
+    if (k->materials[i].item.faulty || same(k->materials[i].lattice, lattice)) return true;
+  return false;
+}
+
+void deck_check_whole(deck_reader *r) {
+  const deck *k = r->k;
+  const deck_item *simulation = &k->simulation.item;
+  if (simulation->where.end == 0) /* never read */
+    diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
+  if (k->lattice_count == 0)
+    diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
+  for (int i = 0; i < k->lattice_count; i++) {
+    const deck_lattice *lattice = &k->lattices[i];
+    if (!lattice->name) continue;
+    const char *name = deck_shown(r->memory, lattice->name);
+    if (!has_material(k, lattice->name))
+      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
+                  "the lattice `%s` has no `&material`", name);
+    if (!has_body(k, lattice->name))
+      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
+                  name);
+  }
+}

@@ -1,0 +1,142 @@
+#include "runtime/hdf5_tools.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <unistd.h>
+
+void h5_quiet(void) { H5Eset_auto2(H5E_DEFAULT, NULL, NULL); }
+
+bool h5_make_group(hid_t file, const char *name) {
+  if (H5Lexists(file, name, H5P_DEFAULT) > 0)
+    return true;
+  hid_t group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  return group >= 0 && H5Gclose(group) >= 0;
+}
+
+bool h5_attribute_text(hid_t object, const char *name, const char *text) {
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, strlen(text) + 1);
+  hid_t a = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = a >= 0 && H5Awrite(a, type, text) >= 0;
+  if (a >= 0)
+    H5Aclose(a);
+  H5Sclose(space);
+  H5Tclose(type);
+  return good;
+}
+
+bool h5_attribute_double(hid_t object, const char *name, double value) {
+  hid_t space = H5Screate(H5S_SCALAR);
+  hid_t a = H5Acreate2(object, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = a >= 0 && H5Awrite(a, H5T_NATIVE_DOUBLE, &value) >= 0;
+  if (a >= 0)
+    H5Aclose(a);
+  H5Sclose(space);
+  return good;
+}
+
+static bool write_set(hid_t file, const char *name, hid_t stored, hid_t native, const void *values, int rank,
+                      const hsize_t *shape, const char *unit_text) {
+  hid_t space = H5Screate_simple(rank, shape, NULL);
+  hid_t set = H5Dcreate2(file, name, stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool empty = false;
+  for (int k = 0; k < rank; k++)
+    empty = empty || shape[k] == 0;
+  bool good = set >= 0 && (empty || H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) &&
+              (!unit_text || h5_attribute_text(set, "units", unit_text));
+  if (set >= 0)
+    good = H5Dclose(set) >= 0 && good;
+  H5Sclose(space);
+  return good;
+}
+
+bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank, const hsize_t *shape,
+                      const char *unit_text) {
+  return write_set(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, rank, shape, unit_text);
+}
+
+bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank, const hsize_t *shape) {
+  return write_set(file, name, H5T_STD_I32LE, H5T_NATIVE_INT32, values, rank, shape, NULL);
+}
+
+bool h5_write_text(hid_t file, const char *name, const char *text) {
+  hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
+  H5Tset_size(type, strlen(text) + 1);
+  H5Tset_cset(type, H5T_CSET_UTF8);
+  hid_t set = H5Dcreate2(file, name, type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  bool good = set >= 0 && H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) >= 0;
+  if (set >= 0)
+    H5Dclose(set);
+  H5Sclose(space);
+  H5Tclose(type);
+  return good;
+}
+
+hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape, const char *unit_text, int level) {
+  hid_t space = H5Screate_simple(rank, shape, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
+  hsize_t chunk[3] = {1, shape[1], rank > 2 ? shape[2] : 1};
+  const hsize_t most = (hsize_t)1 << 20; /* values a chunk */
+  if (chunk[1] > most)
+    chunk[1] = most;
+  if (shape[0] > 0 && shape[1] > 0) {
+    H5Pset_chunk(creation, rank, chunk);
+    H5Pset_shuffle(creation);
+    H5Pset_deflate(creation, (unsigned)level);
+  }
+  hid_t set = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  if (set >= 0)
+    h5_attribute_text(set, "units", unit_text);
+  H5Pclose(creation);
+  H5Sclose(space);
+  return set;
+}
+
+bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values) {
+  if (shape[1] == 0)
+    return true;
+  hsize_t start[3] = {(hsize_t)frame, 0, 0}, count[3] = {1, shape[1], rank > 2 ? shape[2] : 1};
+  hid_t space = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
+  bool good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+              H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
+  H5Sclose(memory);
+  H5Sclose(space);
+  return good;
+}
+
+bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size) {
+  text[0] = 0;
+  if (H5Aexists(object, name) <= 0)
+    return false;
+  hid_t a = H5Aopen(object, name, H5P_DEFAULT);
+  hid_t type = a >= 0 ? H5Aget_type(a) : -1;
+  bool good = type >= 0 && H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0;
+  if (good) {
+    hid_t memory = H5Tcopy(H5T_C_S1);
+    H5Tset_size(memory, size);
+    good = H5Aread(a, memory, text) >= 0;
+    text[size - 1] = 0;
+    H5Tclose(memory);
+  }
+  if (type >= 0)
+    H5Tclose(type);
+  if (a >= 0)
+    H5Aclose(a);
+  return good;
+}
+
+bool sync_file(const char *path) {
+  int file = open(path, O_RDONLY);
+  bool good = file >= 0 && fsync(file) == 0;
+  if (file >= 0)
+    close(file);
+  char folder[4096];
+  const char *slash = strrchr(path, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
+  int f = open(*folder ? folder : "/", O_RDONLY | O_DIRECTORY);
+  if (f >= 0) {
+    fsync(f); /* some file systems refuse to sync a folder; the file itself is safe */
+    close(f);
+  }
+  return good;
+}

@@ -1,0 +1,205 @@
+#include "runtime/implied.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+
+enum { STATE_INPUTS = 5, STATE_RESULTS = 3, TANGENTS = 12 };
+
+/* Volume of lattice that stress is counted on: a site's area times the stiffness thickness. */
+static double site_volume(const rows *w) { return w->site_area * w->stiffness_thickness; }
+
+/* One bond's response, uncoupled to others: uniforms prepared, fields carried along. */
+typedef struct bond_probe {
+  const pl_law *law;
+  double *uniforms, *fields, *new_fields;
+  double n[2], s; /* direction, length */
+} bond_probe;
+
+static bond_probe probe_new(const pl_law *law, const double *parameters, const rows *w, int direction) {
+  bond_probe p = {.law = law, .s = w->length[direction]};
+  p.uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
+  p.fields = must_calloc((size_t)law->field_count + 1, sizeof(double));
+  p.new_fields = must_calloc((size_t)law->field_count + 1, sizeof(double));
+  for (int f = 0; f < law->field_count; f++)
+    p.fields[f] = law->fields[f].initial;
+  pl_bond_class bonds = rows_bond_class(w, direction);
+  law->prepare(law, parameters, &bonds, p.uniforms);
+  p.n[0] = w->chord[direction][0] / p.s;
+  p.n[1] = w->chord[direction][1] / p.s;
+  return p;
+}
+
+static void probe_free(bond_probe *p) {
+  free(p->uniforms);
+  free(p->fields);
+  free(p->new_fields);
+}
+
+/* N, M_i, M_j (results) or the tangent of a bond at rest or in the given state. */
+static void probe_inputs(const bond_probe *p, double *values, const double **in, double stretch,
+                         double theta) {
+  values[0] = stretch;
+  values[1] = 0;
+  values[2] = values[3] = theta;
+  values[4] = p->s * (1 + stretch);
+  for (int k = 0; k < STATE_INPUTS; k++)
+    in[k] = &values[k];
+  for (int f = 0; f < p->law->field_count; f++)
+    in[STATE_INPUTS + f] = &p->fields[f];
+}
+
+static void probe_tangent(const bond_probe *p, double tangent[TANGENTS]) {
+  double values[STATE_INPUTS], *out[TANGENTS];
+  const double **in = must_calloc((size_t)(STATE_INPUTS + p->law->field_count), sizeof *in);
+  probe_inputs(p, values, in, 0, 0);
+  for (int k = 0; k < TANGENTS; k++)
+    out[k] = &tangent[k];
+  p->law->tangent(p->law, p->uniforms, 1, in, out);
+  free(in);
+}
+
+static void probe_step(bond_probe *p, double stretch, double theta, double result[STATE_RESULTS]) {
+  int fields = p->law->field_count;
+  double values[STATE_INPUTS];
+  const double **in = must_calloc((size_t)(STATE_INPUTS + fields), sizeof *in);
+  double **out = must_calloc((size_t)(STATE_RESULTS + fields), sizeof *out);
+  probe_inputs(p, values, in, stretch, theta);
+  for (int k = 0; k < STATE_RESULTS; k++)
+    out[k] = &result[k];
+  for (int f = 0; f < fields; f++)
+    out[STATE_RESULTS + f] = &p->new_fields[f];
+  p->law->states(p->law, p->uniforms, 1, in, out);
+  memcpy(p->fields, p->new_fields, (size_t)fields * sizeof(double));
+  free(in);
+  free(out);
+}
+
+/* Stretch and chord rotation of a bond in the uniform strain e = (xx, yy, 2 xy). */
+static double stretch_of(const bond_probe *p, const double e[3]) {
+  return p->n[0] * p->n[0] * e[0] + p->n[1] * p->n[1] * e[1] + p->n[0] * p->n[1] * e[2];
+}
+static double rotation_of(const bond_probe *p, const double e[3]) {
+  return p->n[0] * p->n[1] * (e[1] - e[0]) + 0.5 * (p->n[0] * p->n[0] - p->n[1] * p->n[1]) * e[2];
+}
+
+/* Adds the bond's share of the stress (xx, yy, xy, yx) * volume: force on i times chord. */
+static void add_stress(const bond_probe *p, double N, double V, double stress[4]) {
+  double fx = N * p->n[0] + V * p->n[1], fy = N * p->n[1] - V * p->n[0];
+  stress[0] += fx * p->n[0] * p->s;
+  stress[1] += fy * p->n[1] * p->s;
+  stress[2] += fx * p->n[1] * p->s;
+  stress[3] += fy * p->n[0] * p->s;
+}
+
+/* Stress in the linear lattice under strain e; the common particle rotation balances the moments. */
+static void linear_stress(const bond_probe *probes, double (*tangents)[TANGENTS], int count,
+                          const double e[3], double stress[4]) {
+  double moment = 0, stiffness = 0;
+  for (int k = 0; k < count; k++) {
+    const double *T = tangents[k];
+    double turning = T[6] + T[7] + T[10] + T[11];
+    moment += (T[4] + T[8]) * stretch_of(&probes[k], e) - turning * rotation_of(&probes[k], e);
+    stiffness += turning;
+  }
+  double common = stiffness != 0 ? -moment / stiffness : 0;
+  memset(stress, 0, 4 * sizeof *stress);
+  for (int k = 0; k < count; k++) {
+    const double *T = tangents[k];
+    double stretch = stretch_of(&probes[k], e);
+    double theta = common - rotation_of(&probes[k], e);
+    double N = T[0] * stretch + (T[2] + T[3]) * theta;
+    double M = (T[4] + T[8]) * stretch + (T[6] + T[7] + T[10] + T[11]) * theta;
+    add_stress(&probes[k], N, M / probes[k].s, stress);
+  }
+}
+
+static bool invert3(const double a[3][3], double inverse[3][3]) {
+  double c[3][3];
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++) {
+      int i1 = (i + 1) % 3, i2 = (i + 2) % 3, j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      c[i][j] = a[i1][j1] * a[i2][j2] - a[i1][j2] * a[i2][j1];
+    }
+  double det = a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2];
+  double scale = fabs(a[0][0] * a[1][1] * a[2][2]);
+  if (!(fabs(det) > 1e-12 * scale))
+    return false;
+  for (int i = 0; i < 3; i++)
+    for (int j = 0; j < 3; j++)
+      inverse[j][i] = c[i][j] / det;
+  return true;
+}
+
+bool implied_elastic(const pl_law *law, const double *parameters, const rows *w, implied_elasticity *out) {
+  bond_probe probes[ROWS_MAX_DIRECTIONS];
+  double tangents[ROWS_MAX_DIRECTIONS][TANGENTS];
+  for (int k = 0; k < w->directions; k++) {
+    probes[k] = probe_new(law, parameters, w, k);
+    probe_tangent(&probes[k], tangents[k]);
+  }
+  *out = (implied_elasticity){.asymmetry = 0};
+  for (int c = 0; c < 3; c++) {
+    double e[3] = {c == 0, c == 1, c == 2}, stress[4];
+    linear_stress(probes, tangents, w->directions, e, stress);
+    for (int r = 0; r < 3; r++)
+      out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / site_volume(w);
+    out->asymmetry = fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
+  }
+  for (int k = 0; k < w->directions; k++)
+    probe_free(&probes[k]);
+  double S[3][3];
+  if (!invert3(out->D, S))
+    return false;
+  for (int c = 0; c < 2; c++) {
+    out->E[c] = 1 / S[c][c];
+    out->nu[c] = -S[1 - c][c] / S[c][c];
+  }
+  out->G = 1 / S[2][2];
+  return true;
+}
+
+/* Largest stress over the strains from * ratio^0..count-1 (or from + k step when ratio is 0). */
+static double scan_strength(const pl_law *law, const double *parameters, const rows *w, int component, double from, double factor,
+                            double step, int count, double *where) {
+  bond_probe probes[ROWS_MAX_DIRECTIONS];
+  for (int k = 0; k < w->directions; k++)
+    probes[k] = probe_new(law, parameters, w, k);
+  double largest = 0, strain = from;
+  *where = 0;
+  for (int q = 0; q < count; q++, strain = strain * factor + step) {
+    double e[3] = {component == 0 ? strain : 0, component == 1 ? strain : 0, 0}, stress[4] = {0};
+    for (int k = 0; k < w->directions; k++) {
+      double result[STATE_RESULTS];
+      double stretch = stretch_of(&probes[k], e);
+      probe_step(&probes[k], stretch, -rotation_of(&probes[k], e), result);
+      add_stress(&probes[k], result[0], (result[1] + result[2]) / (probes[k].s * (1 + stretch)), stress);
+    }
+    if (stress[component] > largest) {
+      largest = stress[component];
+      *where = strain;
+    }
+  }
+  for (int k = 0; k < w->directions; k++)
+    probe_free(&probes[k]);
+  return largest / site_volume(w);
+}
+
+double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component, double *strain) {
+  const double first = 1e-8, last = 1.0;
+  const int coarse = 1600, fine = 400;
+  double factor = pow(last / first, 1.0 / (coarse - 1)), at;
+  scan_strength(law, parameters, w, component, first, factor, 0, coarse, &at);
+  bool found = at > 0 && at < 0.99 * last;
+  double strength = INFINITY;
+  if (found) {
+    double from = at / factor, to = at * factor;
+    strength = scan_strength(law, parameters, w, component, from, 1, (to - from) / (fine - 1),
+                             fine, &at);
+  }
+  if (strain)
+    *strain = found ? at : NAN;
+  return strength;
+}

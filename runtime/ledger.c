@@ -1,0 +1,27 @@
+#include "runtime/ledger.h"
+
+const char *const ledger_names[LEDGER_COUNT] = {
+#define X(code, name) name,
+    LEDGER_TERMS(X)
+#undef X
+};
+
+void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
+                   double terms[LEDGER_COUNT]) {
+  const sweep_totals t = sweep_sum(state);
+  double kinetic, work;
+  loads_observe(l, state, step, &kinetic, &work);
+  terms[LEDGER_KINETIC] = t.kinetic + kinetic;
+  terms[LEDGER_STORED] = t.stored;
+  terms[LEDGER_DISSIPATED_DAMAGE] = t.dissipated_state;
+  terms[LEDGER_DISSIPATED_DAMPING] =
+      t.dissipated_rate + t.dissipated_mass + t.dissipated_pending + l->dissipated;
+  terms[LEDGER_EXTERNAL] = l->work + work;
+  const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
+  if (!g->begun) {
+    g->begun = 1;
+    g->initial = held;
+  }
+  terms[LEDGER_IMBALANCE] = terms[LEDGER_EXTERNAL] - (held - g->initial) -
+                            terms[LEDGER_DISSIPATED_DAMAGE] - terms[LEDGER_DISSIPATED_DAMPING];
+}

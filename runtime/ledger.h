@@ -1,0 +1,42 @@
+/* The energy ledger: each term is integrated on its own, so that the imbalance says how far the run
+   can be trusted. The terms belong to the state sampled (n). With v- and v+ the velocities half a
+   step before and after it, kinetic     sum of half m v- v+ external    sum over the steps of force
+   times (v- + v+)/2 dt; half of it, with v-, for step n dissipated  by mass damping in the same
+   way, by the law as the kernel counts it which for linear springs balances to rounding whatever
+   the step (summation by parts of the leapfrog scheme). */
+#ifndef PERILAT_RUNTIME_LEDGER_H
+#define PERILAT_RUNTIME_LEDGER_H
+
+#include <stdbool.h>
+
+#include "runtime/loads.h"
+#include "runtime/sweep.h"
+
+/* X(code, name) in the order of the history; all in J */
+#define LEDGER_TERMS(X)                                                                            \
+  X(KINETIC, "energy/kinetic")                                                                     \
+  X(STORED, "energy/stored")                                                                       \
+  X(DISSIPATED_DAMAGE, "energy/dissipated_damage")                                                 \
+  X(DISSIPATED_DAMPING, "energy/dissipated_damping")                                               \
+  X(EXTERNAL, "energy/external")                                                                   \
+  X(IMBALANCE, "energy/imbalance")
+
+typedef enum ledger_term {
+#define X(code, name) LEDGER_##code,
+  LEDGER_TERMS(X)
+#undef X
+      LEDGER_COUNT
+} ledger_term;
+
+extern const char *const ledger_names[LEDGER_COUNT];
+
+typedef struct ledger {
+  double initial; /* J: kinetic and stored at the first sample */
+  int64_t begun;
+} ledger;
+
+/* Terms of the state after `step` steps; all blocks of the sweep have just been observed. */
+void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
+                   double terms[LEDGER_COUNT]);
+
+#endif

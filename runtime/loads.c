@@ -1,0 +1,418 @@
+#include "runtime/loads.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+
+/* --- regions
+ * -------------------------------------------------------------------------------------------------
+ */
+
+/* A point says how far away the nearest particle is, other shapes where the body is. */
+static void hint_nearest(const double at[2], const rows *w, diagnostics *d) {
+  double best = INFINITY, x = 0, y = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    const int64_t site = w->particle_site[p];
+    const double distance = hypot(w->x[site] - at[0], w->y[site] - at[1]);
+    if (distance >= best) continue;
+    best = distance;
+    x = w->x[site];
+    y = w->y[site];
+  }
+  diag_hint(d,
+            "the nearest particle stands %.4g mm away at (%.6g, %.6g) mm; `within` says how far is "
+            "near enough",
+            1e3 * best, 1e3 * x, 1e3 * y);
+}
+
+static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  for (long p = 0; p < w->particle_count; p++) {
+    const double at[2] = {w->x[w->particle_site[p]], w->y[w->particle_site[p]]};
+    for (int c = 0; c < 2; c++) {
+      low[c] = fmin(low[c], at[c]);
+      high[c] = fmax(high[c], at[c]);
+    }
+  }
+  diag_hint(d, "the particles of `%s` lie in x = %.6g .. %.6g mm, y = %.6g .. %.6g mm", lattice,
+            1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]);
+}
+
+static void report_empty(const deck *k, const deck_region *region, const rows *w, diagnostics *d) {
+  diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no particle",
+              region->name);
+  if (region->shape.kind == SHAPE_POINT)
+    hint_nearest(region->shape.at, w, d);
+  else
+    hint_extent(k->lattices[0].name, w, d);
+}
+
+static bool names_region(const char *name, const char *region) {
+  return name && strcmp(name, region) == 0;
+}
+
+static bool region_is_used(const deck *k, const char *name) {
+#define USED(list, member)                                                                         \
+  for (int i = 0; i < k->list##_count; i++)                                                        \
+    if (names_region(k->list##s[i].member, name)) return true;
+  USED(support, region)
+  USED(drive, region)
+  USED(force, region)
+  USED(end_moment, region)
+  USED(protect, region)
+  USED(monitor, region)
+  USED(monitor, between[0])
+  USED(monitor, between[1])
+#undef USED
+  return false;
+}
+
+static void select_regions(loads *l, const deck *k, diagnostics *d) {
+  l->regions = must_calloc((size_t)k->region_count + 1, sizeof *l->regions);
+  for (int r = 0; r < k->region_count; r++) {
+    const deck_region *region = &k->regions[r];
+    l->regions[r].count = rows_select(l->lattice, &region->shape, &l->regions[r].particles);
+    if (l->regions[r].count == 0)
+      report_empty(k, region, l->lattice, d);
+    else if (!region_is_used(k, region->name))
+      diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
+                  region->name);
+  }
+}
+
+static const region_sites *region_of(const loads *l, const char *name) {
+  const int r = deck_find_region(l->deck, name);
+  return r < 0 ? NULL : &l->regions[r];
+}
+
+/* --- motions
+ * -------------------------------------------------------------------------------------------------
+ */
+
+typedef struct motions { /* who holds which component of which particle, while the loads are set up
+                          */
+  int32_t *holder;       /* [dof * particle_count]: index of the constraint + 1 */
+  int dof;
+  const char *law;
+  diagnostics *said;
+} motions;
+
+static span motion_where(const deck *k, const constraint *c, const int *supports, long index) {
+  return c->drive >= 0 ? deck_where(&k->drives[c->drive].item, "region")
+                       : deck_where(&k->supports[supports[index]].item, "region");
+}
+
+static const char *const component_names[] = {"x", "y", "rotation"};
+
+/* Two supports may share a particle: both hold it where it is. Anything else is two motions at
+ * once. */
+static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, int component,
+                       int drive, int support) {
+  int32_t *holder = &m->holder[(long)component * l->lattice->particle_count + particle];
+  if (*holder) {
+    const constraint *first = &l->constraints[*holder - 1];
+    if (drive < 0 && first->drive < 0) return true;
+    const deck_item *item =
+        drive >= 0 ? &l->deck->drives[drive].item : &l->deck->supports[support].item;
+    const int64_t site = l->lattice->particle_site[particle];
+    diag_report(m->said, DIAG_CONFLICT, deck_where(item, "region"),
+                "the particle at (%.6g, %.6g) mm has its motion in %s prescribed twice",
+                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site], component_names[component]);
+    diag_note(m->said, motion_where(l->deck, first, *supports, *holder - 1),
+              "first prescribed here");
+    return false;
+  }
+  l->constraints =
+      must_realloc(l->constraints, ((size_t)l->constraint_count + 1) * sizeof *l->constraints);
+  *supports = must_realloc(*supports, ((size_t)l->constraint_count + 1) * sizeof **supports);
+  (*supports)[l->constraint_count] = support;
+  l->constraints[l->constraint_count] = (constraint){
+      .site = l->lattice->particle_site[particle], .component = component, .drive = drive};
+  *holder = (int32_t)++l->constraint_count;
+  return true;
+}
+
+static bool has_component(const motions *m, int component, span where) {
+  if (component < m->dof) return true;
+  diag_report(m->said, DIAG_BAD_VALUE, where, "the particles of the law `%s` do not rotate",
+              m->law);
+  diag_hint(m->said, "only micropolar laws have rotations and moments on particles");
+  return false;
+}
+
+static void add_motions(loads *l, motions *m) {
+  const deck *k = l->deck;
+  int *supports = NULL;
+  for (int i = 0; i < k->support_count; i++) {
+    const region_sites *at = region_of(l, k->supports[i].region);
+    for (int c = 0; c < 3; c++) {
+      if (!at || !(k->supports[i].fix & (1 << c))) continue;
+      bool good = has_component(m, c, deck_where(&k->supports[i].item, "fix"));
+      for (long p = 0; good && p < at->count; p++)
+        good = add_motion(l, m, &supports, at->particles[p], c, -1, i);
+    }
+  }
+  for (int i = 0; i < k->drive_count; i++) {
+    const region_sites *at = region_of(l, k->drives[i].region);
+    const int c = k->drives[i].component;
+    bool good = at && has_component(m, c, deck_where(&k->drives[i].item, "component"));
+    for (long p = 0; good && p < at->count; p++)
+      good = add_motion(l, m, &supports, at->particles[p], c, i, -1);
+  }
+  free(supports);
+}
+
+/* --- forces
+ * --------------------------------------------------------------------------------------------------
+ */
+
+static void add_force(loads *l, int32_t particle, int component, int cause, double share) {
+  l->forces = must_realloc(l->forces, ((size_t)l->force_count + 1) * sizeof *l->forces);
+  l->forces[l->force_count++] = (applied){.site = l->lattice->particle_site[particle],
+                                          .component = component,
+                                          .cause = cause,
+                                          .share = share};
+}
+
+static void add_forces(loads *l, const motions *m) {
+  for (int i = 0; i < l->deck->force_count; i++) {
+    const deck_force *f = &l->deck->forces[i];
+    const region_sites *at = region_of(l, f->region);
+    if (!at || !has_component(m, f->component, deck_where(&f->item, "component"))) continue;
+    for (long p = 0; p < at->count; p++)
+      add_force(l, at->particles[p], f->component, i, 1.0 / (double)at->count);
+  }
+}
+
+/* Moment about z of horizontal forces f at heights y: -sum y f. Without resultant and linear in y,
+   counter-clockwise when positive: f = -M (y - mean)/sum (y - mean)^2. */
+static void add_end_moment(loads *l, int index, diagnostics *d) {
+  const deck_end_moment *e = &l->deck->end_moments[index];
+  const region_sites *at = region_of(l, e->region);
+  if (!at || at->count == 0) return;
+  const double *y = l->lattice->y;
+  double mean = 0, square = 0;
+  for (long p = 0; p < at->count; p++)
+    mean += y[l->lattice->particle_site[at->particles[p]]] / (double)at->count;
+  for (long p = 0; p < at->count; p++)
+    square += pow(y[l->lattice->particle_site[at->particles[p]]] - mean, 2);
+  if (square < pow(1e-6 * l->lattice->spacing, 2)) {
+    diag_report(
+        d, DIAG_BAD_VALUE, deck_where(&e->item, "region"),
+        "the particles of region `%s` lie at one height: horizontal forces on them make no moment",
+        e->region);
+    diag_hint(d, "let the region reach over several rows");
+    return;
+  }
+  for (long p = 0; p < at->count; p++)
+    add_force(l, at->particles[p], 0, l->deck->force_count + index,
+              -(y[l->lattice->particle_site[at->particles[p]]] - mean) / square);
+}
+
+static double force_at(const loads *l, const applied *f, double t) {
+  const int forces = l->deck->force_count;
+  const time_function *shape = f->cause < forces ? &l->deck->forces[f->cause].force
+                                                 : &l->deck->end_moments[f->cause - forces].moment;
+  return f->share * time_function_at(shape, t);
+}
+
+/* --- set-up
+ * --------------------------------------------------------------------------------------------------
+ */
+
+static void protect(loads *l, rows *w) {
+  for (int i = 0; i < l->deck->protect_count; i++) {
+    const deck_protect *p = &l->deck->protects[i];
+    const region_sites *at = region_of(l, p->region);
+    if (at) rows_protect(w, at->particles, at->count, p->radius * w->spacing);
+  }
+}
+
+loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d) {
+  (void)lattice;
+  const int before = d->errors;
+  loads *l = must_calloc(1, sizeof *l);
+  l->deck = k;
+  l->lattice = w;
+  select_regions(l, k, d);
+  motions m = {.dof = dof, .law = law, .said = d};
+  m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
+  add_motions(l, &m);
+  add_forces(l, &m);
+  for (int i = 0; i < k->end_moment_count; i++)
+    add_end_moment(l, i, d);
+  protect(l, w);
+  free(m.holder);
+  if (d->errors == before) return l;
+  loads_free(l);
+  return NULL;
+}
+
+void loads_free(loads *l) {
+  if (!l) return;
+  for (int r = 0; r < l->deck->region_count; r++)
+    free(l->regions[r].particles);
+  free(l->regions);
+  free(l->constraints);
+  free(l->forces);
+  free(l);
+}
+
+long loads_constraints_of(const loads *l, int region, int component, int32_t **indices) {
+  const region_sites *at = &l->regions[region];
+  long count = 0;
+  *indices = must_calloc((size_t)l->constraint_count + 1, sizeof **indices);
+  unsigned char *inside = must_calloc((size_t)l->lattice->size, 1);
+  for (long p = 0; p < at->count; p++)
+    inside[l->lattice->particle_site[at->particles[p]]] = 1;
+  for (long c = 0; c < l->constraint_count; c++)
+    if (inside[l->constraints[c].site] && l->constraints[c].component == component)
+      (*indices)[count++] = (int32_t)c;
+  free(inside);
+  return count;
+}
+
+/* --- in time
+ * -------------------------------------------------------------------------------------------------
+ */
+
+static double time_of(const sweep *w, long step) {
+  return (double)step * w->time_step;
+}
+
+/* Factor of the step that begins at step * time_step. */
+static double decay_of(const loads *l, const sweep *w, long step) {
+  const double t = time_of(w, step);
+  double rate = 0;
+  for (int i = 0; i < l->deck->damping_count; i++)
+    if (t >= l->deck->dampings[i].from && t < l->deck->dampings[i].until)
+      rate += l->deck->dampings[i].rate;
+  return rate > 0 ? exp(-rate * w->time_step) : 1;
+}
+
+/* Motion prescribed at time t since the drive's start: m, rad. */
+static double motion_at(const loads *l, const constraint *c, double t) {
+  if (c->drive < 0) return 0;
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  return drive->is_displacement ? time_function_at(&drive->motion, t)
+                                : time_function_integral(&drive->motion, t);
+}
+
+/* A drive holds its particles from the first step that begins at or after its start, to rounding.
+ */
+static bool is_held(const loads *l, const sweep *w, const constraint *c, long step) {
+  return c->drive < 0 ||
+         time_of(w, step) >= l->deck->drives[c->drive].motion.start - 1e-6 * w->time_step;
+}
+
+/* Where the motion takes up a particle that was free. A velocity that began between two steps has
+   already led a little way: that way is not caught up. */
+static double anchor_of(const loads *l, const sweep *w, const constraint *c, long step) {
+  const double here = w->displacement[c->component][c->site];
+  if (c->drive >= 0 && l->deck->drives[c->drive].is_displacement) return here;
+  return here - motion_at(l, c, time_of(w, step));
+}
+
+static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
+  if (c->active || !is_held(l, w, c, step)) return;
+  c->active = 1;
+  c->anchor = anchor_of(l, w, c, step);
+  c->held = w->displacement[c->component][c->site];
+}
+
+void loads_begin(loads *l, sweep *w) {
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    c->velocity = w->velocity[c->component][c->site];
+    take_up(l, w, c, 0);
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    l->forces[i].now = force_at(l, &l->forces[i], 0);
+    l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
+  }
+  w->decay = decay_of(l, w, 0);
+}
+
+/* The sweep has counted the loss to mass damping over the way of a free particle: the velocity
+   after the step turns out to be larger by `change`. */
+static void correct_damping(loads *l, const sweep *w, int component, double before, double change) {
+  l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
+}
+
+static void apply_forces(loads *l, const sweep *w) {
+  for (long i = 0; i < l->force_count; i++) {
+    const applied *f = &l->forces[i];
+    const double change = w->time_step / w->mass[f->component] * f->now;
+    w->velocity[f->component][f->site] += change;
+    w->displacement[f->component][f->site] += w->time_step * change;
+    correct_damping(l, w, f->component, f->velocity, change);
+  }
+}
+
+/* Prescribed motion and what it takes: reaction over the step times the mean of the velocities
+ * before and after. */
+static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
+  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
+  const double before = c->velocity;
+  c->reaction = 0;
+  if (c->active) {
+    const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
+    const double prescribed = (target - c->held) / w->time_step;
+    c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
+    correct_damping(l, w, c->component, before, prescribed - *v);
+    c->held = target;
+    *v = prescribed;
+    *u = target;
+  }
+  l->work += 0.5 * w->time_step * c->reaction * (before + *v);
+  c->velocity = *v;
+}
+
+/* A force works with the mean of its values at both ends of the way. */
+static void next_forces(loads *l, const sweep *w, long step) {
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    const double next = force_at(l, f, time_of(w, step + 1));
+    f->velocity = w->velocity[f->component][f->site];
+    l->work += 0.5 * w->time_step * (f->now + next) * f->velocity;
+    f->now = next;
+  }
+}
+
+void loads_apply(loads *l, sweep *w, long step) {
+  apply_forces(l, w);
+  for (long i = 0; i < l->constraint_count; i++)
+    apply_motion(l, w, &l->constraints[i], step);
+  next_forces(l, w, step);
+  for (long i = 0; i < l->constraint_count; i++)
+    take_up(l, w, &l->constraints[i], step + 1);
+  w->decay = decay_of(l, w, step + 1);
+}
+
+/* Velocity of a component after the coming step if nothing but bonds, damping and applied forces
+ * acted on it. */
+static double free_velocity(const loads *l, const sweep *w, const constraint *c) {
+  double force = w->force[c->component][c->site];
+  for (long i = 0; i < l->force_count; i++)
+    if (l->forces[i].site == c->site && l->forces[i].component == c->component)
+      force += l->forces[i].now;
+  return w->decay * c->velocity + w->time_step / w->mass[c->component] * force;
+}
+
+void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work) {
+  *kinetic = 0;
+  *work = 0;
+  for (long i = 0; i < l->force_count; i++)
+    *kinetic += 0.5 * w->time_step * l->forces[i].now * l->forces[i].velocity;
+  for (long i = 0; i < l->constraint_count; i++) {
+    const constraint *c = &l->constraints[i];
+    if (!c->active) continue;
+    const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
+    const double prescribed = (target - c->held) / w->time_step, mass = w->mass[c->component];
+    const double change = prescribed - free_velocity(l, w, c);
+    *kinetic += 0.5 * mass * c->velocity * change;
+    *work += 0.5 * mass * c->velocity * change;
+  }
+}

@@ -1,0 +1,74 @@
+/* What acts on a few particles from outside: supports, drives, forces, end moments, and mass
+   damping in time. The sweep moves every particle as if it were free; afterwards the loaded ones
+   are put right.
+
+   Signs: a reaction is what the support or drive exerts on the body,
+     reaction = mass times prescribed acceleration - bond forces - mass damping - applied force,
+   so that the sum of reactions, applied forces and damping is the rate of the momentum, to
+   rounding. A drive leaves its particles free before its start; then their displacement follows
+   time_function_integral (or the prescribed displacement) exactly, counted from where each particle
+   is at the first step at or after the start. */
+#ifndef PERILAT_RUNTIME_LOADS_H
+#define PERILAT_RUNTIME_LOADS_H
+
+#include "dsl/diagnostics.h"
+#include "runtime/deck.h"
+#include "runtime/rows.h"
+#include "runtime/sweep.h"
+
+typedef struct constraint { /* one component of one particle that is held or driven */
+  int64_t site;
+  int32_t component;
+  int32_t drive;   /* index into the deck's drives; -1: support */
+  int64_t active;  /* it is held now */
+  double anchor;   /* m, rad: displacement less the motion prescribed */
+  double held;     /* present prescribed displacement */
+  double velocity; /* after the last step */
+  double reaction; /* N, N m: of the last step */
+} constraint;
+
+typedef struct applied { /* part of a force that acts on one component of one particle */
+  int64_t site;
+  int32_t component;
+  int32_t cause;   /* index into the deck's forces, then end moments */
+  double share;    /* force = share * time function */
+  double now;      /* N: force of the coming step */
+  double velocity; /* m/s: after the last step */
+} applied;
+
+typedef struct region_sites { /* of a region of the deck */
+  int32_t *particles;
+  long count;
+} region_sites;
+
+typedef struct loads {
+  const deck *deck;
+  const rows *lattice;
+  region_sites *regions; /* [deck->region_count] */
+  constraint *constraints;
+  long constraint_count;
+  applied *forces;
+  long force_count;
+  double work; /* J: done by applied forces up to now and by reactions up to the last half step */
+  double dissipated; /* J: by mass damping of loaded particles, beyond what the sweep counts */
+} loads;
+
+/* Selects the regions, protects what is to be protected, collects supports, drives and forces. NULL
+ * on errors. */
+loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
+void loads_free(loads *l);
+
+/* To be called once at rest, before the first step: forces at time 0, places of the supports. */
+void loads_begin(loads *l, sweep *w);
+/* After the sweep of step n -> n+1: applied forces, prescribed motions, reactions, work; then the
+   damping of the coming step is set. */
+void loads_apply(loads *l, sweep *w, long step);
+
+/* Loaded particles are not free, as sweep_observe has it: what that adds to the kinetic energy
+   sampled, and the work of the reactions from the last half step to the present state. */
+void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work);
+
+/* Indices of the constraints of a region's particles in a component; malloc'ed. */
+long loads_constraints_of(const loads *l, int region, int component, int32_t **indices);
+
+#endif

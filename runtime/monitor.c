@@ -1,0 +1,232 @@
+#include "runtime/monitor.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/arena.h"
+
+/* --- set-up
+ * --------------------------------------------------------------------------------------------------
+ */
+
+static bool counts_bonds(const monitor *m) {
+  return m->deck->kind == MONITOR_DAMAGED || m->deck->kind == MONITOR_BROKEN;
+}
+
+static const char *unit_of(const deck_monitor *m) {
+  const bool turns = m->component == 2;
+  switch (m->kind) {
+  case MONITOR_REACTION:
+    return turns ? "N*m" : "N";
+  case MONITOR_VELOCITY:
+    return turns ? "rad/s" : "m/s";
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_OPENING:
+    return turns ? "rad" : "m";
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  return "1";
+}
+
+static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
+  const int r = name ? deck_find_region(all->deck, name) : -1;
+  if (r < 0) return;
+  const region_sites *at = &all->loads->regions[r];
+  m->indices[list] = must_calloc((size_t)at->count + 1, sizeof(int32_t));
+  m->index_count[list] = at->count;
+  for (long p = 0; p < at->count; p++)
+    m->indices[list][p] = all->state->lattice->particle_site[at->particles[p]];
+}
+
+static void take_reactions(monitor *m, const monitors *all) {
+  const int r = m->deck->region ? deck_find_region(all->deck, m->deck->region) : -1;
+  if (r >= 0)
+    m->index_count[0] = loads_constraints_of(all->loads, r, m->deck->component, &m->indices[0]);
+}
+
+static bool check_component(const monitor *m, const monitors *all, diagnostics *d) {
+  if (counts_bonds(m) || m->deck->component < all->state->dof) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "component"),
+              "the particles of the law `%s` do not rotate", all->state->law->name);
+  return false;
+}
+
+static bool check_damage(const monitor *m, const monitors *all, diagnostics *d) {
+  if (!counts_bonds(m) || all->damage) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "kind"),
+              "the law `%s` has no damage to count", all->state->law->name);
+  return false;
+}
+
+static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
+  static const double most = 1e8; /* values in a ring */
+  const double dt = all->state->time_step, steps = m->deck->average / dt;
+  m->zero_step = m->deck->zero_at >= 0 ? lround(fmin(m->deck->zero_at / dt, 9e15)) : -1;
+  m->window = 1;
+  if (counts_bonds(m) || m->deck->average <= 0) return true;
+  if (steps <= most) {
+    m->window = steps < 1 ? 1 : lround(steps);
+    return true;
+  }
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "average"),
+              "a mean over %.3g steps of %.3g s does not fit into memory", steps, dt);
+  return false;
+}
+
+static void new_monitor(monitors *all, int index, diagnostics *d) {
+  monitor *m = &all->items[index];
+  m->deck = &all->deck->monitors[index];
+  m->unit = unit_of(m->deck);
+  m->window = 1;
+  if (!check_component(m, all, d) || !check_damage(m, all, d) || !find_steps(m, all, d)) return;
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    take_reactions(m, all);
+    break;
+  case MONITOR_OPENING:
+    take_sites(m, 0, all, m->deck->between[0]);
+    take_sites(m, 1, all, m->deck->between[1]);
+    break;
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_VELOCITY:
+    take_sites(m, 0, all, m->deck->region);
+    break;
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+}
+
+static const double *damage_of(const sweep *state) {
+  for (int f = 0; f < state->law->field_count; f++)
+    if (state->law->fields[f].kind == PL_FIELD_DAMAGE) return state->field[f];
+  return NULL;
+}
+
+monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,
+                       diagnostics *d) {
+  const int before = d->errors;
+  monitors *m = must_calloc(1, sizeof *m);
+  *m = (monitors){.count = k->monitor_count, .deck = k, .state = state, .loads = l, .bonds = bonds};
+  m->damage = damage_of(state);
+  m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
+  for (int i = 0; i < m->count; i++) {
+    new_monitor(m, i, d);
+    m->ring_size += m->items[i].window;
+  }
+  if (d->errors > before) {
+    monitors_free(m);
+    return NULL;
+  }
+  m->ring_memory = must_calloc((size_t)m->ring_size + 1, sizeof(double));
+  double *at = m->ring_memory;
+  for (int i = 0; i < m->count; at += m->items[i].window, i++)
+    m->items[i].ring = at;
+  return m;
+}
+
+void monitors_free(monitors *m) {
+  if (!m) return;
+  for (int i = 0; i < m->count; i++) {
+    free(m->items[i].indices[0]);
+    free(m->items[i].indices[1]);
+  }
+  free(m->items);
+  free(m->ring_memory);
+  free(m);
+}
+
+/* --- values
+ * --------------------------------------------------------------------------------------------------
+ */
+
+static double mean_at(const double *values, const int32_t *sites, long count) {
+  double sum = 0;
+  for (long p = 0; p < count; p++)
+    sum += values[sites[p]];
+  return count ? sum / (double)count : 0;
+}
+
+static double reaction_sum(const monitors *all, const monitor *m) {
+  double sum = 0;
+  for (long c = 0; c < m->index_count[0]; c++)
+    sum += all->loads->constraints[m->indices[0][c]].reaction;
+  return sum;
+}
+
+static double count_damaged(const monitors *all, const monitor *m) {
+  const bool broken = m->deck->kind == MONITOR_BROKEN;
+  long count = 0;
+  for (long b = 0; b < all->state->lattice->bond_count; b++) {
+    const double damage = all->damage[all->bonds[b].slot];
+    count += broken ? damage >= 1 : damage > m->deck->above;
+  }
+  return (double)count;
+}
+
+static double value_now(const monitors *all, const monitor *m) {
+  const int c = m->deck->component;
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    return reaction_sum(all, m);
+  case MONITOR_DISPLACEMENT:
+    return mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+  case MONITOR_VELOCITY:
+    return mean_at(all->state->velocity[c], m->indices[0], m->index_count[0]);
+  case MONITOR_OPENING:
+    return mean_at(all->state->displacement[c], m->indices[1], m->index_count[1]) -
+           mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  return count_damaged(all, m);
+}
+
+/* From the oldest value to the newest, so that a resumed run sums in the same order. */
+static double mean_of_ring(const monitor *m) {
+  const int64_t count = m->state.filled < m->window ? m->state.filled : m->window;
+  double sum = 0;
+  for (int64_t k = m->state.filled - count; k < m->state.filled; k++)
+    sum += m->ring[k % m->window];
+  return count ? sum / (double)count : 0;
+}
+
+static double averaged(const monitors *all, const monitor *m) {
+  return m->window > 1 ? mean_of_ring(m) : value_now(all, m);
+}
+
+void monitors_step(monitors *all, long step) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    if (m->window > 1) m->ring[m->state.filled++ % m->window] = value_now(all, m);
+    if (step == m->zero_step) m->state.zero = averaged(all, m);
+  }
+}
+
+void monitors_sample(monitors *all, double time, double *values) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    values[i] = m->deck->scale * (averaged(all, m) - m->state.zero);
+    if (fabs(values[i]) <= fabs(m->state.peak)) continue;
+    m->state.peak = values[i];
+    m->state.peak_time = time;
+  }
+}
+
+static bool applies(const monitors *all, const deck_stop *stop, double time, const double *values) {
+  const int i = deck_find_monitor(all->deck, stop->monitor);
+  if (i < 0 || time < stop->after) return false;
+  const double peak = fabs(all->items[i].state.peak), value = fabs(values[i]);
+  const double level = stop->of_peak ? stop->level * peak : stop->level;
+  if (stop->of_peak && peak == 0) return false;
+  return stop->below ? value < level : value > level;
+}
+
+bool monitors_stop(const monitors *all, double time, const double *values) {
+  for (int i = 0; i < all->deck->stop_count; i++)
+    if (applies(all, &all->deck->stops[i], time, values)) return true;
+  return false;
+}

@@ -1,0 +1,56 @@
+/* What is watched: reactions, displacements, openings, counts of damaged bonds; their running
+   means, zeros and peaks, and the &stop conditions on them. A value belongs to the state after a
+   step; a reaction is that of the step just done.
+
+   A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
+   the steps of the last `average` seconds, the present one included, or all there were so far.
+   Counts are taken as they are. */
+#ifndef PERILAT_RUNTIME_MONITOR_H
+#define PERILAT_RUNTIME_MONITOR_H
+
+#include "dsl/diagnostics.h"
+#include "runtime/deck.h"
+#include "runtime/loads.h"
+#include "runtime/sweep.h"
+
+typedef struct monitor_state { /* what a later step depends on */
+  double zero;                 /* value subtracted */
+  double peak, peak_time;      /* largest absolute value sampled, its sign kept, and when */
+  int64_t filled;              /* values pushed since the start */
+} monitor_state;
+
+typedef struct monitor {
+  const deck_monitor *deck;
+  const char *unit;
+  monitor_state state;
+  int32_t *indices[2]; /* sites (second list: of an opening), or constraints of a reaction */
+  long index_count[2];
+  double *ring;   /* [window] the last values, value of push k at k % window */
+  long window;    /* steps; 1: no averaging */
+  long zero_step; /* -1: never */
+} monitor;
+
+typedef struct monitors {
+  monitor *items;
+  int count;
+  const deck *deck;
+  const sweep *state;
+  const loads *loads;
+  const rows_bond *bonds; /* [lattice->bond_count], not owned */
+  const double *damage;   /* [directions * size] first damage field of the law, or NULL */
+  double *ring_memory;    /* all rings in one */
+  long ring_size;
+} monitors;
+
+monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,
+                       diagnostics *d);
+void monitors_free(monitors *m);
+
+/* After every step (and once at the start): rings and zeros. */
+void monitors_step(monitors *m, long step);
+/* Values of all monitors now; remembers peaks. */
+void monitors_sample(monitors *m, double time, double *values);
+/* True when a &stop applies to values just sampled. */
+bool monitors_stop(const monitors *m, double time, const double *values);
+
+#endif

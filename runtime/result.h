@@ -1,0 +1,83 @@
+/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are appended to a plain working file
+   (result.h5.frames), which survives a kill; result.h5 itself appears whole, by rename, when the run ends.
+   Layout, names and units of result.h5 are stable:
+
+     /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
+     /input/deck            text; /input/models/<name> law text; /input/kernels/<name> generated C
+     /particles/reference   [N, 2] m; /particles/body [N]; /particles/volume [N] m^3
+     /bonds/<interaction>   [M, 2] particle indices
+     /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
+     /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M]  */
+#ifndef PERILAT_RUNTIME_RESULT_H
+#define PERILAT_RUNTIME_RESULT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdio.h>
+
+typedef struct result_text { const char *name, *text; } result_text;
+
+typedef struct result_field {      /* of a frame */
+  const char *name;
+  const char *unit;                /* "m", "1" */
+  const char *interaction;         /* NULL: per particle; else bond field of that interaction */
+  int components;                  /* 1, 2, ... */
+  long count;                      /* particles or bonds */
+} result_field;
+
+typedef struct result_series {     /* of the history */
+  const char *name;                /* "load"; "energy/kinetic" */
+  const char *unit;
+  const double *values;            /* [history_count] */
+} result_series;
+
+typedef struct result_header {
+  const char *path;                /* of the final file */
+  const char *title, *started, *version, *kernel_key;
+  const char *deck_text;
+  const result_text *models, *kernels;
+  int model_count, kernel_count;
+  long particle_count;
+  const double *reference;         /* [N][2] */
+  const int32_t *body;             /* [N] */
+  const double *volume;            /* [N] */
+  const char *interaction;         /* name of the bonds: the lattice's name */
+  long bond_count;
+  const int32_t *bonds;            /* [M][2] */
+  const result_field *fields;
+  int field_count;
+} result_header;
+
+typedef struct result result;
+
+/* Opens the working file. With resume_frames >= 0 an existing working file is kept and cut to that many frames.
+   On failure returns NULL with a sentence in error (size bytes). */
+result *result_open(const result_header *header, long resume_frames, char *error, size_t size);
+/* Appends a frame: values[k] is field k, [count][components]. False when it cannot be written (disk full). */
+bool result_frame(result *r, double time, const double *const *values, char *error, size_t size);
+long result_frame_count(const result *r);
+/* Forces the working file to the disk (before a checkpoint that counts on it). */
+bool result_sync(result *r, char *error, size_t size);
+/* Writes result.h5 and result.xdmf under temporary names and renames them; removes the working file unless
+   `keep_working` (an interrupted run that can be resumed). */
+bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
+                   const result_series *series, int series_count, bool keep_working, char *error, size_t size);
+void result_close(result *r); /* frees; keeps files */
+
+/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in `error` on failure. */
+typedef struct result_file result_file;
+result_file *result_read(const char *path, char *error, size_t size);
+void result_read_close(result_file *f);
+double *result_read_series(result_file *f, const char *name, long *count, char *unit, size_t unit_size,
+                           char *error, size_t size);          /* "time", "load", "energy/kinetic" */
+double *result_read_frame(result_file *f, const char *field, long frame, long *count, int *components,
+                          char *unit, size_t unit_size, char *error, size_t size);
+double *result_read_reference(result_file *f, long *particles);       /* [N][2] */
+int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds); /* [M][2]; NULL name: the first */
+double *result_read_frame_times(result_file *f, long *frames);
+char *result_read_text(result_file *f, const char *path);             /* "/input/deck" */
+char *result_read_title(result_file *f);                              /* "" without one */
+/* Names of the members of a group ("/history", "/frames"), comma separated; malloc'ed. */
+char *result_list(result_file *f, const char *group);
+
+#endif

@@ -1,0 +1,246 @@
+/* The reading half of result.h. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "runtime/hdf5_tools.h"
+#include "runtime/result.h"
+
+#define VALUES_LIMIT ((hsize_t)1 << 32) /* of one read: 32 GiB of doubles */
+
+struct result_file {
+  hid_t file;
+  char path[1024];
+};
+
+result_file *result_read(const char *path, char *error, size_t size) {
+  h5_quiet();
+  FILE *probe = fopen(path, "rb");
+  if (!probe) {
+    snprintf(error, size, "there is no result `%s`", path);
+    return NULL;
+  }
+  fclose(probe);
+  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) {
+    snprintf(error, size, "`%s` is not a whole HDF5 file", path);
+    return NULL;
+  }
+  if (H5Lexists(file, "/history", H5P_DEFAULT) <= 0 || H5Lexists(file, "/particles", H5P_DEFAULT) <= 0) {
+    H5Fclose(file);
+    snprintf(error, size, "`%s` is an HDF5 file, but not a result of perilat", path);
+    return NULL;
+  }
+  result_file *f = must_calloc(1, sizeof *f);
+  f->file = file;
+  snprintf(f->path, sizeof f->path, "%s", path);
+  return f;
+}
+
+void result_read_close(result_file *f) {
+  H5Fclose(f->file);
+  free(f);
+}
+
+/* Every part of the path must exist before H5Dopen may be asked. */
+static hid_t open_set(const result_file *f, const char *name) {
+  char part[512];
+  for (const char *at = strchr(name + 1, '/');; at = strchr(at + 1, '/')) {
+    size_t n = at ? (size_t)(at - name) : strlen(name);
+    if (n >= sizeof part)
+      return -1;
+    memcpy(part, name, n);
+    part[n] = 0;
+    if (H5Lexists(f->file, part, H5P_DEFAULT) <= 0)
+      return -1;
+    if (!at)
+      return H5Dopen2(f->file, name, H5P_DEFAULT);
+  }
+}
+
+/* Rank and shape of a data set; false when it is not of rank 1 to 3. */
+static bool shape_of(hid_t set, int *rank, hsize_t shape[3]) {
+  hid_t space = H5Dget_space(set);
+  *rank = H5Sget_simple_extent_ndims(space);
+  bool good = *rank >= 1 && *rank <= 3 && H5Sget_simple_extent_dims(space, shape, NULL) >= 0;
+  H5Sclose(space);
+  hsize_t product = 1;
+  for (int k = 0; good && k < *rank; k++) {
+    good = shape[k] <= VALUES_LIMIT;
+    product *= shape[k];
+    good = good && product <= VALUES_LIMIT;
+  }
+  return good;
+}
+
+static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
+  int rank;
+  if (!shape_of(set, &rank, shape) || rank != rank_wanted)
+    return NULL;
+  size_t count = 1;
+  for (int k = 0; k < rank; k++)
+    count *= (size_t)shape[k];
+  void *values = must_calloc(count + 1, width);
+  if (count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    free(values);
+    return NULL;
+  }
+  return values;
+}
+
+double *result_read_series(result_file *f, const char *name, long *count, char *unit_text, size_t unit_size,
+                           char *error, size_t size) {
+  char path[512];
+  snprintf(path, sizeof path, "/history/%s", name);
+  hid_t set = open_set(f, path);
+  hsize_t shape[3];
+  double *values = set >= 0 ? read_whole(set, H5T_NATIVE_DOUBLE, sizeof *values, 1, shape) : NULL;
+  if (values) {
+    *count = (long)shape[0];
+    h5_read_attribute_text(set, "units", unit_text, unit_size);
+  } else {
+    char *names = result_list(f, "/history");
+    snprintf(error, size, "`%s` has no history `%s`; it has %s (and energy/...)", f->path, name, names ? names : "none");
+    free(names);
+  }
+  if (set >= 0)
+    H5Dclose(set);
+  return values;
+}
+
+static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]) {
+  hsize_t start[3] = {(hsize_t)frame, 0, 0}, count[3] = {1, shape[1], rank > 2 ? shape[2] : 1};
+  double *values = must_calloc((size_t)(count[1] * count[2]) + 1, sizeof *values);
+  hid_t space = H5Dget_space(set), memory = H5Screate_simple(rank, count, NULL);
+  bool good = H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL) >= 0 &&
+              H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
+  H5Sclose(memory);
+  H5Sclose(space);
+  if (good)
+    return values;
+  free(values);
+  return NULL;
+}
+
+double *result_read_frame(result_file *f, const char *field, long frame, long *count, int *components, char *unit_text,
+                          size_t unit_size, char *error, size_t size) {
+  char path[512];
+  snprintf(path, sizeof path, "/frames/%s", field);
+  hid_t set = open_set(f, path);
+  int rank = 0;
+  hsize_t shape[3] = {0, 0, 0};
+  if (set < 0 || !shape_of(set, &rank, shape) || rank < 2) {
+    char *names = result_list(f, "/frames");
+    snprintf(error, size, "`%s` has no field `%s`; its frames hold %s", f->path, field, names ? names : "nothing");
+    free(names);
+    if (set >= 0)
+      H5Dclose(set);
+    return NULL;
+  }
+  long frames = (long)shape[0], wanted = frame < 0 ? frames + frame : frame;
+  double *values = NULL;
+  if (wanted < 0 || wanted >= frames)
+    snprintf(error, size, "`%s` has %ld frames, numbered from 0; there is no frame %ld", f->path, frames, frame);
+  else if (!(values = read_slab(set, wanted, rank, shape)))
+    snprintf(error, size, "frame %ld of `%s` in `%s` cannot be read", wanted, field, f->path);
+  *count = (long)shape[1];
+  *components = rank > 2 ? (int)shape[2] : 1;
+  h5_read_attribute_text(set, "units", unit_text, unit_size);
+  H5Dclose(set);
+  return values;
+}
+
+static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int rank, long *rows_read) {
+  hid_t set = open_set(f, path);
+  hsize_t shape[3] = {0, 0, 0};
+  void *values = set >= 0 ? read_whole(set, type, width, rank, shape) : NULL;
+  if (values && rank == 2 && shape[1] != 2) {
+    free(values);
+    values = NULL;
+  }
+  *rows_read = values ? (long)shape[0] : 0;
+  if (set >= 0)
+    H5Dclose(set);
+  return values;
+}
+
+double *result_read_reference(result_file *f, long *particles) {
+  return read_table(f, "/particles/reference", H5T_NATIVE_DOUBLE, sizeof(double), 2, particles);
+}
+
+/* Pairs that name particles which do not exist make the table unusable. */
+int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
+  char path[512];
+  char *names = interaction ? NULL : result_list(f, "/bonds");
+  const char *name = interaction ? interaction : names ? names : "";
+  snprintf(path, sizeof path, "/bonds/%.*s", (int)strcspn(name, ","), name);
+  free(names);
+  int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, bonds);
+  long particles;
+  free(result_read_reference(f, &particles));
+  for (long m = 0; pairs && m < 2 * *bonds; m++)
+    if (pairs[m] < 0 || pairs[m] >= particles) {
+      free(pairs);
+      *bonds = 0;
+      return NULL;
+    }
+  return pairs;
+}
+
+double *result_read_frame_times(result_file *f, long *frames) {
+  return read_table(f, "/frames/time", H5T_NATIVE_DOUBLE, sizeof(double), 1, frames);
+}
+
+char *result_read_text(result_file *f, const char *path) {
+  hid_t set = open_set(f, path);
+  if (set < 0)
+    return NULL;
+  hid_t type = H5Dget_type(set);
+  char *text = NULL;
+  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
+    text = must_calloc(H5Tget_size(type) + 1, 1);
+    if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
+      free(text);
+      text = NULL;
+    }
+  }
+  H5Tclose(type);
+  H5Dclose(set);
+  return text;
+}
+
+typedef struct name_list {
+  char *text;
+  size_t length;
+} name_list;
+
+static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *data) {
+  (void)group, (void)info;
+  name_list *l = data;
+  size_t n = strlen(name);
+  l->text = must_realloc(l->text, l->length + n + 2);
+  if (l->length)
+    l->text[l->length++] = ',';
+  memcpy(l->text + l->length, name, n + 1);
+  l->length += n;
+  return 0;
+}
+
+char *result_list(result_file *f, const char *group) {
+  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0)
+    return NULL;
+  hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
+  if (g < 0)
+    return NULL;
+  name_list l = {NULL, 0};
+  H5Literate(g, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, &l);
+  H5Gclose(g);
+  return l.text;
+}
+
+char *result_read_title(result_file *f) {
+  char title[512];
+  h5_read_attribute_text(f->file, "title", title, sizeof title);
+  char *copy = must_calloc(strlen(title) + 1, 1);
+  return strcpy(copy, title);
+}

@@ -1,0 +1,325 @@
+#include "runtime/simulation_parts.h"
+
+#include <math.h>
+#include <omp.h>
+#include <sched.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/stability.h"
+
+/* --- set-up: mass and step
+ * ----------------------------------------------------------------------------------- */
+
+static const deck_material *material_of(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->material_count; i++)
+    if (strcmp(k->materials[i].lattice, lattice) == 0) return &k->materials[i];
+  return NULL;
+}
+
+/* A particle is a disc of half a spacing when it turns: I = (2/5) m (s/2)^2 (Asadollahi 2014). */
+static bool set_mass(simulation *s, diagnostics *d) {
+  int rho = -1;
+  for (int p = 0; p < s->law->parameter_count; p++)
+    if (strcasecmp(s->law->parameters[p].name, "rho") == 0) rho = p;
+  if (rho < 0) {
+    const deck_material *m = material_of(s->deck, s->deck->lattices[0].name);
+    diag_report(d, DIAG_MISSING_KEY, m ? m->item.where : s->deck->lattices[0].item.where,
+                "the law `%s` has no parameter `rho`, so its particles have no mass", s->law->name);
+    diag_hint(d, "add a mass density to the law, e.g. parameter rho = 2300 [kg/m^3] in (0, inf)");
+    return false;
+  }
+  const double half = s->lattice->spacing / 2;
+  s->lattice->mass = s->parameters[rho] * s->lattice->volume;
+  s->lattice->inertia = 0.4 * s->lattice->mass * half * half;
+  return true;
+}
+
+static bool choose_step(simulation *s, diagnostics *d) {
+  const deck_simulation *k = &s->deck->simulation;
+  stability_limit(s->law, s->parameters, s->lattice, &s->limit);
+  const double limit = s->limit.limit;
+  if (k->step > limit) {
+    diag_report(d, DIAG_UNSTABLE_STEP, deck_where(&k->item, "step"),
+                "a step of %.6g s is unstable: the largest stable one is %.6g s", k->step, limit);
+    diag_hint(d, "leave `step` away to have it chosen: %.2g of the limit, %.4g s", k->step_safety,
+              k->step_safety * limit);
+    return false;
+  }
+  s->limit.step = k->step > 0 ? k->step : k->step_safety * limit;
+  if (isfinite(s->limit.step) && s->limit.step > 0) return true;
+  diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
+              "the law `%s` has no stiffness to choose a step from", s->law->name);
+  diag_hint(d, "give `step` in &simulation");
+  return false;
+}
+
+static bool count_steps(simulation *s, diagnostics *d) {
+  static const double most = 1e12;
+  const double end = s->deck->simulation.end_time, steps = ceil(end / s->limit.step - 1e-9);
+  if (!(steps <= most)) {
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&s->deck->simulation.item, "end_time"),
+                "the run would take %.3g steps of %.3g s", steps, s->limit.step);
+    return false;
+  }
+  s->step_count = steps < 1 ? 1 : (int64_t)steps;
+  s->sample_interval = s->deck->output.sample > 0 ? s->deck->output.sample : end / 2000;
+  const double samples = fmin(ceil(end / s->sample_interval), steps);
+  s->history_capacity = (int64_t)samples + 3;
+  return true;
+}
+
+/* --- set-up
+ * --------------------------------------------------------------------------------------------------
+ */
+
+/* Small bodies are not worth many threads: a block has at least eight rows unless the deck insists.
+ */
+static int choose_threads(const simulation *s) {
+  const int asked = s->deck->simulation.threads;
+  if (asked > 0) return asked;
+  const int offered = omp_get_max_threads(), sensible = s->lattice->row_count / 8;
+  return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
+}
+
+static void new_history(simulation *s) {
+  s->series_count = s->monitors->count + (s->deck->output.energy ? LEDGER_COUNT : 0);
+  const size_t capacity = (size_t)s->history_capacity;
+  s->time = must_calloc(capacity, sizeof(double));
+  s->history = must_calloc(capacity * (size_t)s->series_count + 1, sizeof(double));
+  s->sampled = must_calloc((size_t)s->series_count + 1, sizeof(double));
+}
+
+static bool set_up(simulation *s, diagnostics *d) {
+  const deck *k = s->deck;
+  if (k->lattice_count > 1) {
+    diag_report(d, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
+                "a run can have one lattice, this is the second");
+    return false;
+  }
+  s->lattice = rows_build(k, 0, d);
+  if (!s->lattice) return false;
+  s->bonds = rows_bonds(s->lattice);
+  if (!set_mass(s, d)) return false;
+  s->loads = loads_new(k, 0, s->lattice, s->law->name, s->law->dof, d);
+  const bool fields = frames_check(s, d), step = choose_step(s, d);
+  if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
+  s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
+                       k->output.energy, frames_want(s, "force"));
+  s->monitors = monitors_new(k, s->state, s->loads, s->bonds, d);
+  if (!s->monitors) return false;
+  frames_choose(s);
+  new_history(s);
+  s->at.last_frame_step = -1;
+  s->bad = (bad_state){.particle = -1, .bond_particle = -1, .what = ""};
+  return true;
+}
+
+simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d) {
+  simulation *s = must_calloc(1, sizeof *s);
+  s->deck = k;
+  s->law = laws[0].law;
+  s->parameters = laws[0].parameters;
+  if (set_up(s, d)) return s;
+  simulation_free(s);
+  return NULL;
+}
+
+void simulation_free(simulation *s) {
+  if (!s) return;
+  monitors_free(s->monitors);
+  loads_free(s->loads);
+  sweep_free(s->state);
+  free(s->bonds);
+  if (s->lattice) rows_free(s->lattice);
+  free(s->frame_fields);
+  free(s->frame_sources);
+  free(s->time);
+  free(s->history);
+  free(s->sampled);
+  free(s);
+}
+
+const rows *simulation_rows(const simulation *s, int lattice) {
+  (void)lattice; /* there is one */
+  return s->lattice;
+}
+
+const step_limit *simulation_step_limit(const simulation *s) {
+  return &s->limit;
+}
+long simulation_step_count(const simulation *s) {
+  return (long)s->step_count;
+}
+long simulation_step_done(const simulation *s) {
+  return (long)s->at.step;
+}
+double simulation_time(const simulation *s) {
+  return (double)s->at.step * s->limit.step;
+}
+int simulation_threads(const simulation *s) {
+  return s->state->block_count;
+}
+sweep *simulation_state(simulation *s) {
+  return s->state;
+}
+
+double simulation_memory(const simulation *s) {
+  const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
+  return (double)s->state->bytes + site * (double)s->lattice->size +
+         (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
+         (double)sizeof(double) *
+             ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
+}
+
+/* --- samples
+ * -------------------------------------------------------------------------------------------------
+ */
+
+/* Steps of samples follow from whole numbers, so that a resumed run samples where the unbroken one
+ * does. */
+static int64_t sample_step(const simulation *s, int64_t k) {
+  return llround((double)k * s->sample_interval / s->limit.step);
+}
+
+static bool sample_due(const simulation *s) {
+  return s->at.step >= sample_step(s, s->at.next_sample) || s->at.step == s->step_count;
+}
+
+/* Values of the present state into the history. The end is sampled also when it lies between two
+ * samples. */
+static void record_sample(simulation *s) {
+  const double time = simulation_time(s);
+  const int watched = s->monitors->count;
+  monitors_sample(s->monitors, time, s->sampled);
+  if (s->deck->output.energy)
+    ledger_sample(&s->ledger, s->state, s->loads, (long)s->at.step, s->sampled + watched);
+  s->time[s->at.samples] = time;
+  for (int k = 0; k < s->series_count; k++)
+    s->history[k * s->history_capacity + s->at.samples] = s->sampled[k];
+  s->at.samples++;
+  while (sample_step(s, s->at.next_sample) <= s->at.step)
+    s->at.next_sample++;
+  if (monitors_stop(s->monitors, time, s->sampled)) {
+    s->at.status = STEP_STOPPED;
+    s->go_on = false;
+  }
+}
+
+long simulation_history(const simulation *s, const double **time) {
+  if (time) *time = s->time;
+  return (long)s->at.samples;
+}
+
+int simulation_series_count(const simulation *s) {
+  return s->series_count;
+}
+
+const char *simulation_series(const simulation *s, int k, const char **symbol,
+                              const double **values) {
+  const int watched = s->monitors->count;
+  if (symbol) *symbol = k < watched ? s->monitors->items[k].unit : "J";
+  if (values) *values = s->history + k * s->history_capacity;
+  return k < watched ? s->deck->monitors[k].name : ledger_names[k - watched];
+}
+
+double simulation_monitor_peak(const simulation *s, int index, double *time) {
+  const monitor_state *m = &s->monitors->items[index].state;
+  if (time) *time = m->peak_time;
+  return fabs(m->peak);
+}
+
+/* --- time loop
+ * -----------------------------------------------------------------------------------------------
+ */
+
+/* What one thread does after all have moved their rows. */
+static void after_step(simulation *s) {
+  if (sweep_bad(s->state) >= 0) {
+    bad_explain(s);
+    s->at.status = STEP_BAD;
+    s->go_on = s->observe = false;
+    return;
+  }
+  loads_apply(s->loads, s->state, (long)s->at.step);
+  s->at.step++;
+  monitors_step(s->monitors, (long)s->at.step);
+  s->go_on = s->at.step < s->until && !(s->interrupted && *s->interrupted);
+  s->observe = sample_due(s) && s->deck->output.energy;
+  if (sample_due(s) && !s->observe) record_sample(s);
+}
+
+static void after_observing(simulation *s) {
+  s->observe = false;
+  record_sample(s);
+}
+
+/* A barrier; the last to arrive does what has to be done alone. Steps are short, so that waiting is
+   first a look at a number; where there are more threads than processors the others get theirs. */
+static void meet(simulation *s, void (*alone)(simulation *)) {
+  enum { PATIENCE = 4000 };
+  const long round = atomic_load(&s->meeting.round);
+  if (atomic_fetch_add(&s->meeting.arrived, 1) == omp_get_num_threads() - 1) {
+    if (alone) alone(s);
+    atomic_store(&s->meeting.arrived, 0);
+    atomic_store(&s->meeting.round, round + 1);
+    return;
+  }
+  for (long looks = 0; atomic_load(&s->meeting.round) == round; looks++)
+    if (looks > PATIENCE) sched_yield();
+}
+
+/* A team may be smaller than the number of blocks; the blocks, and so the results, stay the same.
+ */
+static void run_blocks(simulation *s, void (*work)(sweep *, int), void (*alone)(simulation *)) {
+  for (int b = omp_get_thread_num(); b < s->state->block_count; b += omp_get_num_threads())
+    work(s->state, b);
+  meet(s, alone);
+}
+
+static void time_loop(simulation *s) {
+  const unsigned environment = sweep_enter();
+  for (;;) {
+    if (s->observe) run_blocks(s, sweep_observe, after_observing);
+    if (!s->go_on) break;
+    run_blocks(s, sweep_seam, NULL);
+    run_blocks(s, sweep_rows, after_step);
+  }
+  sweep_leave(environment);
+}
+
+/* First frame after the present step bounds an advance; one that is due but not taken does not. */
+static int64_t next_stop(const simulation *s, long steps) {
+  const int64_t frames = s->deck->output.frames, step = s->at.step;
+  int64_t until = steps < s->step_count - step ? step + steps : s->step_count;
+  int64_t f = s->at.next_frame;
+  if (frames <= 0) return until;
+  while (f <= frames && frames_step(s, f) <= step)
+    f++;
+  if (f <= frames && frames_step(s, f) < until) until = frames_step(s, f);
+  return until;
+}
+
+static void begin(simulation *s) {
+  s->at.begun = 1;
+  loads_begin(s->loads, s->state);
+  monitors_step(s->monitors, 0);
+  s->observe = s->deck->output.energy;
+  if (!s->observe) record_sample(s);
+}
+
+step_status simulation_advance(simulation *s, long steps,
+                               const volatile sig_atomic_t *interrupted) {
+  if (s->at.status != STEP_OK) return (step_status)s->at.status;
+  s->until = next_stop(s, steps);
+  s->interrupted = interrupted;
+  s->go_on = s->at.step < s->until && !(interrupted && *interrupted);
+  s->observe = false;
+  if (!s->at.begun) begin(s);
+#pragma omp parallel num_threads(s->state->block_count)
+  time_loop(s);
+  if (s->at.status == STEP_OK && s->at.step == s->step_count) s->at.status = STEP_END;
+  return (step_status)s->at.status;
+}

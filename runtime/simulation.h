@@ -1,0 +1,114 @@
+/* One run: bodies, their laws, loads and the time loop. Setting up allocates and checks everything;
+   a step allocates nothing. Symplectic Euler: v += dt a, u += dt v; the sweep evaluates the bonds
+   of one row into a row buffer and updates that row's particles at once, so bond forces never go to
+   memory. A particle's bonds are summed in a fixed order: results do not depend on the number of
+   threads.
+
+   The energy ledger is explained in ledger.h, signs of reactions and drives in loads.h, means and
+   zeros in monitor.h. */
+#ifndef PERILAT_RUNTIME_SIMULATION_H
+#define PERILAT_RUNTIME_SIMULATION_H
+
+#include <signal.h>
+
+#include "runtime/deck.h"
+#include "runtime/kernel.h"
+#include "runtime/rows.h"
+#include "runtime/sweep.h"
+
+typedef struct simulation simulation;
+
+/* What the front end hands over for each lattice of the deck, in deck order. */
+typedef struct simulation_law {
+  const pl_law *law;
+  double *parameters; /* [parameter_count] SI, defaults filled in; malloc'ed, owned by the caller */
+} simulation_law;
+
+/* Parameter values of a &material: checks names (with suggestions), units and bounds against the
+   law's table and reports at the deck's line. False on errors. values has law->parameter_count
+   entries. */
+bool material_parameters(const deck_material *m, const pl_law *law, double *values, diagnostics *d);
+
+typedef struct step_limit {
+  double limit;         /* s: largest stable step */
+  double step;          /* s: chosen */
+  double omega_max;     /* rad/s */
+  double damping_ratio; /* of the ruling mode */
+  const char *mode;     /* "translation" or "rotation" */
+} step_limit;
+
+/* NULL with diagnostics when the deck does not fit its lattices or the given step is unstable.
+   Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
+   ends with the first step at or past end_time. */
+simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
+void simulation_free(simulation *s);
+
+const rows *simulation_rows(const simulation *s, int lattice);
+const step_limit *simulation_step_limit(const simulation *s);
+long simulation_step_count(const simulation *s); /* planned */
+long simulation_step_done(const simulation *s);
+double simulation_time(const simulation *s);
+double simulation_memory(const simulation *s); /* bytes */
+int simulation_threads(const simulation *s);   /* that will work on it */
+/* The arrays of the state, for tools and tests; before the first step they may be set (an initial
+ * velocity, say). */
+sweep *simulation_state(simulation *s);
+
+typedef enum step_status {
+  STEP_OK,
+  STEP_STOPPED /* a &stop */,
+  STEP_END /* end_time */,
+  STEP_BAD /* NaN or runaway */
+} step_status;
+
+/* Advances until `steps` more steps are done, the next frame's time is reached, the run ends, or
+ *interrupted (may be NULL) is set. One parallel region. Samples are taken on the way. */
+step_status simulation_advance(simulation *s, long steps, const volatile sig_atomic_t *interrupted);
+
+/* When STEP_BAD: the lowest particle whose velocity was no number or took it further than a spacing
+   (half a turn) in one step, and its bond that gave such a force, or else the largest. Rows that
+   were bad were not moved, so that their state is that before the step; a partner in another row is
+   moved back by its velocity. */
+typedef struct bad_state {
+  long step;
+  double time;
+  long particle;
+  double x, y;
+  long bond_particle;                             /* partner of the first bad bond, or -1 */
+  double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
+  const double *fields;
+  int field_count;  /* of that bond; owned by the simulation */
+  const char *what; /* "not a number", "runaway velocity" */
+} bad_state;
+bad_state simulation_bad(const simulation *s);
+
+/* History so far. Series 0.. are the deck's monitors, then the energy terms. */
+long simulation_history(const simulation *s, const double **time);
+int simulation_series_count(const simulation *s);
+const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
+double simulation_monitor_peak(const simulation *s, int monitor,
+                               double *time); /* largest absolute value */
+
+/* Fields of the present state in the order of results, for frames. "force" and outputs are
+ * evaluated on demand. */
+typedef struct frame_field {
+  const char *name, *unit;
+  bool on_bonds;
+  int components;
+} frame_field;
+int simulation_frame_fields(const simulation *s, const frame_field **fields);
+void simulation_frame_values(simulation *s, int field, double *values);
+bool simulation_frame_due(
+    const simulation *s); /* a frame's time has been reached and not yet taken */
+void simulation_frame_taken(simulation *s);
+
+/* Everything that a later step depends on, as a checkpoint file (checkpoint.h). Restore is into a
+   simulation made from the same deck and laws; false with a sentence, and the state untouched, when
+   the file does not fit. `fingerprint` names deck, laws and kernel; `frames` is the caller's count
+   of frames written. */
+bool simulation_save(const simulation *s, const char *path, const char *fingerprint, long frames,
+                     char *error, size_t size);
+bool simulation_restore(simulation *s, const char *path, const char *fingerprint, long *frames,
+                        char *error, size_t size);
+
+#endif

@@ -1,0 +1,209 @@
+/* What is stored in frames, when, and its values in the order of results. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/simulation_parts.h"
+
+/* --- what frames hold
+ * ------------------------------------------------------------------------------------------ */
+
+bool frames_want(const simulation *s, const char *name) {
+  const deck_output *o = &s->deck->output;
+  for (int k = 0; k < o->field_count; k++)
+    if (strcasecmp(o->fields[k], name) == 0) return true;
+  return false;
+}
+
+static const char *damage_name(const pl_law *law) {
+  for (int f = 0; f < law->field_count; f++)
+    if (law->fields[f].kind == PL_FIELD_DAMAGE) return law->fields[f].name;
+  return NULL;
+}
+
+static void offer(simulation *s, bool offered, frame_field field, frame_source from) {
+  if (!offered) return;
+  s->frame_fields[s->frame_field_count] = field;
+  s->frame_sources[s->frame_field_count++] = from;
+}
+
+void frames_choose(simulation *s) {
+  const pl_law *law = s->law;
+  const bool all = s->deck->output.field_count == 0;
+  const size_t most = 6 + (size_t)law->field_count + (size_t)law->output_count;
+  s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
+  s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
+  const char *damage = damage_name(law);
+  double *const *u = s->state->displacement, *const *v = s->state->velocity;
+  offer(s, all || frames_want(s, "displacement"), (frame_field){"displacement", "m", false, 2},
+        (frame_source){FROM_STATE, u, 0});
+  offer(s, all || frames_want(s, "velocity"), (frame_field){"velocity", "m/s", false, 2},
+        (frame_source){FROM_STATE, v, 0});
+  offer(s, law->dof > 2 && (all || frames_want(s, "rotation")),
+        (frame_field){"rotation", "rad", false, 1}, (frame_source){FROM_STATE, u + 2, 0});
+  offer(s, frames_want(s, "force"), (frame_field){"force", "N", false, 2},
+        (frame_source){FROM_FORCE, s->state->force, 0});
+  offer(s, damage && (all || frames_want(s, "damage")), (frame_field){"damage", "1", false, 1},
+        (frame_source){FROM_DAMAGE, NULL, 0});
+  offer(s, s->state->ledger && (all || frames_want(s, "energy")),
+        (frame_field){"dissipated", "J", false, 1}, (frame_source){FROM_DISSIPATED, NULL, 0});
+  for (int f = 0; f < law->field_count; f++) {
+    const char *name = law->fields[f].name;
+    offer(s,
+          all || frames_want(s, name) ||
+              (damage && strcmp(damage, name) == 0 && frames_want(s, "damage")),
+          (frame_field){name, law->fields[f].unit, true, 1}, (frame_source){FROM_FIELD, NULL, f});
+  }
+  for (int o = 0; o < law->output_count; o++)
+    offer(s, frames_want(s, law->outputs[o].name),
+          (frame_field){law->outputs[o].name, law->outputs[o].unit, true, 1},
+          (frame_source){FROM_OUTPUT, NULL, o});
+}
+
+static bool has_written(const deck_item *item, const char *key) {
+  for (int k = 0; k < item->key_count; k++)
+    if (strcasecmp(item->keys[k].name, key) == 0) return true;
+  return false;
+}
+
+/* Known names that this run cannot give. */
+static bool is_absent(const simulation *s, const char *name) {
+  if (strcasecmp(name, "rotation") == 0) return s->law->dof < 3;
+  if (strcasecmp(name, "damage") == 0) return !damage_name(s->law);
+  return strcasecmp(name, "energy") == 0 && !s->deck->output.energy;
+}
+
+bool frames_check(const simulation *s, diagnostics *d) {
+  static const char *const own[] = {"displacement", "velocity", "rotation",
+                                    "force",        "damage",   "energy"};
+  enum { OWN = sizeof own / sizeof *own };
+  const pl_law *law = s->law;
+  const deck_output *o = &s->deck->output;
+  const span where = deck_where(&o->item, "fields");
+  const char **names =
+      must_calloc(OWN + (size_t)law->field_count + (size_t)law->output_count, sizeof *names);
+  int count = OWN;
+  memcpy(names, own, sizeof own);
+  for (int f = 0; f < law->field_count; f++)
+    names[count++] = law->fields[f].name;
+  for (int f = 0; f < law->output_count; f++)
+    names[count++] = law->outputs[f].name;
+  bool good = true;
+  for (int k = 0; k < o->field_count && has_written(&o->item, "fields"); k++) {
+    bool known = false;
+    for (int n = 0; n < count; n++)
+      known |= strcasecmp(names[n], o->fields[k]) == 0;
+    if (known && is_absent(s, o->fields[k]))
+      diag_report(d, DIAG_DECK_WARNING, where, "this run with the law `%s` has no `%s` to store",
+                  law->name, o->fields[k]);
+    if (known) continue;
+    good = false;
+    diag_report(d, DIAG_BAD_VALUE, where, "there is no field `%s` to store", o->fields[k]);
+    diag_suggest(d, o->fields[k], names, count);
+  }
+  free(names);
+  return good;
+}
+
+/* --- frames
+ * --------------------------------------------------------------------------------------------------
+ */
+
+int64_t frames_step(const simulation *s, int64_t frame) {
+  const int64_t frames = s->deck->output.frames;
+  return (int64_t)llround((double)frame * (double)s->step_count / (double)frames);
+}
+
+int simulation_frame_fields(const simulation *s, const frame_field **fields) {
+  *fields = s->frame_fields;
+  return s->frame_field_count;
+}
+
+bool simulation_frame_due(const simulation *s) {
+  const int64_t frames = s->deck->output.frames;
+  if (frames <= 0 || s->at.last_frame_step == s->at.step) return false;
+  if (s->at.status != STEP_OK) return true; /* the last state is always worth a frame */
+  return s->at.next_frame <= frames && frames_step(s, s->at.next_frame) <= s->at.step;
+}
+
+void simulation_frame_taken(simulation *s) {
+  const int64_t frames = s->deck->output.frames;
+  s->at.last_frame_step = s->at.step;
+  while (frames > 0 && s->at.next_frame <= frames && frames_step(s, s->at.next_frame) <= s->at.step)
+    s->at.next_frame++;
+}
+
+static void site_values(const simulation *s, double *const *arrays, int components,
+                        double *values) {
+  for (long p = 0; p < s->lattice->particle_count; p++)
+    for (int c = 0; c < components; c++)
+      values[p * components + c] = arrays[c][s->lattice->particle_site[p]];
+}
+
+static void bond_values(const simulation *s, const double *array, double *values) {
+  for (long b = 0; b < s->lattice->bond_count; b++)
+    values[b] = array[s->bonds[b].slot];
+}
+
+/* Mean over the reference bonds of a particle that exist. */
+static void particle_damage(const simulation *s, double *values) {
+  const rows *w = s->lattice;
+  const double *damage = s->monitors->damage;
+  int32_t *bonds = must_calloc((size_t)w->particle_count, sizeof *bonds);
+  memset(values, 0, (size_t)w->particle_count * sizeof *values);
+  for (long b = 0; b < w->bond_count; b++) {
+    const int32_t ends[2] = {s->bonds[b].i, s->bonds[b].j};
+    for (int e = 0; e < 2; e++) {
+      values[ends[e]] += damage[s->bonds[b].slot];
+      bonds[ends[e]]++;
+    }
+  }
+  for (long p = 0; p < w->particle_count; p++)
+    if (bonds[p]) values[p] /= bonds[p];
+  free(bonds);
+}
+
+/* Energy lost in the bonds that a particle owns (those to the right and above). */
+static void particle_dissipated(const simulation *s, double *values) {
+  for (long p = 0; p < s->lattice->particle_count; p++) {
+    const int32_t site = s->lattice->particle_site[p];
+    values[p] = s->state->dissipated_state[site] + s->state->dissipated_rate[site];
+  }
+}
+
+static void output_values(simulation *s, int output, double *values) {
+  double *array =
+      must_calloc((size_t)s->lattice->directions * (size_t)s->lattice->size, sizeof *array);
+  sweep_output(s->state, output, array);
+  bond_values(s, array, values);
+  free(array);
+}
+
+void simulation_frame_values(simulation *s, int field, double *values) {
+  const frame_source *from = &s->frame_sources[field];
+  const unsigned environment = sweep_enter();
+  switch (from->kind) {
+  case FROM_FORCE:
+    for (int b = 0; b < s->state->block_count; b++)
+      sweep_observe(s->state, b);
+    site_values(s, from->arrays, 2, values);
+    break;
+  case FROM_STATE:
+    site_values(s, from->arrays, s->frame_fields[field].components, values);
+    break;
+  case FROM_DAMAGE:
+    particle_damage(s, values);
+    break;
+  case FROM_DISSIPATED:
+    particle_dissipated(s, values);
+    break;
+  case FROM_FIELD:
+    bond_values(s, s->state->field[from->index], values);
+    break;
+  case FROM_OUTPUT:
+    output_values(s, from->index, values);
+    break;
+  }
+  sweep_leave(environment);
+}

@@ -1,0 +1,75 @@
+/* Inside of a simulation, for the modules that make it up: simulation.c (set-up, time loop,
+   samples), simulation_frames.c, simulation_bad.c, simulation_save.c. */
+#ifndef PERILAT_RUNTIME_SIMULATION_PARTS_H
+#define PERILAT_RUNTIME_SIMULATION_PARTS_H
+
+#include <stdatomic.h>
+
+#include "dsl/arena.h"
+#include "runtime/ledger.h"
+#include "runtime/loads.h"
+#include "runtime/monitor.h"
+#include "runtime/simulation.h"
+#include "runtime/sweep.h"
+
+typedef struct progress_state { /* first part of a checkpoint: the sizes of others depend on it */
+  int64_t begun;                /* the sample at step 0 is taken */
+  int64_t step;                 /* steps done */
+  int64_t status;               /* step_status */
+  int64_t samples;              /* taken */
+  int64_t next_sample;          /* in multiples of the interval */
+  int64_t next_frame, last_frame_step;
+  int64_t result_frames; /* of the caller */
+} progress_state;
+
+typedef struct frame_source { /* where a frame field comes from */
+  enum { FROM_STATE, FROM_FORCE, FROM_DAMAGE, FROM_DISSIPATED, FROM_FIELD, FROM_OUTPUT } kind;
+  double *const *arrays; /* STATE: one a component */
+  int index;             /* FIELD, OUTPUT */
+} frame_source;
+
+struct simulation {
+  const deck *deck;
+  rows *lattice;
+  const pl_law *law;
+  const double *parameters;
+  sweep *state;
+  loads *loads;
+  monitors *monitors;
+  ledger ledger;
+  step_limit limit;
+  double sample_interval; /* s */
+  int64_t step_count, history_capacity;
+  int series_count;
+  double *time, *history; /* [capacity]; [series][capacity] */
+  double *sampled;        /* [series] */
+  rows_bond *bonds;
+  frame_field *frame_fields;
+  frame_source *frame_sources;
+  int frame_field_count;
+  bad_state bad;
+  progress_state at;
+  bool observe, go_on; /* set by one thread for all */
+  int64_t until;
+  const volatile sig_atomic_t *interrupted;
+  struct { /* of the threads at a barrier */
+    atomic_long arrived;
+    char apart[64]; /* those who wait look at `round` only */
+    atomic_long round;
+  } meeting;
+};
+
+/* False with a diagnostic when the deck asks for fields that no run has. */
+bool frames_check(const simulation *s, diagnostics *d);
+/* What the deck asks for; without a list everything but forces and outputs. `damage` is the mean on
+   particles and the law's own damage on bonds. */
+void frames_choose(simulation *s);
+/* True when the deck lists the field `name`. */
+bool frames_want(const simulation *s, const char *name);
+/* Step at which a frame is due; the first is that of the undeformed body. */
+int64_t frames_step(const simulation *s, int64_t frame);
+
+/* Fills s->bad after a sweep that found a velocity beyond its limit. */
+void bad_explain(simulation *s);
+
+#endif

@@ -1,0 +1,27 @@
+/* Loads as functions of time: constant, ramp, ramp and hold, cosine, table. */
+#ifndef PERILAT_RUNTIME_TIME_FUNCTION_H
+#define PERILAT_RUNTIME_TIME_FUNCTION_H
+
+typedef enum time_shape {
+  TIME_CONSTANT,  /* value from `start` on */
+  TIME_RAMP,      /* value * (t - start)/rise, without end */
+  TIME_RAMP_HOLD, /* the same up to `rise`, then value */
+  TIME_COSINE,    /* value * (1 - cos(pi (t - start)/rise))/2 up to `rise`, then value */
+  TIME_TABLE /* linear between points; held at the ends; times count from start; `value` is not used
+              */
+} time_shape;
+
+typedef struct time_function {
+  time_shape shape;
+  double value;                 /* SI */
+  double start, rise;           /* s */
+  const double *times, *values; /* table; not owned */
+  int count;
+} time_function;
+
+/* 0 before start. */
+double time_function_at(const time_function *f, double t);
+/* Integral from start to t, exact: displacement of a prescribed velocity. */
+double time_function_integral(const time_function *f, double t);
+
+#endif

@@ -1,0 +1,105 @@
+#include "runtime/xdmf.h"
+
+#include <errno.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { PATH_LENGTH = 4200 };
+
+/* The sidecar names the HDF5 file without its folder: both move together. */
+static const char *base_name(const char *path) {
+  const char *slash = strrchr(path, '/');
+  return slash ? slash + 1 : path;
+}
+
+/* A frame's slab of a data set [F, count(, components)]. `first` and `width` choose components. */
+static void print_slab(FILE *out, const char *file, const char *set, long frames, long frame, const result_field *f,
+                       int first, int width) {
+  bool flat = f->interaction != NULL;
+  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%ld%s\" Type=\"HyperSlab\">", f->count,
+          flat || width == 1 ? "" : " 2");
+  if (flat)
+    fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%ld 0 1 1 1 %ld</DataItem>", frame, f->count);
+  else
+    fprintf(out, "<DataItem Dimensions=\"3 3\" Format=\"XML\">%ld 0 %d 1 1 1 1 %ld %d</DataItem>", frame, first,
+            f->count, width);
+  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%ld %ld", frames, f->count);
+  if (!flat)
+    fprintf(out, " %d", f->components);
+  fprintf(out, "\">%s:%s</DataItem></DataItem>\n", file, set);
+}
+
+static void print_attribute(FILE *out, const char *file, long frames, long frame, const result_field *f) {
+  char set[512];
+  const char *centre = f->interaction ? "Cell" : "Node";
+  if (f->interaction)
+    snprintf(set, sizeof set, "/frames/%s/%s", f->interaction, f->name);
+  else
+    snprintf(set, sizeof set, "/frames/%s", f->name);
+  if (f->components == 1) {
+    fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"%s\">", f->name, centre);
+    print_slab(out, file, set, frames, frame, f, 0, 1);
+  } else { /* vectors have three components there */
+    fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"Vector\" Center=\"%s\">", f->name, centre);
+    fprintf(out, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%ld 3\">\n", f->count);
+    print_slab(out, file, set, frames, frame, f, 0, 1);
+    print_slab(out, file, set, frames, frame, f, 1, 1);
+    fputs("</DataItem>", out);
+  }
+  fputs("</Attribute>\n", out);
+}
+
+static void print_geometry(FILE *out, const char *file, const result_header *h) {
+  fprintf(out, "<Geometry GeometryType=\"XY\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+               "Dimensions=\"%ld 2\">%s:/particles/reference</DataItem></Geometry>\n",
+          h->particle_count, file);
+}
+
+static void print_frame(FILE *out, const char *file, const result_header *h, long frames, long frame, double time) {
+  fprintf(out, "<Grid Name=\"frame %ld\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
+          frame, time);
+  fprintf(out, "<Grid Name=\"particles\"><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%ld\"/>\n",
+          h->particle_count);
+  print_geometry(out, file, h);
+  for (int k = 0; k < h->field_count; k++)
+    if (!h->fields[k].interaction)
+      print_attribute(out, file, frames, frame, &h->fields[k]);
+  fprintf(out, "</Grid>\n<Grid Name=\"bonds\"><Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
+               "NumberOfElements=\"%ld\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
+               "Dimensions=\"%ld 2\">%s:/bonds/%s</DataItem></Topology>\n",
+          h->bond_count, h->bond_count, file, h->interaction);
+  print_geometry(out, file, h);
+  for (int k = 0; k < h->field_count; k++)
+    if (h->fields[k].interaction || strcmp(h->fields[k].name, "displacement") == 0)
+      print_attribute(out, file, frames, frame, &h->fields[k]);
+  fputs("</Grid></Grid>\n", out);
+}
+
+bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first, char *error,
+                size_t size) {
+  char path[PATH_LENGTH], temporary[PATH_LENGTH + 8];
+  size_t n = strlen(h->path);
+  bool ends = n > 3 && strcmp(h->path + n - 3, ".h5") == 0;
+  snprintf(path, sizeof path, "%.*s.xdmf", (int)(ends ? n - 3 : n), h->path);
+  snprintf(temporary, sizeof temporary, "%s.part", path);
+  FILE *out = fopen(temporary, "w");
+  bool good = out != NULL;
+  if (good) {
+    fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n"
+          "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+          out);
+    for (long frame = 0; good && frame < frames; frame++) {
+      double time;
+      good = pread(working_file, &time, sizeof time, first + (off_t)(record * (size_t)frame)) == (ssize_t)sizeof time;
+      print_frame(out, base_name(h->path), h, frames, frame, time);
+    }
+    fputs("</Grid></Domain></Xdmf>\n", out);
+    good = !ferror(out) && good;
+    good = fclose(out) == 0 && good && rename(temporary, path) == 0;
+  }
+  if (!good) {
+    snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
+    unlink(temporary);
+  }
+  return good;
+}

@@ -1,0 +1,350 @@
+/* Lowering: what each construct of the language computes, against the same formulas in C. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "law_text.h"
+
+#define CENTRAL(rules)                                                                             \
+  "model m\n  law central bond\n"                                                                  \
+  "  parameter k = 1000 [N] in (0, inf)\n" rules "end model\n"
+#define MICROPOLAR(rules)                                                                          \
+  "model m\n  law micropolar bond\n"                                                               \
+  "  parameter k = 1000 [N] in (0, inf)\n  parameter c = 2 [N*m] in (0, inf)\n" rules              \
+  "end model\n"
+
+static void assert_close(double value, double expected) {
+  double scale = fabs(expected) > 1e-300 ? fabs(expected) : 1;
+  if (!(fabs(value - expected) <= 1e-13 * scale)) fail_msg("%.17g is not %.17g", value, expected);
+}
+
+static tested_law *must_open(const char *text) {
+  tested_law *t = open_law(text);
+  if (!t->plan) {
+    diag_print(&t->said, stderr);
+    fail_msg("the law was not planned");
+  }
+  return t;
+}
+
+/* N of a central law at a stretch and a rate. */
+static double force_of(const tested_law *t, double stretch, double rate) {
+  tested_state x = {.stretch = stretch, .rate = rate};
+  evaluate_law(t, &x, 0);
+  return x.N;
+}
+
+static void the_first_true_case_wins(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(CENTRAL("  force N = | 1 [N]          when stretch > 0.3\n"
+                        "            | 2 [N]          when stretch > 0.1\n"
+                        "            | k*stretch      when stretch > 0 and not (stretch > 0.05)\n"
+                        "            | -k             otherwise\n"));
+  assert_close(force_of(t, 0.4, 0), 1);
+  assert_close(force_of(t, 0.3, 0), 2);
+  assert_close(force_of(t, 0.07, 0), -1000);
+  assert_close(force_of(t, 0.04, 0), 40);
+  assert_close(force_of(t, -0.04, 0), -1000);
+  close_law(t);
+}
+
+static void functions_are_expanded(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  function twice(x) = 2*x\n"
+                                    "  function hinge(x, y) = | x when x >= y\n"
+                                    "                         | twice(y) - twice(x)/2 otherwise\n"
+                                    "  force N = k*hinge(stretch, twice(0.1))\n"));
+  assert_close(force_of(t, 0.25, 0), 250);
+  assert_close(force_of(t, 0.05, 0), 1000 * (0.4 - 0.05));
+  close_law(t);
+}
+
+static void built_in_functions_mean_what_they_say(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(CENTRAL("  a = soft_sign(stretch) + 10*positive_part(stretch) + 100*abs(stretch)\n"
+                        "  b = max(stretch, 0.1, -stretch) - min(stretch, 0.1) + sign(stretch)\n"
+                        "  d = sqrt(1 + stretch) + stretch**2 + (1 + stretch)**0.7 + exp(stretch)\n"
+                        "  force N = k*(a + b + d) + 2 [kN]*tanh(stretch_rate*1 [ms])\n"));
+  for (int n = 0; n < 2; n++) {
+    double x = n ? -0.3 : 0.7, rate = 450;
+    double a = x / (1 + fabs(x)) + 10 * fmax(x, 0) + 100 * fabs(x);
+    double b = fmax(fmax(x, 0.1), -x) - fmin(x, 0.1) + (x > 0 ? 1 : -1);
+    double d = sqrt(1 + x) + x * x + pow(1 + x, 0.7) + exp(x);
+    assert_close(force_of(t, x, rate), 1000 * (a + b + d) + 2000 * tanh(0.45));
+  }
+  close_law(t);
+}
+
+static void damage_grows_and_stays_below_one(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  damage d = 10*stretch\n  force N = (1 - d)*k*stretch\n"));
+  tested_state x = {.stretch = 0.03, .field = {0.1}};
+  evaluate_law(t, &x, 0);
+  assert_close(x.new_field[0], 0.3);
+  assert_close(x.N, 0.7 * 30); /* the force uses the new damage */
+  x.stretch = 0.005;
+  evaluate_law(t, &x, 0);
+  assert_close(x.new_field[0], 0.1);
+  x.stretch = 7;
+  evaluate_law(t, &x, 0);
+  assert_true(x.new_field[0] == 1);
+  x.stretch = NAN; /* must be found, not clamped away */
+  evaluate_law(t, &x, 0);
+  assert_true(isnan(x.new_field[0]));
+  close_law(t);
+}
+
+static void names_above_a_rule_read_the_last_step(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  state x on bond = 0.5\n"
+                                    "  above = x\n"
+                                    "  x = x + stretch\n"
+                                    "  below = x\n"
+                                    "  force N = k*(above + 10*below + 100*previous(x))\n"));
+  assert_close(t->kernel->fields[0].initial, 0.5);
+  tested_state s = {.stretch = 0.25, .field = {2}};
+  evaluate_law(t, &s, 0);
+  assert_close(s.new_field[0], 2.25);
+  assert_close(s.N, 1000 * (2 + 22.5 + 200));
+  close_law(t);
+}
+
+/* A bar that yields at a force k/100, with the overstress taken back by one increment a step. */
+static void flow_adds_one_increment(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  state p = 0\n"
+                                    "  trial = k*(stretch - p)\n"
+                                    "  f = abs(trial)/(k/100) - 1\n"
+                                    "  flow p by (abs(trial) - k/100)/k*sign(trial) when f >= 0\n"
+                                    "  force N = k*(stretch - p)\n"));
+  tested_state x = {.stretch = 0.013, .field = {0.001}};
+  evaluate_law(t, &x, 0);
+  assert_close(x.new_field[0], 0.003);
+  assert_close(x.N, 10);
+  x.stretch = 0.0105;
+  evaluate_law(t, &x, 0);
+  assert_close(x.new_field[0], 0.001);
+  assert_close(x.N, 9.5);
+  x.stretch = -0.02;
+  evaluate_law(t, &x, 0);
+  assert_close(x.new_field[0], -0.01);
+  assert_close(x.N, -10);
+  close_law(t);
+}
+
+static void options_are_decided(void **state) {
+  (void)state;
+  const char *text = CENTRAL("  option form = linear | square\n"
+                             "  force N = | k*stretch    when form == linear and plane_stress\n"
+                             "            | k*stretch**2 when form /= linear and not plane_strain\n"
+                             "            | 0 otherwise\n");
+  tested_law *t = must_open(text);
+  assert_close(force_of(t, 0.5, 0), 500);
+  close_law(t);
+  law_choice choice = {"form", "square"};
+  t = open_law_chosen(text, &choice, 1);
+  assert_non_null(t->plan);
+  assert_close(force_of(t, 0.5, 0), 250);
+  close_law(t);
+}
+
+static void forces_follow_from_an_energy(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(MICROPOLAR("  damage d = abs(stretch)\n"
+                           "  energy W = (1 - d)*(k*s*stretch**2/2 + c*(theta_i:theta_i + "
+                           "theta_i:theta_j + theta_j:theta_j))\n"));
+  tested_state x = {.stretch = 0.2, .theta_i = 0.03, .theta_j = -0.05};
+  evaluate_law(t, &x, 0);
+  assert_close(x.N, 0.8 * 1000 * 0.2); /* at fixed damage: no term from d(stretch) */
+  assert_close(x.M_i, 0.8 * 2 * (2 * 0.03 - 0.05));
+  assert_close(x.M_j, 0.8 * 2 * (0.03 - 2 * 0.05));
+  close_law(t);
+}
+
+static void a_shear_force_gives_equal_moments(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(MICROPOLAR("  force N = k*stretch\n  force V = k*(theta_i + theta_j)\n"));
+  tested_state x = {.stretch = 0.2, .theta_i = 0.03, .theta_j = -0.05};
+  evaluate_law(t, &x, 1);
+  double length = 1.2 * tested_bond().s;
+  assert_close(x.M_i, 1000 * -0.02 * length / 2);
+  assert_true(x.M_i == x.M_j);
+  assert_close(x.tangent[4], 1000 * -0.02 * tested_bond().s / 2); /* dM_i/dstretch: L follows */
+  close_law(t);
+}
+
+static void diff_is_the_derivative(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(CENTRAL("  parameter a = 3 in (0, inf)\n"
+                        "  damage d = stretch/2\n"
+                        "  y = 2*stretch\n"
+                        "  w = (1 - d)**2*y**3*a\n"
+                        "  output by_quantity = diff(w, stretch)\n"
+                        "  output by_parameter = diff(w, a)\n"
+                        "  output by_damage = diff(w, d)\n"
+                        "  force N = k*(diff(w, stretch) + 10*diff(w, a) + 100*diff(w, d))\n"));
+  double x = 0.4, d = 0.2, y = 0.8, g = (1 - d) * (1 - d);
+  double expected = g * 3 * y * y * 2 * 3 + 10 * g * y * y * y - 100 * 2 * (1 - d) * y * y * y * 3;
+  assert_close(force_of(t, x, 0), 1000 * expected);
+  close_law(t);
+}
+
+static void bending_norm_is_the_size(void **state) {
+  (void)state;
+  tested_law *t = must_open(MICROPOLAR("  force N = k*norm(2*theta_i + theta_j)\n"
+                                       "  moment M_i = c*theta_i\n  moment M_j = c*theta_j\n"));
+  tested_state x = {.theta_i = -0.03, .theta_j = 0.01};
+  evaluate_law(t, &x, 0);
+  assert_close(x.N, 50);
+  close_law(t);
+}
+
+static void a_family_law_is_refused(void **state) {
+  (void)state;
+  tested_law *t = open_law("model m\n  law state\n  parameter a = 1 [N] in (0, inf)\n"
+                           "  force state F[j] = a*stretch[j]\nend model\n");
+  assert_non_null(t->law);
+  assert_null(t->plan);
+  assert_int_equal(t->said.items[t->said.count - 1].code, DIAG_NOT_SUPPORTED);
+  close_law(t);
+}
+
+/* Each function calls the one before twice: 1024 calls, but of few different values. */
+static void repeated_calls_are_expanded_once(void **state) {
+  (void)state;
+  char text[8192] = "model m\n  law central bond\n  parameter k = 1 [N] in (0, inf)\n"
+                    "  function f0(x) = x + 1\n";
+  for (int n = 1; n <= 10; n++)
+    snprintf(text + strlen(text), 100, "  function f%d(x) = (f%d(x) + f%d(x))/2\n", n, n - 1,
+             n - 1);
+  strcat(text, "  force N = k*f10(stretch)\nend model\n");
+  tested_law *t = must_open(text);
+  assert_close(force_of(t, 0.25, 0), 1.25);
+  assert_true(ir_count(t->plan->graph) < 400);
+  close_law(t);
+}
+
+/* --- energy ------------------------------------------------------------------------------ */
+
+typedef struct observed_bond {
+  double stored, rate_lost, state_lost, field[MOST_FIELDS];
+} observed_bond;
+
+/* One bond along its chord, stretched; no rotations. The stored energy is that after the step. */
+static observed_bond observe(const tested_law *t, double stretch, double rate, double field) {
+  pl_bond_class bond = tested_bond();
+  double zero[8] = {0}, u[2][8] = {{0}}, v[2][8] = {{0}}, fields[MOST_FIELDS][8], planes[4][8];
+  double observed[8][8], lost[2][8] = {{0}};
+  int64_t flags[8] = {PL_PRESENT(0)};
+  double *field_at[MOST_FIELDS], *plane_at[4], *observed_at[8];
+  for (int k = 0; k < MOST_FIELDS; k++) {
+    field_at[k] = fields[k];
+    fields[k][0] = k ? 0 : field;
+  }
+  for (int k = 0; k < 4; k++)
+    plane_at[k] = planes[k];
+  for (int k = 0; k < 8; k++)
+    observed_at[k] = observed[k];
+  for (int k = 0; k < 2; k++) {
+    u[k][0] = stretch * bond.chord[k];
+    v[k][0] = rate * bond.chord[k];
+  }
+  pl_strip s = {.count = 1,
+                .flags = flags,
+                .displacement_i = {zero, zero, zero},
+                .velocity_i = {zero, zero, zero},
+                .displacement_j = {u[0], u[1], zero},
+                .velocity_j = {v[0], v[1], zero},
+                .field = field_at,
+                .force = plane_at,
+                .dissipated_state = lost[0],
+                .dissipated_rate = lost[1],
+                .observed = observed_at,
+                .time_step = 1e-6};
+  t->kernel->rows_ledger(t->kernel, t->uniforms, &s);
+  t->kernel->rows_observe(t->kernel, t->uniforms, &s);
+  observed_bond o = {.stored = observed[0][0], .state_lost = lost[0][0], .rate_lost = lost[1][0]};
+  for (int k = 0; k < MOST_FIELDS; k++)
+    o.field[k] = fields[k][0];
+  return o;
+}
+
+static void assert_near(double value, double expected, double tolerance) {
+  if (!(fabs(value - expected) <= tolerance))
+    fail_msg("%.17g is not %.17g within %g", value, expected, tolerance);
+}
+
+static void stored_energy_of_each_kind(void **state) {
+  (void)state;
+  double s = tested_bond().s, x = 0.013;
+  tested_law *t = must_open(CENTRAL("  force N = | k*stretch when stretch > 0\n"
+                                    "            | 3*k*stretch otherwise\n"));
+  assert_near(observe(t, x, 0, 0).stored, 1000 * s * x * x / 2, 1e-13);
+  assert_near(observe(t, -x, 0, 0).stored, 3000 * s * x * x / 2, 1e-13);
+  close_law(t);
+  t = must_open(CENTRAL("  state p = 0\n  p = previous(p)\n  force N = k*(stretch - p)\n"));
+  assert_near(observe(t, x, 0, 0.004).stored, 1000 * s * 0.009 * 0.009 / 2, 1e-13);
+  close_law(t);
+  t = must_open(CENTRAL("  force N = k*(stretch - stretch**2 + 5*stretch**3)\n"));
+  assert_near(observe(t, x, 0, 0).stored,
+              1000 * s * (x * x / 2 - x * x * x / 3 + 5 * x * x * x * x / 4), 1e-13);
+  close_law(t);
+  t = must_open(CENTRAL("  energy W = k*s*stretch**4\n"));
+  assert_near(observe(t, x, 0, 0).stored, 1000 * s * x * x * x * x, 1e-15);
+  close_law(t);
+}
+
+/* Without derivative in the stretch the fully damaged bond holds nothing: no 0/0. */
+static void a_broken_affine_bond_holds_nothing(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  damage d = 0\n  state p = 0.01\n  p = previous(p)\n"
+                                    "  force N = (1 - d)*k*(stretch - p)\n"));
+  assert_true(observe(t, 0.02, 0, 1).stored == 0);
+  close_law(t);
+}
+
+static void losses_are_what_they_should_be(void **state) {
+  (void)state;
+  double s = tested_bond().s, x = 0.05, rate = 7;
+  tested_law *t = must_open(CENTRAL(
+      "  parameter eta = 2 [N*s] in (0, inf)\n"
+      "  damage d = 10*stretch\n  N_el = (1 - d)*k*stretch\n"
+      "  force N = N_el + eta*stretch_rate + 0.1*abs(N_el)*soft_sign(stretch_rate/(10 [1/s]))\n"));
+  observed_bond o = observe(t, x, rate, 0.2);
+  assert_near(o.field[0], 0.5, 1e-14);
+  assert_near(o.stored, 0.5 * 1000 * s * x * x / 2, 1e-14);
+  assert_near(o.state_lost, 0.3 * 1000 * s * x * x / 2, 1e-14);
+  double damper = 2 * rate + 0.1 * 0.5 * 1000 * x * (0.7 / 1.7);
+  assert_near(o.rate_lost, damper * rate * s * 1e-6, 1e-18);
+  close_law(t);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_first_true_case_wins),
+      cmocka_unit_test(functions_are_expanded),
+      cmocka_unit_test(built_in_functions_mean_what_they_say),
+      cmocka_unit_test(damage_grows_and_stays_below_one),
+      cmocka_unit_test(names_above_a_rule_read_the_last_step),
+      cmocka_unit_test(flow_adds_one_increment),
+      cmocka_unit_test(options_are_decided),
+      cmocka_unit_test(forces_follow_from_an_energy),
+      cmocka_unit_test(a_shear_force_gives_equal_moments),
+      cmocka_unit_test(diff_is_the_derivative),
+      cmocka_unit_test(bending_norm_is_the_size),
+      cmocka_unit_test(a_family_law_is_refused),
+      cmocka_unit_test(repeated_calls_are_expanded_once),
+      cmocka_unit_test(stored_energy_of_each_kind),
+      cmocka_unit_test(a_broken_affine_bond_holds_nothing),
+      cmocka_unit_test(losses_are_what_they_should_be),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,214 @@
+/* A run that is resumed gives the bits of one that was not stopped; files that do not fit are
+   refused and change nothing. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <unistd.h>
+
+#include <cmocka.h>
+
+#include "runtime/checkpoint.h"
+#include "tests/runtime/small_run.h"
+
+static const char path[] = "test_checkpoint.state";
+static const char fingerprint[] = "deck 1, law 2";
+
+/* Everything that has a memory: drives that begin later, damping that ends, running means, zeros,
+ * damage, ledger. */
+static void open_busy(small_run *r, double length, int threads) {
+  char text[2048];
+  snprintf(
+      text, sizeof text,
+      "&simulation end_time = 2e-4 step_safety = 0.5 threads = %d /\n"
+      "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 rotation = 10 /\n"
+      "&material lattice = 'c' model = 'm' S_t = 1e-4 tau = 1e-7 /\n"
+      "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = %g, 0.06 /\n"
+      "&region name = 'left' shape = 'rectangle' corner = 0, 0 size = 0.015, 0.1 /\n"
+      "&region name = 'right' shape = 'rectangle' corner = 0.085, 0 size = 0.015, 0.1 /\n"
+      "&region name = 'mid' shape = 'point' at = 0.05, 0.03 within = 0.006 /\n"
+      "&support region = 'left' fix = 'xy' /\n"
+      "&drive region = 'right' component = 'x' velocity = 0.2 rise = 1e-5 start = 6e-5 /\n"
+      "&force region = 'mid' component = 'y' force = 500 history = 'ramp' rise = 1e-4 /\n"
+      "&damping rate = 3000 until = 1.1e-4 /\n"
+      "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' average = 3e-5 /\n"
+      "&monitor name = 'open' kind = 'opening' between = 'left', 'right' component = 'x' zero_at = "
+      "1.2e-4 /\n"
+      "&monitor name = 'cracks' kind = 'damaged' /\n"
+      "&output frames = 7 sample = 1e-6 /\n",
+      threads, length);
+  small_open(r, &elastic_beam, text);
+  if (!r->simulation) small_print(r);
+  assert_non_null(r->simulation);
+}
+
+static int go_with_frames(small_run *r, long steps) {
+  int frames = 0;
+  const long until = simulation_step_done(r->simulation) + steps;
+  step_status status = STEP_OK;
+  while (status == STEP_OK && simulation_step_done(r->simulation) < until) {
+    if (simulation_frame_due(r->simulation)) {
+      frames++;
+      simulation_frame_taken(r->simulation);
+    }
+    status = simulation_advance(r->simulation, until - simulation_step_done(r->simulation), NULL);
+  }
+  return frames;
+}
+
+static void same_runs(small_run *a, small_run *b) {
+  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const size_t site = (size_t)x->lattice->size * sizeof(double);
+  assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
+  for (int d = 0; d < 3; d++) {
+    assert_memory_equal(x->displacement[d], y->displacement[d], site);
+    assert_memory_equal(x->velocity[d], y->velocity[d], site);
+  }
+  assert_memory_equal(x->field[0], y->field[0], 3 * site);
+  const double *p, *q;
+  const long samples = simulation_history(a->simulation, &p);
+  assert_int_equal(simulation_history(b->simulation, &q), samples);
+  assert_memory_equal(p, q, (size_t)samples * sizeof(double));
+  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
+    simulation_series(a->simulation, k, NULL, &p);
+    simulation_series(b->simulation, k, NULL, &q);
+    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
+  }
+  for (int m = 0; m < 3; m++) {
+    double s, t;
+    assert_true(simulation_monitor_peak(a->simulation, m, &s) ==
+                simulation_monitor_peak(b->simulation, m, &t));
+    assert_true(s == t);
+  }
+}
+
+static void a_resumed_run_gives_the_same_bits(void **state) {
+  (void)state;
+  char error[200];
+  small_run straight;
+  open_busy(&straight, 0.1, 2);
+  const long total = simulation_step_count(straight.simulation);
+  assert_int_equal(go_with_frames(&straight, total), 7); /* the eighth, at the end, is still due */
+  assert_true(small_last(&straight, "cracks") > 0);
+  /* before the first step, in the middle of a ramp, after the zero, one step before the end; other
+   * threads */
+  const long stops[] = {0, 7, total / 3, 2 * total / 3, total - 1};
+  for (int k = 0; k < 5; k++) {
+    small_run first, second;
+    long frames = -1;
+    open_busy(&first, 0.1, 1);
+    const int before = go_with_frames(&first, stops[k]);
+    assert_true(simulation_save(first.simulation, path, fingerprint, before, error, sizeof error));
+    small_close(&first);
+    open_busy(&second, 0.1, 3);
+    assert_true(
+        simulation_restore(second.simulation, path, fingerprint, &frames, error, sizeof error));
+    assert_int_equal(frames, before);
+    assert_int_equal(simulation_step_done(second.simulation), stops[k]);
+    assert_int_equal(before + go_with_frames(&second, total), 7);
+    same_runs(&straight, &second);
+    small_close(&second);
+  }
+  small_close(&straight);
+  unlink(path);
+}
+
+static unsigned char *read_all(size_t *size) {
+  FILE *f = fopen(path, "rb");
+  assert_non_null(f);
+  fseek(f, 0, SEEK_END);
+  *size = (size_t)ftell(f);
+  rewind(f);
+  unsigned char *bytes = must_alloc(*size);
+  assert_int_equal(fread(bytes, 1, *size, f), *size);
+  fclose(f);
+  return bytes;
+}
+
+static void write_all(const unsigned char *bytes, size_t size) {
+  FILE *f = fopen(path, "wb");
+  assert_non_null(f);
+  assert_int_equal(fwrite(bytes, 1, size, f), size);
+  assert_int_equal(fclose(f), 0);
+}
+
+static void refuse(small_run *r, const char *sentence) {
+  char error[200] = "";
+  long frames = -1;
+  assert_false(simulation_restore(r->simulation, path, fingerprint, &frames, error, sizeof error));
+  if (!strstr(error, sentence)) fail_msg("said: %s", error);
+  assert_int_equal(frames, -1);
+}
+
+static void damaged_and_foreign_files_are_refused(void **state) {
+  (void)state;
+  char error[200];
+  small_run r, untouched;
+  open_busy(&r, 0.1, 1);
+  go_with_frames(&r, 50);
+  assert_true(simulation_save(r.simulation, path, fingerprint, 1, error, sizeof error));
+  size_t size;
+  unsigned char *bytes = read_all(&size);
+  const size_t head = 8 + 8 + strlen(fingerprint); /* magic, length, fingerprint */
+  for (size_t k = 0; k < 40; k++) {                /* a flipped bit anywhere behind the head */
+    const size_t at = head + k * (size - head - 1) / 39;
+    bytes[at] ^= 0x10;
+    write_all(bytes, size);
+    bytes[at] ^= 0x10;
+    refuse(&r, "damaged");
+  }
+  for (size_t k = 0; k < 20; k++) { /* cut short anywhere */
+    write_all(bytes, k * (size - 1) / 19);
+    char said[200] = "";
+    assert_false(simulation_restore(r.simulation, path, fingerprint, NULL, said, sizeof said));
+    assert_true(strstr(said, "cut short") || strstr(said, "damaged"));
+  }
+  bytes[0] = 'x';
+  write_all(bytes, size);
+  refuse(&r, "not a checkpoint");
+  bytes[0] = 'P';
+  bytes[7]++;
+  write_all(bytes, size);
+  refuse(&r, "another version");
+  bytes[7]--;
+  bytes[16]++;
+  write_all(bytes, size);
+  refuse(&r, "another deck");
+  bytes[16]--;
+  write_all(bytes, size);
+  small_run other; /* the same fingerprint by mistake, another body */
+  open_busy(&other, 0.12, 1);
+  refuse(&other, "another size");
+  small_close(&other);
+  free(bytes);
+  unlink(path);
+  refuse(&r, "No such file");
+  open_busy(&untouched, 0.1, 1); /* after all these the state is what it was */
+  go_with_frames(&untouched, 50);
+  same_runs(&r, &untouched);
+  small_close(&r);
+  small_close(&untouched);
+}
+
+static void a_failed_save_leaves_the_old_file(void **state) {
+  (void)state;
+  char error[200], old[3] = {1, 2, 3}, back[3] = {0};
+  const checkpoint_part part = {"numbers", old, sizeof old};
+  assert_true(checkpoint_write(path, "a", &part, 1, error, sizeof error));
+  assert_false(checkpoint_write("no_such_folder/x", "a", &part, 1, error, sizeof error));
+  assert_non_null(strstr(error, "No such file"));
+  const checkpoint_part to = {"numbers", back, sizeof back};
+  assert_true(checkpoint_read(path, "a", &to, 1, error, sizeof error));
+  assert_memory_equal(old, back, 3);
+  assert_int_not_equal(access("test_checkpoint.state.tmp", F_OK), 0);
+  unlink(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_resumed_run_gives_the_same_bits),
+      cmocka_unit_test(damaged_and_foreign_files_are_refused),
+      cmocka_unit_test(a_failed_save_leaves_the_old_file),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
