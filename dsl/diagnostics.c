@@ -207,11 +207,16 @@ static int by_place(const void *a, const void *b) {
   return x < y ? -1 : x > y; /* as reported: both lie in one array */
 }
 
-void diag_print(const diagnostics *d, FILE *out) {
-  const diagnostic **order = must_calloc((size_t)d->count, sizeof(*order));
+const diagnostic **diag_sorted(const diagnostics *d) {
+  const diagnostic **order = must_calloc((size_t)d->count + 1, sizeof(*order));
   for (int i = 0; i < d->count; i++)
     order[i] = &d->items[i];
   qsort(order, (size_t)d->count, sizeof(*order), by_place);
+  return order;
+}
+
+void diag_print(const diagnostics *d, FILE *out) {
+  const diagnostic **order = diag_sorted(d);
   for (int i = 0; i < d->count && i < MOST_PRINTED; i++) {
     const diagnostic *one = order[i];
     bool error = diag_severity(one->code) == SEVERITY_ERROR;

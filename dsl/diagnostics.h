@@ -55,6 +55,9 @@ severity diag_severity(diag_code code);
        hint: did you mean `alpha2`?                                       */
 void diag_print(const diagnostics *d, FILE *out);
 
+/* Pointers to all of them in the order of their places, as printed; to be freed. */
+const diagnostic **diag_sorted(const diagnostics *d);
+
 /* Candidate nearest to `name` (edit distance, case-insensitive first), or NULL. */
 const char *nearest_name(const char *name, const char *const *candidates, int count);
 

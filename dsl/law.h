@@ -82,5 +82,7 @@ double law_constant_value(const expr *e, const double *parameters);
 /* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
    what the bounds are, e.g. "(20, inf)". */
 bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
+/* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
+void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
 
 #endif

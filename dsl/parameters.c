@@ -314,6 +314,13 @@ void check_bounds(checker *ck) {
   }
 }
 
+void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size) {
+  const bounds *in = &l->parameters.items[p]->declared->in;
+  double lower, upper;
+  limits_of(in, values, &lower, &upper);
+  limits_text(in, lower, upper, text, size);
+}
+
 bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size) {
   const bounds *in = &l->parameters.items[p]->declared->in;
   if (!in->given) {

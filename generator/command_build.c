@@ -12,7 +12,17 @@
 #define ERROR_LENGTH 8192
 #define DECK_LIMIT   ((size_t)16 << 20)
 
-static bool build_law(const char *path, const char *output) {
+enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
+
+static bool spares_input(const char *output, const char *input) {
+  if (!same_file(output, input))
+    return true;
+  fprintf(stderr, "perilat: error: the output `%s` would overwrite `%s`; give it another name with -o\n", output, input);
+  return false;
+}
+
+/* 0, or an exit status. */
+static int build_law(const char *path, const char *output) {
   model m;
   char error[ERROR_LENGTH], chosen[512];
   bool good = model_open(&m, path, NULL, 0) && model_plan(&m);
@@ -20,14 +30,16 @@ static bool build_law(const char *path, const char *output) {
   if (good) {
     snprintf(chosen, sizeof chosen, "%s.so", m.law->tree->name);
     output = output ? output : chosen;
-    good = toolchain_build(m.c_text, output, error, sizeof error);
-    if (good)
-      printf("written %s (key %s)\n", output, m.key);
-    else
-      fprintf(stderr, "perilat: error: %s\n", error);
   }
+  int status = good && spares_input(output, path) ? 0 : INPUT_WRONG;
+  if (!status && !toolchain_build(m.c_text, output, error, sizeof error)) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    status = BUILD_FAILED;
+  }
+  if (!status)
+    printf("written %s (key %s)\n", output, m.key);
   model_close(&m);
-  return good;
+  return status;
 }
 
 /* --- solvers ------------------------------------------------------------------------------------ */
@@ -46,6 +58,7 @@ static void list_choices(const law *l, char *text, size_t size) {
     used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
+/* The deck has been checked whole before: its warnings are not said again. */
 static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law *out) {
   arena *memory = arena_new();
   source_set sources = {NULL, 0};
@@ -59,7 +72,8 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
     snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);
     list_choices(out->model.law, out->choices, sizeof out->choices);
   }
-  diag_print(&said, stderr);
+  if (!good)
+    diag_print(&said, stderr);
   diag_clear(&said);
   source_clear(&sources);
   arena_free(memory);
@@ -96,38 +110,43 @@ static char *solver_text(const deck_law *l, const char *deck_name, const char *d
   return out.text;
 }
 
-static bool build_solver(const char *path, const char *output) {
+static int link_solver(const char *path, const char *deck_text, const char *output) {
+  char error[ERROR_LENGTH];
+  deck_law l = {.opened = false};
+  int status = open_deck_law(path, deck_text, &l) && spares_input(output, l.model.path) ? 0 : INPUT_WRONG;
+  if (!status) {
+    char *text = solver_text(&l, path, deck_text);
+    if (!toolchain_build_program(text, output, error, sizeof error)) {
+      fprintf(stderr, "perilat: error: %s\n", error);
+      status = BUILD_FAILED;
+    }
+    free(text);
+  }
+  if (!status)
+    printf("written %s: runs the deck %s without a compiler\n", output, path);
+  if (l.opened)
+    model_close(&l.model);
+  return status;
+}
+
+/* What perilat run would refuse is refused now, not when the solver runs. */
+static int build_solver(const char *path, const char *output) {
   char error[ERROR_LENGTH];
   size_t length;
-  if (!output) {
-    fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
-    return false;
-  }
   char *deck_text = read_text_file(path, DECK_LIMIT, &length, error, sizeof error);
   if (!deck_text) {
     fprintf(stderr, "perilat: error: %s\n", error);
-    return false;
+    return INPUT_WRONG;
   }
-  deck_law l = {.opened = false};
-  bool good = open_deck_law(path, deck_text, &l);
-  if (good) {
-    char *text = solver_text(&l, path, deck_text);
-    good = toolchain_build_program(text, output, error, sizeof error);
-    free(text);
-    if (good)
-      printf("written %s: runs the deck %s without a compiler\n", output, path);
-    else
-      fprintf(stderr, "perilat: error: %s\n", error);
-  }
-  if (l.opened)
-    model_close(&l.model);
+  int status = INPUT_WRONG;
+  if (!output)
+    fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
+  else if (spares_input(output, path))
+    status = run_deck(&(run_options){.deck_path = path, .check_only = true});
+  if (!status)
+    status = link_solver(path, deck_text, output);
   free(deck_text);
-  return good;
-}
-
-static bool ends_in(const char *text, const char *tail) {
-  size_t n = strlen(text), m = strlen(tail);
-  return n >= m && strcmp(text + n - m, tail) == 0;
+  return status;
 }
 
 int command_build(int argc, char **argv) {
@@ -138,7 +157,7 @@ int command_build(int argc, char **argv) {
     if ((value = option_value(argc, argv, &at, "-o", &bad)))
       output = value;
     else if (argv[at][0] == '-')
-      bad = option_unknown("build", argv[at], options, 1);
+      bad = option_unknown("perilat build", argv[at], options, 1);
     else if (path) {
       fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n", argv[at]);
       bad = 1;
@@ -151,14 +170,15 @@ int command_build(int argc, char **argv) {
     fputs("perilat: error: `perilat build` needs a law or a deck\n", stderr);
     return 1;
   }
-  if (output && (strcmp(output, path) == 0)) {
-    fputs("perilat: error: the output would overwrite the input\n", stderr);
+  file_kind kind = kind_of_file(path);
+  if (kind == FILE_RESULT) {
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat build` needs a law or a deck\n", path);
     return 1;
   }
-  if (ends_in(path, ".nml"))
-    return build_solver(path, output) ? 0 : 1;
+  if (kind == FILE_DECK)
+    return build_solver(path, output);
   char *found = model_find(path, NULL);
-  bool good = build_law(found ? found : path, output);
+  int status = build_law(found ? found : path, output);
   free(found);
-  return good ? 0 : 1;
+  return status;
 }

@@ -25,7 +25,7 @@ static int info_builtins(void) {
     if (b->least == b->most)
       printf("  %-13s %d argument%s  %s\n", b->name, b->least, b->least == 1 ? " " : "s", b->meaning);
     else
-      printf("  %-13s %d to %d     %s\n", b->name, b->least, b->most, b->meaning);
+      printf("  %-13s %d to %-7d %s\n", b->name, b->least, b->most, b->meaning);
   }
   return 0;
 }
@@ -37,11 +37,21 @@ static void print_parameter(const law *l, int p, const double *values) {
   char unit_text[64], interval[128] = "";
   dim_unit(s->dim, unit_text, sizeof unit_text);
   if (s->declared->in.given)
-    law_parameter_within(l, p, values, interval, sizeof interval);
+    law_parameter_bounds(l, p, values, interval, sizeof interval);
   char value[32] = "(required)";
   if (s->has_default)
     snprintf(value, sizeof value, "%.6g", s->initial);
   printf("  %-12s %-12s %-10s %-18s %s\n", s->name, value, unit_text, interval, s->doc ? s->doc : "");
+}
+
+/* Further lines of a description stand below its first one. */
+static void print_description(const char *text) {
+  for (; *text; text++) {
+    putchar(*text);
+    if (*text == '\n')
+      printf("%*s", 38, "");
+  }
+  putchar('\n');
 }
 
 static void print_symbols(const char *title, const symbol_list *list) {
@@ -51,7 +61,8 @@ static void print_symbols(const char *title, const symbol_list *list) {
     const symbol *s = list->items[k];
     char unit_text[64];
     dim_unit(s->dim, unit_text, sizeof unit_text);
-    printf("  %-12s %-10s on %-9s %s\n", s->name, unit_text, placement_name(s->place), s->doc ? s->doc : "");
+    printf("  %-12s %-10s on %-9s ", s->name, unit_text, placement_name(s->place));
+    print_description(s->doc ? s->doc : "");
   }
 }
 
@@ -119,7 +130,8 @@ static void print_history(result_file *f, const char *name) {
     low = fmin(low, v[k]);
     high = fmax(high, v[k]);
   }
-  printf("  %-24s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low, high, v[count - 1]);
+  printf("  %-24s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
+         v[count - 1] + 0.0); /* no minus before zeros */
   free(v);
 }
 
@@ -151,9 +163,8 @@ static int info_result(const char *path) {
     for_each_name(f, names, "", print_history);
   if (energies)
     for_each_name(f, energies, "energy/", print_history);
-  char *fields = result_list(f, "/frames");
-  if (fields)
-    printf("Fields of the frames: %s\n", fields);
+  char *fields = result_members(f, "/frames");
+  printf("Frames hold: %s\n", fields);
   free(names);
   free(energies);
   free(fields);
@@ -161,24 +172,20 @@ static int info_result(const char *path) {
   return 0;
 }
 
-static bool ends_in(const char *text, const char *tail) {
-  size_t n = strlen(text), m = strlen(tail);
-  return n >= m && strcmp(text + n - m, tail) == 0;
-}
-
 int command_info(int argc, char **argv) {
   static const char *const options[] = {"--builtins"};
   if (argc == 1 && !strcmp(argv[0], "--builtins"))
     return info_builtins();
   if (argc == 1 && argv[0][0] == '-')
-    return option_unknown("info", argv[0], options, 1);
+    return option_unknown("perilat info", argv[0], options, 1);
   if (argc != 1) {
     fputs("perilat: error: `perilat info` takes one law, deck or result, or --builtins\n", stderr);
     return 1;
   }
-  if (ends_in(argv[0], ".h5"))
+  file_kind kind = kind_of_file(argv[0]);
+  if (kind == FILE_RESULT)
     return info_result(argv[0]);
-  if (ends_in(argv[0], ".nml"))
+  if (kind == FILE_DECK)
     return run_deck(&(run_options){.deck_path = argv[0], .check_only = true});
   char *path = model_find(argv[0], NULL);
   int status = info_law(path ? path : argv[0]);

@@ -1,10 +1,14 @@
 /* perilat plot: curves of histories, or the map of a frame. */
+#include <errno.h>
+#include <limits.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/arena.h"
 #include "generator/commands.h"
+#include "generator/model.h"
 #include "runtime/plot.h"
 
 static const char *const option_names[] = {"-o",     "--x",      "--y",     "--x-unit",    "--y-unit", "--title",
@@ -17,50 +21,67 @@ typedef struct plot_request {
   plot_curve_options curve;
   plot_map_options map;
   bool is_map;
+  const char *of_curves, *of_maps; /* an option that only these know, when one was given */
 } plot_request;
 
 static bool read_number(const char *name, const char *text, double *value) {
   char *end;
   *value = strtod(text, &end);
-  if (*end || end == text) {
-    fprintf(stderr, "perilat: error: %s needs a number, not `%s`\n", name, text);
-    return false;
-  }
-  return true;
+  if (!*end && end != text && isfinite(*value))
+    return true;
+  fprintf(stderr, "perilat: error: %s needs a number, not `%s`\n", name, text);
+  return false;
+}
+
+static bool read_whole(const char *name, const char *text, long *value) {
+  char *end;
+  errno = 0;
+  *value = strtol(text, &end, 10);
+  if (!*end && end != text && !errno && labs(*value) < INT_MAX)
+    return true;
+  fprintf(stderr, "perilat: error: %s needs a whole number, not `%s`\n", name, text);
+  return false;
+}
+
+/* Takes an option that only curves, or only maps, know. */
+static const char *special_value(int argc, char **argv, int *at, const char *name, const char **seen, int *bad) {
+  const char *v = option_value(argc, argv, at, name, bad);
+  if (v)
+    *seen = name;
+  return v;
 }
 
 /* One option or file; false after a message. */
 static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   int bad = 0;
-  double number = 0;
+  long whole = -1;
   const char *v;
   if ((v = option_value(argc, argv, at, "-o", &bad)))
     q->curve.output = q->map.output = v;
-  else if ((v = option_value(argc, argv, at, "--x", &bad)))
-    q->curve.x = v;
-  else if ((v = option_value(argc, argv, at, "--y", &bad)))
-    q->curve.y = v;
-  else if ((v = option_value(argc, argv, at, "--x-unit", &bad)))
-    q->curve.x_unit = v;
-  else if ((v = option_value(argc, argv, at, "--y-unit", &bad)))
-    q->curve.y_unit = v;
   else if ((v = option_value(argc, argv, at, "--title", &bad)))
     q->curve.title = q->map.title = v;
-  else if ((v = option_value(argc, argv, at, "--label", &bad)))
-    q->labels[q->label_count++] = v;
   else if ((v = option_value(argc, argv, at, "--map", &bad))) {
     q->map.field = v;
     q->is_map = true;
-  } else if ((v = option_value(argc, argv, at, "--frame", &bad))) {
-    bad |= !read_number("--frame", v, &number);
-    q->map.frame = (long)number;
-  } else if ((v = option_value(argc, argv, at, "--factor", &bad)))
-    bad |= !read_number("--factor", v, &q->map.factor);
-  else if ((v = option_value(argc, argv, at, "--component", &bad))) {
-    bad |= !read_number("--component", v, &number);
-    q->map.component = (int)number;
+  } else if ((v = special_value(argc, argv, at, "--x", &q->of_curves, &bad)))
+    q->curve.x = v;
+  else if ((v = special_value(argc, argv, at, "--y", &q->of_curves, &bad)))
+    q->curve.y = v;
+  else if ((v = special_value(argc, argv, at, "--x-unit", &q->of_curves, &bad)))
+    q->curve.x_unit = v;
+  else if ((v = special_value(argc, argv, at, "--y-unit", &q->of_curves, &bad)))
+    q->curve.y_unit = v;
+  else if ((v = special_value(argc, argv, at, "--label", &q->of_curves, &bad)))
+    q->labels[q->label_count++] = v;
+  else if ((v = special_value(argc, argv, at, "--frame", &q->of_maps, &bad)))
+    bad = bad || !read_whole("--frame", v, &q->map.frame);
+  else if ((v = special_value(argc, argv, at, "--factor", &q->of_maps, &bad)))
+    bad = bad || !read_number("--factor", v, &q->map.factor);
+  else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
+    bad = bad || !read_whole("--component", v, &whole);
+    q->map.component = (int)whole;
   } else if (argv[*at][0] == '-')
-    bad = option_unknown("plot", argv[*at], option_names, OPTION_COUNT);
+    bad = option_unknown("perilat plot", argv[*at], option_names, OPTION_COUNT);
   else
     q->results[q->result_count++] = argv[(*at)++];
   return !bad;
@@ -82,6 +103,18 @@ static bool draw(plot_request *q) {
   return good;
 }
 
+static bool are_results(const plot_request *q) {
+  for (int k = 0; k < q->result_count; k++) {
+    file_kind kind = kind_of_file(q->results[k]);
+    if (kind != FILE_LAW && kind != FILE_DECK)
+      continue;
+    fprintf(stderr, "perilat: error: `%s` is a %s; `perilat plot` needs a result, which `perilat run` makes\n",
+            q->results[k], kind == FILE_LAW ? "law" : "deck");
+    return false;
+  }
+  return true;
+}
+
 static bool complete(const plot_request *q) {
   if (q->result_count == 0)
     fputs("perilat: error: `perilat plot` needs a result file\n  perilat plot result.h5 -o curve.png\n", stderr);
@@ -90,9 +123,25 @@ static bool complete(const plot_request *q) {
   else if (q->label_count && q->label_count != q->result_count)
     fprintf(stderr, "perilat: error: %d labels for %d results; give one --label a result\n", q->label_count,
             q->result_count);
+  else if (q->is_map && q->of_curves)
+    fprintf(stderr, "perilat: error: %s belongs to curves, --map draws a map; leave one of them out\n", q->of_curves);
+  else if (!q->is_map && q->of_maps)
+    fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n", q->of_maps);
+  else if (q->map.component < -1)
+    fprintf(stderr, "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");
   else
-    return true;
+    return are_results(q);
   return false;
+}
+
+/* The picture must not take a result's place. */
+static bool spares_results(const plot_request *q) {
+  for (int k = 0; k < q->result_count; k++)
+    if (same_file(q->curve.output, q->results[k])) {
+      fprintf(stderr, "perilat: error: the picture would overwrite `%s`; give it another name with -o\n", q->results[k]);
+      return false;
+    }
+  return true;
 }
 
 int command_plot(int argc, char **argv) {
@@ -105,7 +154,7 @@ int command_plot(int argc, char **argv) {
   good = good && complete(&q);
   if (good && !q.curve.output)
     q.curve.output = q.map.output = q.is_map ? "map.png" : "curve.png";
-  good = good && draw(&q);
+  good = good && spares_results(&q) && draw(&q);
   free(q.results);
   free(q.labels);
   return good ? 0 : 1;

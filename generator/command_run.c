@@ -1,4 +1,5 @@
 /* perilat run, perilat check: the options, then run.h or the front end. */
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,39 +7,80 @@
 #include "generator/commands.h"
 #include "generator/model.h"
 #include "generator/run.h"
+#include "generator/version.h"
 
-static const char *const run_option_names[] = {"--threads", "--resume",    "--set",
-                                               "--profile", "--check-kernel", "--interpret", "--dump"};
-enum { RUN_OPTION_COUNT = sizeof run_option_names / sizeof *run_option_names };
+/* Who reads options, and which. A solver has its kernel built in: there is nothing to interpret or compare. */
+enum { RUN = 1, CHECK = 2, SOLVER = 4 };
+#define RUN_OPTIONS(X)               \
+  X("--threads", RUN | SOLVER)       \
+  X("--resume", RUN | SOLVER)        \
+  X("--set", RUN | CHECK | SOLVER)   \
+  X("--check-kernel", RUN)           \
+  X("--interpret", RUN)              \
+  X("--dump", CHECK)                 \
+  X("--diagnostics", CHECK)
 
-/* The options that run, check and a stand-alone solver share. False after a message. */
-static bool read_run_options(const char *command, int argc, char **argv, run_options *o, const char **dump) {
+/* What only `perilat check` is asked. */
+typedef struct check_options {
+  const char *dump, *diagnostics; /* NULL where not given */
+} check_options;
+
+static int unknown_option(int reader, const char *program, const char *given) {
+  static const struct {
+    const char *name;
+    int readers;
+  } options[] = {
+#define X(name, readers) {name, readers},
+      RUN_OPTIONS(X)
+#undef X
+  };
+  enum { COUNT = sizeof options / sizeof *options };
+  const char *names[COUNT];
+  int count = 0;
+  for (int k = 0; k < COUNT; k++)
+    if (options[k].readers & reader)
+      names[count++] = options[k].name;
+  return option_unknown(program, given, names, count);
+}
+
+static bool read_threads(const char *text, int *threads) {
+  char *end;
+  long value = strtol(text, &end, 10);
+  *threads = (int)value;
+  if (!*end && end != text && value >= 1 && value <= 1024)
+    return true;
+  fprintf(stderr, "perilat: error: --threads needs a whole number from 1 to 1024, not `%s`\n", text);
+  return false;
+}
+
+/* False after a message. */
+static bool read_run_options(int reader, const char *program, int argc, char **argv, run_options *o,
+                             check_options *check) {
   o->overrides = must_calloc((size_t)argc + 1, sizeof *o->overrides);
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     const char *value;
-    if (option_flag(argv, &at, "--resume"))
+    if (reader != CHECK && option_flag(argv, &at, "--resume"))
       o->resume = true;
-    else if (option_flag(argv, &at, "--check-kernel"))
+    else if (reader == RUN && option_flag(argv, &at, "--check-kernel"))
       o->check_kernel = true;
-    else if (option_flag(argv, &at, "--interpret"))
+    else if (reader == RUN && option_flag(argv, &at, "--interpret"))
       o->interpret = true;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       o->overrides[o->override_count++].text = value;
-    else if ((value = option_value(argc, argv, &at, "--threads", &bad))) {
-      char *end;
-      long threads = strtol(value, &end, 10);
-      if (!bad && (*end || end == value || threads < 1 || threads > 1024)) {
-        fprintf(stderr, "perilat: error: --threads needs a whole number from 1 to 1024, not `%s`\n", value);
-        bad = 1;
-      }
-      o->threads = (int)threads;
-    } else if (dump && (value = option_value(argc, argv, &at, "--dump", &bad)))
-      *dump = value;
+    else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
+      bad = bad || !read_threads(value, &o->threads);
+    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--dump", &bad)))
+      check->dump = value;
+    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--diagnostics", &bad)))
+      check->diagnostics = value;
     else if (argv[at][0] == '-')
-      bad = option_unknown(command, argv[at], run_option_names, RUN_OPTION_COUNT);
-    else if (o->deck_path) {
-      fprintf(stderr, "perilat: error: `perilat %s` takes one file; `%s` is a second one\n", command, argv[at]);
+      bad = unknown_option(reader, program, argv[at]);
+    else if (reader == SOLVER) {
+      fprintf(stderr, "perilat: error: `%s` runs the deck that it was built from; it takes no file\n", program);
+      bad = 1;
+    } else if (o->deck_path) {
+      fprintf(stderr, "perilat: error: `%s` takes one file; `%s` is a second one\n", program, argv[at]);
       bad = 1;
     } else
       o->deck_path = argv[at++];
@@ -46,19 +88,17 @@ static bool read_run_options(const char *command, int argc, char **argv, run_opt
   return !bad;
 }
 
-static bool ends_in(const char *text, const char *tail) {
-  size_t n = strlen(text), m = strlen(tail);
-  return n >= m && strcmp(text + n - m, tail) == 0;
-}
-
 int command_run(int argc, char **argv) {
   run_options o = {0};
-  bool good = read_run_options("run", argc, argv, &o, NULL);
+  bool good = read_run_options(RUN, "perilat run", argc, argv, &o, NULL);
   int status = 1;
+  file_kind kind = o.deck_path ? kind_of_file(o.deck_path) : FILE_UNKNOWN;
   if (good && !o.deck_path)
     fputs("perilat: error: `perilat run` needs a deck\n  perilat run deck.nml\n", stderr);
-  else if (good && ends_in(o.deck_path, ".plm"))
+  else if (good && kind == FILE_LAW)
     fprintf(stderr, "perilat: error: `%s` is a law; `perilat run` needs a deck that uses it\n", o.deck_path);
+  else if (good && kind == FILE_RESULT)
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat run` needs a deck\n", o.deck_path);
   else if (good)
     status = run_deck(&o);
   free(o.overrides);
@@ -86,7 +126,7 @@ static int dump_stage(model *m, const char *stage) {
   return 0;
 }
 
-static int check_law(const char *path, const char *dump) {
+static int check_law(const char *path, const char *dump, diag_json *report) {
   model m;
   bool good = model_open(&m, path, NULL, 0);
   int status = good ? 0 : 1;
@@ -95,8 +135,11 @@ static int check_law(const char *path, const char *dump) {
     status = dump_stage(&m, dump);
   else if (pairwise && !model_plan(&m))
     status = 1;
-  diag_print(&m.said, stderr);
-  if (!status && !dump)
+  if (report)
+    diag_json_add(report, &m.said);
+  else
+    diag_print(&m.said, stderr);
+  if (!status && !dump && !report)
     printf("%s: %s, no errors, %d warning%s (%.1f ms)%s\n", path, m.law->tree->name, m.said.count,
            m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front,
            pairwise ? "" : "; state laws can be checked but not yet compiled");
@@ -104,17 +147,57 @@ static int check_law(const char *path, const char *dump) {
   return status;
 }
 
+static int check_file(const run_options *o, const char *dump) {
+  char *found = NULL;
+  file_kind kind = kind_of_file(o->deck_path);
+  if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL)))
+    kind = FILE_LAW;
+  int status = 1;
+  if (kind == FILE_RESULT)
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat check` needs a law or a deck\n", o->deck_path);
+  else if (kind == FILE_LAW && o->override_count)
+    fputs("perilat: error: --set changes a deck; a law has nothing to set\n", stderr);
+  else if (kind == FILE_LAW)
+    status = check_law(found ? found : o->deck_path, dump, o->report);
+  else if (dump)
+    fputs("perilat: error: --dump shows a law; give the law's file\n", stderr);
+  else if (!(status = run_deck(o)) && !o->report)
+    printf("%s: no errors\n", o->deck_path);
+  free(found);
+  return status;
+}
+
+/* The same as one JSON document on the standard output. */
+static int check_to_json(run_options *o) {
+  diag_json report;
+  diag_json_begin(&report, o->deck_path, perilat_version);
+  o->report = &report;
+  int status = check_file(o, NULL);
+  diag_json_end(&report, status == 0, stdout);
+  return status;
+}
+
+static int check_as_asked(run_options *o, const check_options *asked) {
+  if (!asked->diagnostics || !strcmp(asked->diagnostics, "text"))
+    return check_file(o, asked->dump);
+  if (strcmp(asked->diagnostics, "json") != 0)
+    fprintf(stderr, "perilat: error: --diagnostics takes text or json, not `%s`\n", asked->diagnostics);
+  else if (asked->dump)
+    fputs("perilat: error: --dump and --diagnostics=json both write to the standard output; give one\n", stderr);
+  else
+    return check_to_json(o);
+  return 1;
+}
+
 int command_check(int argc, char **argv) {
   run_options o = {.check_only = true};
-  const char *dump = NULL;
-  bool good = read_run_options("check", argc, argv, &o, &dump);
+  check_options asked = {NULL, NULL};
+  bool good = read_run_options(CHECK, "perilat check", argc, argv, &o, &asked);
   int status = 1;
   if (good && !o.deck_path)
     fputs("perilat: error: `perilat check` needs a law or a deck\n  perilat check law.plm\n", stderr);
-  else if (good && ends_in(o.deck_path, ".plm"))
-    status = check_law(o.deck_path, dump);
   else if (good)
-    status = run_deck(&o);
+    status = check_as_asked(&o, &asked);
   free(o.overrides);
   return status;
 }
@@ -122,13 +205,14 @@ int command_check(int argc, char **argv) {
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
                         const built_in_law *laws, int law_count) {
   run_options o = {.deck_path = deck_name, .deck_text = deck_text, .laws = laws, .law_count = law_count};
+  signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
       printf("usage: %s [--threads N] [--resume] [--set group.key=value]\n  runs the deck `%s` that it was built from\n",
              argv[0], deck_name);
       return 0;
     }
-  bool good = read_run_options("run", argc - 1, argv + 1, &o, NULL);
+  bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
   int status = good ? run_deck(&o) : 1;
   free(o.overrides);
   return status;

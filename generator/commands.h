@@ -5,7 +5,7 @@
 
 /* X(name, arguments, what it does) */
 #define COMMANDS(X)                                                                                \
-  X(check, "law.plm | deck.nml [--dump=tree|ir|passes|c] [--set ...]", "report all errors, run nothing")               \
+  X(check, "law.plm | deck.nml [--dump=tree|ir|passes|c] [--diagnostics=json] [--set ...]", "report all errors, run nothing")               \
   X(build, "law.plm [-o law.so] | deck.nml -o solver", "compile a law to a shared kernel, or a deck to a solver")      \
   X(run, "deck.nml [--threads N] [--resume] [--set group.key=value] [--check-kernel] [--interpret]", "run a deck")     \
   X(plot, "result.h5 ... [-o picture] [--x NAME --y NAME | --map FIELD [--frame N] [--factor F]]", "curve or map as PNG, SVG or PDF") \
@@ -19,7 +19,7 @@ COMMANDS(X)
    `--name value` and `--name=value` are the same. A missing value is reported; *bad is set. */
 int option_flag(char **argv, int *at, const char *name);
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad);
-/* Says that argv[at] is not known to the command, with the nearest of its options. Returns 1. */
-int option_unknown(const char *command, const char *given, const char *const *options, int count);
+/* Says that `given` is no option of `program` ("perilat run"), with the nearest of its options. Returns 1. */
+int option_unknown(const char *program, const char *given, const char *const *options, int count);
 
 #endif

@@ -67,9 +67,10 @@ static bool is_constant(const emitter *e, ir_node n) {
   X(U_JX, displacement_j, 0, FAR)                                                                  \
   X(U_JY, displacement_j, 1, FAR)                                                                  \
   X(PHI_J, displacement_j, 2, FAR)                                                                 \
-  X(V_IX, velocity_i, 0, NEAR) X(V_IY, velocity_i, 1, NEAR) X(OMEGA_I, velocity_i, 2, NEAR)        \
-      X(V_JX, velocity_j, 0, FAR) X(V_JY, velocity_j, 1, FAR) X(OMEGA_J, velocity_j, 2, FAR)       \
-          X(CHORD_X, chord, 0, BOND) X(CHORD_Y, chord, 1, BOND)
+  X(V_IX, velocity_i, 0, NEAR)                                                                     \
+  X(V_IY, velocity_i, 1, NEAR) X(OMEGA_I, velocity_i, 2, NEAR) X(V_JX, velocity_j, 0, FAR)         \
+      X(V_JY, velocity_j, 1, FAR) X(OMEGA_J, velocity_j, 2, FAR) X(CHORD_X, chord, 0, BOND)        \
+          X(CHORD_Y, chord, 1, BOND)
 
 typedef enum array_index { NEAR, FAR, BOND } array_index; /* particle i, particle j, the bond */
 
@@ -542,6 +543,9 @@ static void write_loop_begin(emitter *e) {
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
 }
 
+/* `present` has 32 bits on purpose: gcc then takes twice as many bonds at a time, as pairs of
+   vectors, and the divisions of one hide those of the other (5 to 40 % faster on all laws tried).
+ */
 static void write_strip_head(emitter *e, const char *name, bool rare) {
   c_text_add(
       e->out,
@@ -549,7 +553,7 @@ static void write_strip_head(emitter *e, const char *name, bool rare) {
       "  (void)law, (void)uniforms;\n"
       "  const long count = %s;\n"
       "  const int64_t *restrict flags = strip->flags;\n"
-      "  const int64_t present_bit = PL_PRESENT(strip->direction);\n",
+      "  const int32_t present_bit = (int32_t)PL_PRESENT(strip->direction);\n",
       rare ? "PL_RARE " : "", name,
       e->scope == IN_LIST ? "strip->count" : "strip->count / PL_LANES * PL_LANES");
   if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
@@ -567,7 +571,8 @@ static void write_strip_pass(emitter *e, scope_kind scope, const pass *p, const 
   write_strip_head(e, name, p->kind == PASS_LIST_OBSERVE);
   write_loop_begin(e);
   write_lines(e);
-  if (p->root_count) c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
+  if (p->root_count)
+    c_text_add(e->out, "    const int32_t present = (int32_t)flags[q] & present_bit;\n");
   for (int k = 0; k < p->root_count; k++)
     write_store(e, &p->roots[k]);
   c_text_add(e->out, "  }\n}\n\n");

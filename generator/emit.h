@@ -5,7 +5,8 @@
 
 #include "generator/passes.h"
 
-/* malloc'ed text. `key` goes into the descriptor. No text of the law reaches C other than checked identifiers
+/* malloc'ed text; the same plan and key give the same text. `key` goes into the descriptor; it is the toolchain_key of the
+   text emitted with the key "". No text of the law reaches C other than checked identifiers
    and numbers; descriptions are written as escaped string literals. */
 char *emit_kernel(const kernel_plan *p, const char *key);
 

@@ -1,37 +1,31 @@
-/* A compiled kernel against the interpreter, on random states that reach every case of the law; and the line of a law
-   that first stops being finite. */
+/* A compiled kernel against the interpreter, on random states and random strips that reach every
+   case of the law. Both read one graph with the same operations in the same order, so their bits
+   must agree. */
 #ifndef PERILAT_GENERATOR_KERNEL_CHECK_H
 #define PERILAT_GENERATOR_KERNEL_CHECK_H
 
 #include <stdio.h>
 
+#include "generator/comparison.h"
 #include "generator/passes.h"
-#include "runtime/deck.h"
-#include "runtime/rows.h"
-#include "runtime/simulation.h"
 
 typedef struct kernel_check {
-  long states;
-  double largest_ulps;     /* over results, new fields and tangents; infinite where one is NaN and the other not */
-  const char *worst;       /* what it was, e.g. "N" */
-  long unwritten;          /* outputs that the kernel left as they were */
+  long states,
+      bonds; /* random states; random bonds, as many through each of the six strip functions */
+  comparison outputs;      /* `prepare`, `bounds`, `states`, `tangent` and the strips */
   int guards, guards_both; /* conditions of the law, and those seen both true and false */
 } kernel_check;
 
-/* Compares `states` and `tangent` of the kernel with the plan's interpreter for `count` random states. Stretches and
-   rotations are log-uniform in size (1e-9 to 1) with either sign, rates in 1e-3 to 1e6 1/s, damage uniform in [0, 1] and
-   often exactly 0 or 1. The same seed gives the same states. */
-kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel, const double *parameters,
-                              long count, uint64_t seed);
+/* Checks `kernel` with each of `sets` parameter sets and bonds of one class, `states` states in all
+   and a quarter as many bonds. Stretches and rotations are log-uniform in size from 1e-9 up, rates
+   from 1e-3 to 1e6 1/s, damage is often 0 or 1. The same seed gives the same states. */
+kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
+                              const double *const *parameters, int sets, const pl_bond_class *bonds,
+                              long states, uint64_t seed);
 
-/* The same as a sentence to `out`; false when they differ by more than 1 ulp or an output was not written. */
-bool kernel_check_report(const kernel_plan *p, const pl_law *kernel, const double *parameters, long count, FILE *out);
-
-/* Distance in units in the last place of the larger; 0 for equal (also NaN and NaN), infinite when only one is NaN. */
-double ulps_between(double a, double b);
-
-/* Names the first quantity of the law, with its line, that is not finite in the bond state `b`. */
-void kernel_check_explain_bad(const kernel_plan *p, const double *parameters,
-                              const rows *w, const bad_state *b, FILE *out);
+/* All outputs written, none where it may not, and no difference at all. */
+bool kernel_check_agrees(const kernel_check *c);
+/* One or two sentences about the law `name`. */
+void kernel_check_report(const kernel_check *c, const char *name, FILE *out);
 
 #endif

@@ -254,6 +254,23 @@ static ir_node lower_unary(lowering *c, const expr *e) {
 }
 
 /* From the last line up, so that the first true line wins. */
+/* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an operand of a guard could
+   be NaN, the cases give that NaN instead. */
+static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
+  ir *g = c->graph;
+  if (ir_is_logical(g, guard) && ir_operation(g, guard) != IR_LT && ir_operation(g, guard) != IR_LE &&
+      ir_operation(g, guard) != IR_EQ) {
+    for (int k = 0; k < ir_arity(ir_operation(g, guard)); k++)
+      if (ir_is_logical(g, ir_operand(g, guard, k))) value = keep_nan(c, ir_operand(g, guard, k), value);
+    return value;
+  }
+  for (int k = 0; k < ir_arity(ir_operation(g, guard)) && ir_is_logical(g, guard); k++) {
+    ir_node x = ir_operand(g, guard, k);
+    if (rewrite_may_be_nan(g, x)) value = ir_select(g, binary(g, IR_EQ, x, x), value, x);
+  }
+  return value;
+}
+
 static ir_node lower_cases(lowering *c, const expr *e) {
   ir_node value = IR_NONE;
   for (int k = e->case_count - 1; k >= 0; k--) {
@@ -266,6 +283,8 @@ static ir_node lower_cases(lowering *c, const expr *e) {
     else
       value = ir_select(c->graph, lower_expr(c, line->guard), here, value);
   }
+  for (int k = 0; k < e->case_count && value != IR_NONE; k++)
+    if (e->cases[k].guard) value = keep_nan(c, lower_expr(c, e->cases[k].guard), value);
   return value;
 }
 

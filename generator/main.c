@@ -1,4 +1,6 @@
 /* perilat: one program, one subcommand a task. */
+#include <errno.h>
+#include <signal.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -46,7 +48,7 @@ static int unknown_command(const char *name) {
   return 1;
 }
 
-int main(int argc, char **argv) {
+static int dispatch(int argc, char **argv) {
   if (argc < 2) {
     print_help(stderr);
     return 1;
@@ -68,4 +70,13 @@ int main(int argc, char **argv) {
     return commands[k].run(argc - 2, argv + 2);
   }
   return unknown_command(argv[1]);
+}
+
+int main(int argc, char **argv) {
+  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes then is an error of the write, like a full disk */
+  int status = dispatch(argc, argv);
+  if (fflush(stdout) == 0 && !ferror(stdout))
+    return status;
+  fprintf(stderr, "perilat: error: cannot write to the standard output: %s\n", strerror(errno));
+  return status ? status : 2;
 }

@@ -26,7 +26,7 @@ char *read_text_file(const char *path, size_t limit, size_t *length, char *error
     return NULL;
   }
   if (!S_ISREG(about.st_mode)) {
-    snprintf(error, size, "cannot read `%s`: it is not a file", path);
+    snprintf(error, size, "cannot read `%s`: it is %s", path, S_ISDIR(about.st_mode) ? "a folder" : "not a file");
     return NULL;
   }
   if ((size_t)about.st_size > limit) {
@@ -51,6 +51,54 @@ char *read_text_file(const char *path, size_t limit, size_t *length, char *error
   return text;
 }
 
+/* --- kinds -------------------------------------------------------------------------------------- */
+
+static bool ends_in(const char *text, const char *tail) {
+  size_t n = strlen(text), m = strlen(tail);
+  return n > m && strcmp(text + n - m, tail) == 0;
+}
+
+/* A deck's first group begins with `&`, before it are blanks and comments; anything else is taken for a law. */
+static file_kind kind_of_text(const char *text) {
+  for (; *text; text += strcspn(text, "\n")) {
+    text += strspn(text, " \t\r\n");
+    if (*text != '!')
+      break;
+  }
+  return *text == '&' ? FILE_DECK : *text ? FILE_LAW : FILE_UNKNOWN;
+}
+
+static file_kind kind_by_content(const char *path) {
+  static const char signature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  char head[65536];
+  struct stat about;
+  FILE *in = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+  if (!in)
+    return FILE_UNKNOWN;
+  size_t n = fread(head, 1, sizeof head - 1, in);
+  fclose(in);
+  head[n] = 0;
+  if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0)
+    return FILE_RESULT;
+  return kind_of_text(head);
+}
+
+file_kind kind_of_file(const char *path) {
+  static const struct {
+    const char *ending;
+    file_kind kind;
+  } endings[] = {{".plm", FILE_LAW}, {".nml", FILE_DECK}, {".h5", FILE_RESULT}, {".hdf5", FILE_RESULT}};
+  for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
+    if (ends_in(path, endings[k].ending))
+      return endings[k].kind;
+  return kind_by_content(path);
+}
+
+bool same_file(const char *a, const char *b) {
+  struct stat x, y;
+  return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
 /* --- finding ------------------------------------------------------------------------------------ */
 
 static bool is_file(const char *path) {
@@ -58,16 +106,11 @@ static bool is_file(const char *path) {
   return stat(path, &about) == 0 && S_ISREG(about.st_mode);
 }
 
-static bool ends_in_plm(const char *name) {
-  size_t n = strlen(name);
-  return n > 4 && strcmp(name + n - 4, ".plm") == 0;
-}
-
 /* folder/name[.plm], when there is such a file. */
 static char *try_path(const char *folder, const char *name) {
   char path[PATH_LIMIT];
   int n = snprintf(path, sizeof path, "%s%s%s%s", folder, *folder ? "/" : "", name,
-                   ends_in_plm(name) ? "" : ".plm");
+                   ends_in(name, ".plm") ? "" : ".plm");
   return n > 0 && (size_t)n < sizeof path && is_file(path) ? strdup(path) : NULL;
 }
 
@@ -115,7 +158,7 @@ static char *try_program_tree(const char *name) {
 
 char *model_find(const char *name, const char *beside) {
   char *found = NULL;
-  if (ends_in_plm(name))
+  if (ends_in(name, ".plm"))
     found = is_file(name) ? strdup(name) : NULL;
   if (!found && beside) {
     char folder[PATH_LIMIT];
@@ -159,12 +202,12 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
   size_t length;
   char error[PATH_LIMIT + 128];
   char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
-  int file = source_add(&m->sources, path, text ? text : "", text ? length : 0);
-  free(text);
   if (!text) {
-    diag_report(&m->said, DIAG_FILE, (span){0, 0, (uint16_t)file}, "%s", error);
+    diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
     return false;
   }
+  int file = source_add(&m->sources, path, text, length);
+  free(text);
   parse_options options = {read_include, NULL};
   m->tree = parse_model(m->memory, &m->sources, file, &options, &m->said);
   if (!m->tree || m->said.errors)

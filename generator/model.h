@@ -22,6 +22,12 @@ typedef struct model {
   double seconds_front, seconds_kernel; /* text to plan; plan to loaded kernel */
 } model;
 
+/* What a file is: by its ending, or else by how its text begins; a name without a file is FILE_UNKNOWN, maybe a law's. */
+typedef enum file_kind { FILE_UNKNOWN, FILE_LAW, FILE_DECK, FILE_RESULT } file_kind;
+file_kind kind_of_file(const char *path);
+/* True when both name one existing file, by whatever path or link. */
+bool same_file(const char *a, const char *b);
+
 /* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: as given; beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */

@@ -32,11 +32,11 @@ const char *option_value(int argc, char **argv, int *at, const char *name, int *
   return argv[*at - 1];
 }
 
-int option_unknown(const char *command, const char *given, const char *const *options, int count) {
-  fprintf(stderr, "perilat: error: `perilat %s` has no option `%s`", command, given);
+int option_unknown(const char *program, const char *given, const char *const *options, int count) {
+  fprintf(stderr, "perilat: error: `%s` has no option `%s`", program, given);
   const char *near = nearest_name(given, options, count);
   if (near)
     fprintf(stderr, "; did you mean `%s`?", near);
-  fprintf(stderr, "\n  perilat %s --help shows its usage\n", command);
+  fprintf(stderr, "\n  %s --help shows its usage\n", program);
   return 1;
 }

@@ -228,3 +228,30 @@ double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count) {
   free(marks);
   return result;
 }
+
+/* --- NaN --------------------------------------------------------------------------------- */
+
+static bool makes_nan(ir_op op) {
+  switch (op) {
+  case IR_DIV:
+  case IR_SQRT:
+  case IR_LOG:
+  case IR_POW:
+  case IR_SIN:
+  case IR_COS:
+  case IR_TAN:
+    return true;
+  default:
+    return false;
+  }
+}
+
+bool rewrite_may_be_nan(const ir *g, ir_node n) {
+  unsigned char *marks = must_calloc((size_t)ir_count(g), 1);
+  ir_mark(g, &n, 1, marks);
+  bool may = false;
+  for (ir_node k = 0; k <= n && !may; k++)
+    may = marks[k] && makes_nan(ir_operation(g, k)) && ir_place(g, k) > ON_BODY;
+  free(marks);
+  return may;
+}

@@ -11,6 +11,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "generator/explain_bad.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
 #include "generator/progress.h"
@@ -22,11 +23,34 @@
 enum { INPUT_WRONG = 1, RUN_FAILED = 2, ERROR_LENGTH = 1024 };
 #define DECK_LIMIT ((size_t)16 << 20)
 
+/* --- signals ------------------------------------------------------------------------------------ */
+
 static volatile sig_atomic_t interrupted;
 static void on_interrupt(int signal_number) {
   (void)signal_number;
   interrupted = 1;
 }
+
+/* Ctrl-C, the end of a batch job, a closed terminal: all stop at a step and write what there is. */
+static const int stopping_signals[] = {SIGINT, SIGTERM, SIGHUP};
+enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
+
+static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
+  interrupted = 0;
+  for (int k = 0; k < STOPPING_SIGNALS; k++) {
+    struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
+    sigaction(stopping_signals[k], NULL, &before[k]);
+    if (before[k].sa_handler != SIG_IGN) /* as nohup wants it */
+      sigaction(stopping_signals[k], &action, NULL);
+  }
+}
+
+static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
+  for (int k = 0; k < STOPPING_SIGNALS; k++)
+    sigaction(stopping_signals[k], &before[k], NULL);
+}
+
+/* --- the run ------------------------------------------------------------------------------------ */
 
 /* Everything a run holds, so that one function can let go of it. */
 typedef struct run {
@@ -60,8 +84,51 @@ static void choose_paths(run *r) {
     const char *dot = strrchr(name, '.');
     snprintf(path, sizeof path, "%.*s.h5", dot ? (int)(dot - name) : (int)strlen(name), name);
   }
-  r->result_path = arena_text(r->memory, path, strlen(path));
+  char *target = realpath(path, NULL); /* through links, so that the data lie where the user has put them */
+  const char *chosen = target ? target : path;
+  struct stat about;
+  if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode))
+    chosen = path;
+  r->result_path = arena_text(r->memory, chosen, strlen(chosen));
+  free(target);
   r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", path);
+}
+
+/* Hours of computing must not end in a path that cannot be written. */
+static bool result_can_be_written(run *r) {
+  const span where = deck_where(&r->deck->output.item, "result");
+  struct stat about;
+  char folder[4096];
+  const char *slash = strrchr(r->result_path, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->result_path) + 1 : 1, slash ? r->result_path : ".");
+  bool exists = stat(r->result_path, &about) == 0;
+  if (exists && !S_ISREG(about.st_mode))
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is %s", r->result_path,
+                S_ISDIR(about.st_mode) ? "a folder" : "not an ordinary file");
+  else if (exists && !(about.st_mode & 0222))
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is protected against writing", r->result_path);
+  else if (access(folder, W_OK | X_OK) != 0)
+    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%s`: %s", folder, strerror(errno));
+  else
+    return true;
+  diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
+  return false;
+}
+
+static bool result_spares(run *r, const char *input) {
+  if (!same_file(r->result_path, input))
+    return true;
+  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"), "the result would overwrite `%s`", input);
+  diag_hint(&r->said, "give `result` another name in &output");
+  return false;
+}
+
+static bool result_spares_inputs(run *r) {
+  bool good = r->options->deck_text || result_spares(r, r->options->deck_path);
+  for (int k = 0; k < r->open_models; k++)
+    for (int f = 0; f < r->models[k].sources.count; f++)
+      good = good && result_spares(r, r->models[k].sources.items[f].name);
+  return good;
 }
 
 static uint64_t fnv(uint64_t hash, const char *text) {
@@ -80,6 +147,15 @@ static void fingerprint(run *r) {
   snprintf(r->fingerprint, sizeof r->fingerprint, "%016llx", (unsigned long long)hash);
 }
 
+/* --- diagnostics -------------------------------------------------------------------------------- */
+
+static void tell(const run *r, const diagnostics *d) {
+  if (r->options->report)
+    diag_json_add(r->options->report, d);
+  else
+    diag_print(d, stderr);
+}
+
 /* --- setting up --------------------------------------------------------------------------------- */
 
 static bool load_deck(run *r) {
@@ -89,7 +165,10 @@ static bool load_deck(run *r) {
   char *text = o->deck_text ? strdup(o->deck_text)
                             : read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
   if (!text) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    if (o->report)
+      diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
+    else
+      fprintf(stderr, "perilat: error: %s\n", error);
     return false;
   }
   int file = source_add(&r->sources, o->deck_path, text, length);
@@ -98,25 +177,73 @@ static bool load_deck(run *r) {
   return r->deck != NULL;
 }
 
-/* A material's assignment that names an option of the law is a choice, not a parameter value. */
-static int take_choices(deck_material *m, const law *l, law_choice *choices) {
-  int count = 0, kept = 0;
-  for (int k = 0; k < m->assignment_count; k++) {
-    const deck_assignment *a = &m->assignments[k];
-    const char *option = NULL;
-    for (int q = 0; l && q < l->options.count; q++)
-      if (strcasecmp(l->options.items[q]->name, a->name) == 0)
-        option = l->options.items[q]->name;
-    if (option && a->word)
-      choices[count++] = (law_choice){option, a->word};
-    else
-      m->assignments[kept++] = *a;
-  }
-  m->assignment_count = kept;
-  return count;
+/* --- options of a law --------------------------------------------------------------------------- */
+
+static const symbol *find_option(const law *l, const char *name) {
+  for (int k = 0; k < l->options.count; k++)
+    if (strcasecmp(l->options.items[k]->name, name) == 0)
+      return l->options.items[k];
+  return NULL;
 }
 
-/* Opens the law of one material; a second time with the deck's choices when it has options. */
+/* The choice as the law writes it, or NULL with a diagnostic at the deck's line. */
+static const char *find_choice(const symbol *option, const deck_assignment *a, diagnostics *said) {
+  const stmt *declared = option->declared;
+  for (int w = 0; a->word && w < declared->word_count; w++)
+    if (strcmp(declared->words[w], a->word) == 0)
+      return declared->words[w];
+  char words[256] = "";
+  for (int w = 0; w < declared->word_count; w++) {
+    size_t used = strlen(words);
+    snprintf(words + used, sizeof words - used, "%s'%s'", w ? ", " : "", declared->words[w]);
+  }
+  if (a->word)
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` has no choice `%s`", option->name, a->word);
+  else
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` takes a word", option->name);
+  diag_hint(said, "the choices are %s", words);
+  return NULL;
+}
+
+/* A material's assignment that names an option of the law is a choice, not a parameter value. The choices' texts are
+   copies: they outlive the law. */
+static bool take_choices(deck_material *m, const law *l, law_choice *choices, int *count, diagnostics *said) {
+  int kept = 0;
+  bool good = true;
+  *count = 0;
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_assignment *a = &m->assignments[k];
+    const symbol *option = find_option(l, a->name);
+    if (!option) {
+      m->assignments[kept++] = *a;
+      continue;
+    }
+    const char *choice = find_choice(option, a, said);
+    good = good && choice;
+    if (choice)
+      choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
+  }
+  m->assignment_count = kept;
+  return good;
+}
+
+/* Opens the law a second time when the deck chooses among its options. */
+static bool apply_choices(deck_material *m, const char *path, model *out, diagnostics *said) {
+  law_choice *choices = must_calloc((size_t)m->assignment_count + 1, sizeof *choices);
+  int count;
+  bool good = take_choices(m, out->law, choices, &count, said);
+  if (good && count) {
+    model_close(out);
+    good = model_open(out, path, choices, count);
+  }
+  for (int k = 0; k < count; k++) {
+    free((void *)(uintptr_t)choices[k].option);
+    free((void *)(uintptr_t)choices[k].choice);
+  }
+  free(choices);
+  return good;
+}
+
 bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said) {
   char *path = model_find(m->model, deck_path);
   if (!path) {
@@ -126,20 +253,14 @@ bool run_open_material(deck_material *m, const char *deck_path, model *out, diag
     return false;
   }
   bool good = model_open(out, path, NULL, 0);
-  if (good && out->law->options.count > 0) {
-    law_choice *choices = must_calloc((size_t)m->assignment_count + 1, sizeof *choices);
-    int count = take_choices(m, out->law, choices);
-    if (count) {
-      model_close(out);
-      good = model_open(out, path, choices, count);
-    }
-    free(choices);
-  }
+  if (good && out->law->options.count > 0)
+    good = apply_choices(m, path, out, said);
   good = good && model_plan(out);
-  diag_print(&out->said, stderr);
   free(path);
   return good;
 }
+
+/* --- laws --------------------------------------------------------------------------------------- */
 
 static const built_in_law *find_built_in(const run_options *o, const char *model_name) {
   for (int k = 0; k < o->law_count; k++)
@@ -180,9 +301,21 @@ static deck_material *material_of(run *r, int lattice) {
   return NULL;
 }
 
+/* Kernels are compiled for plane stress only. */
+static bool setting_is_supported(run *r, const deck_lattice *l) {
+  if (strcmp(l->setting, "plane_stress") == 0)
+    return true;
+  diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&l->item, "setting"),
+              "laws cannot be compiled for plane strain yet");
+  diag_hint(&r->said, "write setting = 'plane_stress', or leave it out");
+  return false;
+}
+
 /* 0, or an exit status. */
 static int load_law(run *r, int lattice) {
   deck_material *m = material_of(r, lattice);
+  if (!setting_is_supported(r, &r->deck->lattices[lattice]))
+    return INPUT_WRONG;
   const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;
   if (r->options->laws) {
     if (!b) {
@@ -197,6 +330,8 @@ static int load_law(run *r, int lattice) {
   } else {
     model *opened = &r->models[r->open_models];
     bool good = run_open_material(m, r->options->deck_path, opened, &r->said);
+    if (opened->memory)
+      tell(r, &opened->said);
     r->open_models += opened->memory != NULL;
     if (!good)
       return INPUT_WRONG;
@@ -216,9 +351,21 @@ static int load_law(run *r, int lattice) {
   return material_parameters(m, kernel, r->laws[lattice].parameters, &r->said) ? 0 : INPUT_WRONG;
 }
 
+/* What the language of decks allows and a run cannot do yet. */
+static bool is_supported(run *r) {
+  if (r->deck->lattice_count < 2)
+    return true;
+  diag_report(&r->said, DIAG_NOT_SUPPORTED, r->deck->lattices[1].item.where,
+              "a run can have one lattice, this is the second");
+  return false;
+}
+
 /* Deck, laws, simulation. All errors of the deck's materials are reported before it gives up. */
 static int set_up(run *r) {
-  if (!load_deck(r))
+  if (!load_deck(r) || !is_supported(r))
+    return INPUT_WRONG;
+  choose_paths(r);
+  if (!r->options->check_only && !result_can_be_written(r))
     return INPUT_WRONG;
   size_t lattices = (size_t)r->deck->lattice_count;
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
@@ -233,7 +380,8 @@ static int set_up(run *r) {
     return status;
   if (r->options->threads > 0)
     r->deck->simulation.threads = r->options->threads;
-  choose_paths(r);
+  if (!result_spares_inputs(r))
+    return INPUT_WRONG;
   fingerprint(r);
   r->simulation = simulation_new(r->deck, r->laws, &r->said);
   return r->simulation ? 0 : INPUT_WRONG;
@@ -461,7 +609,7 @@ static void report_bad(const run *r) {
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and %.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
     if (r->open_models > 0)
-      kernel_check_explain_bad(r->models[0].plan, r->laws[0].parameters, simulation_rows(r->simulation, 0), &b, stderr);
+      explain_bad(r->models[0].plan, r->laws[0].parameters, simulation_rows(r->simulation, 0), &b, stderr);
   }
   fprintf(stderr, "  what was computed until then is in the result; a smaller `step_safety` or a law that "
                   "stays finite there mends it\n");
@@ -479,25 +627,35 @@ static double last_value(const run *r, const char *name) {
   return NAN;
 }
 
+static void conclude_energy(const run *r) {
+  double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
+  if (!isfinite(external))
+    return;
+  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, by damping %.3g; "
+         "imbalance %.2g J",
+         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
+         last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"), imbalance);
+  if (fabs(external) > 0)
+    printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+  putchar('\n');
+}
+
 static void conclude(const run *r, double seconds, long steps) {
   const rows *w = simulation_rows(r->simulation, 0);
-  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds,
-         (double)steps / seconds, 1e-6 * (double)steps * (double)w->bond_count / seconds);
+  double rate = (double)steps / fmax(seconds, 1e-9);
+  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
+         1e-6 * rate * (double)w->bond_count);
   for (int k = 0; k < r->deck->monitor_count; k++) {
     const char *unit_name;
     const double *values;
     const char *name = simulation_series(r->simulation, k, &unit_name, &values);
     double when = 0, peak = simulation_monitor_peak(r->simulation, k, &when);
-    printf("  %-10s largest %.6g %s at t = %.5g ms\n", name, peak, unit_name, 1e3 * when);
+    bool pure = strcmp(unit_name, "1") == 0;
+    printf("  %-10s largest %.6g%s%s at t = %.5g ms\n", name, peak, pure ? "" : " ", pure ? "" : unit_name, 1e3 * when);
   }
-  double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
-  if (isfinite(external))
-    printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, by damping %.3g; "
-           "imbalance %.2g J (%.2g %%)\n",
-           external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
-           last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"), imbalance,
-           100 * fabs(imbalance / external));
-  printf("  written    %s (%ld frames)\n", r->result_path, result_frame_count(r->result));
+  conclude_energy(r);
+  long frames = result_frame_count(r->result);
+  printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames, frames == 1 ? "" : "s");
 }
 
 /* Time loop with frames and checkpoints. */
@@ -521,31 +679,42 @@ static step_status march(run *r, bool *written) {
       last_checkpoint = monotonic_seconds();
     }
   }
-  if (*written && status != STEP_BAD && (status != STEP_OK || interrupted) &&
-      (simulation_frame_due(r->simulation) || status != STEP_OK))
+  if (*written && status != STEP_BAD && simulation_frame_due(r->simulation))
     *written = write_frame(r);
   progress_end(&bar);
+  if (interrupted && status == STEP_OK)
+    fputs("stopping: the result so far and a checkpoint are being written\n", stderr);
   return status;
+}
+
+/* What could not be written: what there is stays for --resume when a checkpoint can be written, and goes otherwise. */
+static void give_up_writing(run *r, step_status status) {
+  if (status != STEP_BAD && write_checkpoint(r))
+    fprintf(stderr, "  the run is kept in its checkpoint: make room, then go on with --resume\n");
+  else
+    result_discard(r->result);
 }
 
 static int execute(run *r, long resume_frames) {
   if (!open_result(r, resume_frames))
-    return RUN_FAILED;
-  struct sigaction action = {.sa_handler = on_interrupt}, before;
-  interrupted = 0;
-  sigaction(SIGINT, &action, &before);
+    return resume_frames >= 0 ? INPUT_WRONG : RUN_FAILED;
+  struct sigaction before[STOPPING_SIGNALS];
+  catch_signals(before);
   long first = simulation_step_done(r->simulation);
   double begun = monotonic_seconds();
   bool written;
   step_status status = march(r, &written);
   double seconds = monotonic_seconds() - begun;
-  sigaction(SIGINT, &before, NULL);
   bool stopped_by_user = interrupted && status == STEP_OK;
-  if (stopped_by_user)
+  if (stopped_by_user && written)
     write_checkpoint(r);
   if (status == STEP_BAD)
     report_bad(r);
-  if (!finish_result(r, stopped_by_user) || !written)
+  written = written && finish_result(r, stopped_by_user);
+  if (!written)
+    give_up_writing(r, status);
+  release_signals(before);
+  if (!written)
     return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user)
@@ -562,16 +731,50 @@ static bool resume(run *r, long *frames) {
            simulation_step_done(r->simulation));
     return true;
   }
-  fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+  if (access(r->checkpoint_path, F_OK) != 0)
+    fprintf(stderr, "perilat: error: cannot resume: there is no checkpoint `%s`\n"
+                    "  a run leaves one when it is stopped or killed; run without --resume\n", r->checkpoint_path);
+  else
+    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
   return false;
 }
 
-/* --check-kernel: random states through kernel and interpreter. */
+static void warn_of_checkpoint(const run *r) {
+  if (access(r->checkpoint_path, F_OK) == 0)
+    fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up (--resume goes on from it)\n",
+            r->checkpoint_path);
+}
+
+/* --check-kernel: every compiled kernel against the interpreter, with the deck's parameters. */
 static bool check_kernels(const run *r) {
+  enum { STATES = 100000 };
   bool good = true;
-  for (int k = 0; k < r->open_models && !r->options->interpret; k++)
-    good = kernel_check_report(r->models[k].plan, r->laws[k].law, r->laws[k].parameters, 100000, stdout) && good;
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    const simulation_law *l = &r->laws[k];
+    if (k >= r->open_models || l->law->context) {
+      printf("kernel check: nothing to compare %s with: %s\n", l->law->name,
+             l->law->context ? "it runs on the interpreter" : "a stand-alone solver has no interpreter");
+      continue;
+    }
+    pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, k), 0);
+    const double *parameters = l->parameters;
+    kernel_check c = kernel_check_run(r->models[k].plan, l->law, &parameters, 1, &bonds, STATES, 1);
+    kernel_check_report(&c, l->law->name, kernel_check_agrees(&c) ? stdout : stderr);
+    fflush(stdout);
+    good = good && kernel_check_agrees(&c);
+  }
   return good;
+}
+
+static int start(run *r) {
+  long frames = -1;
+  if (r->options->check_kernel && !check_kernels(r))
+    return RUN_FAILED;
+  if (r->options->resume && !resume(r, &frames))
+    return INPUT_WRONG;
+  if (!r->options->resume)
+    warn_of_checkpoint(r);
+  return execute(r, frames);
 }
 
 int run_deck(const run_options *o) {
@@ -581,18 +784,11 @@ int run_deck(const run_options *o) {
   struct tm utc;
   strftime(r.started, sizeof r.started, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   int status = set_up(&r);
-  diag_print(&r.said, stderr);
+  tell(&r, &r.said);
   if (!status) {
-    announce(&r);
-    long frames = -1;
-    if (!o->check_only) {
-      if (o->check_kernel && !check_kernels(&r))
-        status = RUN_FAILED;
-      else if (o->resume && !resume(&r, &frames))
-        status = INPUT_WRONG;
-      else
-        status = execute(&r, frames);
-    }
+    if (!o->report)
+      announce(&r);
+    status = o->check_only ? 0 : start(&r);
   }
   let_go(&r);
   return status;

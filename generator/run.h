@@ -3,6 +3,7 @@
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
+#include "dsl/diagnostics_json.h"
 #include "generator/model.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
@@ -28,13 +29,15 @@ typedef struct run_options {
   bool check_kernel;         /* compare kernel and interpreter on random states first */
   bool check_only;           /* `perilat check deck.nml`: everything but the run */
   bool profile;
+  diag_json *report;         /* diagnostics go here; NULL: to stderr as text */
 } run_options;
 
 /* Exit status: 0 done (also when stopped by Ctrl-C: what there is has been written), 1 the input is wrong, 2 the run failed. */
 int run_deck(const run_options *o);
 
-/* Opens the law of a material with the options that the deck chooses (these are taken out of its assignments); prints the
-   law's own diagnostics, adds the deck's to `said`. The model must be closed when out->memory is set. */
+/* Opens the law of a material with the options that the deck chooses (these are taken out of its assignments); the
+   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The model must be closed when
+   out->memory is set. */
 bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said);
 
 /* main() of a stand-alone solver. */

@@ -14,7 +14,8 @@ typedef struct loaded_kernel {
   bool from_cache;
 } loaded_kernel;
 
-/* The C compiler in use: $PERILAT_CC, $CC, or the first of cc, gcc, clang on the path; NULL when there is none. */
+/* The C compiler in use: $PERILAT_CC, $CC, or the first of cc, gcc, clang on the path; NULL when there is none, also when
+   $PERILAT_CC names one that is not there. May carry options ("cc -g"). */
 const char *toolchain_compiler(void);
 /* Flags of every kernel: -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off ... */
 const char *toolchain_flags(void);

@@ -13,23 +13,38 @@ static bool ends_in(const char *text, const char *tail) {
   return n > m && strcmp(text + n - m, tail) == 0;
 }
 
+/* Cairo's own file output takes a full disk for success; this does not. */
+static cairo_status_t write_bytes(void *data, const unsigned char *bytes, unsigned int count) {
+  canvas *c = data;
+  if (fwrite(bytes, 1, count, c->file) == count)
+    return CAIRO_STATUS_SUCCESS;
+  c->reason = c->reason ? c->reason : errno;
+  return CAIRO_STATUS_WRITE_ERROR;
+}
+
 bool canvas_open(canvas *c, const char *path, double width, double height, char *error, size_t size) {
   *c = (canvas){.path = path, .width = width, .height = height, .is_png = ends_in(path, ".png")};
+  const bool is_svg = ends_in(path, ".svg");
   if (strlen(path) > 4096) {
     snprintf(error, size, "the picture's path is too long");
     return false;
   }
-  snprintf(c->temporary, sizeof c->temporary, "%.4096s.part", path);
-  if (c->is_png)
-    c->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
-  else if (ends_in(path, ".svg"))
-    c->surface = cairo_svg_surface_create(c->temporary, width, height);
-  else if (ends_in(path, ".pdf"))
-    c->surface = cairo_pdf_surface_create(c->temporary, width, height);
-  else {
+  if (!c->is_png && !is_svg && !ends_in(path, ".pdf")) {
     snprintf(error, size, "a picture's name ends in .png, .svg or .pdf; `%s` does not", path);
     return false;
   }
+  snprintf(c->temporary, sizeof c->temporary, "%.4096s.part", path);
+  c->file = fopen(c->temporary, "wb");
+  if (!c->file) {
+    snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
+    return false;
+  }
+  if (c->is_png)
+    c->surface = cairo_image_surface_create(CAIRO_FORMAT_RGB24, (int)width, (int)height);
+  else if (is_svg)
+    c->surface = cairo_svg_surface_create_for_stream(write_bytes, c, width, height);
+  else
+    c->surface = cairo_pdf_surface_create_for_stream(write_bytes, c, width, height);
   c->cr = cairo_create(c->surface);
   cairo_set_source_rgb(c->cr, 1, 1, 1);
   cairo_paint(c->cr);
@@ -40,22 +55,25 @@ bool canvas_open(canvas *c, const char *path, double width, double height, char 
 void canvas_discard(canvas *c) {
   cairo_destroy(c->cr);
   cairo_surface_destroy(c->surface);
+  fclose(c->file);
   unlink(c->temporary);
 }
 
 bool canvas_close(canvas *c, char *error, size_t size) {
   cairo_status_t status = cairo_status(c->cr);
-  errno = 0;
   if (status == CAIRO_STATUS_SUCCESS && c->is_png)
-    status = cairo_surface_write_to_png(c->surface, c->temporary);
+    status = cairo_surface_write_to_png_stream(c->surface, write_bytes, c);
   cairo_destroy(c->cr);
   cairo_surface_finish(c->surface);
   if (status == CAIRO_STATUS_SUCCESS)
     status = cairo_surface_status(c->surface);
   cairo_surface_destroy(c->surface);
-  if (status == CAIRO_STATUS_SUCCESS && rename(c->temporary, c->path) == 0)
+  errno = 0;
+  bool written = fclose(c->file) == 0 && status == CAIRO_STATUS_SUCCESS && !c->reason;
+  if (written && rename(c->temporary, c->path) == 0)
     return true;
-  snprintf(error, size, "cannot write `%s`: %s", c->path, errno ? strerror(errno) : cairo_status_to_string(status));
+  int reason = c->reason ? c->reason : errno;
+  snprintf(error, size, "cannot write `%s`: %s", c->path, reason ? strerror(reason) : cairo_status_to_string(status));
   unlink(c->temporary);
   return false;
 }

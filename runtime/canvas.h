@@ -5,6 +5,7 @@
 #include <cairo.h>
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdio.h>
 
 typedef struct colour { double r, g, b; } colour;
 
@@ -14,10 +15,13 @@ typedef struct canvas {
   double width, height;     /* in points (pixels of a PNG) */
   const char *path;
   char temporary[4200];
+  FILE *file;               /* of the temporary */
+  int reason;               /* errno of the first write that failed */
   bool is_png;
 } canvas;
 
-/* False with a sentence in `error` when the ending is none of .png, .svg, .pdf. White background. */
+/* False with a sentence in `error` when the ending is none of .png, .svg, .pdf or the file cannot be made. White
+   background. The canvas must stay where it is until it is closed or discarded. */
 bool canvas_open(canvas *c, const char *path, double width, double height, char *error, size_t size);
 /* Writes under a temporary name and renames; frees. */
 bool canvas_close(canvas *c, char *error, size_t size);

@@ -8,6 +8,9 @@
 #include <stdint.h>
 
 void h5_quiet(void);
+/* A new file, in the format of HDF5 1.8: every reader knows it, and its descriptions carry checksums, so that damage is
+   an error instead of a crash of the reader. */
+hid_t h5_create(const char *path);
 bool h5_make_group(hid_t file, const char *name); /* true when it is there already */
 bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank, const hsize_t *shape,
                       const char *unit_text);

@@ -108,14 +108,16 @@ result *result_open(const result_header *header, long resume_frames, char *error
     r->record += sizeof(double) * (size_t)header->fields[k].count * (size_t)header->fields[k].components;
   r->file = open(r->working, resume_frames >= 0 ? O_RDWR : O_RDWR | O_CREAT, 0666);
   if (r->file < 0) {
-    snprintf(error, size, "cannot write the result: `%s`: %s", r->working, strerror(errno));
+    snprintf(error, size, "cannot %s: `%s`: %s", resume_frames >= 0 ? "resume" : "write the result", r->working,
+             strerror(errno));
     free(r);
     return NULL;
   }
-  bool good = lock_working(r, error, size) && (resume_frames >= 0 ? keep_working_frames(r, resume_frames, error, size)
-                                                                  : start_working(r, error, size));
-  if (good)
+  bool locked = lock_working(r, error, size);
+  if (locked && (resume_frames >= 0 ? keep_working_frames(r, resume_frames, error, size) : start_working(r, error, size)))
     return r;
+  if (locked && resume_frames < 0)
+    unlink(r->working);
   close(r->file);
   free(r);
   return NULL;
@@ -145,6 +147,8 @@ bool result_sync(result *r, char *error, size_t size) {
   snprintf(error, size, "cannot write `%s` to the disk: %s", r->working, strerror(errno));
   return false;
 }
+
+void result_discard(result *r) { unlink(r->working); }
 
 void result_close(result *r) {
   close(r->file);
@@ -243,7 +247,7 @@ static bool write_attributes(hid_t file, const result_header *h, double dt, long
 static bool fail(const char *temporary, const char *path, char *error, size_t size) {
   int reason = errno;
   unlink(temporary);
-  snprintf(error, size, "cannot write the result `%s`: %s; the frames stay in its working file", path,
+  snprintf(error, size, "cannot write the result `%s`: %s", path,
            reason ? strerror(reason) : "the HDF5 library refused");
   return false;
 }
@@ -254,7 +258,7 @@ bool result_finish(result *r, double dt, long steps, const double *time, long hi
   snprintf(temporary, sizeof temporary, "%s.part", r->path);
   h5_quiet();
   errno = 0;
-  hid_t file = H5Fcreate(temporary, H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+  hid_t file = h5_create(temporary);
   if (file < 0)
     return fail(temporary, r->path, error, size);
   bool good = write_attributes(file, &r->header, dt, steps) && write_input(file, &r->header) &&

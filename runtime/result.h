@@ -62,6 +62,8 @@ bool result_sync(result *r, char *error, size_t size);
    `keep_working` (an interrupted run that can be resumed). */
 bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
                    const result_series *series, int series_count, bool keep_working, char *error, size_t size);
+/* Removes the working file; the result is closed afterwards all the same. */
+void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
 
 /* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in `error` on failure. */
@@ -79,5 +81,7 @@ char *result_read_text(result_file *f, const char *path);             /* "/input
 char *result_read_title(result_file *f);                              /* "" without one */
 /* Names of the members of a group ("/history", "/frames"), comma separated; malloc'ed. */
 char *result_list(result_file *f, const char *group);
+/* Data sets of a group and of the groups in it, to be read: "load, time, energy/kinetic". malloc'ed, never NULL. */
+char *result_members(result_file *f, const char *group);
 
 #endif

@@ -1,6 +1,8 @@
 /* The reading half of result.h. */
+#include <errno.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "dsl/arena.h"
 #include "runtime/hdf5_tools.h"
@@ -15,9 +17,12 @@ struct result_file {
 
 result_file *result_read(const char *path, char *error, size_t size) {
   h5_quiet();
+  struct stat about;
   FILE *probe = fopen(path, "rb");
-  if (!probe) {
-    snprintf(error, size, "there is no result `%s`", path);
+  if (!probe || fstat(fileno(probe), &about) != 0 || !S_ISREG(about.st_mode)) {
+    snprintf(error, size, "cannot read the result `%s`: %s", path, probe ? "it is not a file" : strerror(errno));
+    if (probe)
+      fclose(probe);
     return NULL;
   }
   fclose(probe);
@@ -73,6 +78,14 @@ static bool shape_of(hid_t set, int *rank, hsize_t shape[3]) {
   return good;
 }
 
+/* The longer text; the old one is freed. */
+static char *append_name(char *text, const char *folder, const char *name) {
+  size_t used = strlen(text);
+  text = must_realloc(text, used + strlen(folder) + strlen(name) + 3);
+  sprintf(text + used, "%s%s%s", used ? ", " : "", folder, name);
+  return text;
+}
+
 static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
   int rank;
   if (!shape_of(set, &rank, shape) || rank != rank_wanted)
@@ -88,6 +101,27 @@ static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hs
   return values;
 }
 
+char *result_members(result_file *f, const char *group) {
+  char *names = result_list(f, group), *rest = NULL;
+  char *text = must_calloc(1, 1);
+  for (char *name = names ? strtok_r(names, ",", &rest) : NULL; name; name = strtok_r(NULL, ",", &rest)) {
+    char path[512];
+    snprintf(path, sizeof path, "%.250s/%.250s", group, name);
+    char *inner = result_list(f, path), *inner_rest = NULL;
+    if (!inner)
+      text = append_name(text, "", name);
+    for (char *part = inner ? strtok_r(inner, ",", &inner_rest) : NULL; part; part = strtok_r(NULL, ",", &inner_rest)) {
+      snprintf(path, sizeof path, "%.250s/", name);
+      text = append_name(text, path, part);
+    }
+    free(inner);
+  }
+  free(names);
+  if (!*text)
+    text = append_name(text, "", "nothing");
+  return text;
+}
+
 double *result_read_series(result_file *f, const char *name, long *count, char *unit_text, size_t unit_size,
                            char *error, size_t size) {
   char path[512];
@@ -99,8 +133,8 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
     *count = (long)shape[0];
     h5_read_attribute_text(set, "units", unit_text, unit_size);
   } else {
-    char *names = result_list(f, "/history");
-    snprintf(error, size, "`%s` has no history `%s`; it has %s (and energy/...)", f->path, name, names ? names : "none");
+    char *names = result_members(f, "/history");
+    snprintf(error, size, "`%s` has no history `%s`; it has %s", f->path, name, names);
     free(names);
   }
   if (set >= 0)
@@ -130,8 +164,8 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   int rank = 0;
   hsize_t shape[3] = {0, 0, 0};
   if (set < 0 || !shape_of(set, &rank, shape) || rank < 2) {
-    char *names = result_list(f, "/frames");
-    snprintf(error, size, "`%s` has no field `%s`; its frames hold %s", f->path, field, names ? names : "nothing");
+    char *names = result_members(f, "/frames");
+    snprintf(error, size, "`%s` has no field `%s`; its frames hold %s", f->path, field, names);
     free(names);
     if (set >= 0)
       H5Dclose(set);

@@ -66,6 +66,7 @@ static bool count_steps(simulation *s, diagnostics *d) {
   }
   s->step_count = steps < 1 ? 1 : (int64_t)steps;
   s->sample_interval = s->deck->output.sample > 0 ? s->deck->output.sample : end / 2000;
+  s->sample_interval = fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
   const double samples = fmin(ceil(end / s->sample_interval), steps);
   s->history_capacity = (int64_t)samples + 3;
   return true;

@@ -14,14 +14,23 @@
 #define JOIN(a, b)  JOIN2(a, b)
 #define NAMED(name) JOIN(HANDWRITTEN, name)
 
+/* The loops below each do a part of the work on the bonds of one direction of a row, through buffers that stay in the first
+   cache. In one loop a bond would be a chain of some 170 cycles, of which the processor cannot keep enough in flight; the
+   short chains overlap. */
+
 /* The series hold while the ends' relative displacement is below this part of the bond's length: the chord then turns by
    less than asin(1/16), where five terms of the arc sine leave 2^-53. */
 #define NEAR_PART (1.0 / 16)
 
-/* Constants of one direction; lengths in m, forces in N. */
+#if defined(__clang__)
+#define UNROLL
+#else
+#define UNROLL _Pragma("GCC unroll 2")
+#endif
+
 typedef struct direction {
   long offset[2];             /* from a site to its partner, by parity of the row */
-  double chord_x, chord_y;
+  double chord_x, chord_y;    /* m */
   double unit_x, unit_y;      /* chord over s^2, 1/m */
 } direction;
 
@@ -34,9 +43,19 @@ typedef struct constants {
   double tail_end, tail;      /* and on the second */
   double rate, zeta_rate;     /* of c.dv to stretch rate over rate_0, times L/s; the same times zeta */
   double axial;               /* EA/(2 s) */
-  double shear;               /* 6 EI/s^3 */
-  double moment;              /* 2 EI/s */
+  double shear;               /* 2 EI/s^3: bend_i + bend_j = 3 (theta_i + theta_j) */
+  double moment;              /* -2 EI/s */
 } constants;
+
+/* X(buffer of a row's bonds): their length a multiple of LANES, with LANES more before and behind */
+#define BUFFERS(X)                                                                                 \
+  X(c_x) X(c_y)                  /* chord now, m */                                                \
+  X(inverse)                     /* s/L */                                                         \
+  X(ratio)                       /* L/s */                                                         \
+  X(twice)                       /* twice the stretch */                                           \
+  X(bend_i) X(bend_j)            /* 2 theta_i + theta_j and the reverse, rad */
+
+enum { FORCE_X, FORCE_Y, MOMENT_I, MOMENT_J, PLANES };
 
 struct handwritten {
   const problem *problem;
@@ -46,189 +65,195 @@ struct handwritten {
   double *intact;             /* [3 * size] 1 - damage; 0 where no bond is: no force without a test */
   double *held;               /* [3 * size] 1 where the damage must stay, else 0 */
   unsigned char *row_held;    /* [row_count] some bond of the row is held */
-  double *up[2];              /* forces of the bonds from the row below: [direction 1, 2][x, y, moment][stride] */
-  long stride;
+#define X(name) double *name;
+  BUFFERS(X)
+#undef X
+  double *force[2][3][PLANES]; /* [parity of the row][direction] */
   double kick[3], limit[3];
   long rare;
 };
 
-typedef struct ends { /* of eight bonds */
-  lanes u_x, u_y, turn, v_x, v_y;
-} ends;
+/* --- the bonds of one direction of a row ------------------------------------------------------ */
 
-typedef struct forces {
-  lanes x, y, moment_i, moment_j; /* on i, and the moment on j; the force on j is opposite */
-} forces;
-
-/* --- the law ---------------------------------------------------------------------------------- */
-
-/* Damage as the part that is left. On the curve's two lines that part is linear in 1/strain, and the curve is the larger
-   of the two, and zero: no case is chosen. */
-LANES_FUNCTION lanes intact_part(const constants *c, lanes twice_strain, lanes old, lanes held) {
-  const lanes per = 1 / lanes_max(twice_strain, lanes_all(c->least_strain));
-  const lanes left = lanes_max(c->soft_end + c->soft * per, c->tail_end + c->tail * per);
-  return lanes_min(old, lanes_max(left, held));
+/* Chords and lengths. True when a bond that exists moved too far for the series. With sigma = sqrt(1 + h) - 1:
+   2 sigma = h - sigma^2, which forgives the cancellation in the sigma on the right. */
+static bool find_lengths(handwritten *h, const direction *k, long site, long far_site, const double *intact) {
+  const constants c = h->c;
+  const double *i_x = h->u[0] + site, *i_y = h->u[1] + site, *j_x = h->u[0] + far_site, *j_y = h->u[1] + far_site;
+  const double chord_x = k->chord_x, chord_y = k->chord_y, unit_x = 2 * k->unit_x, unit_y = 2 * k->unit_y;
+  double *to_x = h->c_x, *to_y = h->c_y, *to_inverse = h->inverse, *to_ratio = h->ratio, *to_twice = h->twice;
+  const long count = h->problem->lattice->pitch;
+  unsigned far = 0;
+  UNROLL
+  for (long q = 0; q < count; q += LANES) {
+    const lanes d_x = lanes_load(j_x + q) - lanes_load(i_x + q), d_y = lanes_load(j_y + q) - lanes_load(i_y + q);
+    const lanes square = d_x * d_x + d_y * d_y;
+    const lanes growth = (unit_x * d_x + unit_y * d_y) + square * c.per_square; /* (L/s)^2 - 1 */
+    const lanes ratio_square = lanes_max(1 + growth, lanes_all(0.125));
+    const lanes inverse = lanes_inverse_root(ratio_square), ratio = ratio_square * inverse;
+    const lanes rough = ratio - 1;
+    lanes_store(to_x + q, chord_x + d_x);
+    lanes_store(to_y + q, chord_y + d_y);
+    lanes_store(to_inverse + q, inverse);
+    lanes_store(to_ratio + q, ratio);
+    lanes_store(to_twice + q, growth - rough * rough);
+    far |= lanes_above(square, c.near_square, lanes_load(intact + q));
+  }
+  return far != 0;
 }
 
-/* asin(x) - x over x, in x^2: the five terms that matter for |x| < 1/16. */
-LANES_FUNCTION lanes arc_sine_excess(lanes z) {
-  return z * (1.0 / 6 + z * (3.0 / 40 + z * (5.0 / 112 + z * (35.0 / 1152 + z * (63.0 / 2816)))));
-}
-
-/* With sigma = sqrt(1 + h) - 1: 2 sigma = h - sigma^2, which forgives the cancellation in the sigma on the right. */
-LANES_FUNCTION lanes twice_stretch(lanes h, lanes ratio) {
-  const lanes rough = ratio - 1;
-  return h - rough * rough;
-}
-
-/* Forces of eight bonds and their new intact part. False when one that exists is beyond the series. */
-LANES_FUNCTION bool bond_forces(const constants *c, const direction *k, const ends *i, const ends *j,
-                                lanes held, lanes *intact, forces *f) {
-  const lanes d_x = j->u_x - i->u_x, d_y = j->u_y - i->u_y;
-  const lanes c_x = k->chord_x + d_x, c_y = k->chord_y + d_y;
-  const lanes square = d_x * d_x + d_y * d_y;
-  const lanes h = 2 * (k->unit_x * d_x + k->unit_y * d_y) + square * c->per_square; /* (L/s)^2 - 1 */
-  const lanes ratio_square = lanes_max(1 + h, lanes_all(0.125));
-  const lanes inverse = lanes_inverse_root(ratio_square); /* s/L */
-  const lanes ratio = ratio_square * inverse;
-  const lanes sine = (k->unit_x * d_y - k->unit_y * d_x) * inverse;
-  const lanes turn = sine + sine * arc_sine_excess(sine * sine);
-  const lanes theta_i = i->turn - turn, theta_j = j->turn - turn, both = theta_i + theta_j;
-  const lanes bend_i = both + theta_i, bend_j = both + theta_j;
-  const lanes bend = lanes_max(lanes_abs(bend_i), lanes_abs(bend_j));
-
-  const lanes twice = twice_stretch(h, ratio), old = *intact;
-  if (__builtin_expect(lanes_any_above(square, lanes_all(c->near_square), old) ||
-                           lanes_any_above(bend, lanes_all(3), old), 0))
-    return false;
-  const lanes left = intact_part(c, twice + c->bend_weight * bend, old, held);
-  const lanes speed = c_x * (j->v_x - i->v_x) + c_y * (j->v_y - i->v_y);
-  const lanes damper = (c->zeta_rate * speed) / (ratio + lanes_abs(c->rate * speed));
-
-  const lanes left_inverse = left * inverse, left_moment = left * c->moment;
-  const lanes axial = (c->axial * left_inverse) * (twice + lanes_abs(twice) * damper); /* N/L */
-  const lanes shear = (c->shear * left_inverse) * (inverse * both);                    /* V/L */
-  f->x = axial * c_x + shear * c_y;
-  f->y = axial * c_y - shear * c_x;
-  f->moment_i = -left_moment * bend_i;
-  f->moment_j = -left_moment * bend_j;
-  *intact = left;
-  return true;
+/* End rotations less the chord's, by the arc sine's series. True when a bond that exists may have to be wrapped. */
+static bool find_rotations(handwritten *h, const direction *k, long site, long far_site, const double *intact) {
+  const double *i_turn = h->u[2] + site, *j_turn = h->u[2] + far_site;
+  const double unit_x = k->unit_x, unit_y = k->unit_y;
+  const double *c_x = h->c_x, *c_y = h->c_y, *from_inverse = h->inverse;
+  double *to_i = h->bend_i, *to_j = h->bend_j;
+  const long count = h->problem->lattice->pitch;
+  unsigned far = 0;
+  UNROLL
+  for (long q = 0; q < count; q += LANES) {
+    const lanes sine = (unit_x * lanes_load(c_y + q) - unit_y * lanes_load(c_x + q)) * lanes_load(from_inverse + q);
+    const lanes z = sine * sine, z_2 = z * z;
+    const lanes excess = ((1.0 / 6) + z * (3.0 / 40)) + z_2 * (((5.0 / 112) + z * (35.0 / 1152)) + z_2 * (63.0 / 2816));
+    const lanes turn = sine + (sine * z) * excess;
+    const lanes theta_i = lanes_load(i_turn + q) - turn, theta_j = lanes_load(j_turn + q) - turn;
+    const lanes both = theta_i + theta_j, bend_i = both + theta_i, bend_j = both + theta_j;
+    lanes_store(to_i + q, bend_i);
+    lanes_store(to_j + q, bend_j);
+    far |= lanes_above(lanes_max(lanes_abs(bend_i), lanes_abs(bend_j)), 3, lanes_load(intact + q));
+  }
+  return far != 0;
 }
 
 static double wrapped(double angle) { return remainder(angle, 2 * M_PI); }
 
-/* The same law for any displacement and rotation, bond by bond: those beyond the series are few. */
-static __attribute__((noinline, cold)) void bond_forces_far(const constants *c, const direction *k, const ends *i,
-                                                            const ends *j, lanes held, lanes *intact, forces *f) {
-  *f = (forces){lanes_all(0), lanes_all(0), lanes_all(0), lanes_all(0)};
-  for (int l = 0; l < LANES; l++) {
-    if (!((*intact)[l] > 0)) continue;
-    const double d_x = j->u_x[l] - i->u_x[l], d_y = j->u_y[l] - i->u_y[l];
-    const double c_x = k->chord_x + d_x, c_y = k->chord_y + d_y;
-    const double ratio = sqrt((c_x * c_x + c_y * c_y) * c->per_square), inverse = 1 / ratio;
-    const double h = 2 * (k->unit_x * d_x + k->unit_y * d_y) + (d_x * d_x + d_y * d_y) * c->per_square;
-    const double twice = 2 * h / (ratio + 1);
+/* The same for the bonds beyond the series, with the full arc tangent: they are few. */
+static __attribute__((noinline, cold)) void find_far(handwritten *h, const direction *k, long site, long far_site,
+                                                     const double *intact) {
+  const constants *c = &h->c;
+  for (long q = 0; q < h->problem->lattice->pitch; q++) {
+    const double d_x = h->u[0][far_site + q] - h->u[0][site + q], d_y = h->u[1][far_site + q] - h->u[1][site + q];
+    const double c_x = h->c_x[q], c_y = h->c_y[q], square = d_x * d_x + d_y * d_y;
+    if (!(intact[q] > 0)) continue;
+    if (square <= c->near_square && fmax(fabs(h->bend_i[q]), fabs(h->bend_j[q])) <= 3) continue;
+    const double ratio = sqrt((c_x * c_x + c_y * c_y) * c->per_square);
     const double turn = atan2(k->unit_x * d_y - k->unit_y * d_x, k->unit_x * c_x + k->unit_y * c_y);
-    const double theta_i = wrapped(i->turn[l] - turn), theta_j = wrapped(j->turn[l] - turn);
-    const double bend_i = 2 * theta_i + theta_j, bend_j = 2 * theta_j + theta_i;
-    const double strain = twice + c->bend_weight * fmax(fabs(bend_i), fabs(bend_j));
-    const double per = 1 / fmax(strain, c->least_strain);
-    const double on_curve = fmax(c->soft_end + c->soft * per, c->tail_end + c->tail * per);
-    const double left = fmin((*intact)[l], fmax(on_curve, held[l]));
-    const double speed = c_x * (j->v_x[l] - i->v_x[l]) + c_y * (j->v_y[l] - i->v_y[l]);
-    const double damper = c->zeta_rate * speed / (ratio + fabs(c->rate * speed));
-    const double axial = c->axial * left * inverse * (twice + fabs(twice) * damper);
-    const double shear = c->shear * left * inverse * inverse * (theta_i + theta_j);
-    f->x[l] = axial * c_x + shear * c_y;
-    f->y[l] = axial * c_y - shear * c_x;
-    f->moment_i[l] = -c->moment * left * bend_i;
-    f->moment_j[l] = -c->moment * left * bend_j;
-    (*intact)[l] = left;
-  }
-}
-
-/* --- a row ------------------------------------------------------------------------------------ */
-
-LANES_FUNCTION ends load_ends(const handwritten *h, long site) {
-  return (ends){lanes_load(h->u[0] + site), lanes_load(h->u[1] + site), lanes_load(h->u[2] + site),
-                lanes_load(h->v[0] + site), lanes_load(h->v[1] + site)};
-}
-
-LANES_FUNCTION forces evaluate(handwritten *h, int d, int parity, long site, const ends *i, bool held) {
-  const direction *k = &h->directions[d];
-  const ends j = load_ends(h, site + k->offset[parity]);
-  double *at = h->intact + d * h->problem->lattice->size + site;
-  const lanes stays = held ? lanes_load(h->held + d * h->problem->lattice->size + site) : lanes_all(0);
-  lanes intact = lanes_load(at);
-  forces f;
-  if (!bond_forces(&h->c, k, i, &j, stays, &intact, &f)) {
+    const double theta_i = wrapped(h->u[2][site + q] - turn), theta_j = wrapped(h->u[2][far_site + q] - turn);
+    h->ratio[q] = ratio;
+    h->inverse[q] = 1 / ratio;
+    h->twice[q] = 2 * (2 * (k->unit_x * d_x + k->unit_y * d_y) + square * c->per_square) / (ratio + 1);
+    h->bend_i[q] = 2 * theta_i + theta_j;
+    h->bend_j[q] = 2 * theta_j + theta_i;
     h->rare++;
-    bond_forces_far(&h->c, k, i, &j, stays, &intact, &f);
   }
-  lanes_store(at, intact);
-  return f;
 }
 
-LANES_FUNCTION double *up_plane(const handwritten *h, int parity, int d, int component) {
-  return h->up[parity] + ((d - 1) * 3 + component) * h->stride + LANES;
+/* Damage as the part that is left. On the curve's two lines that part is linear in 1/strain, and the curve is the larger
+   of the two, and zero: no case is chosen. */
+LANES_FUNCTION void find_damage(handwritten *h, double *intact, const double *held) {
+  const constants c = h->c;
+  const double *twice = h->twice, *bend_i = h->bend_i, *bend_j = h->bend_j;
+  const long count = h->problem->lattice->pitch;
+  UNROLL
+  for (long q = 0; q < count; q += LANES) {
+    const lanes bend = lanes_max(lanes_abs(lanes_load(bend_i + q)), lanes_abs(lanes_load(bend_j + q)));
+    const lanes strain = lanes_load(twice + q) + c.bend_weight * bend;
+    const lanes per = 1 / lanes_max(strain, lanes_all(c.least_strain));
+    const lanes left = lanes_max(c.soft_end + c.soft * per, c.tail_end + c.tail * per);
+    const lanes floor = held ? lanes_load(held + q) : lanes_all(0);
+    lanes_store(intact + q, lanes_min(lanes_load(intact + q), lanes_max(left, floor)));
+  }
 }
+
+static void damage_of_row(handwritten *h, double *intact) { find_damage(h, intact, NULL); }
+static void damage_of_held_row(handwritten *h, double *intact, const double *held) { find_damage(h, intact, held); }
+
+static void find_forces(handwritten *h, long site, long far_site, const double *intact, double *const to[PLANES]) {
+  const constants c = h->c;
+  const double *i_x = h->v[0] + site, *i_y = h->v[1] + site, *j_x = h->v[0] + far_site, *j_y = h->v[1] + far_site;
+  const double *from_x = h->c_x, *from_y = h->c_y, *from_inverse = h->inverse, *from_ratio = h->ratio;
+  const double *from_twice = h->twice, *from_i = h->bend_i, *from_j = h->bend_j;
+  double *to_x = to[FORCE_X], *to_y = to[FORCE_Y], *to_i = to[MOMENT_I], *to_j = to[MOMENT_J];
+  const long count = h->problem->lattice->pitch;
+  UNROLL
+  for (long q = 0; q < count; q += LANES) {
+    const lanes c_x = lanes_load(from_x + q), c_y = lanes_load(from_y + q);
+    const lanes speed = c_x * (lanes_load(j_x + q) - lanes_load(i_x + q)) +
+                        c_y * (lanes_load(j_y + q) - lanes_load(i_y + q));
+    const lanes damper = (c.zeta_rate * speed) / (lanes_load(from_ratio + q) + lanes_abs(c.rate * speed));
+    const lanes left = lanes_load(intact + q), inverse = lanes_load(from_inverse + q), twice = lanes_load(from_twice + q);
+    const lanes bend_i = lanes_load(from_i + q), bend_j = lanes_load(from_j + q);
+    const lanes left_inverse = left * inverse, left_moment = left * c.moment;
+    const lanes axial = (c.axial * left_inverse) * (twice + lanes_abs(twice) * damper);        /* N/L */
+    const lanes shear = (left_inverse * inverse) * (c.shear * (bend_i + bend_j));              /* V/L */
+    lanes_store(to_x + q, axial * c_x + shear * c_y);
+    lanes_store(to_y + q, axial * c_y - shear * c_x);
+    lanes_store(to_i + q, left_moment * bend_i);
+    lanes_store(to_j + q, left_moment * bend_j);
+  }
+}
+
+static void evaluate(handwritten *h, int row, int d) {
+  const rows *g = h->problem->lattice;
+  const direction *k = &h->directions[d];
+  const long site = rows_start(g, row), far_site = site + k->offset[row & 1];
+  double *intact = h->intact + d * g->size + site;
+  bool far = find_lengths(h, k, site, far_site, intact);
+  far |= find_rotations(h, k, site, far_site, intact);
+  if (__builtin_expect(far, false)) find_far(h, k, site, far_site, intact);
+  if (h->row_held[row])
+    damage_of_held_row(h, intact, h->held + d * g->size + site);
+  else
+    damage_of_row(h, intact);
+  find_forces(h, site, far_site, intact, h->force[row & 1][d]);
+}
+
+/* --- the particles of a row ------------------------------------------------------------------- */
 
 /* Kick and drift of one component. Nonzero when a velocity is beyond its limit or no number. */
-LANES_FUNCTION unsigned move(handwritten *h, int d, long site, lanes old, lanes u, lanes force) {
-  const lanes v = old + h->kick[d] * force;
-  lanes_store(h->v[d] + site, v);
-  lanes_store(h->u[d] + site, u + h->problem->time_step * v);
-  return lanes_beyond(v, h->limit[d]);
-}
-
-/* Forces of the bonds that the row owns, and its particles moved: each group of eight needs the group before it (for the
-   bonds along the row) and the row below. */
-LANES_FUNCTION bool advance_row(handwritten *h, int row, bool held) {
+LANES_FUNCTION unsigned move(handwritten *h, int row, int d, int own, int incoming, double sign) {
   const rows *g = h->problem->lattice;
   const int parity = row & 1;
-  const long start = rows_start(g, row);
-  const long below_1 = h->directions[1].offset[!parity] - g->pitch, below_2 = h->directions[2].offset[!parity] - g->pitch;
-  forces before = {lanes_all(0), lanes_all(0), lanes_all(0), lanes_all(0)};
+  const double *const own_0 = h->force[parity][0][own], *const own_1 = h->force[parity][1][own];
+  const double *const own_2 = h->force[parity][2][own], *const in_0 = h->force[parity][0][incoming] - 1;
+  const double *const in_1 = h->force[!parity][1][incoming] - (h->directions[1].offset[!parity] - g->pitch);
+  const double *const in_2 = h->force[!parity][2][incoming] - (h->directions[2].offset[!parity] - g->pitch);
+  double *const v = h->v[d] + rows_start(g, row), *const u = h->u[d] + rows_start(g, row);
+  const double kick = h->kick[d], time_step = h->problem->time_step, limit = h->limit[d];
+  const long count = g->pitch;
   unsigned beyond = 0;
-  for (long q = 0; q < g->pitch; q += LANES) {
-    const long site = start + q;
-    const ends i = load_ends(h, site);
-    const forces a = evaluate(h, 0, parity, site, &i, held);
-    const forces b = evaluate(h, 1, parity, site, &i, held);
-    const forces c = evaluate(h, 2, parity, site, &i, held);
-    lanes_store(up_plane(h, parity, 1, 0) + q, b.x);
-    lanes_store(up_plane(h, parity, 1, 1) + q, b.y);
-    lanes_store(up_plane(h, parity, 1, 2) + q, b.moment_j);
-    lanes_store(up_plane(h, parity, 2, 0) + q, c.x);
-    lanes_store(up_plane(h, parity, 2, 1) + q, c.y);
-    lanes_store(up_plane(h, parity, 2, 2) + q, c.moment_j);
-    const lanes f_x = a.x + b.x + c.x - lanes_shift_in(before.x, a.x) -
-                      lanes_load(up_plane(h, !parity, 1, 0) + q - below_1) -
-                      lanes_load(up_plane(h, !parity, 2, 0) + q - below_2);
-    const lanes f_y = a.y + b.y + c.y - lanes_shift_in(before.y, a.y) -
-                      lanes_load(up_plane(h, !parity, 1, 1) + q - below_1) -
-                      lanes_load(up_plane(h, !parity, 2, 1) + q - below_2);
-    const lanes moment = a.moment_i + b.moment_i + c.moment_i + lanes_shift_in(before.moment_j, a.moment_j) +
-                         lanes_load(up_plane(h, !parity, 1, 2) + q - below_1) +
-                         lanes_load(up_plane(h, !parity, 2, 2) + q - below_2);
-    before = a;
-    beyond |= move(h, 0, site, i.v_x, i.u_x, f_x);
-    beyond |= move(h, 1, site, i.v_y, i.u_y, f_y);
-    beyond |= move(h, 2, site, lanes_load(h->v[2] + site), i.turn, moment);
+  UNROLL
+  for (long q = 0; q < count; q += LANES) {
+    const lanes owned = (lanes_load(own_0 + q) + lanes_load(own_1 + q)) + lanes_load(own_2 + q);
+    const lanes others = (lanes_load(in_0 + q) + lanes_load(in_1 + q)) + lanes_load(in_2 + q);
+    const lanes now = lanes_load(v + q) + kick * (sign < 0 ? owned - others : owned + others);
+    lanes_store(v + q, now);
+    lanes_store(u + q, lanes_load(u + q) + time_step * now);
+    beyond |= lanes_beyond(now, limit);
   }
-  return beyond == 0;
+  return beyond;
 }
 
-static bool free_row(handwritten *h, int row) { return advance_row(h, row, false); }
-static bool held_row(handwritten *h, int row) { return advance_row(h, row, true); }
+static bool move_row(handwritten *h, int row) {
+  return (move(h, row, 0, FORCE_X, FORCE_X, -1) | move(h, row, 1, FORCE_Y, FORCE_Y, -1) |
+          move(h, row, 2, MOMENT_I, MOMENT_J, 1)) == 0;
+}
+
+static size_t stride_bytes(const handwritten *h) {
+  return (size_t)(h->problem->lattice->pitch + 2 * LANES) * sizeof(double);
+}
 
 bool NAMED(_advance)(handwritten *h, long steps) {
   bool good = true;
   for (long step = 0; step < steps && good; step++) {
-    memset(h->up[1], 0, (size_t)(6 * h->stride) * sizeof(double)); /* nothing below the first row */
-    for (int row = 0; row < h->problem->lattice->row_count; row++)
-      good &= h->row_held[row] ? held_row(h, row) : free_row(h, row);
+    for (int d = 1; d < 3; d++) /* nothing below the first row */
+      for (int p = 0; p < PLANES; p++)
+        memset(h->force[1][d][p] - LANES, 0, stride_bytes(h));
+    for (int row = 0; row < h->problem->lattice->row_count; row++) {
+      for (int d = 0; d < 3; d++)
+        evaluate(h, row, d);
+      good &= move_row(h, row);
+    }
   }
   return good;
 }
@@ -241,6 +266,8 @@ static double *zeros(long count) {
   if (!p) must_alloc(SIZE_MAX); /* ends the program with the usual message */
   return memset(p, 0, bytes);
 }
+
+static double *buffer(const handwritten *h) { return zeros(h->problem->lattice->pitch + 2 * LANES) + LANES; }
 
 static constants constants_of(const problem *p) {
   const bilinear_law *l = &p->law;
@@ -258,8 +285,8 @@ static constants constants_of(const problem *p) {
                      .rate = 1 / (s * s * l->rate_0),
                      .zeta_rate = l->zeta / (s * s * l->rate_0),
                      .axial = EA / (2 * s),
-                     .shear = 6 * EI / (s * s * s),
-                     .moment = 2 * EI / s};
+                     .shear = 2 * EI / (s * s * s),
+                     .moment = -2 * EI / s};
 }
 
 handwritten *NAMED(_new)(const problem *p) {
@@ -268,7 +295,6 @@ handwritten *NAMED(_new)(const problem *p) {
   handwritten *h = must_calloc(1, sizeof *h);
   h->problem = p;
   h->c = constants_of(p);
-  h->stride = g->pitch + 2 * LANES;
   for (int d = 0; d < 3; d++) {
     h->directions[d] = (direction){{g->offset[0][d], g->offset[1][d]}, g->chord[d][0], g->chord[d][1],
                                    g->chord[d][0] / square, g->chord[d][1] / square};
@@ -280,8 +306,11 @@ handwritten *NAMED(_new)(const problem *p) {
   h->intact = zeros(3 * g->size);
   h->held = zeros(3 * g->size);
   h->row_held = must_calloc((size_t)g->row_count, 1);
-  h->up[0] = zeros(6 * h->stride);
-  h->up[1] = zeros(6 * h->stride);
+#define X(name) h->name = buffer(h);
+  BUFFERS(X)
+#undef X
+  for (int k = 0; k < 6 * PLANES; k++)
+    h->force[k / PLANES % 2][k / PLANES / 2][k % PLANES] = buffer(h);
   for (int row = 0; row < g->row_count; row++)
     for (long q = 0; q < 3 * g->pitch; q++) {
       const long d = q / g->pitch, site = rows_start(g, row) + q % g->pitch;
@@ -300,8 +329,11 @@ void NAMED(_free)(handwritten *h) {
   free(h->intact);
   free(h->held);
   free(h->row_held);
-  free(h->up[0]);
-  free(h->up[1]);
+#define X(name) free(h->name - LANES);
+  BUFFERS(X)
+#undef X
+  for (int k = 0; k < 6 * PLANES; k++)
+    free(h->force[k / PLANES % 2][k / PLANES / 2][k % PLANES] - LANES);
   free(h);
 }
 

@@ -23,11 +23,6 @@ LANES_FUNCTION lanes lanes_load(const double *p) { return *(const lanes_anywhere
 LANES_FUNCTION void lanes_store(double *p, lanes x) { *(lanes_anywhere *)p = x; }
 LANES_FUNCTION lanes lanes_all(double x) { return (lanes){x, x, x, x, x, x, x, x}; }
 
-/* The last lane of `before`, then all but the last of `x`. */
-LANES_FUNCTION lanes lanes_shift_in(lanes before, lanes x) {
-  return __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);
-}
-
 #if LANES_AVX512
 
 LANES_FUNCTION lanes lanes_abs(lanes x) { return (lanes)_mm512_abs_pd((__m512d)x); }
@@ -47,10 +42,10 @@ LANES_FUNCTION unsigned lanes_beyond(lanes x, double limit) {
   return _mm512_cmp_pd_mask(_mm512_abs_pd((__m512d)x), _mm512_set1_pd(limit), _CMP_NLE_UQ);
 }
 
-/* Some lane with x > limit and y > 0. */
-LANES_FUNCTION bool lanes_any_above(lanes x, lanes limit, lanes y) {
-  const __mmask8 above = _mm512_cmp_pd_mask((__m512d)x, (__m512d)limit, _CMP_NLE_UQ);
-  return _mm512_mask_cmp_pd_mask(above, (__m512d)y, _mm512_setzero_pd(), _CMP_GT_OQ) != 0;
+/* A bit for each lane with x > limit, or x no number, and y > 0. */
+LANES_FUNCTION unsigned lanes_above(lanes x, double limit, lanes y) {
+  const __mmask8 above = _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(limit), _CMP_NLE_UQ);
+  return _mm512_mask_cmp_pd_mask(above, (__m512d)y, _mm512_setzero_pd(), _CMP_GT_OQ);
 }
 
 #else
@@ -81,11 +76,11 @@ LANES_FUNCTION unsigned lanes_beyond(lanes x, double limit) {
     bits |= (unsigned)!(__builtin_fabs(x[l]) <= limit) << l;
   return bits;
 }
-LANES_FUNCTION bool lanes_any_above(lanes x, lanes limit, lanes y) {
-  bool any = false;
+LANES_FUNCTION unsigned lanes_above(lanes x, double limit, lanes y) {
+  unsigned bits = 0;
   for (int l = 0; l < LANES; l++)
-    any |= !(x[l] <= limit[l]) & (y[l] > 0);
-  return any;
+    bits |= (unsigned)(!(x[l] <= limit) & (y[l] > 0)) << l;
+  return bits;
 }
 
 #endif

@@ -45,10 +45,11 @@ static double random_sign(uint64_t *state) {
 
 void motion_start(motion *m, const problem *p, double stretch, double turn) {
   const rows *g = p->lattice;
+  const double centre[2] = {g->x[g->particle_site[0]] + g->width / 2, g->y[g->particle_site[0]] + g->height / 2};
   uint64_t random = UINT64_C(0x9e3779b97f4a7c15);
   memset(m->damage, 0, (size_t)(g->directions * g->size) * sizeof *m->damage);
   for (long q = 0; q < g->size; q++) {
-    const double x = g->x[q], y = g->y[q];
+    const double x = g->x[q] - centre[0], y = g->y[q] - centre[1];
     const double rigid[3] = {(cos(turn) - 1) * x - sin(turn) * y,
                              sin(turn) * x + (cos(turn) - 1) * y, turn};
     for (int d = 0; d < 3; d++) {

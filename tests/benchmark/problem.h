@@ -34,7 +34,7 @@ motion motion_new(const rows *lattice);
 void motion_free(motion *m);
 
 /* Virgin bonds; each particle is moved and turned at random so that bonds stretch by about `stretch`, and flies at a random
-   velocity that would stretch them as much within some steps. On top the body is turned about the origin by `turn`. The
+   velocity that would stretch them as much within some steps. On top the body is turned about its middle by `turn`. The
    same numbers whenever and wherever it is called. */
 void motion_start(motion *m, const problem *p, double stretch, double turn);
 

@@ -425,6 +425,18 @@ static void the_loops_vectorise(void **state) {
   hand_free(h);
 }
 
+/* The key of a kernel is a hash of its text. */
+static void the_same_law_gives_the_same_text(void **state) {
+  (void)state;
+  hand_made *first = beam_new(), *second = beam_new();
+  char *a = text_of(first), *b = text_of(second);
+  assert_string_equal(a, b);
+  free(a);
+  free(b);
+  hand_free(first);
+  hand_free(second);
+}
+
 /* No call, in any of the code; a call in a loop is what makes it slow without a word. */
 static void the_assembly_calls_nothing(void **state) {
   (void)state;
@@ -558,6 +570,7 @@ int main(void) {
       cmocka_unit_test(strings_cannot_leave_their_quotes),
       cmocka_unit_test(names_are_identifiers_and_unique),
       cmocka_unit_test(every_operation_has_the_bits_of_the_interpreter),
+      cmocka_unit_test(the_same_law_gives_the_same_text),
       cmocka_unit_test(the_loops_vectorise),
       cmocka_unit_test(the_assembly_calls_nothing),
       cmocka_unit_test(generated_c_has_no_warning),

@@ -385,17 +385,21 @@ static void a_temporary_cache_that_others_can_write_is_not_used(void **state) {
   put_back("TMPDIR", kept);
 }
 
+static void assert_cache_is(const char *folder, const char *below) {
+  const char *cache = toolchain_cache();
+  assert_memory_equal(cache, folder, strlen(folder));
+  assert_string_equal(cache + strlen(folder), below);
+}
+
 static void the_cache_follows_the_usual_variables(void **state) {
   place_of_test *p = *state;
-  char *home = kept_setting("HOME"), *xdg = kept_setting("XDG_CACHE_HOME"), expected[600];
+  char *home = kept_setting("HOME"), *xdg = kept_setting("XDG_CACHE_HOME");
   unsetenv("PERILAT_CACHE");
   setenv("XDG_CACHE_HOME", p->folder, 1);
-  snprintf(expected, sizeof expected, "%s/perilat", p->folder);
-  assert_string_equal(toolchain_cache(), expected);
+  assert_cache_is(p->folder, "/perilat");
   unsetenv("XDG_CACHE_HOME");
   setenv("HOME", p->folder, 1);
-  snprintf(expected, sizeof expected, "%s/.cache/perilat", p->folder);
-  assert_string_equal(toolchain_cache(), expected);
+  assert_cache_is(p->folder, "/.cache/perilat");
   put_back("HOME", home);
   put_back("XDG_CACHE_HOME", xdg);
 }

@@ -114,6 +114,7 @@ static void written_and_read_back(void **state) {
 
 static void resumed_after_a_kill(void **state) {
   (void)state;
+  unlink("result_b.h5"); /* of an earlier run of this test */
   result_header h = header("result_b.h5");
   result *r = result_open(&h, -1, error, sizeof error);
   for (int k = 0; k < 3; k++)

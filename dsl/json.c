@@ -1,0 +1,175 @@
+#include "dsl/json.h"
+
+#include <assert.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+void json_begin(json *j, FILE *out) {
+  *j = (json){.out = out};
+}
+
+void json_end(json *j) {
+  assert(j->depth == 0 && !j->after_key);
+  fputc('\n', j->out);
+}
+
+static void new_line(json *j) {
+  fprintf(j->out, "\n%*s", 2 * j->depth, "");
+}
+
+/* What stands between a value and the one before it. */
+static void before_value(json *j) {
+  if (j->after_key) {
+    j->after_key = false;
+    return;
+  }
+  if (j->depth == 0) return;
+  if (j->filled[j->depth - 1]) fputc(',', j->out);
+  j->filled[j->depth - 1] = true;
+  new_line(j);
+}
+
+static void open_with(json *j, char bracket) {
+  before_value(j);
+  assert(j->depth < JSON_DEEPEST);
+  fputc(bracket, j->out);
+  j->filled[j->depth++] = false;
+}
+
+static void close_with(json *j, char bracket) {
+  assert(j->depth > 0 && !j->after_key);
+  bool filled = j->filled[--j->depth];
+  if (filled) new_line(j);
+  fputc(bracket, j->out);
+}
+
+void json_object(json *j) {
+  open_with(j, '{');
+}
+void json_object_end(json *j) {
+  close_with(j, '}');
+}
+void json_array(json *j) {
+  open_with(j, '[');
+}
+void json_array_end(json *j) {
+  close_with(j, ']');
+}
+
+/* --- texts --- */
+
+static bool continues(char byte) {
+  return ((unsigned char)byte & 0xC0) == 0x80;
+}
+
+/* Neither overlong forms nor surrogates nor anything beyond U+10FFFF (Unicode 15, table 3-7). */
+static bool second_byte_allowed(unsigned char first, unsigned char second) {
+  switch (first) {
+  case 0xE0:
+    return second >= 0xA0;
+  case 0xED:
+    return second <= 0x9F;
+  case 0xF0:
+    return second >= 0x90;
+  case 0xF4:
+    return second <= 0x8F;
+  default:
+    return true;
+  }
+}
+
+size_t utf8_length(const char *text, size_t available) {
+  if (available == 0) return 0;
+  unsigned char first = (unsigned char)text[0];
+  size_t length = first < 0x80                     ? 1
+                  : first >= 0xC2 && first <= 0xDF ? 2
+                  : first >= 0xE0 && first <= 0xEF ? 3
+                  : first >= 0xF0 && first <= 0xF4 ? 4
+                                                   : 0;
+  if (length > available) return 0;
+  for (size_t i = 1; i < length; i++)
+    if (!continues(text[i])) return 0;
+  if (length > 1 && !second_byte_allowed(first, (unsigned char)text[1])) return 0;
+  return length;
+}
+
+static void put_ascii(json *j, unsigned char byte) {
+  static const char named[] = "\"\"\\\\\nn\tt\rr\bb\ff";
+  for (size_t i = 0; i + 1 < sizeof named; i += 2)
+    if ((unsigned char)named[i] == byte) {
+      fprintf(j->out, "\\%c", named[i + 1]);
+      return;
+    }
+  if (byte < 32 || byte == 127)
+    fprintf(j->out, "\\u%04x", byte);
+  else
+    fputc(byte, j->out);
+}
+
+static void put_text(json *j, const char *text, size_t length) {
+  fputc('"', j->out);
+  for (size_t i = 0; i < length;) {
+    size_t n = utf8_length(text + i, length - i);
+    if (n == 1)
+      put_ascii(j, (unsigned char)text[i]);
+    else if (n > 1)
+      fwrite(text + i, 1, n, j->out);
+    else
+      fputs("\xEF\xBF\xBD", j->out);
+    i += n ? n : 1;
+  }
+  fputc('"', j->out);
+}
+
+void json_key(json *j, const char *name) {
+  before_value(j);
+  put_text(j, name, strlen(name));
+  fputs(": ", j->out);
+  j->after_key = true;
+}
+
+void json_bytes(json *j, const char *text, size_t length) {
+  before_value(j);
+  put_text(j, text, length);
+}
+
+void json_text(json *j, const char *text) {
+  if (text)
+    json_bytes(j, text, strlen(text));
+  else
+    json_null(j);
+}
+
+/* --- other values --- */
+
+void json_number(json *j, double number) {
+  if (!isfinite(number)) {
+    json_null(j);
+    return;
+  }
+  char text[40];
+  for (int digits = 15; digits <= 17; digits++) { /* the fewest that give the number back */
+    snprintf(text, sizeof text, "%.*g", digits, number);
+    if (strtod(text, NULL) == number) break;
+  }
+  char *comma = strchr(text, ','); /* the decimal sign of some languages */
+  if (comma) *comma = '.';
+  before_value(j);
+  fputs(text, j->out);
+}
+
+void json_integer(json *j, long number) {
+  before_value(j);
+  fprintf(j->out, "%ld", number);
+}
+
+void json_bool(json *j, bool value) {
+  before_value(j);
+  fputs(value ? "true" : "false", j->out);
+}
+
+void json_null(json *j) {
+  before_value(j);
+  fputs("null", j->out);
+}

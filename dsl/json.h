@@ -1,0 +1,41 @@
+/* Writes JSON: objects and arrays one entry a line, indented; always valid. In texts control bytes are
+   escaped and bytes that are not UTF-8 become U+FFFD; a number that is not finite becomes null. */
+#ifndef PERILAT_DSL_JSON_H
+#define PERILAT_DSL_JSON_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdio.h>
+
+enum { JSON_DEEPEST = 16 };
+
+typedef struct json {
+  FILE *out;
+  int depth;
+  bool filled[JSON_DEEPEST]; /* the object or array open at this depth has an entry */
+  bool after_key;
+} json;
+
+void json_begin(json *j, FILE *out);
+/* Ends the line after the outermost value. */
+void json_end(json *j);
+
+void json_object(json *j);
+void json_object_end(json *j);
+void json_array(json *j);
+void json_array_end(json *j);
+/* Before each value of an object. */
+void json_key(json *j, const char *name);
+
+/* null for NULL. */
+void json_text(json *j, const char *text);
+void json_bytes(json *j, const char *text, size_t length);
+void json_number(json *j, double number);
+void json_integer(json *j, long number);
+void json_bool(json *j, bool value);
+void json_null(json *j);
+
+/* Length of the UTF-8 character at `text` (1 to 4), or 0 when the bytes there are none. */
+size_t utf8_length(const char *text, size_t available);
+
+#endif

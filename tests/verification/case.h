@@ -1,0 +1,193 @@
+/* For verification: a law of models/ with both its readers, lattices and whole runs made from it,
+   without files in between. */
+#ifndef PERILAT_TESTS_CASE_H
+#define PERILAT_TESTS_CASE_H
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/model.h"
+#include "generator/run.h"
+#include "runtime/simulation.h"
+
+/* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */
+typedef struct law_case {
+  model model;
+  const pl_law *compiled;
+  pl_law *interpreted;
+  double *parameters;
+} law_case;
+
+static inline bool law_case_open(law_case *c, const char *name) {
+  char path[4096], error[4096];
+  const char *note;
+  snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
+  memset(c, 0, sizeof *c);
+  if (!model_open(&c->model, path, NULL, 0) || !model_plan(&c->model)) {
+    diag_print(&c->model.said, stderr);
+    return false;
+  }
+  c->compiled = model_kernel(&c->model, false, &note, error, sizeof error);
+  if (!c->compiled) fprintf(stderr, "%s\n", error);
+  c->interpreted = plan_interpreted(c->model.plan, c->model.key);
+  c->parameters = calloc((size_t)c->interpreted->parameter_count + 1, sizeof *c->parameters);
+  for (int p = 0; p < c->interpreted->parameter_count; p++)
+    c->parameters[p] = c->interpreted->parameters[p].initial;
+  return c->compiled != NULL && note == NULL;
+}
+
+static inline void law_case_close(law_case *c) {
+  free(c->parameters);
+  if (c->interpreted) plan_interpreted_free(c->interpreted);
+  model_close(&c->model);
+}
+
+/* The place of a parameter's value; ends the test when there is none of that name. */
+static inline double *law_case_value(law_case *c, const char *name) {
+  for (int p = 0; p < c->interpreted->parameter_count; p++)
+    if (strcmp(c->interpreted->parameters[p].name, name) == 0) return &c->parameters[p];
+  fprintf(stderr, "no parameter %s\n", name);
+  abort();
+}
+
+/* A deck read from text or file, and the lattice or the run that it describes. */
+typedef struct deck_case {
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  deck *deck;
+  rows *lattice;      /* of deck_case_lattice */
+  model model;        /* of deck_case_run */
+  simulation_law law; /* of deck_case_run */
+  simulation *simulation;
+} deck_case;
+
+static inline bool deck_case_read(deck_case *c, const char *name, const char *text,
+                                  const char *const *overrides, int count) {
+  deck_override list[32];
+  memset(c, 0, sizeof *c);
+  c->memory = arena_new();
+  diag_begin(&c->said, &c->sources);
+  for (int k = 0; k < count && k < 32; k++)
+    list[k].text = overrides[k];
+  const int file = source_add(&c->sources, name, text, strlen(text));
+  c->deck = deck_read(c->memory, &c->sources, file, list, count, &c->said);
+  if (c->said.errors) diag_print(&c->said, stderr);
+  return c->deck != NULL;
+}
+
+/* Only the lattice of the deck. */
+static inline bool deck_case_lattice(deck_case *c, const char *text) {
+  if (!deck_case_read(c, "lattice.nml", text, NULL, 0)) return false;
+  c->lattice = rows_build(c->deck, 0, &c->said);
+  if (c->said.errors) diag_print(&c->said, stderr);
+  return c->lattice != NULL;
+}
+
+/* A simulation of the deck with the compiled kernel of its own law. */
+static inline bool deck_case_start(deck_case *c, const char *path) {
+  const char *note;
+  char error[4096];
+  deck_material *m = &c->deck->materials[0];
+  if (!run_open_material(m, path, &c->model, &c->said)) return false;
+  c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
+  if (!c->law.law) return false;
+  c->law.parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof(double));
+  if (material_parameters(m, c->law.law, c->law.parameters, &c->said))
+    c->simulation = simulation_new(c->deck, &c->law, &c->said);
+  if (c->said.errors) diag_print(&c->said, stderr);
+  return c->simulation != NULL;
+}
+
+static inline bool deck_case_text(deck_case *c, const char *text) {
+  return deck_case_read(c, "case.nml", text, NULL, 0) &&
+         deck_case_start(c, SOURCE_DIR "/models/case.nml");
+}
+
+/* A deck of the repository, named from its root, with overrides as of --set. */
+static inline bool deck_case_run(deck_case *c, const char *name, const char *const *overrides,
+                                 int count) {
+  char path[4096], error[1024];
+  size_t length;
+  snprintf(path, sizeof path, "%s/%s", SOURCE_DIR, name);
+  char *text = read_text_file(path, 1 << 20, &length, error, sizeof error);
+  if (!text) {
+    fprintf(stderr, "%s\n", error);
+    return false;
+  }
+  const bool good = deck_case_read(c, path, text, overrides, count) && deck_case_start(c, path);
+  free(text);
+  return good;
+}
+
+static inline step_status deck_case_go(deck_case *c) {
+  step_status status;
+  do
+    status = simulation_advance(c->simulation, 1L << 40, NULL);
+  while (status == STEP_OK);
+  return status;
+}
+
+static inline void deck_case_close(deck_case *c) {
+  if (c->simulation) simulation_free(c->simulation);
+  free(c->law.parameters);
+  if (c->model.memory) model_close(&c->model);
+  if (c->lattice) rows_free(c->lattice);
+  diag_clear(&c->said);
+  source_clear(&c->sources);
+  arena_free(c->memory);
+}
+
+/* Samples of a series of the history, [simulation_history]. */
+static inline const double *deck_case_series(const deck_case *c, const char *name) {
+  const double *values;
+  for (int k = 0; k < simulation_series_count(c->simulation); k++)
+    if (strcmp(simulation_series(c->simulation, k, NULL, &values), name) == 0) return values;
+  fprintf(stderr, "no series %s\n", name);
+  abort();
+}
+
+/* Index of the largest value. */
+static inline long largest_of(const double *values, long count) {
+  long at = 0;
+  for (long k = 1; k < count; k++)
+    if (values[k] > values[at]) at = k;
+  return at;
+}
+
+/* Bond forces of the state, a plane at a time: force[plane][direction * size + site of the owner].
+   0 where there is no bond. The fields keep their values. */
+static inline void all_bond_forces(sweep *w, double *force[4]) {
+  const rows *g = w->lattice;
+  const pl_law *kernel = w->law;
+  double *fields = calloc((size_t)(kernel->field_count * g->pitch) + 1, sizeof *fields);
+  for (int r = 0; r < g->row_count; r++)
+    for (int k = 0; k < g->directions && w->count[r] > 0; k++) {
+      const long near = rows_start(g, r) + w->begin[r], far = near + g->offset[r & 1][k];
+      double *field[16], *planes[PL_MAX_PLANES];
+      for (int f = 0; f < kernel->field_count; f++) {
+        field[f] = fields + f * g->pitch;
+        memcpy(field[f], w->field[f] + k * g->size + near, (size_t)w->count[r] * sizeof(double));
+      }
+      for (int p = 0; p < kernel->force_planes; p++)
+        planes[p] = force[p] + k * g->size + near;
+      pl_strip s = {.count = w->count[r],
+                    .direction = k,
+                    .flags = g->flags + near,
+                    .field = field,
+                    .force = planes,
+                    .time_step = w->time_step};
+      for (int d = 0; d < w->dof; d++) {
+        s.displacement_i[d] = w->displacement[d] + near;
+        s.displacement_j[d] = w->displacement[d] + far;
+        s.velocity_i[d] = w->velocity[d] + near;
+        s.velocity_j[d] = w->velocity[d] + far;
+      }
+      kernel->rows(kernel, w->uniforms + (long)k * kernel->uniform_count, &s);
+    }
+  free(fields);
+}
+
+#endif

@@ -1,0 +1,159 @@
+/* The law mplm_linear through decks and the program: one bond between two particles pulled apart or
+   pushed together. Work of fracture, strength and crushing against the closed forms of Gerstle et
+   al. (2013) for both choices of each option. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "runtime/result.h"
+
+static const double E = 24.86e9, nu = 0.2, rho = 2323, eps_t = 1.26e-4, thickness = 0.127; /* SI */
+
+/* Both particles may only move along the row, so that the bond neither turns nor bends. */
+static const char pair[] =
+    "&simulation end_time = %.17g threads = 1 /\n"
+    "&lattice name = 'c' kind = 'hexagonal' spacing = %.17g thickness = '127 mm' /\n"
+    "&material lattice = 'c' model = 'mplm_linear' %s /\n"
+    "&body lattice = 'c' shape = 'point' at = 0, 0 /\n"
+    "&body lattice = 'c' shape = 'point' at = %.17g, 0 /\n"
+    "&region name = 'left' shape = 'point' at = 0, 0 /\n"
+    "&region name = 'right' shape = 'point' at = %.17g, 0 /\n"
+    "&support region = 'left' fix = 'x', 'y', 'rotation' /\n"
+    "&support region = 'right' fix = 'y', 'rotation' /\n"
+    "&drive region = 'right' component = 'x' velocity = %.17g rise = '1 ms' /\n"
+    "&monitor name = 'load' kind = 'reaction' region = 'right' component = 'x' /\n"
+    "&output result = 'mplm_linear.h5' frames = 2 sample = '0.02 ms' fields = 'displacement', "
+    "'omega_t', 'omega_c', 'loss' /\n";
+
+static void run(const char *settings, double spacing, double velocity, double end) {
+  FILE *out = fopen("mplm_linear.nml", "w");
+  assert_non_null(out);
+  fprintf(out, pair, end, spacing, settings, spacing, spacing, velocity);
+  assert_int_equal(fclose(out), 0);
+  char command[1024];
+  snprintf(command, sizeof command,
+           "PERILAT_MODELS='%s/models' '%s' run mplm_linear.nml > mplm_linear.log 2>&1", SOURCE_DIR,
+           PERILAT_PROGRAM);
+  if (system(command) != 0) fail_msg("%s\nfailed: see mplm_linear.log", command);
+}
+
+static double *series(result_file *f, const char *name, long *count) {
+  char error[256], unit[32];
+  double *values = result_read_series(f, name, count, unit, sizeof unit, error, sizeof error);
+  if (!values) fail_msg("%s", error);
+  return values;
+}
+
+static double last(result_file *f, const char *name) {
+  long count;
+  double *values = series(f, name, &count), value = values[count - 1];
+  free(values);
+  return value;
+}
+
+static double last_frame(result_file *f, const char *name) {
+  char error[256], unit[32];
+  long count;
+  int components;
+  double *values = result_read_frame(f, name, -1, &count, &components, unit, sizeof unit, error,
+                                     sizeof error);
+  if (!values) fail_msg("%s", error);
+  const double value = values[0];
+  free(values);
+  return value;
+}
+
+static result_file *open_result(void) {
+  char error[256];
+  result_file *f = result_read("mplm_linear.h5", error, sizeof error);
+  if (!f) fail_msg("%s", error);
+  return f;
+}
+
+static void clean_up(result_file *f) {
+  result_read_close(f);
+  unlink("mplm_linear.nml");
+  unlink("mplm_linear.log");
+  unlink("mplm_linear.h5");
+  unlink("mplm_linear.xdmf");
+}
+
+static double axial_rigidity(double spacing) {
+  return E * spacing * thickness / (sqrt(3) * (1 - nu));
+}
+
+/* Force of the damper, N, at a steady velocity: 2 zeta m omega_n v; omega_n = 2 sqrt(2/(1-nu)) c/s
+   above nu = 0.1765. */
+static double damper(double spacing, double velocity) {
+  const double mass = rho * sqrt(3) / 2 * spacing * spacing * thickness;
+  return 2 * 0.05 * mass * sqrt(E / rho) / spacing * 2 * sqrt(2 / (1 - nu)) * velocity;
+}
+
+/* The triangle under the force: half EA eps_t^2 s alpha. */
+static void tears(const char *settings, double spacing, double alpha, double per_area) {
+  const double velocity = 1e-3, bond = 0.5 * axial_rigidity(spacing) * eps_t * eps_t * spacing * alpha;
+  run(settings, spacing, velocity, 1.1 * alpha * eps_t * spacing / velocity + 1e-3);
+  result_file *f = open_result();
+  long count;
+  double *load = series(f, "load", &count), strength = 0;
+  for (long k = 0; k < count; k++)
+    strength = fmax(strength, load[k]);
+  const double expected = axial_rigidity(spacing) * eps_t + damper(spacing, velocity);
+  const double lost = last(f, "energy/dissipated_damage");
+  const double area = sqrt(3) / 2 * spacing * thickness; /* of a row bond in a crack across rows */
+  print_message("%s s = %g mm: %.5g N/m, %.6f of theory; strength %.6f of theory\n", settings,
+                1e3 * spacing, lost / area, lost / bond, strength / expected);
+  assert_true(fabs(lost / bond - 1) < 1e-4);
+  assert_true(fabs(lost / area / per_area - 1) < 2e-3);
+  /* a sample every 0.02 ms stands within 1 % of the stretch of the peak */
+  assert_true(strength / expected < 1 + 1e-6 && strength / expected > 0.99);
+  assert_true(last_frame(f, "c/omega_t") == 1 && last_frame(f, "c/omega_c") == 0);
+  assert_true(fabs(load[count - 1] - damper(spacing, velocity)) < 1e-6 * expected);
+  free(load);
+  clean_up(f);
+}
+
+static void tension_costs_what_the_law_says(void **state) {
+  (void)state;
+  tears("", 20e-3, 10, 32.9);
+  tears("tension = 'energy'", 20e-3, 53.2, 175);
+  tears("tension = 'energy'", 10e-3, 106.4, 175);
+}
+
+/* Pushed together to a strain of -0.002: the axial force is that of an intact bond. */
+static void crushes(const char *settings, double loss) {
+  const double spacing = 20e-3, velocity = -1e-3, end = 0.002 * spacing / 1e-3 + 0.5e-3;
+  run(settings, spacing, velocity, end);
+  result_file *f = open_result();
+  const double load = last(f, "load");
+  const double expected = -0.002 * axial_rigidity(spacing) + damper(spacing, velocity);
+  print_message("crushing %s: loss %.6f, force %.6f of theory\n", settings,
+                last_frame(f, "c/omega_c"), load / expected);
+  assert_true(fabs(load / expected - 1) < 1e-4); /* the last step may pass the end by its length */
+  assert_true(fabs(last_frame(f, "c/omega_c") - loss) < 1e-4);
+  assert_true(last_frame(f, "c/omega_t") == 0);
+  assert_true(last_frame(f, "c/loss") == last_frame(f, "c/omega_c"));
+  clean_up(f);
+}
+
+static void crushing_keeps_the_axial_force(void **state) {
+  (void)state;
+  crushes("", 1 / 4.728);
+  crushes("crushing = 'text'", 0.5);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(tension_costs_what_the_law_says),
+      cmocka_unit_test(crushing_keeps_the_axial_force),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
