@@ -25,7 +25,7 @@ static value with_shape(value v, dimension dim, shape s) {
   return v;
 }
 
-/* --- functions of one number --- */
+/* --- functions of one number ------------------------------------------------------------------ */
 
 static value check_scalar_argument(checker *ck, expr *e, const char *hint) {
   value v = check_number(ck, operand(e, 0));
@@ -80,7 +80,7 @@ static value norm(checker *ck, expr *e) {
   return with_shape(v, v.dim, SHAPE_SCALAR);
 }
 
-/* --- of several numbers --- */
+/* --- of several numbers ----------------------------------------------------------------------- */
 
 static value arctangent(checker *ck, expr *e) {
   value y = check_number(ck, operand(e, 0)), x = check_number(ck, operand(e, 1));
@@ -155,7 +155,7 @@ static value mean(checker *ck, expr *e) {
   return v;
 }
 
-/* --- old values and derivatives --- */
+/* --- old values and derivatives --------------------------------------------------------------- */
 
 static value previous(checker *ck, expr *e) {
   expr *of = operand(e, 0);
@@ -211,7 +211,7 @@ static value derivative(checker *ck, expr *e) {
   return v;
 }
 
-/* --- of a family and of tensors --- */
+/* --- of a family and of tensors --------------------------------------------------------------- */
 
 static bool needs_state_law(checker *ck, const expr *e) {
   if (!is_pairwise(ck)) return true;
@@ -309,7 +309,7 @@ static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
 #undef X
 };
 
-/* --- functions of the law --- */
+/* --- functions of the law --------------------------------------------------------------------- */
 
 value check_function_body(checker *ck, entry *function) {
   entry *outer = ck->function;

@@ -83,7 +83,7 @@ static inline entry *entry_of(const symbol *s) {
   return (entry *)(void *)(symbol *)(size_t)s;
 }
 
-/* --- law.c --- */
+/* --- law.c ------------------------------------------------------------------------------------ */
 /* An error at `where`; inside a function's body at the call, with a note that shows the place in
  * the body. */
 void complain(checker *ck, diag_code code, span where, const char *format, ...)
@@ -92,7 +92,7 @@ void complain(checker *ck, diag_code code, span where, const char *format, ...)
 const char *written(checker *ck, const expr *e, const char *otherwise);
 bool is_pairwise(const checker *ck);
 
-/* --- names.c --- */
+/* --- names.c ---------------------------------------------------------------------------------- */
 void names_begin(checker *ck);
 void names_end(checker *ck);
 /* Declares what every statement declares; duplicates and reserved names are reported. */
@@ -108,7 +108,7 @@ entry *names_resolve(checker *ck, expr *e);
 /* Does not change in time. */
 bool is_fixed(const symbol *s);
 
-/* --- types.c --- */
+/* --- types.c ---------------------------------------------------------------------------------- */
 extern const value BROKEN;
 value check_value(checker *ck, expr *e);  /* a value, not a whole family */
 value check_family(checker *ck, expr *e); /* or x without [j] */
@@ -125,17 +125,17 @@ const char *describe(checker *ck, dimension dim);
 const char *shape_words(shape s);
 dimension dimension_of(const char *unit_text);
 
-/* --- calls.c --- */
+/* --- calls.c ---------------------------------------------------------------------------------- */
 value check_call(checker *ck, expr *e);
 value check_function_body(checker *ck, entry *function);
 
-/* --- parameters.c --- */
+/* --- parameters.c ----------------------------------------------------------------------------- */
 bool read_unit(checker *ck, const char *text, span where, unit *result);
 void check_parameter(checker *ck, stmt *s);
 void check_initial_value(checker *ck, stmt *s);
 void check_bounds(checker *ck);
 
-/* --- order.c --- */
+/* --- order.c ---------------------------------------------------------------------------------- */
 /* Reports that `e` names something defined only below; as a cycle when that something needs what is
  * being defined. */
 void report_undefined(checker *ck, const expr *e, entry *target);

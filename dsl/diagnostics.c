@@ -89,7 +89,7 @@ void diag_suggest(diagnostics *d, const char *name, const char *const *candidate
   if (nearest) diag_hint(d, "did you mean `%s`?", nearest);
 }
 
-/* --- nearest name --- */
+/* --- nearest name ----------------------------------------------------------------------------- */
 
 static int least(int a, int b) {
   return a < b ? a : b;
@@ -135,7 +135,7 @@ const char *nearest_name(const char *name, const char *const *candidates, int co
   return nearest;
 }
 
-/* --- printing --- */
+/* --- printing --------------------------------------------------------------------------------- */
 
 static bool continues(char byte) {
   return ((unsigned char)byte & 0xC0) == 0x80;

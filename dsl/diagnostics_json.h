@@ -1,5 +1,5 @@
-/* Diagnostics as one JSON document, for editors and scripts. What several texts have to say (a deck,
-   its laws) goes into the same document. The schema is in dsl/README.md. */
+/* Diagnostics as one JSON document, for editors and scripts. What several texts have to say (a
+   deck, its laws) goes into the same document. The schema is in dsl/README.md. */
 #ifndef PERILAT_DSL_DIAGNOSTICS_JSON_H
 #define PERILAT_DSL_DIAGNOSTICS_JSON_H
 

@@ -57,7 +57,7 @@ void json_array_end(json *j) {
   close_with(j, ']');
 }
 
-/* --- texts --- */
+/* --- texts ------------------------------------------------------------------------------------ */
 
 static bool continues(char byte) {
   return ((unsigned char)byte & 0xC0) == 0x80;
@@ -141,7 +141,7 @@ void json_text(json *j, const char *text) {
     json_null(j);
 }
 
-/* --- other values --- */
+/* --- other values ----------------------------------------------------------------------------- */
 
 void json_number(json *j, double number) {
   if (!isfinite(number)) {

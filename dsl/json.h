@@ -1,5 +1,6 @@
-/* Writes JSON: objects and arrays one entry a line, indented; always valid. In texts control bytes are
-   escaped and bytes that are not UTF-8 become U+FFFD; a number that is not finite becomes null. */
+/* Writes JSON: objects and arrays one entry a line, indented; always valid. In texts control bytes
+   are escaped and bytes that are not UTF-8 become U+FFFD; a number that is not finite becomes null.
+ */
 #ifndef PERILAT_DSL_JSON_H
 #define PERILAT_DSL_JSON_H
 

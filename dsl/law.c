@@ -9,7 +9,7 @@
 
 enum { LONGEST_QUOTE = 40 };
 
-/* --- shared by the parts --- */
+/* --- shared by the parts ---------------------------------------------------------------------- */
 
 bool is_pairwise(const checker *ck) {
   return ck->tree->law != LAW_STATE;
@@ -40,7 +40,7 @@ const char *written(checker *ck, const expr *e, const char *otherwise) {
   return arena_text(ck->memory, s->text + at.begin, at.end - at.begin);
 }
 
-/* --- fields --- */
+/* --- fields ----------------------------------------------------------------------------------- */
 
 static void check_field_place(checker *ck, const stmt *s, symbol *field) {
   span where = s->place == ON_NOTHING ? s->name_where : s->place_where;
@@ -120,7 +120,7 @@ static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
   if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
 }
 
-/* --- statements --- */
+/* --- statements ------------------------------------------------------------------------------- */
 
 static void set_type(const stmt *s, value v) {
   if (!s->symbol) return;
@@ -314,7 +314,7 @@ static void check_statements(checker *ck) {
   check_bounds(ck);
 }
 
-/* --- units of states that start from a bare 0 --- */
+/* --- units of states that start from a bare 0 ------------------------------------------------- */
 
 static int count_open_states(const checker *ck) {
   int open = 0;
@@ -352,7 +352,7 @@ static bool has_state(const checker *ck) {
   return false;
 }
 
-/* --- what a law must give --- */
+/* --- what a law must give --------------------------------------------------------------------- */
 
 static void check_rules_of_fields(checker *ck) {
   for (int i = 0; i < ck->law->fields.count; i++) {
@@ -411,7 +411,7 @@ static void check_force_state_given(checker *ck) {
     report_missing(ck, "force state", "F");
 }
 
-/* --- options --- */
+/* --- options ---------------------------------------------------------------------------------- */
 
 static void choose(checker *ck, const law_choice *wanted) {
   const symbol_list *options = &ck->law->options;
@@ -442,7 +442,7 @@ static void check_choices(checker *ck, const law_choice *choices, int count) {
     choose(ck, &choices[i]);
 }
 
-/* --- the whole --- */
+/* --- the whole -------------------------------------------------------------------------------- */
 
 static bool is_rule(const stmt *s) {
   switch (s->kind) {

@@ -12,7 +12,7 @@ static const char *const settings[] = {"plane_stress", "plane_strain", "space"};
 
 enum { SETTING_COUNT = sizeof(settings) / sizeof(settings[0]), MOST_SUGGESTIONS = 100 };
 
-/* --- the table --- */
+/* --- the table -------------------------------------------------------------------------------- */
 
 static unsigned hash_of(name_space space, const char *key) {
   unsigned hash = 2166136261u + (unsigned)space; /* Fowler, Noll, Vo */
@@ -114,7 +114,7 @@ void names_suggest(checker *ck, name_space space, const char *name) {
   free(candidates);
 }
 
-/* --- declaring --- */
+/* --- declaring -------------------------------------------------------------------------------- */
 
 static bool refuse_reserved(checker *ck, const char *name, span where) {
   if (strcmp(name, "j") == 0) {
@@ -473,7 +473,7 @@ void names_declare(checker *ck) {
   }
 }
 
-/* --- reading --- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 static void report_unknown(checker *ck, const expr *e) {
   const char *name = e->name;

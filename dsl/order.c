@@ -74,7 +74,7 @@ static bool search_run(search *s, const entry *goal) {
   return false;
 }
 
-/* --- cycles --- */
+/* --- cycles ----------------------------------------------------------------------------------- */
 
 /* "`a` needs `b`, which needs `a`": the chain from the target back to what is being defined. */
 static const char *chain_text(checker *ck, const entry *self) {
@@ -126,7 +126,7 @@ void report_undefined(checker *ck, const expr *e, entry *target) {
   diag_hint(ck->d, "move its definition up");
 }
 
-/* --- what has no effect --- */
+/* --- what has no effect ----------------------------------------------------------------------- */
 
 void mark_used(checker *ck) {
   search s = search_begin(ck, true);

@@ -4,7 +4,7 @@
 
 #include "dsl/check.h"
 
-/* --- units --- */
+/* --- units ------------------------------------------------------------------------------------ */
 
 static bool is_whole_unit(const char *text, size_t length) {
   unit u;
@@ -50,7 +50,7 @@ bool read_unit(checker *ck, const char *text, span where, unit *result) {
   return false;
 }
 
-/* --- values --- */
+/* --- values ----------------------------------------------------------------------------------- */
 
 static double call_value(const expr *e, const double *parameters) {
   double x = e->argument_count > 0 ? law_constant_value(e->arguments[0].value, parameters) : NAN;
@@ -183,7 +183,7 @@ static bool read_finite(checker *ck, const expr *e, double *number) {
   return false;
 }
 
-/* --- parameters and states --- */
+/* --- parameters and states -------------------------------------------------------------------- */
 
 static void check_density(checker *ck, const stmt *s, dimension dim) {
   dimension density = dimension_of("kg/m^3");
@@ -232,7 +232,7 @@ void check_initial_value(checker *ck, stmt *s) {
   e->known = true;
 }
 
-/* --- bounds --- */
+/* --- bounds ----------------------------------------------------------------------------------- */
 
 /* The unit the default is written in; the SI unit where it is not a single number. */
 static double own_unit(const symbol *p, char *text, size_t size) {

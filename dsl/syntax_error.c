@@ -74,8 +74,7 @@ static void hint(parsing *p, const char *text) {
   diag_hint(p->messages, "%s", text);
 }
 
-/* --- statements of other languages
- * ---------------------------------------------------------------- */
+/* --- statements of other languages ------------------------------------------------------------ */
 
 static const struct {
   const char *word, *hint;
@@ -139,8 +138,7 @@ static bool misspelt_statement(parsing *p, const trouble *t) {
   return true;
 }
 
-/* --- names
- * ---------------------------------------------------------------------------------------- */
+/* --- names ------------------------------------------------------------------------------------ */
 
 static bool word_as_name(parsing *p, const trouble *t) {
   if (!is_word_of_language(t->token) || !t->expected[T_NAME]) return false;
@@ -184,8 +182,7 @@ static bool index_wrong(parsing *p, const trouble *t) {
   return true;
 }
 
-/* --- brackets
- * ------------------------------------------------------------------------------------- */
+/* --- brackets --------------------------------------------------------------------------------- */
 
 static bool bracket_not_closed(parsing *p, const trouble *t) {
   lexing *l = &p->lex;
@@ -233,8 +230,7 @@ static bool bounds_wrong(parsing *p, const trouble *t) {
   return true;
 }
 
-/* --- values and operators
- * ------------------------------------------------------------------------- */
+/* --- values and operators --------------------------------------------------------------------- */
 
 static bool equal_for_equality(parsing *p, const trouble *t) {
   if (t->token != '=' || p->lex.equals < 2) return false;
@@ -335,8 +331,7 @@ static bool chained_comparison(parsing *p, const trouble *t) {
   return true;
 }
 
-/* --- cases
- * ---------------------------------------------------------------------------------------- */
+/* --- cases ------------------------------------------------------------------------------------ */
 
 static bool case_without_guard(parsing *p, const trouble *t) {
   if (!t->expected[T_OTHERWISE] || (t->token != T_NEWLINE && t->token != '|' && t->token != ')'))
@@ -369,8 +364,7 @@ static bool guard_without_case(parsing *p, const trouble *t) {
   return true;
 }
 
-/* --- declarations
- * --------------------------------------------------------------------------------- */
+/* --- declarations ----------------------------------------------------------------------------- */
 
 static const struct {
   int token;
@@ -508,8 +502,7 @@ void syntax_error(parsing *p, int token, span where, const bool expected[TOKEN_C
     if (tests[i](p, &t)) return;
 }
 
-/* --- characters and numbers that are no tokens
- * ---------------------------------------------------- */
+/* --- characters and numbers that are no tokens ------------------------------------------------ */
 
 static const struct {
   const char *text, *hint;

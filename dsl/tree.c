@@ -157,8 +157,7 @@ void expr_print(const expr *e, FILE *out) {
   print_at(e, LEVEL_OR, out);
 }
 
-/* --- the tree as indented text -------------------------------------------------------------------
- */
+/* --- the tree as indented text ---------------------------------------------------------------- */
 
 static void indent(int depth, FILE *out) {
   fprintf(out, "%*s", 2 * depth, "");

@@ -54,7 +54,7 @@ static value joined(const checker *ck, value v, value other) {
   return v;
 }
 
-/* --- agreement of two values --- */
+/* --- agreement of two values ------------------------------------------------------------------ */
 
 static void hint_magnitude(checker *ck, expr *a, value va, expr *b, value vb) {
   if (va.shape != SHAPE_SCALAR && vb.shape != SHAPE_SCALAR) return;
@@ -132,7 +132,7 @@ bool expect_scalar(checker *ck, expr *e, value v, const char *what) {
   return expect(ck, e, v, v.dim, SHAPE_SCALAR, what);
 }
 
-/* --- kinds of expression --- */
+/* --- kinds of expression ---------------------------------------------------------------------- */
 
 static value check_number_literal(checker *ck, expr *e) {
   value v = scalar_of(DIMENSIONLESS, ON_NOTHING);
@@ -315,7 +315,7 @@ static value check_contraction(checker *ck, expr *e, value a, value b) {
   return v;
 }
 
-/* --- logic --- */
+/* --- logic ------------------------------------------------------------------------------------ */
 
 static value logical(placement where) {
   return (value){.shape = SHAPE_LOGICAL, .place = where};
@@ -399,7 +399,7 @@ static value check_binary(checker *ck, expr *e) {
   }
 }
 
-/* --- cases --- */
+/* --- cases ------------------------------------------------------------------------------------ */
 
 static void check_otherwise(checker *ck, const expr *e) {
   for (int i = 0; i < e->case_count; i++) {
@@ -442,7 +442,7 @@ static value check_cases(checker *ck, expr *e) {
   return result;
 }
 
-/* --- entry points --- */
+/* --- entry points ----------------------------------------------------------------------------- */
 
 static value check_kind(checker *ck, expr *e) {
   switch (e->kind) {

@@ -115,7 +115,7 @@ enum {
   WORD_COUNT = sizeof(words) / sizeof(words[0])
 };
 
-/* --- arithmetic --- */
+/* --- arithmetic ------------------------------------------------------------------------------- */
 
 bool dim_equal(dimension a, dimension b) {
   return memcmp(a.twelfths, b.twelfths, sizeof(a.twelfths)) == 0;
@@ -155,7 +155,7 @@ bool dim_pow(dimension a, int numerator, int denominator, dimension *result) {
   return true;
 }
 
-/* --- reading a unit --- */
+/* --- reading a unit --------------------------------------------------------------------------- */
 
 typedef struct reader {
   const char *at, *end;
@@ -297,7 +297,7 @@ const char *const *unit_symbols(int *count) {
   return symbols;
 }
 
-/* --- writing --- */
+/* --- writing ---------------------------------------------------------------------------------- */
 
 static int word_find(dimension d) {
   for (int i = 0; i < WORD_COUNT; i++)

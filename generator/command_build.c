@@ -7,6 +7,7 @@
 #include "generator/c_text.h"
 #include "generator/commands.h"
 #include "generator/model.h"
+#include "generator/physics.h"
 #include "generator/run.h"
 
 #define ERROR_LENGTH 8192
@@ -22,10 +23,11 @@ static bool spares_input(const char *output, const char *input) {
 }
 
 /* 0, or an exit status. */
-static int build_law(const char *path, const char *output) {
+static int build_law(const char *path, const char *output, bool no_physics) {
   model m;
   char error[ERROR_LENGTH], chosen[512];
-  bool good = model_open(&m, path, NULL, 0) && model_plan(&m);
+  bool good = model_open(&m, path, NULL, 0) && model_plan(&m) &&
+              (no_physics || physics_check(m.law, NULL, &m.said, NULL));
   diag_print(&m.said, stderr);
   if (good) {
     snprintf(chosen, sizeof chosen, "%s.so", m.law->tree->name);
@@ -42,7 +44,7 @@ static int build_law(const char *path, const char *output) {
   return status;
 }
 
-/* --- solvers ------------------------------------------------------------------------------------ */
+/* --- solvers ---------------------------------------------------------------------------------- */
 
 /* What the deck's only lattice is made of, with its options decided. */
 typedef struct deck_law {
@@ -130,7 +132,7 @@ static int link_solver(const char *path, const char *deck_text, const char *outp
 }
 
 /* What perilat run would refuse is refused now, not when the solver runs. */
-static int build_solver(const char *path, const char *output) {
+static int build_solver(const char *path, const char *output, bool no_physics) {
   char error[ERROR_LENGTH];
   size_t length;
   char *deck_text = read_text_file(path, DECK_LIMIT, &length, error, sizeof error);
@@ -142,7 +144,7 @@ static int build_solver(const char *path, const char *output) {
   if (!output)
     fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
   else if (spares_input(output, path))
-    status = run_deck(&(run_options){.deck_path = path, .check_only = true});
+    status = run_deck(&(run_options){.deck_path = path, .check_only = true, .no_physics = no_physics});
   if (!status)
     status = link_solver(path, deck_text, output);
   free(deck_text);
@@ -150,14 +152,16 @@ static int build_solver(const char *path, const char *output) {
 }
 
 int command_build(int argc, char **argv) {
-  static const char *const options[] = {"-o"};
+  bool no_physics = false;
   const char *path = NULL, *output = NULL, *value;
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     if ((value = option_value(argc, argv, &at, "-o", &bad)))
       output = value;
+    else if (option_flag(argv, &at, "--no-physics"))
+      no_physics = true;
     else if (argv[at][0] == '-')
-      bad = option_unknown("perilat build", argv[at], options, 1);
+      bad = option_unknown("build", argv[at]);
     else if (path) {
       fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n", argv[at]);
       bad = 1;
@@ -176,9 +180,9 @@ int command_build(int argc, char **argv) {
     return 1;
   }
   if (kind == FILE_DECK)
-    return build_solver(path, output);
+    return build_solver(path, output, no_physics);
   char *found = model_find(path, NULL);
-  int status = build_law(found ? found : path, output);
+  int status = build_law(found ? found : path, output, no_physics);
   free(found);
   return status;
 }

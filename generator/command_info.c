@@ -1,15 +1,16 @@
-/* perilat info: what a law, a deck or a result holds, and the names that laws may use. */
+/* perilat info: what a law implies, what a deck or a result holds, and the names that laws may use. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/info_law.h"
 #include "generator/model.h"
 #include "generator/run.h"
 #include "runtime/result.h"
 
-/* --- --builtins --------------------------------------------------------------------------------- */
+/* --- --builtins ------------------------------------------------------------------------------- */
 
 static int info_builtins(void) {
   static const char *const kinds[] = {"", "central", "micropolar", "pairwise", "state", "central and state",
@@ -30,92 +31,7 @@ static int info_builtins(void) {
   return 0;
 }
 
-/* --- laws --------------------------------------------------------------------------------------- */
-
-static void print_parameter(const law *l, int p, const double *values) {
-  const symbol *s = l->parameters.items[p];
-  char unit_text[64], interval[128] = "";
-  dim_unit(s->dim, unit_text, sizeof unit_text);
-  if (s->declared->in.given)
-    law_parameter_bounds(l, p, values, interval, sizeof interval);
-  char value[32] = "(required)";
-  if (s->has_default)
-    snprintf(value, sizeof value, "%.6g", s->initial);
-  printf("  %-12s %-12s %-10s %-18s %s\n", s->name, value, unit_text, interval, s->doc ? s->doc : "");
-}
-
-/* Further lines of a description stand below its first one. */
-static void print_description(const char *text) {
-  for (; *text; text++) {
-    putchar(*text);
-    if (*text == '\n')
-      printf("%*s", 38, "");
-  }
-  putchar('\n');
-}
-
-static void print_symbols(const char *title, const symbol_list *list) {
-  if (list->count)
-    printf("%s\n", title);
-  for (int k = 0; k < list->count; k++) {
-    const symbol *s = list->items[k];
-    char unit_text[64];
-    dim_unit(s->dim, unit_text, sizeof unit_text);
-    printf("  %-12s %-10s on %-9s ", s->name, unit_text, placement_name(s->place));
-    print_description(s->doc ? s->doc : "");
-  }
-}
-
-static void print_options(const law *l) {
-  for (int k = 0; k < l->options.count; k++) {
-    const stmt *declared = l->options.items[k]->declared;
-    printf("option %s =", declared->name);
-    for (int w = 0; w < declared->word_count; w++)
-      printf("%s %s", w ? " |" : "", declared->words[w]);
-    printf("   (now: %s)\n", l->chosen[k]);
-  }
-}
-
-static void print_cost(const kernel_plan *p) {
-  pl_law *interpreted = plan_interpreted(p, "");
-  printf("Cost per bond and step: %.0f operations, %.0f of them divisions or roots; %d value%s computed once per lattice\n",
-         interpreted->flops_per_bond, interpreted->divisions_per_bond, p->uniform_count,
-         p->uniform_count == 1 ? "" : "s");
-  plan_interpreted_free(interpreted);
-}
-
-static int info_law(const char *path) {
-  static const char *const kinds[] = {"central bond", "micropolar bond", "state"};
-  model m;
-  bool good = model_open(&m, path, NULL, 0);
-  if (good && m.law->tree->law != LAW_STATE)
-    good = model_plan(&m);
-  diag_print(&m.said, stderr);
-  if (good) {
-    const law *l = m.law;
-    printf("%s (law %s)\n", l->tree->name, kinds[l->tree->law]);
-    if (l->tree->doc)
-      printf("%s\n", l->tree->doc);
-    double *values = must_calloc((size_t)l->parameters.count + 1, sizeof *values);
-    for (int p = 0; p < l->parameters.count; p++)
-      values[p] = l->parameters.items[p]->initial;
-    printf("Parameters (SI):\n");
-    for (int p = 0; p < l->parameters.count; p++)
-      print_parameter(l, p, values);
-    free(values);
-    print_options(l);
-    print_symbols("State and damage:", &l->fields);
-    print_symbols("Outputs:", &l->outputs);
-    if (m.plan)
-      print_cost(m.plan);
-    if (l->nonconservative)
-      printf("Not conservative: %s\n", l->nonconservative);
-  }
-  model_close(&m);
-  return good ? 0 : 1;
-}
-
-/* --- results ------------------------------------------------------------------------------------ */
+/* --- results ---------------------------------------------------------------------------------- */
 
 static void print_history(result_file *f, const char *name) {
   char unit_text[64] = "", error[512];
@@ -157,7 +73,12 @@ static int info_result(const char *path) {
   free(result_read_reference(f, &particles));
   free(result_read_bonds(f, NULL, &bonds));
   free(result_read_frame_times(f, &frames));
-  printf("%s: %ld particles, %ld bonds, %ld frames\nHistories:\n", path, particles, bonds, frames);
+  printf("%s: %ld particles, %ld bonds, %ld frames\n", path, particles, bonds, frames);
+  char *overrides = result_read_text(f, "/input/set");
+  if (overrides)
+    printf("Set on the command line:\n%s", overrides);
+  free(overrides);
+  puts("Histories:");
   char *names = result_list(f, "/history"), *energies = result_list(f, "/history/energy");
   if (names)
     for_each_name(f, names, "", print_history);
@@ -172,23 +93,73 @@ static int info_result(const char *path) {
   return 0;
 }
 
-int command_info(int argc, char **argv) {
-  static const char *const options[] = {"--builtins"};
-  if (argc == 1 && !strcmp(argv[0], "--builtins"))
-    return info_builtins();
-  if (argc == 1 && argv[0][0] == '-')
-    return option_unknown("perilat info", argv[0], options, 1);
-  if (argc != 1) {
+typedef struct info_options {
+  const char *file;
+  info_law_options law;
+  bool builtins;
+} info_options;
+
+static bool reads_lattice(const char *kind) {
+  if (strcmp(kind, "hexagonal") == 0)
+    return true;
+  fprintf(stderr, "perilat: error: there is no lattice `%s`\n  --lattice can only be hexagonal\n", kind);
+  return false;
+}
+
+static bool read_options(int argc, char **argv, const char **settings, info_options *o) {
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    const char *value;
+    if (option_flag(argv, &at, "--builtins"))
+      o->builtins = true;
+    else if (option_flag(argv, &at, "--json"))
+      o->law.json = true;
+    else if ((value = option_value(argc, argv, &at, "--spacing", &bad)))
+      o->law.spacing = value;
+    else if ((value = option_value(argc, argv, &at, "--thickness", &bad)))
+      o->law.thickness = value;
+    else if ((value = option_value(argc, argv, &at, "--lattice", &bad)))
+      bad = bad || !reads_lattice(value);
+    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
+      settings[o->law.setting_count++] = value;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("info", argv[at]);
+    else if (o->file || o->builtins)
+      bad = 2;
+    else
+      o->file = argv[at++];
+  }
+  if (bad == 2 || (!bad && !o->file == !o->builtins)) {
     fputs("perilat: error: `perilat info` takes one law, deck or result, or --builtins\n", stderr);
+    return false;
+  }
+  o->law.settings = settings;
+  return !bad;
+}
+
+static int info_file(const info_options *o) {
+  file_kind kind = kind_of_file(o->file);
+  bool asks_law = o->law.spacing || o->law.thickness || o->law.setting_count || o->law.json;
+  if (asks_law && (kind == FILE_RESULT || kind == FILE_DECK)) {
+    fprintf(stderr, "perilat: error: `%s` is a %s; --spacing, --thickness, --set and --json ask about a law\n", o->file,
+            kind == FILE_DECK ? "deck" : "result");
     return 1;
   }
-  file_kind kind = kind_of_file(argv[0]);
   if (kind == FILE_RESULT)
-    return info_result(argv[0]);
+    return info_result(o->file);
   if (kind == FILE_DECK)
-    return run_deck(&(run_options){.deck_path = argv[0], .check_only = true});
-  char *path = model_find(argv[0], NULL);
-  int status = info_law(path ? path : argv[0]);
-  free(path);
+    return run_deck(&(run_options){.deck_path = o->file, .check_only = true});
+  info_law_options law_options = o->law;
+  law_options.law = o->file;
+  return info_law(&law_options);
+}
+
+int command_info(int argc, char **argv) {
+  const char **settings = must_calloc((size_t)argc + 1, sizeof *settings);
+  info_options o = {.file = NULL};
+  int status = 1;
+  if (read_options(argc, argv, settings, &o))
+    status = o.builtins ? info_builtins() : info_file(&o);
+  free(settings);
   return status;
 }

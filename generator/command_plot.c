@@ -11,13 +11,9 @@
 #include "generator/model.h"
 #include "runtime/plot.h"
 
-static const char *const option_names[] = {"-o",     "--x",      "--y",     "--x-unit",    "--y-unit", "--title",
-                                           "--label", "--map",    "--frame", "--factor", "--component"};
-enum { OPTION_COUNT = sizeof option_names / sizeof *option_names };
-
 typedef struct plot_request {
-  const char **results, **labels;
-  int result_count, label_count;
+  const char **results, **labels, **ys;
+  int result_count, label_count, y_count;
   plot_curve_options curve;
   plot_map_options map;
   bool is_map;
@@ -51,6 +47,14 @@ static const char *special_value(int argc, char **argv, int *at, const char *nam
   return v;
 }
 
+static bool set_once(const char **x, const char *given) {
+  if (*x)
+    fprintf(stderr, "perilat: error: --x is given twice, `%s` and `%s`; all curves of a picture have one x\n", *x, given);
+  const bool first = !*x;
+  *x = given;
+  return first;
+}
+
 /* One option or file; false after a message. */
 static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   int bad = 0;
@@ -64,9 +68,9 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
     q->map.field = v;
     q->is_map = true;
   } else if ((v = special_value(argc, argv, at, "--x", &q->of_curves, &bad)))
-    q->curve.x = v;
+    bad = bad || !set_once(&q->curve.x, v);
   else if ((v = special_value(argc, argv, at, "--y", &q->of_curves, &bad)))
-    q->curve.y = v;
+    q->ys[q->y_count++] = v;
   else if ((v = special_value(argc, argv, at, "--x-unit", &q->of_curves, &bad)))
     q->curve.x_unit = v;
   else if ((v = special_value(argc, argv, at, "--y-unit", &q->of_curves, &bad)))
@@ -81,7 +85,7 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
     bad = bad || !read_whole("--component", v, &whole);
     q->map.component = (int)whole;
   } else if (argv[*at][0] == '-')
-    bad = option_unknown("perilat plot", argv[*at], option_names, OPTION_COUNT);
+    bad = option_unknown("plot", argv[*at]);
   else
     q->results[q->result_count++] = argv[(*at)++];
   return !bad;
@@ -94,6 +98,8 @@ static bool draw(plot_request *q) {
     good = plot_map(q->results[0], &q->map, error, sizeof error);
   } else {
     q->curve.labels = q->label_count ? q->labels : NULL;
+    q->curve.ys = q->ys;
+    q->curve.y_count = q->y_count;
     good = plot_curve(q->results, q->result_count, &q->curve, error, sizeof error);
   }
   if (!good)
@@ -148,6 +154,7 @@ int command_plot(int argc, char **argv) {
   plot_request q = {.curve = {.output = NULL}, .map = {.frame = -1, .component = -1, .factor = -1, .field = "damage"}};
   q.results = must_calloc((size_t)argc + 1, sizeof *q.results);
   q.labels = must_calloc((size_t)argc + 1, sizeof *q.labels);
+  q.ys = must_calloc((size_t)argc + 1, sizeof *q.ys);
   bool good = true;
   for (int at = 0; at < argc && good;)
     good = read_one(argc, argv, &at, &q);
@@ -157,5 +164,6 @@ int command_plot(int argc, char **argv) {
   good = good && spares_results(&q) && draw(&q);
   free(q.results);
   free(q.labels);
+  free(q.ys);
   return good ? 0 : 1;
 }

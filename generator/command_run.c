@@ -5,43 +5,19 @@
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/interval.h"
 #include "generator/model.h"
+#include "generator/physics.h"
 #include "generator/run.h"
 #include "generator/version.h"
 
-/* Who reads options, and which. A solver has its kernel built in: there is nothing to interpret or compare. */
-enum { RUN = 1, CHECK = 2, SOLVER = 4 };
-#define RUN_OPTIONS(X)               \
-  X("--threads", RUN | SOLVER)       \
-  X("--resume", RUN | SOLVER)        \
-  X("--set", RUN | CHECK | SOLVER)   \
-  X("--check-kernel", RUN)           \
-  X("--interpret", RUN)              \
-  X("--dump", CHECK)                 \
-  X("--diagnostics", CHECK)
+/* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
+typedef enum option_reader { RUN, CHECK, SOLVER } option_reader;
 
 /* What only `perilat check` is asked. */
 typedef struct check_options {
   const char *dump, *diagnostics; /* NULL where not given */
 } check_options;
-
-static int unknown_option(int reader, const char *program, const char *given) {
-  static const struct {
-    const char *name;
-    int readers;
-  } options[] = {
-#define X(name, readers) {name, readers},
-      RUN_OPTIONS(X)
-#undef X
-  };
-  enum { COUNT = sizeof options / sizeof *options };
-  const char *names[COUNT];
-  int count = 0;
-  for (int k = 0; k < COUNT; k++)
-    if (options[k].readers & reader)
-      names[count++] = options[k].name;
-  return option_unknown(program, given, names, count);
-}
 
 static bool read_threads(const char *text, int *threads) {
   char *end;
@@ -54,8 +30,9 @@ static bool read_threads(const char *text, int *threads) {
 }
 
 /* False after a message. */
-static bool read_run_options(int reader, const char *program, int argc, char **argv, run_options *o,
+static bool read_run_options(option_reader reader, const char *program, int argc, char **argv, run_options *o,
                              check_options *check) {
+  static const char *const names[] = {"run", "check", "solver"};
   o->overrides = must_calloc((size_t)argc + 1, sizeof *o->overrides);
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
@@ -66,6 +43,8 @@ static bool read_run_options(int reader, const char *program, int argc, char **a
       o->check_kernel = true;
     else if (reader == RUN && option_flag(argv, &at, "--interpret"))
       o->interpret = true;
+    else if (reader != SOLVER && option_flag(argv, &at, "--no-physics"))
+      o->no_physics = true;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       o->overrides[o->override_count++].text = value;
     else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
@@ -75,7 +54,7 @@ static bool read_run_options(int reader, const char *program, int argc, char **a
     else if (reader == CHECK && (value = option_value(argc, argv, &at, "--diagnostics", &bad)))
       check->diagnostics = value;
     else if (argv[at][0] == '-')
-      bad = unknown_option(reader, program, argv[at]);
+      bad = option_unknown_in(program, names[reader], argv[at]);
     else if (reader == SOLVER) {
       fprintf(stderr, "perilat: error: `%s` runs the deck that it was built from; it takes no file\n", program);
       bad = 1;
@@ -126,7 +105,23 @@ static int dump_stage(model *m, const char *stage) {
   return 0;
 }
 
-static int check_law(const char *path, const char *dump, diag_json *report) {
+static void print_physics(const physics_report *p) {
+  printf("  physics: %.0f states in %.1f ms", p->states, 1e3 * p->seconds);
+  if (p->guards)
+    printf("; %d of %d conditions were seen both true and false", p->guards_reached, p->guards);
+  putchar('\n');
+}
+
+/* Mechanics and ranges of a law that is right otherwise. */
+static bool check_values(model *m, physics_report *found) {
+  bool good = physics_check(m->law, NULL, &m->said, found);
+  interval_check(m->law, &m->said);
+  return good;
+}
+
+static int check_law(const run_options *o, const char *path, const char *dump) {
+  diag_json *report = o->report;
+  physics_report found = {0};
   model m;
   bool good = model_open(&m, path, NULL, 0);
   int status = good ? 0 : 1;
@@ -134,6 +129,8 @@ static int check_law(const char *path, const char *dump, diag_json *report) {
   if (good && dump)
     status = dump_stage(&m, dump);
   else if (pairwise && !model_plan(&m))
+    status = 1;
+  else if (pairwise && !o->no_physics && !check_values(&m, &found))
     status = 1;
   if (report)
     diag_json_add(report, &m.said);
@@ -143,6 +140,8 @@ static int check_law(const char *path, const char *dump, diag_json *report) {
     printf("%s: %s, no errors, %d warning%s (%.1f ms)%s\n", path, m.law->tree->name, m.said.count,
            m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front,
            pairwise ? "" : "; state laws can be checked but not yet compiled");
+  if (!status && !dump && !report && found.states > 0)
+    print_physics(&found);
   model_close(&m);
   return status;
 }
@@ -158,7 +157,7 @@ static int check_file(const run_options *o, const char *dump) {
   else if (kind == FILE_LAW && o->override_count)
     fputs("perilat: error: --set changes a deck; a law has nothing to set\n", stderr);
   else if (kind == FILE_LAW)
-    status = check_law(found ? found : o->deck_path, dump, o->report);
+    status = check_law(o, found ? found : o->deck_path, dump);
   else if (dump)
     fputs("perilat: error: --dump shows a law; give the law's file\n", stderr);
   else if (!(status = run_deck(o)) && !o->report)
@@ -208,8 +207,8 @@ int perilat_solver_main(int argc, char **argv, const char *deck_name, const char
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
-      printf("usage: %s [--threads N] [--resume] [--set group.key=value]\n  runs the deck `%s` that it was built from\n",
-             argv[0], deck_name);
+      printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n", argv[0], deck_name);
+      options_print("solver", stdout);
       return 0;
     }
   bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);

@@ -3,15 +3,88 @@
 #ifndef PERILAT_GENERATOR_COMMANDS_H
 #define PERILAT_GENERATOR_COMMANDS_H
 
-/* X(name, arguments, what it does) */
-#define COMMANDS(X)                                                                                \
-  X(check, "law.plm | deck.nml [--dump=tree|ir|passes|c] [--diagnostics=json] [--set ...]", "report all errors, run nothing")               \
-  X(build, "law.plm [-o law.so] | deck.nml -o solver", "compile a law to a shared kernel, or a deck to a solver")      \
-  X(run, "deck.nml [--threads N] [--resume] [--set group.key=value] [--check-kernel] [--interpret]", "run a deck")     \
-  X(plot, "result.h5 ... [-o picture] [--x NAME --y NAME | --map FIELD [--frame N] [--factor F]]", "curve or map as PNG, SVG or PDF") \
-  X(info, "law.plm | deck.nml | result.h5 | --builtins", "what a file holds")
+#include <stdio.h>
 
-#define X(name, arguments, purpose) int command_##name(int argc, char **argv);
+/* X(name, files, endings, what it does): `endings` are those of the files that shells offer, blanks between. */
+#define COMMANDS(X)                                                                                                    \
+  X(new, "NAME", "", "a commented law to start from, its drive path and the deck of a small specimen")                 \
+  X(check, "law.plm | deck.nml", "plm nml", "report all errors, run nothing")                                          \
+  X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver")                 \
+  X(run, "deck.nml", "nml", "run a deck")                                                                              \
+  X(drive, "law.plm path.nml", "plm nml", "one bond along a path: table, picture, expectations")                       \
+  X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF")                    \
+  X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most")                                                  \
+  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values")                                  \
+  X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5", "what a law implies, what a file holds")                \
+  X(explain, "law.plm", "plm", "a law as equations with a table of its symbols")                                       \
+  X(format, "law.plm ...", "plm", "lay out laws")                                                                      \
+  X(help, "TOPIC", "", "what a message's code, a word of the language, a deck group or a command means")
+
+/* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells offer files, a|b|c for one
+   of these words, else what it stands for. Texts of --help, suggestions, manual and completion. */
+#define OPTIONS_OF_SOLVERS(X, command)                                                                                 \
+  X(command, "--threads", "N", "number of threads; the results are the same for any number")                           \
+  X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                                      \
+  X(command, "--set", "group.key=value", "set a value of the deck; may be given several times")
+#define COMMAND_OPTIONS(X)                                                                                             \
+  X(new, "--kind", "central|micropolar", "whether ends of bonds can turn (micropolar) or not (central, the default)")  \
+  X(check, "--dump", "tree|ir|passes|c", "show what becomes of a law at this stage")                                   \
+  X(check, "--diagnostics", "text|json", "the form of messages; json is one document on the standard output")          \
+  X(check, "--no-physics", "", "leave out the checks of mechanics")                                                    \
+  X(check, "--set", "group.key=value", "set a value of the deck; may be given several times")                          \
+  X(build, "-o", "FILE", "name of the kernel (of a law, otherwise NAME.so) or of the solver (of a deck)")              \
+  X(build, "--no-physics", "", "leave out the checks of mechanics")                                                    \
+  OPTIONS_OF_SOLVERS(X, run)                                                                                           \
+  X(run, "--check-kernel", "", "compare the compiled kernel with the interpreter first")                               \
+  X(run, "--interpret", "", "run on the interpreter: no C compiler, many times slower, the same results")              \
+  X(run, "--no-physics", "", "leave out the checks of mechanics")                                                      \
+  X(drive, "--set", "name=value", "set a parameter or an option of the law; may be given several times")               \
+  X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                                         \
+  X(drive, "--csv", "FILE", "write the table as comma-separated values")                                               \
+  X(drive, "--hdf5", "FILE", "write the table as a result")                                                            \
+  X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")                                \
+  X(plot, "-o", "FILE", "the picture: PNG, SVG or PDF by the name's ending (curve.png, map.png)")                      \
+  X(plot, "--title", "TEXT", "title of the picture")                                                                   \
+  X(plot, "--x", "NAME", "history along x")                                                                            \
+  X(plot, "--y", "NAME", "history along y; several give several curves")                                               \
+  X(plot, "--x-unit", "UNIT", "unit along x")                                                                          \
+  X(plot, "--y-unit", "UNIT", "unit along y")                                                                          \
+  X(plot, "--label", "TEXT", "name of a result's curve, one for each result")                                          \
+  X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")                             \
+  X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                                        \
+  X(plot, "--component", "K", "component of a vector: 0 is x, 1 is y; its size if not given")                          \
+  X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given")                     \
+  X(compare, "--tolerance", "R", "largest relative difference that counts as the same (0)")                            \
+  X(compare, "--history", "NAME", "compare this history only; may be given several times")                             \
+  X(compare, "--field", "NAME", "compare this field only; may be given several times")                                 \
+  X(export, "-o", "FILE", "file of the table; the standard output if not given")                                       \
+  X(export, "--history", "", "all histories (default)")                                                                \
+  X(export, "--frame", "N", "the particles of a frame, from 0; -1 is the last")                                        \
+  X(export, "--bonds", "", "the bonds of the frame, not its particles")                                                \
+  X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                                     \
+  X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                                            \
+  X(info, "--lattice", "hexagonal", "kind of the lattice")                                                             \
+  X(info, "--set", "name=value", "set a parameter or an option of the law; may be given several times")                \
+  X(info, "--json", "", "what a law implies as one JSON document")                                                     \
+  X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")                               \
+  X(explain, "--markdown", "", "as Markdown (default)")                                                                \
+  X(explain, "--latex", "", "as a LaTeX document")                                                                     \
+  X(explain, "--set", "option=choice", "choose an option of the law; may be given several times")                      \
+  X(format, "--check", "", "change nothing, only say which files would change (exit status 1)")                        \
+  X(format, "-i", "", "in place")                                                                                      \
+  OPTIONS_OF_SOLVERS(X, solver)
+
+typedef struct command_entry {
+  const char *name, *files, *endings, *purpose;
+} command_entry;
+typedef struct option_entry {
+  const char *command, *name, *value, *meaning;
+} option_entry;
+extern const command_entry commands[];
+extern const option_entry options[];
+extern const int command_count, option_count;
+
+#define X(name, files, endings, purpose) int command_##name(int argc, char **argv);
 COMMANDS(X)
 #undef X
 
@@ -19,7 +92,14 @@ COMMANDS(X)
    `--name value` and `--name=value` are the same. A missing value is reported; *bad is set. */
 int option_flag(char **argv, int *at, const char *name);
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad);
-/* Says that `given` is no option of `program` ("perilat run"), with the nearest of its options. Returns 1. */
-int option_unknown(const char *program, const char *given, const char *const *options, int count);
+/* Says that `given` is no option of `program`, which knows those of `command`, with the nearest of them. Returns 1. */
+int option_unknown_in(const char *program, const char *command, const char *given);
+/* The same of `perilat command`. */
+int option_unknown(const char *command, const char *given);
+
+/* The options of a command, a line each; nothing where it has none. */
+void options_print(const char *command, FILE *out);
+/* Usage, purpose and options of commands[k]. */
+void command_print(int k, FILE *out);
 
 #endif

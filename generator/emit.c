@@ -397,6 +397,8 @@ static void write_array(emitter *e, ir_node n) {
   if (ir_input_source(e->graph, n) == IR_FROM_ENDS)
     c_text_add(e->out, "strip->%s[%d];\n", ends_array_of(e, n)->member,
                ends_array_of(e, n)->component);
+  else if (ir_input_source(e->graph, n) == IR_FROM_BOND_PARAMETER)
+    c_text_add(e->out, "strip->parameter[%d];\n", index);
   else if (ir_input_source(e->graph, n) == IR_FROM_FIELD)
     c_text_add(e->out, "in[%d];\n", STATES_FIELDS + index);
   else
@@ -426,6 +428,8 @@ static void write_loop_input(emitter *e, ir_node n) {
     c_text_add(e->out, "(flags[q] & protected_bit) != 0 ? 1.0 : 0.0");
   else if (e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD)
     c_text_add(e->out, "at_field_%d[q]", ir_input_index(e->graph, n));
+  else if (ir_input_source(e->graph, n) == IR_FROM_BOND_PARAMETER)
+    c_text_add(e->out, "at_%s[q]", e->name[n]);
   else {
     bool gathered = e->scope == IN_LIST && ends_array_of(e, n)->index != BOND;
     const char *index = !gathered ? "q" : ends_array_of(e, n)->index == NEAR ? "i[q]" : "j[q]";
@@ -687,6 +691,14 @@ static void write_parameters(emitter *e) {
   c_text_add(e->out, "};\n\n");
 }
 
+static void write_varying(emitter *e) {
+  if (!e->plan->varying_count) return;
+  c_text_add(e->out, "static const int law_varying[] = {");
+  for (int k = 0; k < e->plan->varying_count; k++)
+    c_text_add(e->out, "%s%d", k ? ", " : "", e->plan->varying[k]);
+  c_text_add(e->out, "};\n\n");
+}
+
 static void write_fields(emitter *e, const symbol_list *list, const char *name) {
   if (!list->count) return;
   c_text_add(e->out, "static const pl_field %s[] = {\n", name);
@@ -717,6 +729,9 @@ static void write_descriptor(emitter *e, const char *key) {
   c_text_string(e->out, key);
   c_text_add(e->out, ",\n");
   write_table(e, "parameter", "law_parameters", p->law->parameters.count);
+  if (p->varying_count)
+    c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n",
+               p->varying_count);
   write_table(e, "field", "law_fields", p->law->fields.count);
   write_table(e, "output", "law_outputs", p->law->outputs.count);
   c_text_add(e->out, "    .uniform_count = %d,\n    .flops_per_bond = ", p->uniform_count);
@@ -777,6 +792,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
   find_uniforms(&e);
   write_prelude(&e);
   write_parameters(&e);
+  write_varying(&e);
   write_fields(&e, &p->law->fields, "law_fields");
   write_fields(&e, &p->law->outputs, "law_outputs");
   write_prepare(&e);

@@ -30,7 +30,17 @@ static void say(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
           ir_name(p->graph, n), what);
 }
 
-/* The first that is not finite; when all are, the last: the force that is too large. */
+/* The largest of the law's results, or -1 when all are zero. */
+static int largest_result(const kernel_plan *p, const ir_node *named, int count, double *const *values) {
+  const pass *states = &p->passes[PASS_STATES];
+  int largest = -1;
+  for (int k = 0; k < count; k++)
+    for (int r = 0; r < states->root_count && r < LAW_RESULTS; r++)
+      if (states->roots[r].node == named[k] && fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0]))) largest = k;
+  return largest;
+}
+
+/* The first that is not finite; when all are, the force or moment that is too large. */
 static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
   int count;
   ir_node *named = named_values(p, &count);
@@ -41,8 +51,9 @@ static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out
   while (k < count && isfinite(values[k][0]))
     k++;
   char what[64] = "stops being finite";
-  if (k == count && count > 0) snprintf(what, sizeof what, "is %.6g (SI)", values[--k][0]);
-  if (k < count) say(p, named[k], what, out);
+  if (k == count && (k = largest_result(p, named, count, values)) >= 0)
+    snprintf(what, sizeof what, "is %.6g (SI)", values[k][0]);
+  if (k >= 0) say(p, named[k], what, out);
   interpreter_free(program);
   planes_free(values, count + 1);
   free(named);

@@ -57,7 +57,7 @@ double interpret_operation(ir_op op, double a, double b, double c) {
   }
 }
 
-/* --- the interpreter ----------------------------------------------------------------- */
+/* --- the interpreter -------------------------------------------------------------------------- */
 
 typedef struct step {
   lane_function apply;

@@ -63,6 +63,8 @@ typedef struct worker {
   const double **parameters; /* [parameters + uniforms] */
   const double **fields;     /* [fields] */
   unsigned char *field_stride;
+  const double **bond_parameters; /* [varying] */
+  unsigned char *bond_parameter_stride;
   const double *quantities[QUANTITY_COUNT];
   const double *ends[ENDS_COUNT];
   double gathered[ENDS_COUNT][LANES];
@@ -81,7 +83,7 @@ typedef struct interpreted {
   worker *workers;
 } interpreted;
 
-/* --- workers ----------------------------------------------------------------------------- */
+/* --- workers ---------------------------------------------------------------------------------- */
 
 static worker *borrow(const pl_law *kernel) {
   const interpreted *p = kernel->context;
@@ -109,6 +111,10 @@ static void set_up_worker(interpreted *p, worker *w) {
   w->fields = arena_alloc(p->memory, (fields + 1) * sizeof *w->fields);
   w->field_stride = arena_alloc(p->memory, fields + 1);
   memset(w->field_stride, 1, fields + 1);
+  size_t varying = (size_t)plan->varying_count;
+  w->bond_parameters = arena_alloc(p->memory, (varying + 1) * sizeof *w->bond_parameters);
+  w->bond_parameter_stride = arena_alloc(p->memory, varying + 1);
+  memset(w->bond_parameter_stride, 1, varying + 1);
   size_t most = (size_t)p->most_roots;
   w->results = arena_alloc(p->memory, (most + 1) * LANES * sizeof *w->results);
   w->result = arena_alloc(p->memory, (most + 1) * sizeof *w->result);
@@ -135,9 +141,11 @@ static interpreter_inputs inputs_of(const worker *w) {
       .values = {[IR_FROM_PARAMETER] = w->parameters,
                  [IR_FROM_QUANTITY] = w->quantities,
                  [IR_FROM_FIELD] = w->fields,
+                 [IR_FROM_BOND_PARAMETER] = w->bond_parameters,
                  [IR_FROM_ENDS] = w->ends},
       .stride = {[IR_FROM_QUANTITY] = states_stride,
                  [IR_FROM_FIELD] = w->field_stride,
+                 [IR_FROM_BOND_PARAMETER] = w->bond_parameter_stride,
                  [IR_FROM_ENDS] = ends_stride},
   };
   return in;
@@ -149,7 +157,7 @@ static void point_at_uniforms(const interpreted *p, worker *w, const double *uni
     w->parameters[parameters + k] = uniforms + k;
 }
 
-/* --- strips ------------------------------------------------------------------------------ */
+/* --- strips ----------------------------------------------------------------------------------- */
 
 static const double *strip_array(const pl_strip *s, const ends_origin *o) {
   switch (o->array) {
@@ -219,6 +227,8 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
     point_at_ends(w, s, list, first, count);
     for (int k = 0; k < p->plan->law->fields.count; k++)
       w->fields[k] = s->field[k] + first;
+    for (int k = 0; k < p->plan->varying_count; k++)
+      w->bond_parameters[k] = s->parameter[k] + first;
     interpreter_inputs in = inputs_of(w);
     interpreter_run(w->run[kind], &in, count, w->result);
     for (int k = 0; k < a->root_count; k++)
@@ -243,7 +253,7 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
 STRIP_PASSES(X)
 #undef X
 
-/* --- single states ----------------------------------------------------------------------- */
+/* --- single states ---------------------------------------------------------------------------- */
 
 static void run_law(const pl_law *kernel, const double *uniforms, long count,
                     const double *const *in, double *const *out, pass_kind kind) {
@@ -277,7 +287,7 @@ static void run_tangent(const pl_law *kernel, const double *uniforms, long count
   run_law(kernel, uniforms, count, in, out, PASS_TANGENT);
 }
 
-/* --- values of a bond class, bounds ------------------------------------------------------ */
+/* --- values of a bond class, bounds ----------------------------------------------------------- */
 
 static void run_prepare(const pl_law *kernel, const double *parameters, const pl_bond_class *bonds,
                         double *uniforms) {
@@ -326,7 +336,7 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
   give_back(w);
 }
 
-/* --- the descriptor ---------------------------------------------------------------------- */
+/* --- the descriptor --------------------------------------------------------------------------- */
 
 static const char *unit_text(arena *memory, const symbol *s) {
   char text[64];
@@ -372,6 +382,8 @@ static void describe(interpreted *p, const char *key) {
       .key = arena_text(p->memory, key, strlen(key)),
       .parameter_count = l->parameters.count,
       .parameters = describe_parameters(p->memory, &l->parameters),
+      .varying_count = plan->varying_count,
+      .varying = plan->varying,
       .field_count = l->fields.count,
       .fields = describe_fields(p->memory, &l->fields),
       .output_count = l->outputs.count,
@@ -390,7 +402,7 @@ static void describe(interpreted *p, const char *key) {
   };
 }
 
-/* --- making and freeing ------------------------------------------------------------------ */
+/* --- making and freeing ----------------------------------------------------------------------- */
 
 /* Roots in which each hoisted value is an input, numbered after the parameters: as in compiled
    kernels it is computed in `prepare` and read by strips. */

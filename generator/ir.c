@@ -49,7 +49,7 @@ const char *ir_op_name(ir_op op) {
   return operations[op].name;
 }
 
-/* --- nodes and the table that finds them --------------------------------------------- */
+/* --- nodes and the table that finds them ------------------------------------------------------ */
 
 ir *ir_new(void) {
   ir *g = must_calloc(1, sizeof(ir));
@@ -144,7 +144,7 @@ ir_node ir_input(ir *g, ir_source from, int index, const char *name, placement o
   return made;
 }
 
-/* --- questions about nodes ----------------------------------------------------------- */
+/* --- questions about nodes -------------------------------------------------------------------- */
 
 static const node *at(const ir *g, ir_node n) {
   assert(n >= 0 && n < g->count);
@@ -202,7 +202,7 @@ static bool is_op(const ir *g, ir_node n, ir_op op) {
   return at(g, n)->op == op;
 }
 
-/* --- simplification ------------------------------------------------------------------ */
+/* --- simplification --------------------------------------------------------------------------- */
 
 static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
   node n = blank(op);
@@ -384,7 +384,7 @@ ir_node ir_select(ir *g, ir_node condition, ir_node yes, ir_node no) {
   return ir_make(g, IR_SELECT, condition, yes, no);
 }
 
-/* --- powers -------------------------------------------------------------------------- */
+/* --- powers ----------------------------------------------------------------------------------- */
 
 static ir_node whole_power(ir *g, ir_node base, int n) {
   ir_node result = IR_NONE;
@@ -410,7 +410,7 @@ ir_node ir_power(ir *g, ir_node base, ir_node exponent) {
   return power < 0.0 ? ir_div(g, ir_constant(g, 1.0), result) : result;
 }
 
-/* --- walks over the graph ------------------------------------------------------------ */
+/* --- walks over the graph --------------------------------------------------------------------- */
 
 void ir_mark(const ir *g, const ir_node *roots, int root_count, unsigned char *marks) {
   ir_node last = IR_NONE;
@@ -505,12 +505,13 @@ ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placeme
   return cost;
 }
 
-/* --- printing ------------------------------------------------------------------------ */
+/* --- printing --------------------------------------------------------------------------------- */
 
 static const char *const source_names[IR_SOURCE_COUNT] = {
     [IR_FROM_PARAMETER] = "parameter",
     [IR_FROM_QUANTITY] = "quantity",
     [IR_FROM_FIELD] = "field",
+    [IR_FROM_BOND_PARAMETER] = "bond parameter",
     [IR_FROM_ENDS] = "ends",
 };
 

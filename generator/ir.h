@@ -43,6 +43,7 @@ typedef enum ir_source {
   IR_FROM_PARAMETER, /* index: law->parameters */
   IR_FROM_QUANTITY,  /* index: builtin_quantity */
   IR_FROM_FIELD,     /* index: law->fields; the value at hand: old one when a step begins */
+  IR_FROM_BOND_PARAMETER, /* index: of the parameters that differ from bond to bond (kernel_plan) */
   IR_FROM_ENDS,      /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
   IR_SOURCE_COUNT
 } ir_source;

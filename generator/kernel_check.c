@@ -10,7 +10,7 @@
 
 enum { BATCH = 1024, STATES_PER_BOND = 4 };
 
-/* --- states and tangents -------------------------------------------------------------------- */
+/* --- states and tangents ---------------------------------------------------------------------- */
 
 typedef struct state_arrays {
   int inputs, results;
@@ -81,7 +81,7 @@ static void check_states(const law_readers *l, law_inputs *inputs, long wanted, 
   arrays_free(&a);
 }
 
-/* --- prepare and bounds --------------------------------------------------------------------- */
+/* --- prepare and bounds ----------------------------------------------------------------------- */
 
 static void check_prepare(const law_readers *l, const double *parameters, comparison *c) {
   const int count = l->law[0]->uniform_count;
@@ -114,10 +114,11 @@ static void check_bounds(const law_readers *l, const double *parameters, compari
   free(open);
 }
 
-/* --- all of it ------------------------------------------------------------------------------ */
+/* --- all of it -------------------------------------------------------------------------------- */
 
 static void check_set(kernel_check *c, const law *of, law_readers *l, const double *parameters,
                       long states, guard_watch *guards, uint64_t *seed) {
+  l->parameters = parameters;
   check_prepare(l, parameters, &c->outputs);
   check_bounds(l, parameters, &c->outputs);
   law_inputs inputs;
@@ -134,7 +135,7 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
   kernel_check c = {.states = 0};
   pl_law *interpreted = plan_interpreted(p, "");
   double **uniforms = planes_new(2, kernel->uniform_count);
-  law_readers l = {{kernel, interpreted}, {uniforms[0], uniforms[1]}, bonds};
+  law_readers l = {.law = {kernel, interpreted}, .uniforms = {uniforms[0], uniforms[1]}, .bonds = bonds};
   guard_watch *guards = guard_watch_new(p, BATCH);
   for (int k = 0; k < sets; k++)
     check_set(&c, p->law, &l, parameters[k], states / sets, guards, &seed);

@@ -16,7 +16,7 @@ enum {
   DIRECTION = 5
 };
 
-/* --- arrays -------------------------------------------------------------------------------- */
+/* --- arrays ----------------------------------------------------------------------------------- */
 
 /* What a strip reads, and twice, for either reader, what it writes. */
 typedef struct strip_arrays {
@@ -24,6 +24,7 @@ typedef struct strip_arrays {
   int kept_planes;  /* the fields, then the two dissipated energies: updated in place */
   double **motion;  /* [MOTIONS][SITES + 1]: far ends stand one further than near ends */
   double **chord;   /* [2][SITES] */
+  double **parameter; /* [varying][SITES] */
   double **before;  /* [kept_planes][SITES] */
   double **kept[2]; /* [kept_planes][SITES] */
   double **force[2], **observed[2];
@@ -36,6 +37,7 @@ static strip_arrays arrays_new(const pl_law *law) {
                     .kept_planes = law->field_count + 2,
                     .motion = planes_new(MOTIONS, SITES + 1),
                     .chord = planes_new(2, SITES)};
+  a.parameter = planes_new(law->varying_count, SITES);
   a.before = planes_new(a.kept_planes, SITES);
   for (int side = 0; side < 2; side++) {
     a.kept[side] = planes_new(a.kept_planes, SITES);
@@ -51,6 +53,7 @@ static strip_arrays arrays_new(const pl_law *law) {
 static void arrays_free(strip_arrays *a) {
   planes_free(a->motion, MOTIONS);
   planes_free(a->chord, 2);
+  planes_free(a->parameter, a->law->varying_count);
   planes_free(a->before, a->kept_planes);
   for (int side = 0; side < 2; side++) {
     planes_free(a->kept[side], a->kept_planes);
@@ -62,7 +65,7 @@ static void arrays_free(strip_arrays *a) {
   free(a->j);
 }
 
-/* --- random bonds -------------------------------------------------------------------------- */
+/* --- random bonds ----------------------------------------------------------------------------- */
 
 /* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or
  * large amount. */
@@ -93,7 +96,8 @@ static int64_t draw_flags(uint64_t *seed) {
   return others | (kind ? PL_PRESENT(DIRECTION) : 0) | (kind == 1 ? PL_PROTECTED(DIRECTION) : 0);
 }
 
-static void fill_bonds(strip_arrays *a, const pl_bond_class *b, uint64_t *seed) {
+static void fill_bonds(strip_arrays *a, const pl_bond_class *b, const double *parameters,
+                       uint64_t *seed) {
   const int fields = a->law->field_count;
   for (int q = 0; q < SITES; q++) {
     double angle = draw_uniform(seed, -3.2, 3.2), size = b->s * draw_uniform(seed, 0.3, 3);
@@ -102,12 +106,14 @@ static void fill_bonds(strip_arrays *a, const pl_bond_class *b, uint64_t *seed) 
     a->flags[q] = draw_flags(seed);
     a->i[q] = (int32_t)(draw_bits(seed) % SITES);
     a->j[q] = (int32_t)(draw_bits(seed) % SITES);
+    for (int k = 0; k < a->law->varying_count; k++)
+      a->parameter[k][q] = parameters[a->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
     for (int k = 0; k < a->kept_planes; k++)
       a->before[k][q] = k < fields ? draw_field(seed, &a->law->fields[k]) : draw_size(seed, -6, 0);
   }
 }
 
-/* --- the six functions ---------------------------------------------------------------------- */
+/* --- the six functions ------------------------------------------------------------------------ */
 
 typedef struct strip_pass {
   const char *name;
@@ -130,6 +136,7 @@ static pl_strip strip_of(const strip_arrays *a, const strip_pass *p, int side) {
                 .direction = DIRECTION,
                 .flags = a->flags,
                 .time_step = 1.7e-7,
+                .parameter = (const double *const *)a->parameter,
                 .field = a->kept[side],
                 .force = a->force[side],
                 .observed = a->observed[side],
@@ -161,7 +168,7 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
   run(l->law[side], l->uniforms[side], &strip);
 }
 
-/* --- what they wrote ------------------------------------------------------------------------ */
+/* --- what they wrote -------------------------------------------------------------------------- */
 
 static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison *c) {
   const pl_law *law = a->law;
@@ -207,7 +214,7 @@ long kernel_check_strips(const law_readers *l, long wanted, uint64_t *seed, comp
   for (; done < wanted; done += LISTED)
     for (size_t k = 0; k < sizeof passes / sizeof *passes; k++) {
       fill_motion(&a, l->bonds, seed);
-      fill_bonds(&a, l->bonds, seed);
+      fill_bonds(&a, l->bonds, l->parameters, seed);
       run_pass(l, &a, &passes[k], 0);
       run_pass(l, &a, &passes[k], 1);
       compare_pass(&a, &passes[k], c);

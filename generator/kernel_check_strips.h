@@ -11,6 +11,7 @@ typedef struct law_readers {
   const pl_law *law[2];
   double *uniforms[2]; /* of `prepare` */
   const pl_bond_class *bonds;
+  const double *parameters; /* those that differ from bond to bond are drawn around these */
 } law_readers;
 
 /* Runs all six strip functions on at least `wanted` bonds each; returns how many. A list's count is

@@ -49,6 +49,8 @@ typedef struct lowering {
   ir_node *rule;      /* [fields] value of the rule, or IR_NONE before it */
   int *rule_order;    /* fields in the order of their rules */
   int rule_count;
+  lowered_text text; /* LOWER_STEP; grown by malloc, copied to `memory` at the end */
+  int group_count;
 } lowering;
 
 static ir_node lower_expr(lowering *c, const expr *e);
@@ -67,7 +69,33 @@ static ir_node binary(ir *g, ir_op op, ir_node a, ir_node b) {
   return ir_make(g, op, a, b, IR_NONE);
 }
 
-/* --- inputs ------------------------------------------------------------------------------ */
+/* --- what became of the text ------------------------------------------------------------------ */
+
+/* Room for one more of `count` items. */
+static void *one_more(void *items, int count, size_t size) {
+  bool full = count == 0 || (count >= 16 && (count & (count - 1)) == 0);
+  return full ? must_realloc(items, (size_t)(count ? 2 * count : 16) * size) : items;
+}
+
+static void note_place(lowering *c, ir_node n, const expr *e) {
+  if (c->mode != LOWER_STEP || c->failed || n == IR_NONE) return;
+  ir_op op = ir_operation(c->graph, n);
+  if (op != IR_DIV && op != IR_SQRT && op != IR_LOG && op != IR_POW) return;
+  lowered_text *t = &c->text;
+  for (int k = 0; k < t->place_count; k++)
+    if (t->places[k].node == n) return;
+  t->places = one_more(t->places, t->place_count, sizeof *t->places);
+  t->places[t->place_count++] = (lowered_place){n, e->where};
+}
+
+static void note_line(lowering *c, const expr *cases, int line, ir_node guard) {
+  if (c->mode != LOWER_STEP) return;
+  lowered_text *t = &c->text;
+  t->lines = one_more(t->lines, t->line_count, sizeof *t->lines);
+  t->lines[t->line_count++] = (lowered_line){cases, line, c->group_count, guard};
+}
+
+/* --- inputs ----------------------------------------------------------------------------------- */
 
 static bool is_kinematic(builtin_quantity q) {
   return q == QUANTITY_STRETCH || q == QUANTITY_STRETCH_RATE || q == QUANTITY_THETA_I ||
@@ -101,7 +129,7 @@ static ir_node lower_quantity_name(lowering *c, const expr *e, builtin_quantity 
   return lower_quantity(c->graph, q);
 }
 
-/* --- names ------------------------------------------------------------------------------- */
+/* --- names ------------------------------------------------------------------------------------ */
 
 static ir_node *binding_of(lowering *c, const symbol *s) {
   for (int k = c->bound_count - 1; k >= 0; k--)
@@ -173,7 +201,7 @@ static ir_node lower_name(lowering *c, const expr *e) {
   }
 }
 
-/* --- numbers and operators --------------------------------------------------------------- */
+/* --- numbers and operators -------------------------------------------------------------------- */
 
 static ir_node lower_number(lowering *c, const expr *e) {
   double value = e->number;
@@ -283,12 +311,17 @@ static ir_node lower_cases(lowering *c, const expr *e) {
     else
       value = ir_select(c->graph, lower_expr(c, line->guard), here, value);
   }
-  for (int k = 0; k < e->case_count && value != IR_NONE; k++)
-    if (e->cases[k].guard) value = keep_nan(c, lower_expr(c, e->cases[k].guard), value);
+  for (int k = 0; k < e->case_count && value != IR_NONE; k++) {
+    if (!e->cases[k].guard) continue;
+    ir_node guard = lower_expr(c, e->cases[k].guard);
+    value = keep_nan(c, guard, value);
+    note_line(c, e, k, guard);
+  }
+  c->group_count++;
   return value;
 }
 
-/* --- calls ------------------------------------------------------------------------------- */
+/* --- calls ------------------------------------------------------------------------------------ */
 
 static unsigned call_bucket(const stmt *function, const ir_node *arguments) {
   uintptr_t hash = (uintptr_t)function >> 4;
@@ -406,10 +439,7 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
   return unary(g, op, a);
 }
 
-static ir_node lower_expr(lowering *c, const expr *e) {
-  if (c->failed) return ir_constant(c->graph, 0);
-  if (++c->visits > MOST_VISITS || ir_count(c->graph) > MOST_NODES)
-    return fail(c, e->where, "with its functions expanded the law is too large to compile");
+static ir_node lower_kind(lowering *c, const expr *e) {
   switch (e->kind) {
   case EXPR_NUMBER:
     return lower_number(c, e);
@@ -426,7 +456,16 @@ static ir_node lower_expr(lowering *c, const expr *e) {
   }
 }
 
-/* --- rules ------------------------------------------------------------------------------- */
+static ir_node lower_expr(lowering *c, const expr *e) {
+  if (c->failed) return ir_constant(c->graph, 0);
+  if (++c->visits > MOST_VISITS || ir_count(c->graph) > MOST_NODES)
+    return fail(c, e->where, "with its functions expanded the law is too large to compile");
+  ir_node n = lower_kind(c, e);
+  if (e->kind == EXPR_BINARY || (e->kind == EXPR_CALL && e->builtin >= 0)) note_place(c, n, e);
+  return n;
+}
+
+/* --- rules ------------------------------------------------------------------------------------ */
 
 /* min(max(old, rule), 1) in a form in which a rule that is not a number stays so, and is found. */
 static ir_node clamp_damage(lowering *c, ir_node old, ir_node rule) {
@@ -439,12 +478,31 @@ static ir_node clamp_damage(lowering *c, ir_node old, ir_node rule) {
   return ir_select(g, is_protected, old, clamped);
 }
 
+/* a - b of a guard a >= b or a > b. */
+static ir_node overstress_of(lowering *c, const expr *when) {
+  if (!when || when->kind != EXPR_BINARY) return IR_NONE;
+  binary_op op = when->binary;
+  if (op != OP_GE && op != OP_GT && op != OP_LE && op != OP_LT) return IR_NONE;
+  ir_node a = lower_expr(c, when->left), b = lower_expr(c, when->right);
+  return op == OP_GE || op == OP_GT ? ir_sub(c->graph, a, b) : ir_sub(c->graph, b, a);
+}
+
+static void note_flow(lowering *c, const stmt *rule, ir_node when) {
+  if (c->mode != LOWER_STEP) return;
+  lowered_text *t = &c->text;
+  t->flows = one_more(t->flows, t->flow_count, sizeof *t->flows);
+  t->flows[t->flow_count++] =
+      (lowered_flow){rule, rule->symbol->index, when, overstress_of(c, rule->when)};
+}
+
 /* `flow x by expr when guard`: one increment a step. */
 static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node increment) {
   if (rule->returned)
     return fail(c, rule->where, "`flow ... along ... returned` cannot be compiled yet");
   ir_node flown = ir_add(c->graph, old, increment);
-  return rule->when ? ir_select(c->graph, lower_expr(c, rule->when), flown, old) : flown;
+  ir_node when = rule->when ? lower_expr(c, rule->when) : IR_NONE;
+  note_flow(c, rule, when);
+  return rule->when ? ir_select(c->graph, when, flown, old) : flown;
 }
 
 static void lower_field_rule(lowering *c, const stmt *rule) {
@@ -457,6 +515,7 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
   ir_node old = lower_field(c->graph, c->law, s->index);
   ir_node value = lower_expr(c, rule->value);
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
+  if (c->mode == LOWER_STEP) c->text.rules[s->index] = value;
   if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, old, value);
   name_node(c->graph, value, s->name, rule->where);
   c->rule[s->index] = value;
@@ -476,7 +535,7 @@ static void lower_rule(lowering *c, const stmt *rule) {
   }
 }
 
-/* --- results ----------------------------------------------------------------------------- */
+/* --- results ---------------------------------------------------------------------------------- */
 
 static ir_node result_node(lowering *c, law_result which) {
   const symbol *s = c->law->results[which];
@@ -526,6 +585,38 @@ static void lower_results(lowering *c, lowered_law *out) {
   }
 }
 
+static void resolve_text(lowering *c, const ir_node *from, const ir_node *to) {
+  ir *g = c->graph;
+  lowered_text *t = &c->text;
+  if (c->mode != LOWER_STEP) return;
+  int fields = c->law->fields.count, count = fields + t->line_count + t->place_count + 2 * t->flow_count;
+  ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all), *at = all;
+  for (int k = 0; k < fields; k++) *at++ = t->rules[k];
+  for (int k = 0; k < t->line_count; k++) *at++ = t->lines[k].guard;
+  for (int k = 0; k < t->place_count; k++) *at++ = t->places[k].node;
+  for (int k = 0; k < t->flow_count; k++) {
+    *at++ = t->flows[k].when;
+    *at++ = t->flows[k].overstress;
+  }
+  ir_substitute(g, all, count, from, to, c->rule_count, all);
+  at = all;
+  for (int k = 0; k < fields; k++) t->rules[k] = *at++;
+  for (int k = 0; k < t->line_count; k++) t->lines[k].guard = *at++;
+  for (int k = 0; k < t->place_count; k++) t->places[k].node = *at++;
+  for (int k = 0; k < t->flow_count; k++) {
+    t->flows[k].when = *at++;
+    t->flows[k].overstress = *at++;
+  }
+  free(all);
+}
+
+static void *keep(arena *memory, void *items, int count, size_t size) {
+  void *kept = arena_alloc(memory, ((size_t)count + 1) * size);
+  if (count) memcpy(kept, items, (size_t)count * size);
+  free(items);
+  return kept;
+}
+
 /* Puts the rules in place of the opaque new values. A rule reads new values of rules above it. */
 static void resolve_fields(lowering *c, lowered_law *out) {
   ir *g = c->graph;
@@ -545,6 +636,7 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     if (*results[k] != IR_NONE)
       ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
   ir_substitute(g, out->outputs, c->law->outputs.count, from, to, c->rule_count, out->outputs);
+  resolve_text(c, from, to);
   free(from);
   free(to);
 }
@@ -563,7 +655,8 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
   int fields = l->fields.count;
   size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
   lowering c = {.law = l, .graph = g, .mode = mode, .memory = memory, .said = d};
-  *out = (lowered_law){IR_NONE, IR_NONE, IR_NONE, IR_NONE, NULL, NULL};
+  *out = (lowered_law){IR_NONE, IR_NONE, IR_NONE, IR_NONE, NULL, NULL, {0}};
+  c.text.rules = arena_alloc(memory, field_bytes);
   c.new_value = must_alloc(field_bytes);
   c.rule = must_alloc(field_bytes);
   c.rule_order = must_alloc(((size_t)fields + 1) * sizeof *c.rule_order);
@@ -571,12 +664,17 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
   out->outputs = arena_alloc(memory, ((size_t)l->outputs.count + 1) * sizeof(ir_node));
   for (int k = 0; k < fields; k++) {
     c.new_value[k] = mode == LOWER_FROZEN ? lower_field(g, l, k) : opaque_field(g, l, k);
-    out->fields[k] = lower_field(g, l, k);
+    c.text.rules[k] = out->fields[k] = lower_field(g, l, k);
   }
   for (int k = 0; k < l->rule_count && !c.failed; k++)
     lower_rule(&c, l->rules[k]);
   if (!c.failed) lower_results(&c, out);
   if (!c.failed && mode != LOWER_FROZEN) resolve_fields(&c, out);
+  lowered_text *t = &c.text;
+  t->lines = keep(memory, t->lines, t->line_count, sizeof *t->lines);
+  t->places = keep(memory, t->places, t->place_count, sizeof *t->places);
+  t->flows = keep(memory, t->flows, t->flow_count, sizeof *t->flows);
+  out->text = c.text;
   free(c.bound);
   free(c.new_value);
   free(c.rule);
@@ -597,7 +695,7 @@ ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite) {
   return n;
 }
 
-/* --- energy ------------------------------------------------------------------------------ */
+/* --- energy ----------------------------------------------------------------------------------- */
 
 enum { ENERGY_PAIRS = 3 }; /* N with the stretch, M_i with theta_i, M_j with theta_j */
 

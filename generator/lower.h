@@ -13,11 +13,36 @@ typedef enum lower_mode {
   LOWER_FROZEN       /* fields keep the value at hand everywhere: the elastic law of a given state */
 } lower_mode;
 
+/* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
+typedef struct lowered_line { /* a case line with a guard */
+  const expr *cases;
+  int line, group; /* lines of one list in one call of a function share a group */
+  ir_node guard;
+} lowered_line;
+typedef struct lowered_place { /* an operation that is not defined everywhere */
+  ir_node node;
+  span where;
+} lowered_place;
+typedef struct lowered_flow {
+  const stmt *rule;
+  int field;
+  ir_node when;       /* IR_NONE: always */
+  ir_node overstress; /* a - b of a guard a >= b; IR_NONE for other guards */
+} lowered_flow;
+typedef struct lowered_text {
+  ir_node *rules; /* [law->fields.count] a damage's rule before it is kept in [0, 1] */
+  lowered_line *lines;
+  lowered_place *places;
+  lowered_flow *flows;
+  int line_count, place_count, flow_count;
+} lowered_text;
+
 typedef struct lowered_law {
   ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
   ir_node W;        /* the law's own `energy`, or IR_NONE */
   ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
   ir_node *outputs; /* [law->outputs.count] */
+  lowered_text text;
 } lowered_law;
 
 /* Adds the law's nodes to g. Quantities become inputs IR_FROM_QUANTITY, fields IR_FROM_FIELD.

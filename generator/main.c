@@ -8,28 +8,22 @@
 #include "generator/commands.h"
 #include "generator/version.h"
 
-static const struct {
-  const char *name, *arguments, *purpose;
-  int (*run)(int argc, char **argv);
-} commands[] = {
-#define X(name, arguments, purpose) {#name, arguments, purpose, command_##name},
+/* In the order of `commands`. */
+static int (*const run[])(int argc, char **argv) = {
+#define X(name, files, endings, purpose) command_##name,
     COMMANDS(X)
 #undef X
 };
-enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
-
-static void print_command_help(FILE *out, int k) {
-  fprintf(out, "usage: perilat %s %s\n  %s\n", commands[k].name, commands[k].arguments, commands[k].purpose);
-}
+enum { COMMAND_COUNT = sizeof run / sizeof *run };
 
 static int print_help(FILE *out) {
   fputs("perilat: compiler and simulator for particle-lattice material laws\n\n"
         "usage: perilat COMMAND ...\n\n",
         out);
   for (int k = 0; k < COMMAND_COUNT; k++)
-    fprintf(out, "  %-6s %s\n         perilat %s %s\n", commands[k].name, commands[k].purpose, commands[k].name,
-            commands[k].arguments);
-  fputs("\n  perilat COMMAND --help   the usage of one command\n"
+    fprintf(out, "  %-7s  %s\n           perilat %s %s\n", commands[k].name, commands[k].purpose, commands[k].name,
+            commands[k].files);
+  fputs("\n  perilat COMMAND --help   usage and options of one command\n"
         "  perilat --version\n\n"
         "Exit status: 0 done, 1 the input is wrong, 2 the run failed.\n",
         out);
@@ -53,7 +47,7 @@ static int dispatch(int argc, char **argv) {
     print_help(stderr);
     return 1;
   }
-  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || !strcmp(argv[1], "help"))
+  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || (argc == 2 && !strcmp(argv[1], "help")))
     return print_help(stdout);
   if (!strcmp(argv[1], "--version")) {
     printf("perilat %s\n", perilat_version);
@@ -64,10 +58,10 @@ static int dispatch(int argc, char **argv) {
       continue;
     for (int a = 2; a < argc; a++)
       if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
-        print_command_help(stdout, k);
+        command_print(k, stdout);
         return 0;
       }
-    return commands[k].run(argc - 2, argv + 2);
+    return run[k](argc - 2, argv + 2);
   }
   return unknown_command(argv[1]);
 }

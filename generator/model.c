@@ -51,7 +51,7 @@ char *read_text_file(const char *path, size_t limit, size_t *length, char *error
   return text;
 }
 
-/* --- kinds -------------------------------------------------------------------------------------- */
+/* --- kinds ------------------------------------------------------------------------------------ */
 
 static bool ends_in(const char *text, const char *tail) {
   size_t n = strlen(text), m = strlen(tail);
@@ -99,7 +99,7 @@ bool same_file(const char *a, const char *b) {
   return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
 }
 
-/* --- finding ------------------------------------------------------------------------------------ */
+/* --- finding ---------------------------------------------------------------------------------- */
 
 static bool is_file(const char *path) {
   struct stat about;
@@ -158,7 +158,7 @@ static char *try_program_tree(const char *name) {
 
 char *model_find(const char *name, const char *beside) {
   char *found = NULL;
-  if (ends_in(name, ".plm"))
+  if (name[0] == '/')
     found = is_file(name) ? strdup(name) : NULL;
   if (!found && beside) {
     char folder[PATH_LIMIT];
@@ -175,7 +175,7 @@ char *model_find(const char *name, const char *beside) {
   return found ? found : try_program_tree(name);
 }
 
-/* --- opening ------------------------------------------------------------------------------------ */
+/* --- opening ---------------------------------------------------------------------------------- */
 
 /* include "x.plm": beside the including file, then wherever models are found. */
 static char *read_include(void *context, const char *name, const char *from, char **found) {
@@ -193,33 +193,51 @@ static char *read_include(void *context, const char *name, const char *from, cha
   return text;
 }
 
-bool model_open(model *m, const char *path, const law_choice *choices, int choice_count) {
-  double begun = seconds_now();
+static void begin_model(model *m, const char *path) {
   memset(m, 0, sizeof *m);
   m->memory = arena_new();
   m->path = strdup(path);
   diag_begin(&m->said, &m->sources);
-  size_t length;
-  char error[PATH_LIMIT + 128];
-  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
-  if (!text) {
-    diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
-    return false;
-  }
-  int file = source_add(&m->sources, path, text, length);
-  free(text);
+}
+
+static bool check_text(model *m, const char *text, size_t length, const law_choice *choices, int choice_count) {
+  double begun = seconds_now();
+  int file = source_add(&m->sources, m->path, text, length);
   parse_options options = {read_include, NULL};
   m->tree = parse_model(m->memory, &m->sources, file, &options, &m->said);
   if (!m->tree || m->said.errors)
     return false;
   m->law = law_check(m->memory, m->tree, &m->sources, choices, choice_count, &m->said);
-  m->seconds_front = seconds_now() - begun;
+  m->seconds_front += seconds_now() - begun;
   return m->law && !m->said.errors;
 }
 
-bool model_plan(model *m) {
+bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices, int choice_count) {
+  begin_model(m, path);
+  return check_text(m, text, strlen(text), choices, choice_count);
+}
+
+bool model_open(model *m, const char *path, const law_choice *choices, int choice_count) {
   double begun = seconds_now();
-  m->plan = plan_kernel(m->law, &m->said);
+  size_t length;
+  char error[PATH_LIMIT + 128];
+  begin_model(m, path);
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
+    return false;
+  }
+  m->seconds_front = seconds_now() - begun;
+  bool good = check_text(m, text, length, choices, choice_count);
+  free(text);
+  return good;
+}
+
+bool model_plan(model *m) { return model_plan_varying(m, NULL, 0); }
+
+bool model_plan_varying(model *m, const int *varying, int varying_count) {
+  double begun = seconds_now();
+  m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
   if (!m->plan)
     return false;
   char *unkeyed = emit_kernel(m->plan, "");

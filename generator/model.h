@@ -28,15 +28,19 @@ file_kind kind_of_file(const char *path);
 /* True when both name one existing file, by whatever path or link. */
 bool same_file(const char *a, const char *b);
 
-/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: as given; beside `beside`
+/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
 
 /* Reads, parses, checks. False on errors; they are in m->said. The model must be closed in any case. */
 bool model_open(model *m, const char *path, const law_choice *choices, int choice_count);
+/* The same of a text at hand, which is named `path` in messages and found there by what it includes. */
+bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices, int choice_count);
 /* Plans the kernel and emits its C (m->said on errors). */
 bool model_plan(model *m);
+/* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */
+bool model_plan_varying(model *m, const int *varying, int varying_count);
 /* Kernel for the runtime: compiled; without a C compiler interpreted, and *note says so. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);

@@ -40,7 +40,7 @@ typedef struct topology {
   ir_node *outputs;   /* with the fields at hand */
 } topology;
 
-/* --- substitution ------------------------------------------------------------------------ */
+/* --- substitution ----------------------------------------------------------------------------- */
 
 static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, const ir_node *to,
                        int pairs) {
@@ -80,7 +80,17 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
   free(all);
 }
 
-/* --- topologies -------------------------------------------------------------------------- */
+/* --- topologies ------------------------------------------------------------------------------- */
+
+/* Parameters that differ from bond to bond, and the values that a strip brings. */
+static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
+  for (int k = 0; k < p->varying_count; k++) {
+    from[k] = lower_parameter(p->graph, p->law, p->varying[k]);
+    to[k] = ir_input(p->graph, IR_FROM_BOND_PARAMETER, k,
+                     p->law->parameters.items[p->varying[k]]->name, ON_BOND);
+  }
+  return p->varying_count;
+}
 
 /* Law-level inputs and the kinematics that take their place. */
 static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, ir_node *from,
@@ -105,8 +115,11 @@ static topology see_topology(planner *p, bool uniform_chord) {
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
   topology t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, uniform_chord)};
-  ir_node from[KINEMATIC_COUNT + 1], to[KINEMATIC_COUNT + 1];
+  const size_t most = (size_t)(KINEMATIC_COUNT + 1 + p->plan->varying_count);
+  ir_node *from = arena_alloc(memory, most * sizeof *from);
+  ir_node *to = arena_alloc(memory, most * sizeof *to);
   int pairs = kinematic_pairs(g, &t.k, uniform_chord, from, to);
+  pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
   t.step = p->step;
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
   substitute_law(g, l, &t.step, from, to, pairs);
@@ -135,7 +148,7 @@ static ir_node with_new_fields(planner *p, const topology *t, ir_node n) {
   return result;
 }
 
-/* --- passes ------------------------------------------------------------------------------ */
+/* --- passes ----------------------------------------------------------------------------------- */
 
 static pass *begin_pass(planner *p, pass_kind kind, int most_roots) {
   pass *a = &p->plan->passes[kind];
@@ -238,7 +251,7 @@ static void plan_bounds(planner *p) {
   }
 }
 
-/* --- what is hoisted --------------------------------------------------------------------- */
+/* --- what is hoisted -------------------------------------------------------------------------- */
 
 static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
   if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
@@ -281,7 +294,7 @@ static ir_cost cost_of(const kernel_plan *p, const pass *a) {
   return cost;
 }
 
-/* --- the plan ---------------------------------------------------------------------------- */
+/* --- the plan --------------------------------------------------------------------------------- */
 
 static bool lower_both(planner *p, diagnostics *d) {
   kernel_plan *plan = p->plan;
@@ -293,12 +306,22 @@ static bool lower_both(planner *p, diagnostics *d) {
 }
 
 kernel_plan *plan_kernel(const law *l, diagnostics *d) {
+  return plan_kernel_varying(l, NULL, 0, d);
+}
+
+kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
+                                 diagnostics *d) {
   kernel_plan *plan = must_calloc(1, sizeof *plan);
   bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
   plan->law = l;
   plan->graph = ir_new();
   ir_set_sources(plan->graph, l->sources);
   plan->memory = arena_new();
+  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
+  for (int k = 0; k < varying_count; k++)
+    kept[k] = varying[k];
+  plan->varying = kept;
+  plan->varying_count = varying_count;
   plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
   plan->dimensions = 2;
   plan->dof = micropolar ? 3 : 2;
@@ -333,7 +356,7 @@ void plan_free(kernel_plan *p) {
   free(p);
 }
 
-/* --- printing ---------------------------------------------------------------------------- */
+/* --- printing --------------------------------------------------------------------------------- */
 
 static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
   static const char *const planes[] = {"force x", "force y", "moment on i", "moment on j"};

@@ -36,7 +36,9 @@ typedef enum pass_target {
 /* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
    (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
    stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, in[0..4].
-   IR_FROM_FIELD k: field[k], or in[5 + k]. IR_FROM_ENDS: all strips. */
+   IR_FROM_FIELD k: field[k], or in[5 + k]. IR_FROM_ENDS: all strips. IR_FROM_BOND_PARAMETER k: in
+   strips parameter[k], the value of parameter varying[k] in each bond; all other passes take that
+   parameter as IR_FROM_PARAMETER. */
 typedef struct pass_root {
   ir_node node;
   pass_target target;
@@ -52,6 +54,8 @@ typedef struct pass {
 
 typedef struct kernel_plan {
   const law *law;
+  const int *varying; /* [varying_count] parameters that differ from bond to bond */
+  int varying_count;
   ir *graph;
   pass passes[PASS_COUNT];
   int kind, dimensions, dof, force_planes;
@@ -66,6 +70,9 @@ typedef struct kernel_plan {
 
 /* Plans all passes of a pairwise law in 2D. NULL with diagnostics when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
+/* A variant for parameters (indices into law->parameters) that differ from bond to bond. */
+kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
+                                 diagnostics *d);
 void plan_free(kernel_plan *p);
 void plan_dump(const kernel_plan *p, FILE *out); /* --dump=passes */
 /* --dump=ir: the nodes of every pass, with their names and lines. */

@@ -6,7 +6,7 @@
 
 #include "dsl/arena.h"
 
-/* --- rebuilding -------------------------------------------------------------------------- */
+/* --- rebuilding ------------------------------------------------------------------------------- */
 
 typedef struct rebuilding rebuilding;
 /* What node `old` becomes when its operands have become `operand`. */
@@ -55,7 +55,7 @@ static ir_node again(ir *g, ir_node old, const ir_node *operand) {
   return ir_arity(op) == 0 ? old : ir_make(g, op, operand[0], operand[1], operand[2]);
 }
 
-/* --- zero -------------------------------------------------------------------------------- */
+/* --- zero ------------------------------------------------------------------------------------- */
 
 static ir_node zero_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
@@ -83,7 +83,7 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
   rebuild(&r, roots, root_count, out);
 }
 
-/* --- reciprocals ------------------------------------------------------------------------- */
+/* --- reciprocals ------------------------------------------------------------------------------ */
 
 static bool is_uniform(const ir *g, ir_node n) {
   return ir_place(g, n) <= ON_BODY;
@@ -119,7 +119,7 @@ void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *o
   free(marks);
 }
 
-/* --- questions --------------------------------------------------------------------------- */
+/* --- questions -------------------------------------------------------------------------------- */
 
 bool rewrite_depends(const ir *g, const ir_node *roots, int root_count, const ir_node *nodes,
                      int node_count) {
@@ -229,7 +229,7 @@ double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count) {
   return result;
 }
 
-/* --- NaN --------------------------------------------------------------------------------- */
+/* --- NaN -------------------------------------------------------------------------------------- */
 
 static bool makes_nan(ir_op op) {
   switch (op) {

@@ -29,6 +29,7 @@ typedef struct run_options {
   bool check_kernel;         /* compare kernel and interpreter on random states first */
   bool check_only;           /* `perilat check deck.nml`: everything but the run */
   bool profile;
+  bool no_physics;           /* leave out the physics checks of the deck's laws */
   diag_json *report;         /* diagnostics go here; NULL: to stderr as text */
 } run_options;
 

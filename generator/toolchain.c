@@ -326,26 +326,33 @@ char *toolchain_key(const char *text) {
 
 /* --- compiling -------------------------------------------------------------------------------- */
 
-/* A shared object, or with `libraries` a program that is linked with them. */
+#define SOLVER_LIBRARIES                                                                           \
+  "-lperilat_generator -lperilat_runtime -lperilat_generator -lperilat_runtime -lperilat_dsl "     \
+  "-fopenmp " PERILAT_LINK_LIBRARIES
+
+/* A shared object, or with `libraries`, the option that says where they are, a program. */
 static int compile(const char *source, const char *object, const char *libraries, const char *log) {
   arguments a = {0};
   const char *compiler = toolchain_compiler();
   char *words = strdup(compiler), *flags = strdup(toolchain_flags());
   char *object_path = strdup(object), *source_path = strdup(source);
   char output_option[] = "-o", mathematics[] = "-lm"; /* fma, where the processor has none */
-  char *linked = strdup(libraries ? libraries : "");
+  char *linked = strdup(libraries ? SOLVER_LIBRARIES : "");
+  char *libraries_folder = strdup(libraries ? libraries : "");
   add_words(&a, words);
   add_words(&a, flags);
   if (libraries) drop_word(&a, "-shared");
-  if (a.count + 4 <= MOST_ARGUMENTS / 2) {
+  if (a.count <= MOST_ARGUMENTS / 2) {
     a.words[a.count++] = output_option;
     a.words[a.count++] = object_path; /* whole, blanks and all */
     a.words[a.count++] = source_path;
+    if (libraries) a.words[a.count++] = libraries_folder;
     add_words(&a, linked);
-    a.words[a.count++] = mathematics;
+    add_words(&a, mathematics);
   }
   int status = run(&a, log);
   free(linked);
+  free(libraries_folder);
   free(words);
   free(flags);
   free(object_path);
@@ -407,7 +414,8 @@ bool toolchain_build(const char *c_text, const char *path, char *error, size_t s
   return build(c_text, NULL, path, error, size);
 }
 
-/* The folder with this program's static libraries: where it was built, or lib/ beside bin/ where it is installed. */
+/* -L and the folder with this program's static libraries: where it was built, or lib/ beside bin/
+   where it is installed. */
 static bool find_libraries(char *folder, size_t size) {
   static const char *const relative[] = {"", "/../lib"};
   char program[LONGEST_PATH], probe[LONGEST_PATH + 64];
@@ -416,25 +424,22 @@ static bool find_libraries(char *folder, size_t size) {
   char *slash = strrchr(program, '/');
   if (slash) *slash = 0;
   for (size_t k = 0; slash && k < sizeof relative / sizeof *relative; k++) {
-    snprintf(folder, size, "%s%s", program, relative[k]);
-    snprintf(probe, sizeof probe, "%s/libperilat_runtime.a", folder);
+    int length = snprintf(folder, size, "-L%s%s", program, relative[k]);
+    if (length < 0 || (size_t)length >= size) return false;
+    snprintf(probe, sizeof probe, "%s/libperilat_runtime.a", folder + strlen("-L"));
     if (access(probe, R_OK) == 0) return true;
   }
   return false;
 }
 
 bool toolchain_build_program(const char *c_text, const char *path, char *error, size_t size) {
-  char folder[LONGEST_PATH], libraries[LONGEST_PATH + 4096];
+  char folder[LONGEST_PATH];
   if (!find_libraries(folder, sizeof folder)) {
     snprintf(error, size,
              "a solver is linked with libperilat_runtime.a, which is not beside this program");
     return false;
   }
-  snprintf(libraries, sizeof libraries,
-           "-L%s -lperilat_generator -lperilat_runtime -lperilat_generator -lperilat_runtime "
-           "-lperilat_dsl -fopenmp %s",
-           folder, PERILAT_LINK_LIBRARIES);
-  return build(c_text, libraries, path, error, size);
+  return build(c_text, folder, path, error, size);
 }
 
 /* --- loading ---------------------------------------------------------------------------------- */

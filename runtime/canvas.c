@@ -93,6 +93,19 @@ void canvas_text(canvas *c, double x, double y, double size, anchor a, const cha
   cairo_show_text(c->cr, text);
 }
 
+void canvas_text_within(canvas *c, double x, double y, double size, double width, const char *text) {
+  char shown[512];
+  snprintf(shown, sizeof shown, "%s", text);
+  double least = 0.7 * size;
+  size = fmax(least, fmin(size, size * width / fmax(canvas_text_width(c, size, shown), 1e-9)));
+  for (size_t n = strlen(shown); n > 0 && canvas_text_width(c, size, shown) > width; n--) {
+    while (n > 1 && ((unsigned char)shown[n - 1] & 0xC0) == 0x80) /* whole characters of UTF-8 */
+      n--;
+    snprintf(shown + n - 1, sizeof shown - n + 1, "...");
+  }
+  canvas_text(c, x, y, size, ANCHOR_LEFT, shown);
+}
+
 void canvas_text_upward(canvas *c, double x, double y, double size, const char *text) {
   cairo_save(c->cr);
   cairo_translate(c->cr, x, y);
@@ -120,6 +133,8 @@ const char *readable_unit(const char *si_unit, double largest, double *factor) {
     double factor, from; /* used for largest values of at least `from` (SI) */
   } table[] = {{"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4},   {"m", "um", 1e6, 0},
                {"N", "MN", 1e-6, 1e6},   {"N", "kN", 1e-3, 1e3},   {"N", "N", 1, 0},
+               {"J", "MJ", 1e-6, 1e6},   {"J", "kJ", 1e-3, 1e3},   {"J", "J", 1, 0.5},
+               {"J", "mJ", 1e3, 5e-4},   {"J", "uJ", 1e6, 0},
                {"s", "s", 1, 0.5},       {"s", "ms", 1e3, 5e-4},   {"s", "us", 1e6, 0},
                {"Pa", "GPa", 1e-9, 1e9}, {"Pa", "MPa", 1e-6, 1e5}, {"Pa", "Pa", 1, 0}};
   for (size_t k = 0; k < sizeof table / sizeof *table; k++)

@@ -31,6 +31,8 @@ typedef enum anchor { ANCHOR_LEFT, ANCHOR_CENTRE, ANCHOR_RIGHT } anchor;
 
 void canvas_colour(canvas *c, colour k);
 void canvas_text(canvas *c, double x, double y, double size, anchor a, const char *text);
+/* Left at x; smaller, and then cut, where it would be wider than `width`. */
+void canvas_text_within(canvas *c, double x, double y, double size, double width, const char *text);
 void canvas_text_upward(canvas *c, double x, double y, double size, const char *text); /* centred, turned by 90 degrees */
 void canvas_line(canvas *c, double x1, double y1, double x2, double y2, double width);
 double canvas_text_width(canvas *c, double size, const char *text);
@@ -38,8 +40,8 @@ double canvas_text_width(canvas *c, double size, const char *text);
 /* Largest of 1, 2, 5 x 10^n that divides `range` into at least `least` parts. */
 double nice_step(double range, int least);
 
-/* A unit in which values up to `largest` (SI, `si_unit`) read well: "mm" for m, "kN" for N, "ms" for s, "MPa" for Pa.
-   *factor: shown = SI * factor. Keeps the SI unit when it knows none. */
+/* A unit in which values up to `largest` (SI, `si_unit`) read well: "mm" for m, "kN" for N, "ms" for s, "MPa" for Pa, "mJ"
+   for J. *factor: shown = SI * factor. Keeps the SI unit when it knows none. */
 const char *readable_unit(const char *si_unit, double largest, double *factor);
 
 #endif

@@ -36,9 +36,7 @@ static uint64_t checksum(uint64_t sum, const void *data, size_t bytes) {
 
 #define CHECKSUM_START UINT64_C(0xcbf29ce484222325)
 
-/* --- writing
- * -------------------------------------------------------------------------------------------------
- */
+/* --- writing ---------------------------------------------------------------------------------- */
 
 static bool put(stream *s, const void *data, size_t bytes) {
   if (bytes == 0) return true; /* an empty array may have no address */
@@ -100,9 +98,7 @@ bool checkpoint_write(const char *path, const char *fingerprint, const checkpoin
   return good;
 }
 
-/* --- reading
- * -------------------------------------------------------------------------------------------------
- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 static bool get(stream *s, void *data, size_t bytes) {
   if (bytes == 0) return true;
@@ -161,14 +157,25 @@ static bool check_whole(stream *s) {
   return true;
 }
 
+static off_t left_of(stream *s) {
+  const off_t at = ftello(s->file);
+  fseeko(s->file, 0, SEEK_END);
+  const off_t left = ftello(s->file) - at;
+  fseeko(s->file, at, SEEK_SET);
+  return left;
+}
+
 static bool get_parts(stream *s, const char *fingerprint, const checkpoint_part *parts, int count) {
   uint64_t found, bytes;
   if (!get_head(s, fingerprint, &found)) return false;
   bool fits = found == (uint64_t)count;
+  off_t all = (off_t)sizeof(uint64_t); /* parts and checksum */
   for (int k = 0; fits && k < count; k++) {
     if (!get(s, &bytes, sizeof bytes)) return false;
     fits = bytes == parts[k].bytes;
+    all += (off_t)parts[k].bytes;
   }
+  fits = fits && left_of(s) == all;
   if (!fits) return fail(s, "the checkpoint holds a state of another size");
   for (int k = 0; k < count; k++)
     if (!get(s, parts[k].data, parts[k].bytes)) return false;

@@ -26,7 +26,7 @@ FIND(region)
 FIND(lattice)
 FIND(monitor)
 
-/* --- one group --- */
+/* --- one group -------------------------------------------------------------------------------- */
 
 static void copy_places(arena *a, const namelist_group *from, deck_item *item) {
   deck_key *keys = arena_alloc(a, (size_t)from->key_count * sizeof(*keys));
@@ -107,7 +107,7 @@ static bool read_item(deck_reader *r, const namelist_group *from, deck_group_kin
   return !item->faulty;
 }
 
-/* --- the groups of a kind --- */
+/* --- the groups of a kind --------------------------------------------------------------------- */
 
 static bool is_kind(const namelist_group *g, deck_group_kind kind) {
   return strcmp(g->name, deck_groups[kind].name) == 0;
@@ -180,7 +180,7 @@ static void report_unknown_groups(deck_reader *r, const namelist *n) {
   }
 }
 
-/* --- the deck --- */
+/* --- the deck --------------------------------------------------------------------------------- */
 
 static const char *without_ending(arena *a, const char *path, const char *ending) {
   const char *slash = strrchr(path, '/');
@@ -210,6 +210,13 @@ static bool all_names_known(const deck *k, const namelist *n) {
   return known;
 }
 
+/* What may differ between a run and the run that resumes it. */
+static bool is_no_matter(const char *group, const char *key) {
+  if (strcmp(group, "checkpoint") == 0) return true;
+  return key && strcmp(group, "simulation") == 0 &&
+         (strcasecmp(key, "title") == 0 || strcasecmp(key, "threads") == 0);
+}
+
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d) {
   int errors = d->errors;
@@ -230,6 +237,7 @@ deck *deck_read(arena *a, source_set *sources, int file, const deck_override *ov
   DECK_GROUPS(X)
 #undef X
   set_computed_defaults(&r);
+  k->identity = namelist_text(a, n, is_no_matter);
   if (!n->broken && !too_many_errors(&r)) deck_check_whole(&r);
   return d->errors > errors ? NULL : k;
 }

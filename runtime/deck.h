@@ -54,6 +54,10 @@ typedef struct deck_material {
   const char *model;   /* name in models/ or a path ending in .plm */
   deck_assignment *assignments;
   int assignment_count;
+  const char *
+      *varying; /* [varying_count] parameters that a &field makes differ from bond to bond */
+  const span *varying_where;
+  int varying_count;
 } deck_material;
 
 typedef enum shape_kind { SHAPE_POINT, SHAPE_RECTANGLE, SHAPE_DISC, SHAPE_POLYGON } shape_kind;
@@ -67,6 +71,26 @@ typedef struct deck_shape {
   const double *points;                   /* polygon: x1, y1, x2, y2, ...; m */
   int point_count;                        /* pairs, at least 3 */
 } deck_shape;
+
+typedef enum field_kind { FIELD_UNIFORM, FIELD_NORMAL, FIELD_LOGNORMAL, FIELD_WEIBULL } field_kind;
+
+typedef struct deck_number { /* in the unit of a parameter, which the law knows */
+  bool given, has_unit;
+  double value; /* SI */
+  dimension dim;
+} deck_number;
+
+typedef struct deck_field { /* a parameter that differs from bond to bond at random */
+  deck_item item;
+  const char *lattice, *parameter;
+  bool on_particles; /* one value a particle; a bond has the mean of its ends' */
+  field_kind kind;
+  deck_number mean, low, high, scale; /* mean not given: the material's value */
+  double cv, shape;                   /* 0: not given */
+  double correlation_length;          /* m; 0: every bond or particle for itself */
+  int seed;
+  bool clip; /* values out of the law's range are moved to its bound */
+} deck_field;
 
 typedef struct deck_body { /* adds sites */
   deck_item item;
@@ -131,6 +155,19 @@ typedef struct deck_damping { /* kind 'mass': force -rate * mass * velocity on e
   double from, until; /* s; until may be infinite */
 } deck_damping;
 
+typedef struct deck_gravity { /* force mass * acceleration on every particle */
+  deck_item item;
+  double acceleration[2]; /* m/s^2 */
+  time_function factor;   /* 1: full */
+} deck_gravity;
+
+typedef struct deck_initial_velocity { /* of each particle of the region when the run begins */
+  deck_item item;
+  const char *region;
+  int component; /* 0, 1; 2: rotation */
+  double value;  /* m/s, rad/s */
+} deck_initial_velocity;
+
 typedef struct deck_stop {
   deck_item item;
   const char *monitor;
@@ -148,7 +185,7 @@ typedef enum monitor_kind {
   MONITOR_VELOCITY,     /* m/s: mean over the region */
   MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
-  MONITOR_BROKEN        /* count of bonds with damage 1 */
+  MONITOR_BROKEN        /* count of bonds with damage >= `above` */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -160,19 +197,20 @@ typedef struct deck_monitor {
   int component;
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
-  double above;   /* DAMAGED; default 0 */
+  double above;   /* DAMAGED: default 0; BROKEN: default 1 */
   double scale;   /* factor on the value; default 1 (-1: downward load positive) */
 } deck_monitor;
 
 typedef struct deck_output {
   deck_item item;
-  const char *result; /* path; default: the deck's file name with .h5, in the working directory */
-  int frames;         /* default 20 */
-  double sample;      /* s: history interval; default end_time/2000 */
-  const char *
-      *fields; /* "displacement", "velocity", "rotation", "force", "damage", "energy", law fields */
+  const char *result;  /* path; default: the deck's file name with .h5, in the working directory */
+  int frames;          /* default 20 */
+  double sample;       /* s: history interval; default end_time/2000 */
+  const char **fields; /* "displacement", "velocity", "rotation", "force", "damage", "dissipated",
+                          law fields */
   int field_count;
-  bool energy; /* ledger on: default true */
+  const span *field_where; /* [field_count]; NULL when the key was not written */
+  bool energy;             /* ledger on: default true */
 } deck_output;
 
 typedef struct deck_checkpoint {
@@ -190,15 +228,19 @@ typedef struct deck_simulation {
 } deck_simulation;
 
 typedef struct deck {
-  const char *name; /* of the source */
+  const char *name;     /* of the source */
+  const char *identity; /* text that is equal for decks that compute the same: overrides applied,
+                           without comments, title, number of threads and checkpoints */
   deck_simulation simulation;
   deck_output output;
   deck_checkpoint checkpoint;
 #define DECK_LISTS(X)                                                                              \
   X(lattice)                                                                                       \
   X(material)                                                                                      \
-  X(body) X(notch) X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping)      \
-      X(stop) X(monitor)
+  X(field)                                                                                         \
+  X(body)                                                                                          \
+  X(notch) X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity)   \
+      X(initial_velocity) X(stop) X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \
   int group##_count;

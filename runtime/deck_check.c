@@ -3,13 +3,14 @@
 #include <ctype.h>
 #include <math.h>
 #include <string.h>
+#include <strings.h>
 
 #include "runtime/deck_load.h"
 #include "runtime/deck_value.h"
 
 static const char *const component_names[] = {"x", "y", "rotation"};
 
-/* --- names --- */
+/* --- names ------------------------------------------------------------------------------------ */
 
 /* Names of one kind of group, for suggestions. */
 #define NAMES_OF(group)                                                                            \
@@ -68,7 +69,7 @@ static bool is_one_of(const char *name, const char *const *words, int count) {
   return false;
 }
 
-/* --- times --- */
+/* --- times ------------------------------------------------------------------------------------ */
 
 static void warn_late(deck_reader *r, const deck_item *item, const char *key, double time) {
   double end = r->k->simulation.end_time;
@@ -77,7 +78,7 @@ static void warn_late(deck_reader *r, const deck_item *item, const char *key, do
               "`%s` is not before the end of the run", key);
 }
 
-/* --- shapes --- */
+/* --- shapes ----------------------------------------------------------------------------------- */
 
 enum {
   A_POINT = 1 << SHAPE_POINT,
@@ -127,7 +128,7 @@ static void check_shape(deck_reader *r, const namelist_group *from, const deck_i
                 "`inner_radius` must be less than `radius`");
 }
 
-/* --- groups, in the order of DECK_GROUPS --- */
+/* --- groups, in the order of DECK_GROUPS ------------------------------------------------------ */
 
 void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simulation *item) {
   (void)from;
@@ -137,8 +138,8 @@ void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simu
 }
 
 void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
-  static const char *const taken[] = {"time",  "energy", "displacement", "velocity",
-                                      "force", "damage", "rotation",     "."};
+  static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
+                                      "force", "damage",     "rotation",     "."};
   (void)from;
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
@@ -190,6 +191,100 @@ void deck_check_material(deck_reader *r, const namelist_group *from, deck_materi
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
               "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
   diag_note(r->d, first->item.where, "it is given here");
+}
+
+/* --- random fields ---------------------------------------------------------------------------- */
+
+enum { OF_UNIFORM = 1 << FIELD_UNIFORM, OF_WEIBULL = 1 << FIELD_WEIBULL };
+static const char *const field_words[] = {"a uniform distribution", "a normal distribution",
+                                          "a lognormal distribution", "a Weibull distribution"};
+static const deck_key_use field_uses[] = {{"low", OF_UNIFORM, false},
+                                          {"high", OF_UNIFORM, false},
+                                          {"shape", OF_WEIBULL, false},
+                                          {"scale", OF_WEIBULL, false}};
+
+static bool read_number(deck_reader *r, const namelist_group *from, const char *name,
+                        deck_number *n) {
+  const namelist_key *key = namelist_find(from, name);
+  deck_quantity q;
+  if (!key) return true;
+  if (!deck_values_counted(key, 1, r->d) || !deck_quantity_read(&key->values[0], name, &q, r->d))
+    return false;
+  *n = (deck_number){true, q.has_unit, q.value, q.dim};
+  return true;
+}
+
+static void refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b) {
+  const namelist_key *first = namelist_find(from, a), *second = namelist_find(from, b);
+  if (!first || !second) return;
+  diag_report(r->d, DIAG_CONFLICT, second->name_where, "`%s` and `%s` exclude each other", a, b);
+  diag_note(r->d, first->name_where, "`%s` is given here", a);
+}
+
+/* What makes a distribution whole, and no more than that. */
+static void check_distribution(deck_reader *r, const namelist_group *from, const deck_field *f) {
+  const bool range = f->low.given || f->high.given;
+  refuse_both(r, from, "low", "cv");
+  refuse_both(r, from, "low", "mean");
+  refuse_both(r, from, "shape", "cv");
+  refuse_both(r, from, "scale", "mean");
+  if (range && !(f->low.given && f->high.given)) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`low` and `high` belong together");
+  } else if (range && f->high.value <= f->low.value) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&f->item, "high"),
+                "`high` must be larger than `low`");
+  } else if (f->scale.given && f->shape == 0) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`scale` needs `shape`");
+  } else if (!range && f->cv == 0 && f->shape == 0) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs %s", field_words[f->kind],
+                f->kind == FIELD_UNIFORM   ? "`low` and `high`, or `cv`"
+                : f->kind == FIELD_WEIBULL ? "`shape` or `cv`"
+                                           : "`cv`");
+  }
+}
+
+static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
+  const size_t count = (size_t)m->varying_count;
+  const char **names = arena_alloc(r->memory, (count + 1) * sizeof *names);
+  span *where = arena_alloc(r->memory, (count + 1) * sizeof *where);
+  for (size_t k = 0; k < count; k++) {
+    names[k] = m->varying[k];
+    where[k] = m->varying_where[k];
+    if (strcasecmp(names[k], f->parameter) != 0) continue;
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&f->item, "parameter"),
+                "`%s` has a random field already", deck_shown(r->memory, f->parameter));
+    diag_note(r->d, where[k], "it is given here");
+    return;
+  }
+  names[count] = f->parameter;
+  where[count] = deck_where(&f->item, "parameter");
+  m->varying = names;
+  m->varying_where = where;
+  m->varying_count++;
+}
+
+void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *item) {
+  const namelist_key *on = namelist_find(from, "on");
+  if (on) item->on_particles = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1;
+  if (!deck_keys_fit(from, field_uses, 4, (int)item->kind, field_words[item->kind], r->d)) return;
+  bool good = read_number(r, from, "mean", &item->mean);
+  good &= read_number(r, from, "low", &item->low);
+  good &= read_number(r, from, "high", &item->high);
+  good &= read_number(r, from, "scale", &item->scale);
+  if (good) check_distribution(r, from, item);
+  if (item->lattice) {
+    if (!lattice_known(r, &item->item, item->lattice)) return;
+  } else if (r->k->lattice_count == 1) {
+    item->lattice = r->k->lattices[0].name;
+  } else {
+    if (r->names_known && r->k->lattice_count > 1) {
+      diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&field` needs `lattice` here");
+      diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+    }
+    return;
+  }
+  for (int i = 0; i < r->k->material_count; i++)
+    if (same(r->k->materials[i].lattice, item->lattice)) add_varying(r, &r->k->materials[i], item);
 }
 
 void deck_check_body(deck_reader *r, const namelist_group *from, deck_body *item) {
@@ -321,10 +416,30 @@ void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping
               "`until` must be later than `from`");
 }
 
+void deck_check_gravity(deck_reader *r, const namelist_group *from, deck_gravity *item) {
+  if (deck_factor_read(r->memory, from, &item->factor, r->d))
+    warn_late(r, &item->item, "start", item->factor.start);
+  if (item->acceleration[0] == 0 && item->acceleration[1] == 0)
+    diag_report(r->d, DIAG_DECK_WARNING, deck_where(&item->item, "acceleration"),
+                "this gravity is zero");
+}
+
+void deck_check_initial_velocity(deck_reader *r, const namelist_group *from,
+                                 deck_initial_velocity *item) {
+  const bool rotates = item->component == 2;
+  const namelist_key *key = namelist_find(from, "value");
+  item_region_known(r, &item->item, item->region);
+  if (!deck_values_counted(key, 1, r->d) ||
+      deck_real_read(&key->values[0], "value", rotates ? "1/s" : "m/s", BOUND_NONE, &item->value,
+                     r->d))
+    return;
+  if (rotates) diag_hint(r->d, "a rotation's velocity is in rad/s");
+}
+
 enum {
   OF_REGION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
   OF_PAIR = 1 << MONITOR_OPENING,
-  OF_DAMAGE = 1 << MONITOR_DAMAGED
+  OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN
 };
 static const char *const monitor_words[] = {"a reaction monitor", "a displacement monitor",
                                             "a velocity monitor", "an opening monitor",
@@ -372,11 +487,19 @@ static void check_reaction(deck_reader *r, const deck_monitor *item) {
               component_names[item->component]);
 }
 
+static void check_broken(deck_reader *r, const namelist_group *from, deck_monitor *item) {
+  if (!namelist_find(from, "above")) item->above = 1;
+  if (item->above > 0 && item->above <= 1) return;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "above"),
+              "`above` of a broken monitor must be greater than 0 and at most 1");
+}
+
 void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   check_monitor_name(r, item);
   if (!deck_keys_fit(from, monitor_uses, 4, (int)item->kind, monitor_words[item->kind], r->d))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
+  if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
   warn_late(r, &item->item, "zero_at", item->zero_at);
   if (item->region) item_region_known(r, &item->item, item->region);
   if (item->kind == MONITOR_REACTION) check_reaction(r, item);
@@ -431,10 +554,20 @@ void deck_check_stop(deck_reader *r, const namelist_group *from, deck_stop *item
   if (!m->item.faulty) check_level(r, key, item, of ? "1" : monitor_unit(m));
 }
 
+/* Which fields a law has is known later only. */
+static void keep_field_places(deck_reader *r, const namelist_group *from, deck_output *item) {
+  const namelist_key *fields = namelist_find(from, "fields");
+  if (!fields || fields->value_count != item->field_count) return;
+  span *where = arena_alloc(r->memory, (size_t)fields->value_count * sizeof *where);
+  for (int k = 0; k < fields->value_count; k++)
+    where[k] = fields->values[k].where;
+  item->field_where = where;
+}
+
 void deck_check_output(deck_reader *r, const namelist_group *from, deck_output *item) {
   enum { MOST_SAMPLES = 10000000 };
   double end = r->k->simulation.end_time;
-  (void)from;
+  keep_field_places(r, from, item);
   if (end <= 0 || item->sample <= 0) return;
   if (item->sample > end)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "sample"),
@@ -450,7 +583,7 @@ void deck_check_checkpoint(deck_reader *r, const namelist_group *from, deck_chec
   (void)item;
 }
 
-/* --- the whole deck --- */
+/* --- the whole deck --------------------------------------------------------------------------- */
 
 /* A faulty item may be the one that is missed. */
 static bool has_body(const deck *k, const char *lattice) {

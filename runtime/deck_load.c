@@ -90,13 +90,22 @@ static bool read_table(arena *a, const namelist_group *g, time_function *f, diag
   return true;
 }
 
-bool deck_load_read(arena *a, const namelist_group *g, const namelist_key *key,
-                    const char *unit_text, time_function *f, diagnostics *d) {
-  *f = (time_function){0};
-  bool good = deck_values_counted(key, 1, d) &&
-              deck_real_read(&key->values[0], key->name, unit_text, BOUND_NONE, &f->value, d);
-  good &= read_time(g, "start", BOUND_NOT_NEGATIVE, &f->start, d);
+static bool read_times(arena *a, const namelist_group *g, time_function *f, diagnostics *d) {
+  bool good = read_time(g, "start", BOUND_NOT_NEGATIVE, &f->start, d);
   good &= read_time(g, "rise", BOUND_POSITIVE, &f->rise, d);
   if (!read_shape(a, g, f, d) || !good) return false;
   return f->shape != TIME_TABLE || read_table(a, g, f, d);
+}
+
+bool deck_factor_read(arena *a, const namelist_group *g, time_function *f, diagnostics *d) {
+  *f = (time_function){.value = 1};
+  return read_times(a, g, f, d);
+}
+
+bool deck_load_read(arena *a, const namelist_group *g, const namelist_key *key,
+                    const char *unit_text, time_function *f, diagnostics *d) {
+  *f = (time_function){0};
+  const bool good = deck_values_counted(key, 1, d) &&
+                    deck_real_read(&key->values[0], key->name, unit_text, BOUND_NONE, &f->value, d);
+  return read_times(a, g, f, d) && good;
 }

@@ -9,4 +9,7 @@
 bool deck_load_read(arena *a, const namelist_group *g, const namelist_key *key, const char *unit,
                     time_function *f, diagnostics *d);
 
+/* The same without the value: how a factor develops from 0 to 1. */
+bool deck_factor_read(arena *a, const namelist_group *g, time_function *f, diagnostics *d);
+
 #endif

@@ -194,6 +194,85 @@ static const deck_key_info material_keys[] = {
      .doc = "name of a law in `models/`, or a path that ends in `.plm`"},
 };
 
+static const deck_key_info field_keys[] = {
+    {.name = "parameter",
+     .type = DECK_NAME,
+     .required = true,
+     AT(field, parameter),
+     .doc = "of the law, but not `rho`"},
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .fallback = "= the only one",
+     AT(field, lattice),
+     .doc = "name of the lattice; needed when there are several"},
+    {.name = "on",
+     .type = DECK_WORD,
+     .choices = "bond|particle",
+     .fallback = "'bond'",
+     NOT_KEPT,
+     .doc = "`particle`: a value for each particle; a bond has the mean of its two ends"},
+    {.name = "distribution",
+     .type = DECK_CHOICE,
+     .choices = "uniform|normal|lognormal|weibull",
+     .required = true,
+     AT(field, kind),
+     .doc = "of the values"},
+    {.name = "mean",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     .fallback = "= the material's value",
+     NOT_KEPT,
+     .doc = "mean of the values"},
+    {.name = "cv",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     AT(field, cv),
+     .doc = "standard deviation over mean"},
+    {.name = "low",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     NOT_KEPT,
+     .doc = "uniform: smallest value"},
+    {.name = "high",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     NOT_KEPT,
+     .doc = "uniform: largest value"},
+    {.name = "shape",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     AT(field, shape),
+     .doc = "Weibull: exponent; the part of values above x is exp(-(x/scale)**shape)"},
+    {.name = "scale",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     .fallback = "= from the mean",
+     NOT_KEPT,
+     .doc = "Weibull: see shape"},
+    {.name = "correlation_length",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     AT(field, correlation_length),
+     .doc = "L in exp(-(r/L)**2), the correlation of the underlying normal field at a distance r; "
+            "0: none"},
+    {.name = "seed",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 2147483647,
+     AT(field, seed),
+     .doc = "another seed gives another field"},
+    {.name = "clip",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     AT(field, clip),
+     .doc = "move values that the law does not allow to the nearest that it allows; else they are "
+            "an error"},
+};
+
 static const deck_key_info body_keys[] = {
     {.name = "lattice",
      .type = DECK_NAME,
@@ -331,6 +410,32 @@ static const deck_key_info damping_keys[] = {
      .doc = "end"},
 };
 
+static const deck_key_info gravity_keys[] = {
+    {.name = "acceleration",
+     .type = DECK_PAIR,
+     .unit = "m/s^2",
+     .required = true,
+     AT(gravity, acceleration),
+     .doc = "full acceleration along x, y; e.g. 0, '-9.81 m/s^2'"},
+    TIME_KEYS,
+};
+
+static const deck_key_info initial_velocity_keys[] = {
+    REGION_KEY(initial_velocity, "what moves"),
+    {.name = "component",
+     .type = DECK_CHOICE,
+     .choices = "x|y|rotation",
+     .required = true,
+     AT(initial_velocity, component),
+     .doc = "direction of the motion"},
+    {.name = "value",
+     .type = DECK_LATER,
+     .unit = "m/s; rotation: rad/s",
+     .required = true,
+     NOT_KEPT,
+     .doc = "the velocity, of each particle"},
+};
+
 static const deck_key_info monitor_keys[] = {
     {.name = "name",
      .type = DECK_NAME,
@@ -361,9 +466,10 @@ static const deck_key_info monitor_keys[] = {
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_NOT_NEGATIVE,
-     .fallback = "0",
+     .fallback = "= 0; broken: 1",
      AT(monitor, above),
-     .doc = "damaged: bonds with more damage than this are counted (broken: those with damage 1)"},
+     .doc = "damaged: bonds with more damage than this are counted; broken: bonds with at least "
+            "this damage, e.g. 0.999 for laws whose bonds never separate completely"},
     {.name = "average",
      .type = DECK_REAL,
      .unit = "s",
@@ -419,15 +525,15 @@ static const deck_key_info stop_keys[] = {
 static const deck_key_info output_keys[] = {
     {.name = "result",
      .type = DECK_NAME,
-     .fallback = "= the deck's name with .h5",
+     .fallback = "= the deck's name with .h5, in the working folder",
      AT(output, result),
-     .doc = "path of the result file"},
+     .doc = "path of the result file, from the working folder"},
     {.name = "frames",
      .type = DECK_COUNT,
      .fallback = "20",
      .most = 100000,
      AT(output, frames),
-     .doc = "number of stored states, evenly spaced"},
+     .doc = "states stored after the initial one, which is frame 0; evenly spaced"},
     {.name = "sample",
      .type = DECK_REAL,
      .unit = "s",
@@ -440,9 +546,9 @@ static const deck_key_info output_keys[] = {
      .fallback = "'displacement', 'damage'",
      AT(output, fields),
      COUNT_AT(output, field_count),
-     .doc = "stored in each frame: displacement, velocity, rotation, force, damage, energy (lost, "
-            "per particle), or a "
-            "field of the law"},
+     .doc = "stored in each frame: displacement, velocity, rotation, force, damage (all of the "
+            "law's, and their mean per particle), dissipated (energy lost, per particle), or a "
+            "state, damage, output or random parameter of the law"},
     {.name = "energy",
      .type = DECK_LOGICAL,
      .fallback = ".true.",
@@ -513,7 +619,7 @@ int deck_choices(arena *a, const char *choices, const char **words, int most) {
   return count;
 }
 
-/* --- reference --- */
+/* --- reference -------------------------------------------------------------------------------- */
 
 static void print_choices(const char *choices, FILE *out) {
   for (const char *p = choices; *p;) {

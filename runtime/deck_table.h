@@ -66,6 +66,10 @@ typedef struct deck_group_info {
   X(material, "lattice", false, true,                                                              \
     "The law of a lattice's bonds. Every other key sets a parameter or an option of the law, "     \
     "e.g. `E = '30 GPa'`.")                                                                        \
+  X(field, "parameter", false, false,                                                              \
+    "A parameter of the law that differs from bond to bond at random, the same for the same "      \
+    "seed whatever the threads. Uniform: `low` and `high`, or `cv`; normal, lognormal: `cv`; "     \
+    "Weibull: `shape`, or `cv`.")                                                                  \
   X(body, "lattice", false, false,                                                                 \
     "Adds the lattice sites inside or on a shape. At least one for each lattice.")                 \
   X(notch, "lattice", false, false,                                                                \
@@ -82,6 +86,9 @@ typedef struct deck_group_info {
     "Moment on a region: horizontal forces, linear in y, without resultant.")                      \
   X(protect, "region", false, false, "Bonds near a region take no damage.")                        \
   X(damping, NULL, false, false, "Slows the motion of every particle for a time.")                 \
+  X(gravity, NULL, false, false,                                                                   \
+    "Weight of every particle; several add up. Its work is in the energy ledger.")                 \
+  X(initial_velocity, "region", false, false, "Velocity of a region when the run begins.")         \
   X(monitor, "name", false, false, "A quantity recorded at every sample of the history.")          \
   X(stop, "monitor", false, false, "Ends the run early. Give `below` or `above`.")                 \
   X(output, NULL, true, false, "What is written, and how often.")                                  \

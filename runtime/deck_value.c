@@ -9,7 +9,7 @@
 
 enum { LONGEST_SHOWN = 60, LONGEST_LIST = 400, MOST_CHOICES = 16 };
 
-/* --- showing --- */
+/* --- showing ---------------------------------------------------------------------------------- */
 
 /* Bytes of `text` that a message shows; a cut does not split a character. */
 static int shown_length(const char *text, size_t length) {
@@ -63,7 +63,7 @@ static bool report_kind(const namelist_value *v, const char *key, const char *wa
   return false;
 }
 
-/* --- keys that depend on a choice --- */
+/* --- keys that depend on a choice ------------------------------------------------------------- */
 
 static void hint_uses(const deck_key_use *uses, int count, int kind, const char *words,
                       diagnostics *d) {
@@ -97,7 +97,7 @@ bool deck_keys_fit(const namelist_group *g, const deck_key_use *uses, int count,
   return good;
 }
 
-/* --- quantities --- */
+/* --- quantities ------------------------------------------------------------------------------- */
 
 static dimension dimension_of(const char *text) {
   unit u;
@@ -213,7 +213,7 @@ bool deck_real_read(const namelist_value *v, const char *key, const char *unit_t
   return within(v, key, q.value, bound, d);
 }
 
-/* --- typed fields --- */
+/* --- typed fields ----------------------------------------------------------------------------- */
 
 static bool all_numbers(const namelist_key *key) {
   for (int i = 0; i < key->value_count; i++)

@@ -5,11 +5,14 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "runtime/stability.h"
 
 enum { STATE_INPUTS = 5, STATE_RESULTS = 3, TANGENTS = 12 };
 
 /* Volume of lattice that stress is counted on: a site's area times the stiffness thickness. */
-static double site_volume(const rows *w) { return w->site_area * w->stiffness_thickness; }
+static double site_volume(const rows *w) {
+  return w->site_area * w->stiffness_thickness;
+}
 
 /* One bond's response, uncoupled to others: uniforms prepared, fields carried along. */
 typedef struct bond_probe {
@@ -18,7 +21,8 @@ typedef struct bond_probe {
   double n[2], s; /* direction, length */
 } bond_probe;
 
-static bond_probe probe_new(const pl_law *law, const double *parameters, const rows *w, int direction) {
+static bond_probe probe_new(const pl_law *law, const double *parameters, const rows *w,
+                            int direction) {
   bond_probe p = {.law = law, .s = w->length[direction]};
   p.uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
   p.fields = must_calloc((size_t)law->field_count + 1, sizeof(double));
@@ -94,7 +98,8 @@ static void add_stress(const bond_probe *p, double N, double V, double stress[4]
   stress[3] += fy * p->n[0] * p->s;
 }
 
-/* Stress in the linear lattice under strain e; the common particle rotation balances the moments. */
+/* Stress in the linear lattice under strain e; the common particle rotation balances the moments.
+ */
 static void linear_stress(const bond_probe *probes, double (*tangents)[TANGENTS], int count,
                           const double e[3], double stress[4]) {
   double moment = 0, stiffness = 0;
@@ -125,15 +130,15 @@ static bool invert3(const double a[3][3], double inverse[3][3]) {
     }
   double det = a[0][0] * c[0][0] + a[0][1] * c[0][1] + a[0][2] * c[0][2];
   double scale = fabs(a[0][0] * a[1][1] * a[2][2]);
-  if (!(fabs(det) > 1e-12 * scale))
-    return false;
+  if (!(fabs(det) > 1e-12 * scale)) return false;
   for (int i = 0; i < 3; i++)
     for (int j = 0; j < 3; j++)
       inverse[j][i] = c[i][j] / det;
   return true;
 }
 
-bool implied_elastic(const pl_law *law, const double *parameters, const rows *w, implied_elasticity *out) {
+bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
+                     implied_elasticity *out) {
   bond_probe probes[ROWS_MAX_DIRECTIONS];
   double tangents[ROWS_MAX_DIRECTIONS][TANGENTS];
   for (int k = 0; k < w->directions; k++) {
@@ -151,8 +156,7 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
   for (int k = 0; k < w->directions; k++)
     probe_free(&probes[k]);
   double S[3][3];
-  if (!invert3(out->D, S))
-    return false;
+  if (!invert3(out->D, S)) return false;
   for (int c = 0; c < 2; c++) {
     out->E[c] = 1 / S[c][c];
     out->nu[c] = -S[1 - c][c] / S[c][c];
@@ -162,8 +166,9 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 }
 
 /* Largest stress over the strains from * ratio^0..count-1 (or from + k step when ratio is 0). */
-static double scan_strength(const pl_law *law, const double *parameters, const rows *w, int component, double from, double factor,
-                            double step, int count, double *where) {
+static double scan_strength(const pl_law *law, const double *parameters, const rows *w,
+                            int component, double from, double factor, double step, int count,
+                            double *where) {
   bond_probe probes[ROWS_MAX_DIRECTIONS];
   for (int k = 0; k < w->directions; k++)
     probes[k] = probe_new(law, parameters, w, k);
@@ -175,7 +180,8 @@ static double scan_strength(const pl_law *law, const double *parameters, const r
       double result[STATE_RESULTS];
       double stretch = stretch_of(&probes[k], e);
       probe_step(&probes[k], stretch, -rotation_of(&probes[k], e), result);
-      add_stress(&probes[k], result[0], (result[1] + result[2]) / (probes[k].s * (1 + stretch)), stress);
+      add_stress(&probes[k], result[0], (result[1] + result[2]) / (probes[k].s * (1 + stretch)),
+                 stress);
     }
     if (stress[component] > largest) {
       largest = stress[component];
@@ -187,7 +193,8 @@ static double scan_strength(const pl_law *law, const double *parameters, const r
   return largest / site_volume(w);
 }
 
-double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component, double *strain) {
+double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
+                        double *strain) {
   const double first = 1e-8, last = 1.0;
   const int coarse = 1600, fine = 400;
   double factor = pow(last / first, 1.0 / (coarse - 1)), at;
@@ -196,10 +203,122 @@ double implied_strength(const pl_law *law, const double *parameters, const rows 
   double strength = INFINITY;
   if (found) {
     double from = at / factor, to = at * factor;
-    strength = scan_strength(law, parameters, w, component, from, 1, (to - from) / (fine - 1),
-                             fine, &at);
+    strength =
+        scan_strength(law, parameters, w, component, from, 1, (to - from) / (fine - 1), fine, &at);
   }
-  if (strain)
-    *strain = found ? at : NAN;
+  if (strain) *strain = found ? at : NAN;
   return strength;
+}
+
+/* --- one bond --------------------------------------------------------------------------------- */
+
+rows *implied_lattice(double spacing, double thickness, double rho) {
+  deck_lattice lattice = {.name = "lattice",
+                          .kind = "hexagonal",
+                          .spacing = spacing,
+                          .thickness = thickness,
+                          .stiffness_thickness = thickness,
+                          .mass_thickness = thickness,
+                          .setting = "plane_stress"};
+  deck_body body = {.lattice = lattice.name,
+                    .shape = {.kind = SHAPE_RECTANGLE,
+                              .corner = {-2.5 * spacing, -2.5 * spacing},
+                              .size = {5 * spacing, 5 * spacing}}};
+  const deck k = {
+      .name = "", .lattices = &lattice, .lattice_count = 1, .bodys = &body, .body_count = 1};
+  source_set sources = {NULL, 0};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  rows *w = rows_build(&k, 0, &said);
+  diag_clear(&said);
+  if (!w) return NULL;
+  w->mass = rho * w->volume;
+  w->inertia = 0.4 * w->mass * (spacing / 2) * (spacing / 2);
+  return w;
+}
+
+enum { CURVE_POINTS = 24000, PEAK_POINTS = 400, PEAK_ROUNDS = 3 };
+static const double first_stretch = 1e-9, last_stretch = 1e3;
+
+/* Stretches of the curve: evenly spaced logarithms. */
+static double curve_stretch(int k) {
+  return first_stretch * pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
+}
+
+static void probe_reset(bond_probe *p) {
+  for (int f = 0; f < p->law->field_count; f++)
+    p->fields[f] = p->law->fields[f].initial;
+}
+
+/* The largest force between two stretches, approached from the virgin state in equal steps. */
+static double peak_between(bond_probe *p, double from, double to, double *at) {
+  double largest = -INFINITY;
+  probe_reset(p);
+  for (int k = 0; k <= PEAK_POINTS; k++) {
+    double result[STATE_RESULTS], stretch = from + (to - from) * k / PEAK_POINTS;
+    probe_step(p, stretch, 0, result);
+    if (result[0] > largest) {
+      largest = result[0];
+      *at = stretch;
+    }
+  }
+  return largest;
+}
+
+static void find_peak(bond_probe *p, double from, double to, implied_bond *out) {
+  for (int round = 0; round < PEAK_ROUNDS; round++) {
+    double at = from, step = (to - from) / PEAK_POINTS;
+    out->peak_force = peak_between(p, from, to, &at);
+    out->stretch_at_peak = at;
+    from = fmax(at - step, from);
+    to = fmin(at + step, to);
+  }
+}
+
+/* Trapezoids over the curve; the points are close enough for 1e-6 at a kink. */
+static bool trace_curve(bond_probe *p, double *work, double *largest, int *peak, double *last) {
+  double before = 0, force = 0;
+  *work = *largest = *last = 0;
+  *peak = 0;
+  for (int k = 0; k < CURVE_POINTS; k++) {
+    double result[STATE_RESULTS], stretch = curve_stretch(k);
+    probe_step(p, stretch, 0, result);
+    if (!isfinite(result[0])) return false;
+    *work += 0.5 * (force + result[0]) * (stretch - before) * p->s;
+    before = stretch;
+    *last = force = result[0];
+    if (force > *largest) {
+      *largest = force;
+      *peak = k;
+    }
+  }
+  return true;
+}
+
+void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
+                        implied_bond *out) {
+  const double nothing = 1e-9; /* of the peak */
+  bond_probe p = probe_new(law, parameters, w, direction);
+  double work, largest, last;
+  int peak;
+  *out = (implied_bond){
+      .peak_force = INFINITY, .stretch_at_peak = NAN, .energy = INFINITY, .row_energy = INFINITY};
+  bool whole = trace_curve(&p, &work, &largest, &peak, &last);
+  if (peak > 0 && peak < CURVE_POINTS - 1)
+    find_peak(&p, curve_stretch(peak - 1), curve_stretch(peak + 1), out);
+  out->separates = whole && largest > 0 && fabs(last) <= nothing * largest;
+  if (out->separates) {
+    out->energy = work;
+    out->row_energy = work * p.s / site_volume(w);
+  }
+  probe_free(&p);
+}
+
+void implied_wave_speeds(const pl_law *law, const double *parameters, const rows *w,
+                         const implied_elasticity *e, implied_waves *out) {
+  double density = w->mass / site_volume(w); /* of the volume that stress is counted on */
+  *out = (implied_waves){.transverse = sqrt(e->G / density)};
+  for (int c = 0; c < 2; c++)
+    out->longitudinal[c] = sqrt(e->D[c][c] / density);
+  if (law->dof > 2) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
 }

@@ -1,5 +1,6 @@
-/* What a law implies for a perfect lattice made of it: elastic constants and strength under uniform strain, from the
-   law's own functions. Small strain; particle rotation in moment balance for the elastic constants, zero for strength. */
+/* What a law implies for a perfect lattice made of it: elastic constants and strength under uniform
+   strain, from the law's own functions. Small strain; particle rotation in moment balance for the
+   elastic constants, zero for strength. */
 #ifndef PERILAT_RUNTIME_IMPLIED_H
 #define PERILAT_RUNTIME_IMPLIED_H
 
@@ -9,17 +10,46 @@
 #include "runtime/rows.h"
 
 typedef struct implied_elasticity {
-  double D[3][3];      /* Pa: (s_xx, s_yy, s_xy) = D (e_xx, e_yy, 2 e_xy) */
-  double asymmetry;    /* Pa: |s_xy - s_yx| left over; rounding */
-  double E[2], nu[2];  /* Pa, 1: loaded along x, along y; the other direction free */
-  double G;            /* Pa */
+  double D[3][3];     /* Pa: (s_xx, s_yy, s_xy) = D (e_xx, e_yy, 2 e_xy) */
+  double asymmetry;   /* Pa: |s_xy - s_yx| left over; rounding */
+  double E[2], nu[2]; /* Pa, 1: loaded along x, along y; the other direction free */
+  double G;           /* Pa */
 } implied_elasticity;
 
 /* False when the lattice has no stiffness (singular D). */
-bool implied_elastic(const pl_law *law, const double *parameters, const rows *w, implied_elasticity *out);
+bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
+                     implied_elasticity *out);
 
-/* Largest stress (Pa) along direction `component` (0 x, 1 y) under growing uniform strain along it, the other strains
-   held at zero; *strain receives where. Infinite (strain NaN) when the stress only grows up to a strain of 1. */
-double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component, double *strain);
+/* Largest stress (Pa) along direction `component` (0 x, 1 y) under growing uniform strain along it,
+   the other strains held at zero; *strain receives where. Infinite (strain NaN) when the stress
+   only grows up to a strain of 1. */
+double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
+                        double *strain);
+
+/* A perfect hexagonal lattice to ask about: spacing and thickness in m (rows along x), particle
+   mass from rho (kg/m^3; 0: none). Freed with rows_free. */
+rows *implied_lattice(double spacing, double thickness, double rho);
+
+/* One bond of direction `direction`, drawn out slowly without rotation from the virgin state. */
+typedef struct implied_bond {
+  double peak_force;      /* N; infinite when the force only grows */
+  double stretch_at_peak; /* NaN then */
+  bool separates;         /* the force falls to nothing */
+  double energy;          /* J: work until then; infinite when it does not separate */
+  double row_energy; /* N/m: the work per area of a crack straight across the rows, by its aligned
+                        bonds alone: energy * s/(area of a site * t), on the hexagon
+                        energy/((sqrt(3)/2) s t) */
+} implied_bond;
+void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
+                        implied_bond *out);
+
+/* Long waves in the virgin lattice, m/s: along x, along y (sqrt(D_xx/rho) and sqrt(D_yy/rho),
+   transverse sqrt(G/rho)); frequency below which no rotation wave runs, rad/s (0 for central laws).
+   w->mass must be set. */
+typedef struct implied_waves {
+  double longitudinal[2], transverse, rotation_cutoff;
+} implied_waves;
+void implied_wave_speeds(const pl_law *law, const double *parameters, const rows *w,
+                         const implied_elasticity *e, implied_waves *out);
 
 #endif

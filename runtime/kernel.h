@@ -10,7 +10,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 1
+#define PL_KERNEL_ABI 2
 #define PL_MAX_DOF 6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_LANES 8       /* strips on rows are multiples of this; arrays are aligned to PL_ALIGNMENT */
@@ -56,6 +56,7 @@ typedef struct pl_strip {
   const double *velocity_i[PL_MAX_DOF], *velocity_j[PL_MAX_DOF];
   const int32_t *i, *j;             /* lists: the displacement and velocity arrays are indexed by these */
   const double *chord[3];           /* lists: reference chord components, m */
+  const double *const *parameter;   /* [varying][count] values of the parameters that differ from bond to bond */
   double *const *field;             /* [fields][count] read and written in place */
   double *const *force;             /* [force_planes][count] written; 0 where the bond is absent */
   double *dissipated_state;         /* [count] J, added to: energy lost to damage and plasticity in this step */
@@ -79,12 +80,15 @@ typedef struct pl_law {
   const char *key;                  /* hash of law, options, compiler and flags */
   int parameter_count;
   const pl_parameter *parameters;
+  int varying_count;                /* parameters that strips read bond by bond; all else takes them as given to `prepare` */
+  const int *varying;               /* [varying_count] their places in `parameters` */
   int field_count;
   const pl_field *fields;
   int output_count;
   const pl_field *outputs;
   int uniform_count;                /* doubles that `prepare` writes */
-  double flops_per_bond, divisions_per_bond; /* of `bonds` */
+  double flops_per_bond;            /* of `rows`: additions, multiplications, selections */
+  double divisions_per_bond;        /* of `rows`: divisions and roots */
 
   /* Values that depend on parameters and bond class only. */
   void (*prepare)(const struct pl_law *law, const double *parameters, const pl_bond_class *bonds,

@@ -16,7 +16,7 @@ void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
   terms[LEDGER_DISSIPATED_DAMAGE] = t.dissipated_state;
   terms[LEDGER_DISSIPATED_DAMPING] =
       t.dissipated_rate + t.dissipated_mass + t.dissipated_pending + l->dissipated;
-  terms[LEDGER_EXTERNAL] = l->work + work;
+  terms[LEDGER_EXTERNAL] = l->work + work + t.gravity;
   const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
   if (!g->begun) {
     g->begun = 1;

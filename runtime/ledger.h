@@ -1,9 +1,13 @@
 /* The energy ledger: each term is integrated on its own, so that the imbalance says how far the run
-   can be trusted. The terms belong to the state sampled (n). With v- and v+ the velocities half a
-   step before and after it, kinetic     sum of half m v- v+ external    sum over the steps of force
-   times (v- + v+)/2 dt; half of it, with v-, for step n dissipated  by mass damping in the same
-   way, by the law as the kernel counts it which for linear springs balances to rounding whatever
-   the step (summation by parts of the leapfrog scheme). */
+   can be trusted. The terms belong to the state sampled (n). v- and v+ are the velocities half a
+   step before and after it.
+
+   - kinetic: the sum of half m v- v+.
+   - external: the sum over the steps of force times (v- + v+)/2 dt; of step n half, with v-.
+   - dissipated: by mass damping in the same way, by the law as the kernel counts it.
+
+   For linear springs they balance to rounding whatever the step (summation by parts of the leapfrog
+   scheme). */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
 

@@ -6,9 +6,7 @@
 
 #include "dsl/arena.h"
 
-/* --- regions
- * -------------------------------------------------------------------------------------------------
- */
+/* --- regions ---------------------------------------------------------------------------------- */
 
 /* A point says how far away the nearest particle is, other shapes where the body is. */
 static void hint_nearest(const double at[2], const rows *w, diagnostics *d) {
@@ -62,6 +60,7 @@ static bool region_is_used(const deck *k, const char *name) {
   USED(force, region)
   USED(end_moment, region)
   USED(protect, region)
+  USED(initial_velocity, region)
   USED(monitor, region)
   USED(monitor, between[0])
   USED(monitor, between[1])
@@ -87,9 +86,7 @@ static const region_sites *region_of(const loads *l, const char *name) {
   return r < 0 ? NULL : &l->regions[r];
 }
 
-/* --- motions
- * -------------------------------------------------------------------------------------------------
- */
+/* --- motions ---------------------------------------------------------------------------------- */
 
 typedef struct motions { /* who holds which component of which particle, while the loads are set up
                           */
@@ -164,9 +161,7 @@ static void add_motions(loads *l, motions *m) {
   free(supports);
 }
 
-/* --- forces
- * --------------------------------------------------------------------------------------------------
- */
+/* --- forces ----------------------------------------------------------------------------------- */
 
 static void add_force(loads *l, int32_t particle, int component, int cause, double share) {
   l->forces = must_realloc(l->forces, ((size_t)l->force_count + 1) * sizeof *l->forces);
@@ -211,6 +206,14 @@ static void add_end_moment(loads *l, int index, diagnostics *d) {
               -(y[l->lattice->particle_site[at->particles[p]]] - mean) / square);
 }
 
+static void find_holders(loads *l, const motions *m) {
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    const int32_t particle = l->lattice->site_particle[f->site];
+    f->holder = m->holder[(long)f->component * l->lattice->particle_count + particle] - 1;
+  }
+}
+
 static double force_at(const loads *l, const applied *f, double t) {
   const int forces = l->deck->force_count;
   const time_function *shape = f->cause < forces ? &l->deck->forces[f->cause].force
@@ -218,9 +221,7 @@ static double force_at(const loads *l, const applied *f, double t) {
   return f->share * time_function_at(shape, t);
 }
 
-/* --- set-up
- * --------------------------------------------------------------------------------------------------
- */
+/* --- set-up ----------------------------------------------------------------------------------- */
 
 static void protect(loads *l, rows *w) {
   for (int i = 0; i < l->deck->protect_count; i++) {
@@ -243,6 +244,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   add_forces(l, &m);
   for (int i = 0; i < k->end_moment_count; i++)
     add_end_moment(l, i, d);
+  find_holders(l, &m);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;
@@ -274,9 +276,61 @@ long loads_constraints_of(const loads *l, int region, int component, int32_t **i
   return count;
 }
 
-/* --- in time
- * -------------------------------------------------------------------------------------------------
- */
+/* --- velocities at the start ------------------------------------------------------------------ */
+
+static bool is_held_at_start(const loads *l, int64_t site, int component) {
+  for (long i = 0; i < l->constraint_count; i++) {
+    const constraint *c = &l->constraints[i];
+    if (c->site == site && c->component == component &&
+        (c->drive < 0 || l->deck->drives[c->drive].motion.start <= 0))
+      return true;
+  }
+  return false;
+}
+
+/* `set` remembers which velocities are given: [dof][size], index of the group + 1. */
+static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnostics *d) {
+  const deck_initial_velocity *v = &l->deck->initial_velocitys[index];
+  const region_sites *at = region_of(l, v->region);
+  const span where = deck_where(&v->item, "region");
+  if (fabs(v->value) >= w->limit[v->component]) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),
+                "this velocity takes a particle further than %s in one step",
+                v->component < 2 ? "a spacing" : "half a turn");
+    return false;
+  }
+  for (long p = 0; at && p < at->count; p++) {
+    const int64_t site = l->lattice->particle_site[at->particles[p]];
+    int *given = &set[(long)v->component * l->lattice->size + site];
+    const bool held = is_held_at_start(l, site, v->component);
+    if (held || *given) {
+      diag_report(d, DIAG_CONFLICT, where, "the particle at (%.6g, %.6g) mm %s %s",
+                  1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site],
+                  held ? "is held from the start in" : "is given two initial velocities in",
+                  component_names[v->component]);
+      if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
+      return false;
+    }
+    *given = index + 1;
+    w->velocity[v->component][site] = v->value;
+  }
+  return true;
+}
+
+bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
+  const motions m = {.dof = w->dof, .law = w->law->name, .said = d};
+  int *set = must_calloc((size_t)w->dof * (size_t)l->lattice->size + 1, sizeof *set);
+  bool good = true;
+  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
+    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
+    good = has_component(&m, v->component, deck_where(&v->item, "component")) &&
+           begin_moving(l, w, i, set, d) && good;
+  }
+  free(set);
+  return good;
+}
+
+/* --- in time ---------------------------------------------------------------------------------- */
 
 static double time_of(const sweep *w, long step) {
   return (double)step * w->time_step;
@@ -322,6 +376,21 @@ static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
   c->held = w->displacement[c->component][c->site];
 }
 
+/* Weight of the step that begins at step * time_step: what it adds to a velocity, and its work for
+   a velocity after that step; as for forces the mean of both ends of the way works. */
+static void set_gravity(const loads *l, sweep *w, long step) {
+  for (int c = 0; c < 2; c++) {
+    double here = 0, next = 0;
+    for (int i = 0; i < l->deck->gravity_count; i++) {
+      const deck_gravity *g = &l->deck->gravitys[i];
+      here += g->acceleration[c] * time_function_at(&g->factor, time_of(w, step));
+      next += g->acceleration[c] * time_function_at(&g->factor, time_of(w, step + 1));
+    }
+    w->push[c] = w->time_step * here;
+    w->push_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
+  }
+}
+
 void loads_begin(loads *l, sweep *w) {
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
@@ -333,11 +402,14 @@ void loads_begin(loads *l, sweep *w) {
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
   }
   w->decay = decay_of(l, w, 0);
+  if (w->weight) set_gravity(l, w, 0);
 }
 
-/* The sweep has counted the loss to mass damping over the way of a free particle: the velocity
-   after the step turns out to be larger by `change`. */
-static void correct_damping(loads *l, const sweep *w, int component, double before, double change) {
+/* The sweep has counted the loss to mass damping and the work of gravity over the way of a free
+   particle: the velocity after the step turns out to be larger by `change`. */
+static void correct_free_way(loads *l, const sweep *w, int component, double before,
+                             double change) {
+  if (component < 2) l->work += w->push_work[component] * change;
   l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
 }
 
@@ -347,7 +419,7 @@ static void apply_forces(loads *l, const sweep *w) {
     const double change = w->time_step / w->mass[f->component] * f->now;
     w->velocity[f->component][f->site] += change;
     w->displacement[f->component][f->site] += w->time_step * change;
-    correct_damping(l, w, f->component, f->velocity, change);
+    correct_free_way(l, w, f->component, f->velocity, change);
   }
 }
 
@@ -361,7 +433,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
     const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
     const double prescribed = (target - c->held) / w->time_step;
     c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
-    correct_damping(l, w, c->component, before, prescribed - *v);
+    correct_free_way(l, w, c->component, before, prescribed - *v);
     c->held = target;
     *v = prescribed;
     *u = target;
@@ -389,29 +461,34 @@ void loads_apply(loads *l, sweep *w, long step) {
   for (long i = 0; i < l->constraint_count; i++)
     take_up(l, w, &l->constraints[i], step + 1);
   w->decay = decay_of(l, w, step + 1);
+  if (w->weight) set_gravity(l, w, step + 1);
 }
 
-/* Velocity of a component after the coming step if nothing but bonds, damping and applied forces
- * acted on it. */
-static double free_velocity(const loads *l, const sweep *w, const constraint *c) {
-  double force = w->force[c->component][c->site];
-  for (long i = 0; i < l->force_count; i++)
-    if (l->forces[i].site == c->site && l->forces[i].component == c->component)
-      force += l->forces[i].now;
-  return w->decay * c->velocity + w->time_step / w->mass[c->component] * force;
+/* Velocity of a component after the coming step if nothing but bonds, damping and gravity acted on
+ * it. */
+static double free_velocity(const sweep *w, const constraint *c) {
+  const double force = w->force[c->component][c->site];
+  const double push = c->component < 2 ? w->push[c->component] : 0;
+  return w->decay * c->velocity + w->time_step / w->mass[c->component] * force + push;
 }
 
 void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work) {
   *kinetic = 0;
   *work = 0;
-  for (long i = 0; i < l->force_count; i++)
-    *kinetic += 0.5 * w->time_step * l->forces[i].now * l->forces[i].velocity;
+  for (long i = 0; i < l->force_count; i++) {
+    const applied *f = &l->forces[i];
+    const double power = 0.5 * w->time_step * f->now * f->velocity;
+    if (f->holder >= 0 && l->constraints[f->holder].active)
+      *work -= power; /* what holds the particle takes the force up */
+    else
+      *kinetic += power;
+  }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
     if (!c->active) continue;
     const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
     const double prescribed = (target - c->held) / w->time_step, mass = w->mass[c->component];
-    const double change = prescribed - free_velocity(l, w, c);
+    const double change = prescribed - free_velocity(w, c);
     *kinetic += 0.5 * mass * c->velocity * change;
     *work += 0.5 * mass * c->velocity * change;
   }

@@ -31,6 +31,7 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   int64_t site;
   int32_t component;
   int32_t cause;   /* index into the deck's forces, then end moments */
+  int64_t holder;  /* index of the constraint on the same component, or -1 */
   double share;    /* force = share * time function */
   double now;      /* N: force of the coming step */
   double velocity; /* m/s: after the last step */
@@ -58,7 +59,9 @@ typedef struct loads {
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
-/* To be called once at rest, before the first step: forces at time 0, places of the supports. */
+/* Velocities that regions begin with. False with diagnostics where a particle is held or has two. */
+bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
+/* To be called once, before the first step: forces at time 0, places of the supports. */
 void loads_begin(loads *l, sweep *w);
 /* After the sweep of step n -> n+1: applied forces, prescribed motions, reactions, work; then the
    damping of the coming step is set. */

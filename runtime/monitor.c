@@ -5,9 +5,7 @@
 
 #include "dsl/arena.h"
 
-/* --- set-up
- * --------------------------------------------------------------------------------------------------
- */
+/* --- set-up ----------------------------------------------------------------------------------- */
 
 static bool counts_bonds(const monitor *m) {
   return m->deck->kind == MONITOR_DAMAGED || m->deck->kind == MONITOR_BROKEN;
@@ -54,7 +52,7 @@ static bool check_component(const monitor *m, const monitors *all, diagnostics *
 }
 
 static bool check_damage(const monitor *m, const monitors *all, diagnostics *d) {
-  if (!counts_bonds(m) || all->damage) return true;
+  if (!counts_bonds(m) || all->damage_count) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "kind"),
               "the law `%s` has no damage to count", all->state->law->name);
   return false;
@@ -99,10 +97,10 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   }
 }
 
-static const double *damage_of(const sweep *state) {
+static void take_damages(monitors *m, const sweep *state) {
+  m->damages = must_calloc((size_t)state->law->field_count + 1, sizeof *m->damages);
   for (int f = 0; f < state->law->field_count; f++)
-    if (state->law->fields[f].kind == PL_FIELD_DAMAGE) return state->field[f];
-  return NULL;
+    if (state->law->fields[f].kind == PL_FIELD_DAMAGE) m->damages[m->damage_count++] = state->field[f];
 }
 
 monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,
@@ -110,7 +108,7 @@ monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const 
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
   *m = (monitors){.count = k->monitor_count, .deck = k, .state = state, .loads = l, .bonds = bonds};
-  m->damage = damage_of(state);
+  take_damages(m, state);
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   for (int i = 0; i < m->count; i++) {
     new_monitor(m, i, d);
@@ -134,13 +132,12 @@ void monitors_free(monitors *m) {
     free(m->items[i].indices[1]);
   }
   free(m->items);
+  free(m->damages);
   free(m->ring_memory);
   free(m);
 }
 
-/* --- values
- * --------------------------------------------------------------------------------------------------
- */
+/* --- values ----------------------------------------------------------------------------------- */
 
 static double mean_at(const double *values, const int32_t *sites, long count) {
   double sum = 0;
@@ -156,12 +153,19 @@ static double reaction_sum(const monitors *all, const monitor *m) {
   return sum;
 }
 
+double monitors_damage(const monitors *all, int64_t slot) {
+  double most = all->damage_count ? all->damages[0][slot] : 0;
+  for (int k = 1; k < all->damage_count; k++)
+    if (all->damages[k][slot] > most) most = all->damages[k][slot];
+  return most;
+}
+
 static double count_damaged(const monitors *all, const monitor *m) {
   const bool broken = m->deck->kind == MONITOR_BROKEN;
   long count = 0;
   for (long b = 0; b < all->state->lattice->bond_count; b++) {
-    const double damage = all->damage[all->bonds[b].slot];
-    count += broken ? damage >= 1 : damage > m->deck->above;
+    const double damage = monitors_damage(all, all->bonds[b].slot);
+    count += broken ? damage >= m->deck->above : damage > m->deck->above;
   }
   return (double)count;
 }
@@ -225,8 +229,8 @@ static bool applies(const monitors *all, const deck_stop *stop, double time, con
   return stop->below ? value < level : value > level;
 }
 
-bool monitors_stop(const monitors *all, double time, const double *values) {
+const deck_stop *monitors_stop(const monitors *all, double time, const double *values) {
   for (int i = 0; i < all->deck->stop_count; i++)
-    if (applies(all, &all->deck->stops[i], time, values)) return true;
-  return false;
+    if (applies(all, &all->deck->stops[i], time, values)) return &all->deck->stops[i];
+  return NULL;
 }

@@ -37,7 +37,8 @@ typedef struct monitors {
   const sweep *state;
   const loads *loads;
   const rows_bond *bonds; /* [lattice->bond_count], not owned */
-  const double *damage;   /* [directions * size] first damage field of the law, or NULL */
+  const double **damages; /* [damage_count] the law's fields of that kind, [directions * size] each */
+  int damage_count;
   double *ring_memory;    /* all rings in one */
   long ring_size;
 } monitors;
@@ -46,11 +47,14 @@ monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const 
                        diagnostics *d);
 void monitors_free(monitors *m);
 
+/* Damage of the bond in that slot: the largest of the law's damages, 0 without. */
+double monitors_damage(const monitors *m, int64_t slot);
+
 /* After every step (and once at the start): rings and zeros. */
 void monitors_step(monitors *m, long step);
 /* Values of all monitors now; remembers peaks. */
 void monitors_sample(monitors *m, double time, double *values);
-/* True when a &stop applies to values just sampled. */
-bool monitors_stop(const monitors *m, double time, const double *values);
+/* The first &stop of the deck that applies to values just sampled, or NULL. */
+const deck_stop *monitors_stop(const monitors *m, double time, const double *values);
 
 #endif

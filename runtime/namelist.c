@@ -2,10 +2,13 @@
 
 #include <ctype.h>
 #include <math.h>
+#include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/json.h"
 #include "dsl/units.h"
 
 typedef struct reader {
@@ -17,7 +20,7 @@ typedef struct reader {
   int errors_before;
 } reader;
 
-/* --- bytes --- */
+/* --- bytes ------------------------------------------------------------------------------------ */
 
 static int ahead(const reader *r, uint32_t k) {
   return r->end - r->at > k ? (unsigned char)r->text[r->at + k] : -1;
@@ -80,23 +83,11 @@ static void skip_token(reader *r) {
   if (r->at == begin) r->at++;
 }
 
-static int utf8_length(const unsigned char *p, size_t left) {
-  int length = p[0] < 0x80                   ? 1
-               : p[0] >= 0xC2 && p[0] < 0xE0 ? 2
-               : p[0] >= 0xE0 && p[0] < 0xF0 ? 3
-               : p[0] >= 0xF0 && p[0] < 0xF5 ? 4
-                                             : 0;
-  if (length == 0 || (size_t)length > left) return 0;
-  for (int i = 1; i < length; i++)
-    if ((p[i] & 0xC0) != 0x80) return 0;
-  return length;
-}
-
 /* False, with a message, when the bytes are not text. */
 static bool is_text(reader *r) {
   const unsigned char *bytes = (const unsigned char *)r->text;
   for (uint32_t i = r->at; i < r->end;) {
-    int length = utf8_length(bytes + i, r->end - i);
+    size_t length = utf8_length(r->text + i, r->end - i);
     span where = {i, i + 1, r->file};
     if (length == 0) {
       diag_report(r->d, DIAG_BAD_CHARACTER, where, "this byte (%02x) is not UTF-8 text", bytes[i]);
@@ -113,7 +104,7 @@ static bool is_text(reader *r) {
   return true;
 }
 
-/* --- growing lists --- */
+/* --- growing lists ---------------------------------------------------------------------------- */
 
 /* Room for one item more; lists grow by doubling at powers of two. */
 static void *with_room(arena *a, const void *items, int count, size_t size) {
@@ -150,7 +141,7 @@ static void add_value(reader *r, namelist_key *key, const namelist_value *value)
   key->values[key->value_count++] = *value;
 }
 
-/* --- values --- */
+/* --- values ----------------------------------------------------------------------------------- */
 
 static size_t digits(const char *text, size_t length, size_t from) {
   size_t i = from;
@@ -295,7 +286,7 @@ static bool is_infinite(const reader *r, uint32_t begin) {
 static bool bad_character(reader *r) {
   uint32_t begin = r->at;
   const unsigned char *bytes = (const unsigned char *)r->text + begin;
-  r->at += (uint32_t)utf8_length(bytes, r->end - begin);
+  r->at += (uint32_t)utf8_length(r->text + begin, r->end - begin);
   const char *shown = excerpt(r, begin);
   diag_report(r->d, DIAG_BAD_CHARACTER, since(r, begin), "`%s` has no meaning here", shown);
   static const char *const quotes = "‘’‚‛“”„‟«»‹›´`";
@@ -429,7 +420,7 @@ static void read_values(reader *r, namelist_key *key) {
   key->broken = r->d->errors > errors;
 }
 
-/* --- keys and groups --- */
+/* --- keys and groups -------------------------------------------------------------------------- */
 
 static const char *read_name(reader *r) {
   uint32_t begin = r->at;
@@ -624,4 +615,49 @@ void namelist_read_values(arena *a, source_set *sources, int file, uint32_t begi
     key->broken = true;
     diag_report(d, DIAG_DECK_SYNTAX, key->value_where, "`%s` has no value", key->name);
   }
+}
+
+/* --- writing ---------------------------------------------------------------------------------- */
+
+static void print_lower(FILE *out, const char *name) {
+  for (; *name; name++)
+    fputc(*name >= 'A' && *name <= 'Z' ? *name + 'a' - 'A' : *name, out);
+}
+
+static void print_value(FILE *out, const namelist_value *v) {
+  if (v->kind == NAMELIST_NUMBER) {
+    fprintf(out, " %.17g", v->number);
+  } else if (v->kind == NAMELIST_LOGICAL) {
+    fputs(v->logical ? " .true." : " .false.", out);
+  } else {
+    fputs(" '", out);
+    for (const char *c = v->text; *c; c++)
+      fputs(*c == '\'' ? "''" : (char[]){*c, 0}, out);
+    fputc('\'', out);
+  }
+}
+
+char *namelist_text(arena *a, const namelist *n, bool (*leave_out)(const char *group, const char *key)) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  if (!out) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  for (int g = 0; g < n->group_count; g++) {
+    const namelist_group *group = &n->groups[g];
+    if (leave_out(group->name, NULL)) continue;
+    fprintf(out, "&%s", group->name);
+    for (int k = 0; k < group->key_count; k++) {
+      if (leave_out(group->name, group->keys[k].name)) continue;
+      fputc(' ', out);
+      print_lower(out, group->keys[k].name);
+      fputs(" =", out);
+      for (int v = 0; v < group->keys[k].value_count; v++)
+        print_value(out, &group->keys[k].values[v]);
+    }
+    fputs(" /\n", out);
+  }
+  fclose(out);
+  char *kept = arena_text(a, text, length);
+  free(text);
+  return kept;
 }

@@ -35,18 +35,11 @@ static void label_of(const char *path, char *label, size_t size) {
   snprintf(label, size, "%.*s", (int)(dot ? dot - name : (long)strlen(name)), name);
 }
 
-static bool read_curve(const char *path, const plot_curve_options *o, curve *c, char *x_unit, char *y_unit, char *title,
-                       size_t title_size, char *error, size_t size) {
-  result_file *f = result_read(path, error, size);
-  if (!f)
-    return false;
+static bool read_curve(result_file *f, const char *x, const char *y, curve *c, char *x_unit, char *y_unit, char *error,
+                       size_t size) {
   long count_y = 0;
-  c->x = result_read_series(f, o->x, &c->count, x_unit, 64, error, size);
-  c->y = c->x ? result_read_series(f, o->y, &count_y, y_unit, 64, error, size) : NULL;
-  char *t = result_read_title(f);
-  snprintf(title, title_size, "%s", t);
-  free(t);
-  result_read_close(f);
+  c->x = result_read_series(f, x, &c->count, x_unit, 64, error, size);
+  c->y = c->x ? result_read_series(f, y, &count_y, y_unit, 64, error, size) : NULL;
   if (c->x && c->y && count_y < c->count)
     c->count = count_y;
   return c->x && c->y;
@@ -71,6 +64,19 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
   return true;
 }
 
+/* A power of ten in front of the unit where numbers would have many digits. */
+static void shorten_numbers(axis *a, double largest) {
+  double shown = largest * a->factor;
+  if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2))
+    return;
+  int power = 3 * (int)floor(log10(shown) / 3);
+  char symbol[sizeof a->unit_text];
+  memcpy(symbol, a->unit_text, sizeof symbol);
+  bool pure = strcmp(symbol, "1") == 0;
+  snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ", pure ? "" : symbol);
+  a->factor /= pow(10, power);
+}
+
 static void range_of(const curve *curves, int count, bool of_x, double *low, double *high) {
   *low = INFINITY;
   *high = -INFINITY;
@@ -84,6 +90,9 @@ static void range_of(const curve *curves, int count, bool of_x, double *low, dou
     }
 }
 
+/* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for it. */
+static double without_noise(double end, double range) { return fabs(end) < 2e-3 * range ? 0 : end; }
+
 static bool set_axis(axis *a, const char *name, const char *si_unit, const char *wanted, double low, double high,
                      char *error, size_t size) {
   a->name = name;
@@ -93,16 +102,19 @@ static bool set_axis(axis *a, const char *name, const char *si_unit, const char 
   }
   if (!choose_unit(a, si_unit, wanted, fmax(fabs(low), fabs(high)), error, size))
     return false;
-  low *= a->factor;
-  high *= a->factor;
+  if (!wanted)
+    shorten_numbers(a, fmax(fabs(low), fabs(high)));
+  const double range = high - low;
+  low = without_noise(low, range) * a->factor;
+  high = without_noise(high, range) * a->factor;
   if (low > 0 && low < 0.3 * high)
     low = 0;
   if (!(high - low > 1e-12 * fmax(fabs(high), 1e-300))) {
     high = low + (fabs(low) > 0 ? fabs(low) : 1);
   }
   a->step = nice_step(high - low, 5);
-  a->low = a->step * floor(low / a->step + 1e-9);
-  a->high = a->step * ceil(high / a->step - 1e-9);
+  a->low = a->step * floor(low / a->step + 1e-3); /* a thousandth of a step is not seen */
+  a->high = a->step * ceil(high / a->step - 1e-3);
   return true;
 }
 
@@ -137,13 +149,20 @@ static void draw_axes(canvas *c, const axis *x, const axis *y) {
   canvas_line(c, LEFT, TOP, LEFT, HEIGHT - BOTTOM, 1.5);
 }
 
+static bool is_pure(const char *unit_text) { return strcmp(unit_text, "1") == 0; }
+
+static void name_axis(const axis *a, char *text, size_t size) {
+  const bool pure = is_pure(a->unit_text);
+  snprintf(text, size, "%.400s%s%s%s", a->name, pure ? "" : " [", pure ? "" : a->unit_text, pure ? "" : "]");
+}
+
 static void draw_names(canvas *c, const axis *x, const axis *y, const char *title) {
   char text[512];
-  snprintf(text, sizeof text, "%s [%s]", x->name, x->unit_text);
+  name_axis(x, text, sizeof text);
   canvas_text(c, LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 26, 22, ANCHOR_CENTRE, text);
-  snprintf(text, sizeof text, "%s [%s]", y->name, y->unit_text);
+  name_axis(y, text, sizeof text);
   canvas_text_upward(c, 36, TOP + (HEIGHT - TOP - BOTTOM) / 2.0, 22, text);
-  canvas_text(c, LEFT, 42, 24, ANCHOR_LEFT, title);
+  canvas_text_within(c, LEFT, 42, 24, WIDTH - LEFT - RIGHT, title);
 }
 
 static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, colour ink) {
@@ -166,20 +185,45 @@ static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, 
   cairo_stroke(c->cr);
 }
 
-static void draw_legend(canvas *c, const curve *curves, int count) {
+/* Samples of all curves in a rectangle of the picture. */
+static long samples_in(const curve *curves, int count, const axis *x, const axis *y, double left, double top, double width,
+                       double height) {
+  long inside = 0;
+  for (int c = 0; c < count; c++)
+    for (long k = 0; k < curves[c].count; k++) {
+      double px = along_x(x, curves[c].x[k] * x->factor), py = along_y(y, curves[c].y[k] * y->factor);
+      inside += px > left && px < left + width && py > top && py < top + height;
+    }
+  return inside;
+}
+
+/* In the corner where it covers least; the upper right one when it can be had. */
+static void draw_legend(canvas *c, const curve *curves, int count, const axis *x, const axis *y) {
+  enum { LINE = 26 };
   double widest = 0;
   for (int k = 0; k < count; k++)
     widest = fmax(widest, canvas_text_width(c, 19, curves[k].label));
-  double left = WIDTH - RIGHT - 20 - widest - 50, top = TOP + 14;
+  const double width = fmin(widest, 500) + 70, height = LINE * count + 10;
+  const double lefts[] = {WIDTH - RIGHT - width - 10, LEFT + 14}, tops[] = {TOP + 8, HEIGHT - BOTTOM - height - 10};
+  double left = lefts[0], top = tops[0];
+  long least = samples_in(curves, count, x, y, left, top, width, height);
+  for (int corner = 1; corner < 4; corner++) {
+    long inside = samples_in(curves, count, x, y, lefts[corner % 2], tops[corner / 2], width, height);
+    if (inside >= least)
+      continue;
+    least = inside;
+    left = lefts[corner % 2];
+    top = tops[corner / 2];
+  }
   cairo_set_source_rgba(c->cr, 1, 1, 1, 0.85);
-  cairo_rectangle(c->cr, left - 10, top - 6, widest + 70, 26.0 * count + 10);
+  cairo_rectangle(c->cr, left, top, width, height);
   cairo_fill(c->cr);
   for (int k = 0; k < count; k++) {
-    double y = top + 26.0 * k + 14;
+    double line = top + LINE * k + 20;
     canvas_colour(c, palette[k % PALETTE]);
-    canvas_line(c, left, y - 6, left + 36, y - 6, 3);
+    canvas_line(c, left + 10, line - 6, left + 46, line - 6, 3);
     canvas_colour(c, (colour){0.1, 0.1, 0.1});
-    canvas_text(c, left + 46, y, 19, ANCHOR_LEFT, curves[k].label);
+    canvas_text_within(c, left + 56, line, 19, 500, curves[k].label);
   }
 }
 
@@ -199,48 +243,120 @@ static bool draw_all(const curve *curves, int count, const plot_curve_options *o
   draw_axes(&c, &x, &y);
   draw_names(&c, &x, &y, title);
   cairo_save(c.cr);
-  cairo_rectangle(c.cr, LEFT, TOP - 4, WIDTH - LEFT - RIGHT + 4, HEIGHT - TOP - BOTTOM + 8);
+  cairo_rectangle(c.cr, LEFT - 4, TOP - 4, WIDTH - LEFT - RIGHT + 8, HEIGHT - TOP - BOTTOM + 8);
   cairo_clip(c.cr);
   for (int k = 0; k < count; k++)
     draw_curve(&c, &curves[k], &x, &y, palette[k % PALETTE]);
   cairo_restore(c.cr);
   if (count > 1 || o->labels)
-    draw_legend(&c, curves, count);
+    draw_legend(&c, curves, count, &x, &y);
   return canvas_close(&c, error, size);
 }
 
-bool plot_curve(const char *const *results, int result_count, const plot_curve_options *given, char *error, size_t size) {
-  if (result_count > MOST_CURVES) {
-    snprintf(error, size, "%d results are more than the %d that one picture shows", result_count, MOST_CURVES);
-    return false;
+/* What all curves of a picture have in common. */
+typedef struct curve_set {
+  const plot_curve_options *o;
+  const char *const *results;
+  curve curves[MOST_CURVES];
+  int count;
+  char x_unit[64], y_unit[64], title[512]; /* title: of the last result */
+} curve_set;
+
+static void label_curve(const curve_set *s, int from, int y, curve *c) {
+  char name[sizeof c->label / 2];
+  if (s->o->labels)
+    snprintf(name, sizeof name, "%s", s->o->labels[from]);
+  else
+    label_of(s->results[from], name, sizeof name);
+  const bool several = s->o->y_count > 1;
+  snprintf(c->label, sizeof c->label, "%s%s%.120s", name, several ? ": " : "", several ? s->o->ys[y] : "");
+}
+
+static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit, const char *y_unit, char *error,
+                      size_t size) {
+  if (s->count == 1) {
+    snprintf(s->x_unit, sizeof s->x_unit, "%s", x_unit);
+    snprintf(s->y_unit, sizeof s->y_unit, "%s", y_unit);
+    return true;
   }
+  if (strcmp(s->x_unit, x_unit) != 0)
+    snprintf(error, size, "`%s` holds `%s` in another unit (%s) than `%s` (%s)", s->results[from], s->o->x, x_unit,
+             s->results[0], s->x_unit);
+  else if (strcmp(s->y_unit, y_unit) != 0)
+    snprintf(error, size, "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit", y,
+             s->results[from], is_pure(y_unit) ? "" : "in ", is_pure(y_unit) ? "a pure number" : y_unit, s->o->ys[0],
+             s->results[0], is_pure(s->y_unit) ? "" : "in ", is_pure(s->y_unit) ? "a pure number" : s->y_unit);
+  else
+    return true;
+  return false;
+}
+
+/* The curves of one result. */
+static bool add_curves(curve_set *s, int from, char *error, size_t size) {
+  result_file *f = result_read(s->results[from], error, size);
+  if (!f)
+    return false;
+  char *title = result_read_title(f);
+  snprintf(s->title, sizeof s->title, "%s", title);
+  free(title);
+  bool good = true;
+  for (int y = 0; good && y < s->o->y_count; y++) {
+    char x_unit[64] = "1", y_unit[64] = "1";
+    curve *c = &s->curves[s->count++];
+    label_curve(s, from, y, c);
+    good = read_curve(f, s->o->x, s->o->ys[y], c, x_unit, y_unit, error, size) &&
+           units_fit(s, from, s->o->ys[y], x_unit, y_unit, error, size);
+  }
+  result_read_close(f);
+  return good;
+}
+
+/* "load, load_bottom" */
+static void join_names(const plot_curve_options *o, char *text, size_t size) {
+  size_t used = 0;
+  text[0] = 0;
+  for (int y = 0; y < o->y_count && used < size; y++)
+    used += (size_t)snprintf(text + used, size - used, "%s%s", y ? ", " : "", o->ys[y]);
+}
+
+bool plot_curve(const char *const *results, int result_count, const plot_curve_options *given, char *error, size_t size) {
   plot_curve_options o = *given;
   o.x = o.x ? o.x : "time";
   o.y = o.y ? o.y : "load";
-  curve curves[MOST_CURVES] = {{NULL, NULL, 0, ""}};
-  char x_unit[64] = "1", y_unit[64] = "1", first_x[64] = "", first_y[64] = "", title[512] = "";
+  if (o.y_count == 0) {
+    o.ys = &o.y;
+    o.y_count = 1;
+  }
+  if (result_count > MOST_CURVES / o.y_count) {
+    snprintf(error, size, "%d results with %d histories are more than the %d curves that one picture shows", result_count,
+             o.y_count, MOST_CURVES);
+    return false;
+  }
+  char names[400], several[1100];
+  join_names(&o, names, sizeof names);
+  curve_set s = {.o = &o, .results = results};
   bool good = true;
-  for (int k = 0; good && k < result_count; k++) {
-    good = read_curve(results[k], &o, &curves[k], x_unit, y_unit, title, sizeof title, error, size);
-    if (k == 0) {
-      memcpy(first_x, x_unit, sizeof first_x);
-      memcpy(first_y, y_unit, sizeof first_y);
-    } else if (good && (strcmp(first_x, x_unit) || strcmp(first_y, y_unit))) {
-      snprintf(error, size, "`%s` holds `%s` and `%s` in other units than `%s`", results[k], o.x, o.y, results[0]);
-      good = false;
-    }
-    if (o.labels)
-      snprintf(curves[k].label, sizeof curves[k].label, "%s", o.labels[k]);
-    else
-      label_of(results[k], curves[k].label, sizeof curves[k].label);
+  for (int k = 0; good && k < result_count; k++)
+    good = add_curves(&s, k, error, size);
+  snprintf(several, sizeof several, "%s against %s", names, o.x);
+  o.y = names;
+  const char *shown = o.title ? o.title : result_count > 1 || !s.title[0] ? several : s.title;
+  good = good && draw_all(s.curves, s.count, &o, s.x_unit, s.y_unit, shown, error, size);
+  for (int k = 0; k < s.count; k++) {
+    free(s.curves[k].x);
+    free(s.curves[k].y);
   }
-  char several[1100];
-  snprintf(several, sizeof several, "%s against %s", o.y, o.x);
-  const char *shown = o.title ? o.title : result_count > 1 || !title[0] ? several : title;
-  good = good && draw_all(curves, result_count, &o, first_x, first_y, shown, error, size);
-  for (int k = 0; k < result_count; k++) {
-    free(curves[k].x);
-    free(curves[k].y);
-  }
+  return good;
+}
+
+bool plot_values(const double *x, const double *y, long count, const char *x_unit, const char *y_unit,
+                 const plot_curve_options *o, char *error, size_t size) {
+  size_t bytes = (size_t)count * sizeof(double);
+  curve c = {.x = must_alloc(bytes + 1), .y = must_alloc(bytes + 1), .count = count};
+  memcpy(c.x, x, bytes);
+  memcpy(c.y, y, bytes);
+  bool good = draw_all(&c, 1, o, x_unit, y_unit, o->title ? o->title : "", error, size);
+  free(c.x);
+  free(c.y);
   return good;
 }

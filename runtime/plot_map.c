@@ -1,5 +1,6 @@
 /* Map of one 2D frame: bonds and particles where they have moved to. Damage is shown in the classes of Asadollahi
-   (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8 brown, below 1 red; separated bonds as black crack lines. */
+   (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8 brown, below 1 red; separated bonds as black crack lines. Other
+   fields colour the particles or the bonds by their value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -23,8 +24,11 @@ enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
 
 typedef struct map {
   long particles, bonds;
-  double *reference, *moved, *values, *damage; /* damage: per bond, NULL without */
+  double *reference, *moved, *damage; /* damage: per bond, NULL without */
   int32_t *pairs;
+  double *values; /* of the particles, or of the bonds; NULL: a map of damage */
+  long value_count;
+  bool of_bonds;
   int components;
   char unit_text[64], title[512];
   double time, factor, spacing;
@@ -66,76 +70,88 @@ static void move_particles(map *m, const double *displacement, double wanted) {
 }
 
 static bool read_values(result_file *f, map *m, const plot_map_options *o, char *error, size_t size) {
-  bool bonds_only = strcmp(o->field, "damage") == 0;
-  if (bonds_only && m->damage)
-    return true;
-  long count = 0;
-  m->values = result_read_frame(f, o->field, o->frame, &count, &m->components, m->unit_text, sizeof m->unit_text, error, size);
-  if (m->values && count != m->particles) {
-    snprintf(error, size, "`%s` is not a field of particles", o->field);
+  char name[512];
+  result_find_field(f, o->field, name, sizeof name);
+  m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text, sizeof m->unit_text,
+                                error, size);
+  if (!m->values)
+    return false;
+  m->of_bonds = strchr(name, '/') != NULL;
+  if (m->value_count != (m->of_bonds ? m->bonds : m->particles)) {
+    snprintf(error, size, "`%s` does not have a value for each %s", name, m->of_bonds ? "bond" : "particle");
     return false;
   }
-  if (m->values && o->component >= m->components) {
+  if (o->component >= m->components) {
     snprintf(error, size, "`%s` has %d component%s, numbered from 0; there is no component %d", o->field, m->components,
              m->components == 1 ? "" : "s", o->component);
     return false;
   }
-  return m->values != NULL;
+  return true;
 }
 
-/* Damage of bonds, when the law has it: the field `damage`, or the first field, of the first interaction. */
-static void read_damage(result_file *f, map *m, long frame) {
-  char *interactions = result_list(f, "/bonds");
-  char name[600], group[300], unit_text[64], ignored[256];
-  if (!interactions)
-    return;
-  interactions[strcspn(interactions, ",")] = 0;
-  snprintf(group, sizeof group, "/frames/%.250s", interactions);
-  char *fields = result_list(f, group);
-  if (fields) {
-    fields[strcspn(fields, ",")] = 0;
-    snprintf(name, sizeof name, "%.250s/%.250s", interactions, fields);
-    long count = 0;
-    int components;
-    m->damage = result_read_frame(f, name, frame, &count, &components, unit_text, sizeof unit_text, ignored, sizeof ignored);
-    if (m->damage && count != m->bonds) {
-      free(m->damage);
-      m->damage = NULL;
-    }
-  }
-  free(fields);
-  free(interactions);
+/* Maps of other fields show separated bonds, too, where the result knows them. */
+static bool read_damage(result_file *f, map *m, const char *path, const plot_map_options *o, char *error, size_t size) {
+  long count = 0;
+  m->damage = result_read_damage(f, o->frame, &count, error, size);
+  if (m->damage && count == m->bonds)
+    return true;
+  free(m->damage);
+  m->damage = NULL;
+  if (strcmp(o->field, "damage") != 0)
+    return true;
+  if (!error[0])
+    snprintf(error, size,
+             "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output and run again "
+             "(a law without a damage has none to store)", path);
+  return false;
 }
 
-static bool read_map(result_file *f, map *m, const plot_map_options *o, char *error, size_t size) {
-  char unit_text[64];
-  long count = 0, frames = 0;
+/* NULL with a sentence that says how to store them when they are not there. */
+static double *read_displacements(result_file *f, const map *m, const char *path, long frame, char *error, size_t size) {
+  char unit_text[64], name[64];
+  long count = 0;
   int components = 0;
+  if (!result_find_field(f, "displacement", name, sizeof name)) {
+    snprintf(error, size,
+             "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in &output and run again", path);
+    return NULL;
+  }
+  double *u = result_read_frame(f, "displacement", frame, &count, &components, unit_text, sizeof unit_text, error, size);
+  if (u && count == m->particles && components == 2)
+    return u;
+  if (u)
+    snprintf(error, size, "the displacements in `%s` are not those of its particles", path);
+  free(u);
+  return NULL;
+}
+
+static bool read_map(result_file *f, const char *path, map *m, const plot_map_options *o, char *error, size_t size) {
   m->reference = result_read_reference(f, &m->particles);
   m->pairs = result_read_bonds(f, NULL, &m->bonds);
-  double *u = result_read_frame(f, "displacement", o->frame, &count, &components, unit_text, sizeof unit_text, error, size);
-  if (!m->reference || !m->pairs || m->particles == 0)
+  if (!m->reference || !m->pairs || m->particles == 0) {
     snprintf(error, size, "the result holds no particles and bonds to draw");
-  bool good = m->reference && m->pairs && m->particles > 0 && u && count == m->particles && components == 2;
-  if (good) {
-    move_particles(m, u, o->factor);
-    double *times = result_read_frame_times(f, &frames);
-    long k = o->frame < 0 ? frames + o->frame : o->frame;
-    m->time = times && k >= 0 && k < frames ? times[k] : NAN;
-    free(times);
-    for (long b = 0; b < m->bonds; b++)
-      m->spacing = b == 0 ? bond_length(m, 0) : fmin(m->spacing, bond_length(m, b));
-    read_damage(f, m, o->frame);
-    good = read_values(f, m, o, error, size);
+    return false;
   }
+  double *u = read_displacements(f, m, path, o->frame, error, size);
+  if (!u)
+    return false;
+  move_particles(m, u, o->factor);
   free(u);
+  long frames = 0;
+  double *times = result_read_frame_times(f, &frames);
+  long k = o->frame < 0 ? frames + o->frame : o->frame;
+  m->time = times && k >= 0 && k < frames ? times[k] : NAN;
+  free(times);
+  for (long b = 0; b < m->bonds; b++)
+    m->spacing = b == 0 ? bond_length(m, 0) : fmin(m->spacing, bond_length(m, b));
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);
-  return good;
+  return read_damage(f, m, path, o, error, size) &&
+         (strcmp(o->field, "damage") == 0 || read_values(f, m, o, error, size));
 }
 
-/* --- drawing ------------------------------------------------------------------------------------ */
+/* --- drawing ---------------------------------------------------------------------------------- */
 
 static bool fit_picture(map *m, char *error, size_t size) {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -212,8 +228,8 @@ static colour shade(double v) {
                   stops[k].b + w * (stops[k + 1].b - stops[k].b)};
 }
 
-static double value_of(const map *m, long p, int component) {
-  const double *v = &m->values[p * m->components];
+static double value_of(const map *m, long k, int component) {
+  const double *v = &m->values[k * m->components];
   if (component >= 0 || m->components == 1)
     return v[component >= 0 ? component : 0];
   double sum = 0;
@@ -222,21 +238,49 @@ static double value_of(const map *m, long p, int component) {
   return sqrt(sum);
 }
 
+/* Place in the colour bar, 0 to 1; what is no number stands with the lowest. */
+static double place_of(double value, double low, double high) {
+  return high > low ? fmin(fmax((value - low) / (high - low), 0), 1) : 0;
+}
+
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
-  double radius = fmax(0.7, (m->values ? 0.5 : 0.1) * m->spacing * m->scale);
+  const bool coloured = m->values && !m->of_bonds;
+  double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->spacing * m->scale);
   for (long p = 0; p < m->particles; p++) {
-    double v = m->values ? value_of(m, p, component) : 0;
-    canvas_colour(c, m->values ? shade(high > low ? (v - low) / (high - low) : 0) : (colour){0.45, 0.48, 0.52});
+    canvas_colour(c, coloured ? shade(place_of(value_of(m, p, component), low, high)) : (colour){0.45, 0.48, 0.52});
     cairo_arc(c->cr, at_x(m, m->moved[2 * p]), at_y(m, m->moved[2 * p + 1]), radius, 0, 2 * M_PI);
     cairo_fill(c->cr);
   }
 }
 
+static bool is_separated(const map *m, long b) { return m->damage && m->damage[b] >= 1; }
+
+enum { SHADES = 64 };
+static int shade_of(double value, double low, double high) {
+  return (int)fmin(SHADES * place_of(value, low, high), SHADES - 1);
+}
+
+/* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their crack. */
+static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
+  const double wide = fmax(0.8, 0.22 * m->spacing * m->scale);
+  cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+  for (int k = 0; k < 2 * SHADES; k++) {
+    const bool separated = k < SHADES;
+    canvas_colour(c, shade((k % SHADES + 0.5) / SHADES));
+    cairo_set_line_width(c->cr, separated ? 0.3 * wide : wide);
+    for (long b = 0; b < m->bonds; b++)
+      if (is_separated(m, b) == separated && shade_of(value_of(m, b, component), low, high) == k % SHADES)
+        stroke_bond(c, m, b);
+    cairo_stroke(c->cr);
+  }
+}
+
 static void draw_head(canvas *c, const map *m) {
   char text[256];
-  canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text(c, MARGIN, 40, 24, ANCHOR_LEFT, m->title);
   snprintf(text, sizeof text, "t = %.5g ms, displacements x %.6g", 1e3 * m->time, m->factor);
+  double right = canvas_text_width(c, 19, text);
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text_within(c, MARGIN, 40, 24, WIDTH - 2 * MARGIN - right - 30, m->title);
   canvas_text(c, WIDTH - MARGIN, 40, 19, ANCHOR_RIGHT, text);
 }
 
@@ -257,7 +301,7 @@ static void draw_damage_legend(canvas *c, const map *m) {
     canvas_text(c, x, y, 18, ANCHOR_LEFT, classes[k].text);
     x -= 36;
     canvas_colour(c, classes[k].ink);
-    canvas_line(c, x, y - 6, x + 28, y - 6, k == 0 ? 2 : 5);
+    canvas_line(c, x, y - 6, x + 28, y - 6, k == 0 ? 4 : 5);
     x -= 22;
   }
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
@@ -279,32 +323,67 @@ static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o
   snprintf(text, sizeof text, "%.4g", high * factor);
   canvas_text(c, x + width, y + 34, 18, ANCHOR_RIGHT, text);
   const char *part = m->components == 1 ? "" : o->component == 0 ? " x" : o->component == 1 ? " y" : " (size)";
-  snprintf(text, sizeof text, "%s%s [%s]", o->field, part, shown);
+  const bool pure = strcmp(shown, "1") == 0;
+  snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown, pure ? "" : "]");
   canvas_text(c, x - 14, y + 13, 18, ANCHOR_RIGHT, text);
 }
 
+/* Least and largest value that is drawn; false when none is a number. */
+static bool range_of(const map *m, int component, double *low, double *high) {
+  *low = INFINITY;
+  *high = -INFINITY;
+  for (long k = 0; k < m->value_count; k++) {
+    const double v = value_of(m, k, component);
+    if (!isfinite(v))
+      continue;
+    *low = fmin(*low, v);
+    *high = fmax(*high, v);
+  }
+  return *low <= *high;
+}
+
+static void draw_crack_legend(canvas *c, const map *m) {
+  const double x = MARGIN + 300, y = m->height - 34;
+  bool any = false;
+  for (long b = 0; b < m->bonds; b++)
+    any = any || is_separated(m, b);
+  if (!any)
+    return;
+  canvas_colour(c, classes[SEPARATED].ink);
+  canvas_line(c, x, y, x + 28, y, 5);
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, classes[SEPARATED].text);
+}
+
+static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low, double high) {
+  if (m->of_bonds)
+    draw_bond_values(c, m, o->component, low, high);
+  draw_particles(c, m, o->component, low, high);
+  if (m->damage)
+    draw_bonds(c, m, false);
+  draw_crack_legend(c, m);
+  draw_value_legend(c, m, o, low, high);
+}
+
 static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size) {
+  double low = 0, high = 0;
   if (!fit_picture(m, error, size))
     return false;
-  double low = INFINITY, high = -INFINITY;
-  for (long p = 0; m->values && p < m->particles; p++) {
-    low = fmin(low, value_of(m, p, o->component));
-    high = fmax(high, value_of(m, p, o->component));
+  if (m->values && !range_of(m, o->component, &low, &high)) {
+    snprintf(error, size, "`%s` holds no finite value to draw", o->field);
+    return false;
   }
   canvas c;
   if (!canvas_open(&c, o->output, WIDTH, m->height, error, size))
     return false;
-  if (!m->values)
-    draw_bonds(&c, m, true);
-  draw_particles(&c, m, o->component, low, high);
-  if (m->values && m->damage)
-    draw_bonds(&c, m, false);
   draw_head(&c, m);
   draw_scale_bar(&c, m);
-  if (m->values)
-    draw_value_legend(&c, m, o, low, high);
-  else
+  if (m->values) {
+    draw_field(&c, m, o, low, high);
+  } else {
+    draw_bonds(&c, m, true);
+    draw_particles(&c, m, o->component, low, high);
     draw_damage_legend(&c, m);
+  }
   return canvas_close(&c, error, size);
 }
 
@@ -313,7 +392,7 @@ bool plot_map(const char *path, const plot_map_options *o, char *error, size_t s
   if (!f)
     return false;
   map m = {.particles = 0};
-  bool good = read_map(f, &m, o, error, size);
+  bool good = read_map(f, path, &m, o, error, size);
   result_read_close(f);
   good = good && draw_map(&m, o, error, size);
   map_free(&m);

@@ -55,7 +55,7 @@ static bool read_all(int file, void *data, size_t size, off_t offset) {
   return true;
 }
 
-/* --- working file ------------------------------------------------------------------------------- */
+/* --- working file ----------------------------------------------------------------------------- */
 
 static bool start_working(result *r, char *error, size_t size) {
   uint64_t record = r->record;
@@ -155,7 +155,7 @@ void result_close(result *r) {
   free(r);
 }
 
-/* --- the HDF5 file ------------------------------------------------------------------------------ */
+/* --- the HDF5 file ---------------------------------------------------------------------------- */
 
 static bool write_particles(hid_t file, const result_header *h) {
   hsize_t pairs[2] = {(hsize_t)h->particle_count, 2}, one[1] = {(hsize_t)h->particle_count};
@@ -181,6 +181,7 @@ static bool write_texts(hid_t file, const char *group, const result_text *texts,
 
 static bool write_input(hid_t file, const result_header *h) {
   return h5_make_group(file, "/input") && h5_write_text(file, "/input/deck", h->deck_text) &&
+         (!h->overrides || !*h->overrides || h5_write_text(file, "/input/set", h->overrides)) &&
          write_texts(file, "/input/models", h->models, h->model_count) &&
          write_texts(file, "/input/kernels", h->kernels, h->kernel_count);
 }
@@ -207,7 +208,7 @@ static bool write_field(hid_t file, const result *r, const result_field *f, size
   hsize_t shape[3] = {(hsize_t)r->frames, (hsize_t)f->count, (hsize_t)f->components};
   hid_t set = h5_make_frames(file, name, f->interaction ? 2 : 3, shape, f->unit, COMPRESSION_LEVEL);
   size_t bytes = sizeof(double) * (size_t)f->count * (size_t)f->components;
-  bool good = set >= 0;
+  bool good = set >= 0 && h5_attribute_text(set, "kind", f->kind);
   for (long frame = 0; good && frame < r->frames; frame++)
     good = read_all(r->file, buffer, bytes, frame_offset(r, frame) + (off_t)skip) &&
            h5_write_frame(set, frame, f->interaction ? 2 : 3, shape, buffer);
@@ -241,7 +242,7 @@ static bool write_frames(hid_t file, const result *r) {
 static bool write_attributes(hid_t file, const result_header *h, double dt, long steps) {
   return h5_attribute_text(file, "perilat_version", h->version) && h5_attribute_text(file, "started", h->started) &&
          h5_attribute_text(file, "title", h->title) && h5_attribute_text(file, "kernel_key", h->kernel_key) &&
-         h5_attribute_double(file, "dt", dt) && h5_attribute_double(file, "steps", (double)steps);
+         h5_attribute_double(file, "dt", dt) && h5_attribute_integer(file, "steps", steps);
 }
 
 static bool fail(const char *temporary, const char *path, char *error, size_t size) {

@@ -3,11 +3,12 @@
    Layout, names and units of result.h5 are stable:
 
      /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
-     /input/deck            text; /input/models/<name> law text; /input/kernels/<name> generated C
+     /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
      /particles/reference   [N, 2] m; /particles/body [N]; /particles/volume [N] m^3
      /bonds/<interaction>   [M, 2] particle indices
      /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
-     /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M]  */
+     /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
+                            attributes units and kind ("state", "damage", "output" of the law, "other")  */
 #ifndef PERILAT_RUNTIME_RESULT_H
 #define PERILAT_RUNTIME_RESULT_H
 
@@ -23,6 +24,7 @@ typedef struct result_field {      /* of a frame */
   const char *interaction;         /* NULL: per particle; else bond field of that interaction */
   int components;                  /* 1, 2, ... */
   long count;                      /* particles or bonds */
+  const char *kind;                /* "state", "damage", "output" of the law; else "other" */
 } result_field;
 
 typedef struct result_series {     /* of the history */
@@ -35,11 +37,12 @@ typedef struct result_header {
   const char *path;                /* of the final file */
   const char *title, *started, *version, *kernel_key;
   const char *deck_text;
+  const char *overrides;           /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
   int model_count, kernel_count;
   long particle_count;
   const double *reference;         /* [N][2] */
-  const int32_t *body;             /* [N] */
+  const int32_t *body;             /* [N] number of the body in the deck, from 0 */
   const double *volume;            /* [N] */
   const char *interaction;         /* name of the bonds: the lattice's name */
   long bond_count;
@@ -76,6 +79,11 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
                           char *unit, size_t unit_size, char *error, size_t size);
 double *result_read_reference(result_file *f, long *particles);       /* [N][2] */
 int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds); /* [M][2]; NULL name: the first */
+/* The name under which result_read_frame knows a field: `given` itself, or of a bond's field without its interaction when
+   only one has it. False when there is none, or several. */
+bool result_find_field(result_file *f, const char *given, char *name, size_t size);
+/* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error ""). */
+double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);
 char *result_read_text(result_file *f, const char *path);             /* "/input/deck" */
 char *result_read_title(result_file *f);                              /* "" without one */

@@ -33,7 +33,7 @@ result_file *result_read(const char *path, char *error, size_t size) {
   }
   if (H5Lexists(file, "/history", H5P_DEFAULT) <= 0 || H5Lexists(file, "/particles", H5P_DEFAULT) <= 0) {
     H5Fclose(file);
-    snprintf(error, size, "`%s` is an HDF5 file, but not a result of perilat", path);
+    snprintf(error, size, "`%s` is damaged, or not a result of perilat", path);
     return NULL;
   }
   result_file *f = must_calloc(1, sizeof *f);
@@ -63,19 +63,29 @@ static hid_t open_set(const result_file *f, const char *name) {
   }
 }
 
-/* Rank and shape of a data set; false when it is not of rank 1 to 3. */
-static bool shape_of(hid_t set, int *rank, hsize_t shape[3]) {
+/* False of a set that claims more values than its bytes in the file can hold, however well they are compressed (deflate
+   reaches 1032): a small file must not ask for all memory. */
+static bool is_stored(hid_t set, int rank, const hsize_t *shape) {
+  const hid_t type = H5Dget_type(set);
+  double bytes = (double)H5Tget_size(type);
+  H5Tclose(type);
+  for (int k = 0; k < rank; k++)
+    bytes *= (double)shape[k];
+  return bytes <= 1100.0 * (double)H5Dget_storage_size(set) + 64e6;
+}
+
+/* Rank and shape of a data set; false when it is not of rank 1 to 3, or too large to be read from dimension `from` on. */
+static bool shape_of(hid_t set, int from, int *rank, hsize_t shape[3]) {
   hid_t space = H5Dget_space(set);
   *rank = H5Sget_simple_extent_ndims(space);
   bool good = *rank >= 1 && *rank <= 3 && H5Sget_simple_extent_dims(space, shape, NULL) >= 0;
   H5Sclose(space);
   hsize_t product = 1;
-  for (int k = 0; good && k < *rank; k++) {
-    good = shape[k] <= VALUES_LIMIT;
+  for (int k = from; good && k < *rank; k++) {
+    good = shape[k] <= VALUES_LIMIT / (product ? product : 1);
     product *= shape[k];
-    good = good && product <= VALUES_LIMIT;
   }
-  return good;
+  return good && is_stored(set, *rank, shape);
 }
 
 /* The longer text; the old one is freed. */
@@ -88,7 +98,7 @@ static char *append_name(char *text, const char *folder, const char *name) {
 
 static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
   int rank;
-  if (!shape_of(set, &rank, shape) || rank != rank_wanted)
+  if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted)
     return NULL;
   size_t count = 1;
   for (int k = 0; k < rank; k++)
@@ -142,6 +152,24 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
   return values;
 }
 
+/* Names that result_read_frame takes, of particles or of bonds: "damage, displacement". */
+static char *field_names(result_file *f, bool of_bonds) {
+  char *members = result_members(f, "/frames"), *rest = NULL, *names = must_calloc(1, 1);
+  for (char *name = strtok_r(members, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
+    if ((strchr(name, '/') != NULL) == of_bonds && strcmp(name, "time") != 0 && strcmp(name, "nothing") != 0)
+      names = append_name(names, "", name);
+  free(members);
+  return *names ? names : append_name(names, "", "none");
+}
+
+static void no_such_field(result_file *f, const char *field, char *error, size_t size) {
+  char *of_particles = field_names(f, false), *of_bonds = field_names(f, true);
+  snprintf(error, size, "`%s` has no field `%s`; fields of particles: %s; of bonds: %s", f->path, field, of_particles,
+           of_bonds);
+  free(of_particles);
+  free(of_bonds);
+}
+
 static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]) {
   hsize_t start[3] = {(hsize_t)frame, 0, 0}, count[3] = {1, shape[1], rank > 2 ? shape[2] : 1};
   double *values = must_calloc((size_t)(count[1] * count[2]) + 1, sizeof *values);
@@ -163,10 +191,8 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   hid_t set = open_set(f, path);
   int rank = 0;
   hsize_t shape[3] = {0, 0, 0};
-  if (set < 0 || !shape_of(set, &rank, shape) || rank < 2) {
-    char *names = result_members(f, "/frames");
-    snprintf(error, size, "`%s` has no field `%s`; its frames hold %s", f->path, field, names);
-    free(names);
+  if (set < 0 || !shape_of(set, 1, &rank, shape) || rank < 2) {
+    no_such_field(f, field, error, size);
     if (set >= 0)
       H5Dclose(set);
     return NULL;
@@ -182,6 +208,84 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   h5_read_attribute_text(set, "units", unit_text, unit_size);
   H5Dclose(set);
   return values;
+}
+
+bool result_find_field(result_file *f, const char *given, char *name, size_t size) {
+  char path[512], *interactions = result_list(f, "/bonds"), *rest = NULL;
+  int found = 0;
+  snprintf(path, sizeof path, "/frames/%.400s", given);
+  snprintf(name, size, "%s", given);
+  hid_t set = open_set(f, path);
+  for (char *i = set < 0 && interactions ? strtok_r(interactions, ",", &rest) : NULL; i; i = strtok_r(NULL, ",", &rest)) {
+    snprintf(path, sizeof path, "/frames/%.200s/%.200s", i, given);
+    hid_t other = open_set(f, path);
+    if (other < 0)
+      continue;
+    H5Dclose(other);
+    if (!found++)
+      snprintf(name, size, "%s", path + strlen("/frames/"));
+  }
+  free(interactions);
+  if (set >= 0)
+    H5Dclose(set);
+  return set >= 0 || found == 1;
+}
+
+static bool is_damage(result_file *f, const char *field) {
+  char path[512], kind[16] = "";
+  snprintf(path, sizeof path, "/frames/%.500s", field);
+  hid_t set = open_set(f, path);
+  if (set < 0)
+    return false;
+  h5_read_attribute_text(set, "kind", kind, sizeof kind);
+  H5Dclose(set);
+  return strcmp(kind, "damage") == 0;
+}
+
+/* Takes one more damage into `most`, which may be NULL; frees it. NULL when they do not fit. */
+static double *larger_of(double *most, long bonds, double *more, long count) {
+  if (!most)
+    return more;
+  const bool fits = more && count == bonds;
+  for (long b = 0; fits && b < bonds; b++)
+    if (more[b] > most[b])
+      most[b] = more[b];
+  free(more);
+  if (fits)
+    return most;
+  free(most);
+  return NULL;
+}
+
+double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size) {
+  char name[512], unit_text[16], *interaction = result_list(f, "/bonds"), *rest = NULL;
+  double *most = NULL;
+  bool good = interaction != NULL;
+  error[0] = 0;
+  *bonds = 0;
+  if (interaction)
+    interaction[strcspn(interaction, ",")] = 0;
+  snprintf(name, sizeof name, "/frames/%.400s", interaction ? interaction : "");
+  char *fields = interaction ? result_list(f, name) : NULL;
+  for (char *field = fields ? strtok_r(fields, ",", &rest) : NULL; good && field; field = strtok_r(NULL, ",", &rest)) {
+    long count = 0;
+    int components = 0;
+    snprintf(name, sizeof name, "%.250s/%.250s", interaction, field);
+    if (!is_damage(f, name))
+      continue;
+    double *more = result_read_frame(f, name, frame, &count, &components, unit_text, sizeof unit_text, error, size);
+    if (more && components != 1) { /* one number a bond */
+      free(more);
+      more = NULL;
+      snprintf(error, size, "`%s` in `%s` is not one number a bond", name, f->path);
+    }
+    most = larger_of(most, *bonds, more, count);
+    *bonds = count;
+    good = most != NULL;
+  }
+  free(fields);
+  free(interaction);
+  return most;
 }
 
 static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int rank, long *rows_read) {
@@ -229,16 +333,7 @@ char *result_read_text(result_file *f, const char *path) {
   hid_t set = open_set(f, path);
   if (set < 0)
     return NULL;
-  hid_t type = H5Dget_type(set);
-  char *text = NULL;
-  if (H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) == 0) {
-    text = must_calloc(H5Tget_size(type) + 1, 1);
-    if (H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text) < 0) {
-      free(text);
-      text = NULL;
-    }
-  }
-  H5Tclose(type);
+  char *text = h5_read_text(set);
   H5Dclose(set);
   return text;
 }

@@ -549,6 +549,18 @@ long rows_select(const rows *w, const deck_shape *shape, int32_t **list) {
   return count;
 }
 
+void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body) {
+  memset(body, 0, (size_t)w->particle_count * sizeof *body);
+  for (int b = k->body_count - 1; b >= 0; b--) { /* the first has the last word */
+    if (strcmp(k->bodys[b].lattice, k->lattices[lattice].name) != 0) continue;
+    int32_t *list;
+    const long count = rows_select(w, &k->bodys[b].shape, &list);
+    for (long p = 0; p < count; p++)
+      body[list[p]] = b;
+    free(list);
+  }
+}
+
 /* Columns of storage row `row` within `reach` (m) of the site: +1 at the first, -1 behind the last.
  */
 static void add_interval(const rows *w, long site, long row, double reach, int32_t *steps) {

@@ -52,6 +52,9 @@ void rows_free(rows *w);
    Returns the count. */
 long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
 
+/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
+void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
+
 /* Sets PL_PROTECTED on every bond that touches a particle within `radius` (m) of one of the `particles`. */
 void rows_protect(rows *w, const int32_t *particles, long count, double radius);
 

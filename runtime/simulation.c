@@ -10,8 +10,7 @@
 
 #include "runtime/stability.h"
 
-/* --- set-up: mass and step
- * ----------------------------------------------------------------------------------- */
+/* --- set-up: mass and step -------------------------------------------------------------------- */
 
 static const deck_material *material_of(const deck *k, const char *lattice) {
   for (int i = 0; i < k->material_count; i++)
@@ -37,10 +36,64 @@ static bool set_mass(simulation *s, diagnostics *d) {
   return true;
 }
 
+static bool are_allowed(const pl_law *law, const double *values) {
+  const size_t n = (size_t)law->parameter_count + 1;
+  double *lower = must_calloc(2 * n, sizeof *lower), *upper = lower + n;
+  unsigned char *open = must_calloc(2 * n, 1);
+  law->bounds(law, values, lower, upper, open, open + n);
+  bool good = true;
+  for (int p = 0; p < law->parameter_count; p++)
+    good &= values[p] >= lower[p] && values[p] <= upper[p];
+  free(lower);
+  free(open);
+  return good;
+}
+
+/* Where parameters differ from bond to bond, the smallest limit of lattices that have the smallest
+   or largest value of each in all bonds (with many fields: of all, or of one of them). */
+static void limit_with_fields(simulation *s) {
+  enum { MOST_AT_ONCE = 5 };
+  const random_fields *f = s->fields;
+  const size_t n = (size_t)s->law->parameter_count + 1;
+  double *values = must_calloc(n, sizeof *values);
+  const int corners = f->count <= MOST_AT_ONCE ? 1 << f->count : 2 * f->count + 2;
+  for (int c = 0; c < corners; c++) {
+    memcpy(values, s->parameters, (n - 1) * sizeof *values);
+    for (int k = 0; k < f->count; k++) {
+      const bool all = f->count <= MOST_AT_ONCE, one = !all && c < 2 * f->count;
+      const bool high = all ? c >> k & 1 : c & 1;
+      if (!one || c / 2 == k)
+        values[s->law->varying[k]] = high ? f->largest[k] : f->smallest[k];
+    }
+    step_limit limit = {0};
+    if (!are_allowed(s->law, values)) continue;
+    stability_limit(s->law, values, s->lattice, &limit);
+    if (limit.limit < s->limit.limit) s->limit = limit;
+  }
+  free(values);
+}
+
+/* Protection keeps damage as it is: a law that softens through a plain state is not held back by it. */
+static void warn_of_protection(const simulation *s, diagnostics *d) {
+  for (int f = 0; f < s->law->field_count; f++)
+    if (s->law->fields[f].kind == PL_FIELD_DAMAGE) return;
+  if (s->deck->protect_count > 0 && s->law->field_count > 0)
+    diag_report(d, DIAG_DECK_WARNING, s->deck->protects[0].item.where,
+                "the law `%s` has no damage that could be held back; its states go on as they do elsewhere",
+                s->law->name);
+}
+
 static bool choose_step(simulation *s, diagnostics *d) {
   const deck_simulation *k = &s->deck->simulation;
   stability_limit(s->law, s->parameters, s->lattice, &s->limit);
+  if (s->fields) limit_with_fields(s);
   const double limit = s->limit.limit;
+  if (!(limit > 0)) {
+    diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
+                "the law `%s` has no finite stiffness at rest, so that no step is stable", s->law->name);
+    diag_hint(d, "look for a division by zero or a root where stretch, rotations and states are all 0");
+    return false;
+  }
   if (k->step > limit) {
     diag_report(d, DIAG_UNSTABLE_STEP, deck_where(&k->item, "step"),
                 "a step of %.6g s is unstable: the largest stable one is %.6g s", k->step, limit);
@@ -72,9 +125,7 @@ static bool count_steps(simulation *s, diagnostics *d) {
   return true;
 }
 
-/* --- set-up
- * --------------------------------------------------------------------------------------------------
- */
+/* --- set-up ----------------------------------------------------------------------------------- */
 
 /* Small bodies are not worth many threads: a block has at least eight rows unless the deck insists.
  */
@@ -103,17 +154,26 @@ static bool set_up(simulation *s, diagnostics *d) {
   s->lattice = rows_build(k, 0, d);
   if (!s->lattice) return false;
   s->bonds = rows_bonds(s->lattice);
+  if (k->field_count > 0 || s->law->varying_count > 0) {
+    s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
+    if (!s->fields) return false;
+  }
   if (!set_mass(s, d)) return false;
   s->loads = loads_new(k, 0, s->lattice, s->law->name, s->law->dof, d);
+  warn_of_protection(s, d);
   const bool fields = frames_check(s, d), step = choose_step(s, d);
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
                        k->output.energy, frames_want(s, "force"));
+  if (s->fields) s->state->parameter = s->fields->value;
+  if (k->gravity_count > 0) sweep_add_gravity(s->state);
+  if (!loads_initial_velocity(s->loads, s->state, d)) return false;
   s->monitors = monitors_new(k, s->state, s->loads, s->bonds, d);
   if (!s->monitors) return false;
   frames_choose(s);
   new_history(s);
   s->at.last_frame_step = -1;
+  s->bad_fields = must_calloc((size_t)s->law->field_count + 1, sizeof *s->bad_fields);
   s->bad = (bad_state){.particle = -1, .bond_particle = -1, .what = ""};
   return true;
 }
@@ -133,6 +193,7 @@ void simulation_free(simulation *s) {
   monitors_free(s->monitors);
   loads_free(s->loads);
   sweep_free(s->state);
+  random_fields_free(s->fields);
   free(s->bonds);
   if (s->lattice) rows_free(s->lattice);
   free(s->frame_fields);
@@ -140,7 +201,13 @@ void simulation_free(simulation *s) {
   free(s->time);
   free(s->history);
   free(s->sampled);
+  free(s->bad_fields);
+  free(s->bad_parameters);
   free(s);
+}
+
+const random_fields *simulation_fields(const simulation *s) {
+  return s->fields;
 }
 
 const rows *simulation_rows(const simulation *s, int lattice) {
@@ -169,15 +236,13 @@ sweep *simulation_state(simulation *s) {
 
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
-  return (double)s->state->bytes + site * (double)s->lattice->size +
+  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) + site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
 }
 
-/* --- samples
- * -------------------------------------------------------------------------------------------------
- */
+/* --- samples ---------------------------------------------------------------------------------- */
 
 /* Steps of samples follow from whole numbers, so that a resumed run samples where the unbroken one
  * does. */
@@ -203,11 +268,14 @@ static void record_sample(simulation *s) {
   s->at.samples++;
   while (sample_step(s, s->at.next_sample) <= s->at.step)
     s->at.next_sample++;
-  if (monitors_stop(s->monitors, time, s->sampled)) {
+  s->stopped_by = monitors_stop(s->monitors, time, s->sampled);
+  if (s->stopped_by) {
     s->at.status = STEP_STOPPED;
     s->go_on = false;
   }
 }
+
+const deck_stop *simulation_stopped_by(const simulation *s) { return s->stopped_by; }
 
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->time;
@@ -232,9 +300,7 @@ double simulation_monitor_peak(const simulation *s, int index, double *time) {
   return fabs(m->peak);
 }
 
-/* --- time loop
- * -----------------------------------------------------------------------------------------------
- */
+/* --- time loop -------------------------------------------------------------------------------- */
 
 /* What one thread does after all have moved their rows. */
 static void after_step(simulation *s) {

@@ -21,7 +21,8 @@ typedef struct simulation simulation;
 /* What the front end hands over for each lattice of the deck, in deck order. */
 typedef struct simulation_law {
   const pl_law *law;
-  double *parameters; /* [parameter_count] SI, defaults filled in; malloc'ed, owned by the caller */
+  double *parameters; /* [parameter_count] SI, defaults filled in; malloc'ed, owned by the caller. A
+                         simulation sets those that have a random field to its mean. */
 } simulation_law;
 
 /* Parameter values of a &material: checks names (with suggestions), units and bounds against the
@@ -43,6 +44,8 @@ typedef struct step_limit {
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
 void simulation_free(simulation *s);
 
+/* Random fields of the law's parameters; NULL without. */
+const struct random_fields *simulation_fields(const simulation *s);
 const rows *simulation_rows(const simulation *s, int lattice);
 const step_limit *simulation_step_limit(const simulation *s);
 long simulation_step_count(const simulation *s); /* planned */
@@ -53,6 +56,9 @@ int simulation_threads(const simulation *s);   /* that will work on it */
 /* The arrays of the state, for tools and tests; before the first step they may be set (an initial
  * velocity, say). */
 sweep *simulation_state(simulation *s);
+
+/* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
+const deck_stop *simulation_stopped_by(const simulation *s);
 
 typedef enum step_status {
   STEP_OK,
@@ -76,8 +82,9 @@ typedef struct bad_state {
   double x, y;
   long bond_particle;                             /* partner of the first bad bond, or -1 */
   double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
-  const double *fields;
-  int field_count;  /* of that bond; owned by the simulation */
+  const double *fields; /* of that bond after the step's rules, initial values where these gave no number */
+  int field_count;      /* 0 without a bond; the values are the simulation's */
+  const double *parameters; /* of the law in that bond; NULL without a bond */
   const char *what; /* "not a number", "runaway velocity" */
 } bad_state;
 bad_state simulation_bad(const simulation *s);
@@ -95,6 +102,7 @@ typedef struct frame_field {
   const char *name, *unit;
   bool on_bonds;
   int components;
+  const char *kind; /* "state", "damage", "output" of the law; else "other" */
 } frame_field;
 int simulation_frame_fields(const simulation *s, const frame_field **fields);
 void simulation_frame_values(simulation *s, int field, double *values);

@@ -49,6 +49,26 @@ static double worse(double a, double b) {
   return is_worse(a, b) ? a : b;
 }
 
+/* Values of the law's parameters in a bond. */
+static double *parameters_of_bond(const simulation *s, const rows_bond *b) {
+  const pl_law *law = s->law;
+  double *values = must_calloc((size_t)law->parameter_count + 1, sizeof *values);
+  for (int p = 0; p < law->parameter_count; p++)
+    values[p] = s->parameters[p];
+  for (int k = 0; k < law->varying_count; k++)
+    values[law->varying[k]] = s->fields->value[k][b->slot];
+  return values;
+}
+
+static double *uniforms_of_bond(const simulation *s, const rows_bond *b, int direction) {
+  double *parameters = parameters_of_bond(s, b);
+  double *uniforms = must_calloc((size_t)s->law->uniform_count + 1, sizeof *uniforms);
+  const pl_bond_class c = rows_bond_class(s->lattice, direction);
+  s->law->prepare(s->law, parameters, &c, uniforms);
+  free(parameters);
+  return uniforms;
+}
+
 static void bond_forces(const simulation *s, const rows_bond *b, int direction, bond_state *k) {
   const pl_law *law = s->law;
   const int fields = law->field_count;
@@ -62,12 +82,27 @@ static void bond_forces(const simulation *s, const rows_bond *b, int direction, 
   }
   for (int f = 0; f < fields + 3; f++)
     out[f] = &values[fields + 5 + f];
-  law->states(law, s->state->uniforms + (long)direction * law->uniform_count, 1, in, out);
+  double *uniforms = uniforms_of_bond(s, b, direction);
+  law->states(law, uniforms, 1, in, out);
+  free(uniforms);
   const double length = s->lattice->length[direction];
   k->force = worse(*out[2] / length, worse(*out[1] / length, *out[0]));
   free(values);
   free(in);
   free(out);
+}
+
+/* The rules have already been at work; a rule that gave no number is looked at from the beginning. */
+static void keep_fields(simulation *s, const rows_bond *b) {
+  const pl_law *law = s->law;
+  for (int f = 0; f < law->field_count; f++) {
+    const double value = s->state->field[f][b->slot];
+    s->bad_fields[f] = isfinite(value) ? value : law->fields[f].initial;
+  }
+  free(s->bad_parameters);
+  s->bad.parameters = s->bad_parameters = parameters_of_bond(s, b);
+  s->bad.fields = s->bad_fields;
+  s->bad.field_count = law->field_count;
 }
 
 void bad_explain(simulation *s) {
@@ -96,6 +131,7 @@ void bad_explain(simulation *s) {
     s->bad.stretch_rate = k.rate;
     s->bad.theta_i = k.theta_i;
     s->bad.theta_j = k.theta_j;
+    keep_fields(s, b);
   }
 }
 

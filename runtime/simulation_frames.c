@@ -4,10 +4,10 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/deck_value.h"
 #include "runtime/simulation_parts.h"
 
-/* --- what frames hold
- * ------------------------------------------------------------------------------------------ */
+/* --- what frames hold ------------------------------------------------------------------------- */
 
 bool frames_want(const simulation *s, const char *name) {
   const deck_output *o = &s->deck->output;
@@ -16,10 +16,10 @@ bool frames_want(const simulation *s, const char *name) {
   return false;
 }
 
-static const char *damage_name(const pl_law *law) {
+static bool has_damage(const pl_law *law) {
   for (int f = 0; f < law->field_count; f++)
-    if (law->fields[f].kind == PL_FIELD_DAMAGE) return law->fields[f].name;
-  return NULL;
+    if (law->fields[f].kind == PL_FIELD_DAMAGE) return true;
+  return false;
 }
 
 static void offer(simulation *s, bool offered, frame_field field, frame_source from) {
@@ -31,84 +31,108 @@ static void offer(simulation *s, bool offered, frame_field field, frame_source f
 void frames_choose(simulation *s) {
   const pl_law *law = s->law;
   const bool all = s->deck->output.field_count == 0;
-  const size_t most = 6 + (size_t)law->field_count + (size_t)law->output_count;
+  const size_t most = 6 + (size_t)law->field_count + (size_t)law->output_count +
+                      (size_t)law->varying_count;
   s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
-  const char *damage = damage_name(law);
   double *const *u = s->state->displacement, *const *v = s->state->velocity;
-  offer(s, all || frames_want(s, "displacement"), (frame_field){"displacement", "m", false, 2},
+  offer(s, all || frames_want(s, "displacement"), (frame_field){"displacement", "m", false, 2, "other"},
         (frame_source){FROM_STATE, u, 0});
-  offer(s, all || frames_want(s, "velocity"), (frame_field){"velocity", "m/s", false, 2},
+  offer(s, all || frames_want(s, "velocity"), (frame_field){"velocity", "m/s", false, 2, "other"},
         (frame_source){FROM_STATE, v, 0});
   offer(s, law->dof > 2 && (all || frames_want(s, "rotation")),
-        (frame_field){"rotation", "rad", false, 1}, (frame_source){FROM_STATE, u + 2, 0});
-  offer(s, frames_want(s, "force"), (frame_field){"force", "N", false, 2},
+        (frame_field){"rotation", "rad", false, 1, "other"}, (frame_source){FROM_STATE, u + 2, 0});
+  offer(s, frames_want(s, "force"), (frame_field){"force", "N", false, 2, "other"},
         (frame_source){FROM_FORCE, s->state->force, 0});
-  offer(s, damage && (all || frames_want(s, "damage")), (frame_field){"damage", "1", false, 1},
+  const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
+  offer(s, damage, (frame_field){"damage", "1", false, 1, "damage"},
         (frame_source){FROM_DAMAGE, NULL, 0});
-  offer(s, s->state->ledger && (all || frames_want(s, "energy")),
-        (frame_field){"dissipated", "J", false, 1}, (frame_source){FROM_DISSIPATED, NULL, 0});
+  offer(s, s->state->ledger && (all || frames_want(s, "dissipated")),
+        (frame_field){"dissipated", "J", false, 1, "other"},
+        (frame_source){FROM_DISSIPATED, NULL, 0});
   for (int f = 0; f < law->field_count; f++) {
     const char *name = law->fields[f].name;
-    offer(s,
-          all || frames_want(s, name) ||
-              (damage && strcmp(damage, name) == 0 && frames_want(s, "damage")),
-          (frame_field){name, law->fields[f].unit, true, 1}, (frame_source){FROM_FIELD, NULL, f});
+    const bool damages = law->fields[f].kind == PL_FIELD_DAMAGE;
+    offer(s, all || frames_want(s, name) || (damages && damage),
+          (frame_field){name, law->fields[f].unit, true, 1, damages ? "damage" : "state"},
+          (frame_source){FROM_FIELD, NULL, f});
   }
   for (int o = 0; o < law->output_count; o++)
     offer(s, frames_want(s, law->outputs[o].name),
-          (frame_field){law->outputs[o].name, law->outputs[o].unit, true, 1},
+          (frame_field){law->outputs[o].name, law->outputs[o].unit, true, 1, "output"},
           (frame_source){FROM_OUTPUT, NULL, o});
-}
-
-static bool has_written(const deck_item *item, const char *key) {
-  for (int k = 0; k < item->key_count; k++)
-    if (strcasecmp(item->keys[k].name, key) == 0) return true;
-  return false;
+  for (int k = 0; k < law->varying_count; k++) {
+    const pl_parameter *p = &law->parameters[law->varying[k]];
+    offer(s, frames_want(s, p->name), (frame_field){p->name, p->unit, true, 1, "other"},
+          (frame_source){FROM_PARAMETER, NULL, k});
+  }
 }
 
 /* Known names that this run cannot give. */
 static bool is_absent(const simulation *s, const char *name) {
   if (strcasecmp(name, "rotation") == 0) return s->law->dof < 3;
-  if (strcasecmp(name, "damage") == 0) return !damage_name(s->law);
-  return strcasecmp(name, "energy") == 0 && !s->deck->output.energy;
+  if (strcasecmp(name, "damage") == 0) return !has_damage(s->law);
+  return strcasecmp(name, "dissipated") == 0 && !s->deck->output.energy;
+}
+
+enum { OWN_FIELDS = 6 };
+static const char *const own_fields[OWN_FIELDS] = {"displacement", "velocity", "rotation",
+                                                   "force",        "damage",   "dissipated"};
+
+/* Names that this run can store, or with `all` that some run can; to be freed. */
+static const char **field_names(const simulation *s, bool all, int *count) {
+  const pl_law *law = s->law;
+  const size_t most = OWN_FIELDS + (size_t)law->field_count + (size_t)law->output_count +
+                      (size_t)law->varying_count;
+  const char **names = must_calloc(most, sizeof *names);
+  *count = 0;
+  for (int k = 0; k < OWN_FIELDS; k++)
+    if (all || !is_absent(s, own_fields[k])) names[(*count)++] = own_fields[k];
+  for (int f = 0; f < law->field_count; f++)
+    names[(*count)++] = law->fields[f].name;
+  for (int f = 0; f < law->output_count; f++)
+    names[(*count)++] = law->outputs[f].name;
+  for (int k = 0; k < law->varying_count; k++)
+    names[(*count)++] = law->parameters[law->varying[k]].name;
+  return names;
+}
+
+static void report_no_field(const simulation *s, int k, diagnostics *d) {
+  const deck_output *o = &s->deck->output;
+  diag_report(d, DIAG_BAD_VALUE, o->field_where[k], "there is no field `%s` to store",
+              o->fields[k]);
+  if (strcasecmp(o->fields[k], "energy") == 0) {
+    diag_hint(d, "energy lost, per particle, is `dissipated`; histories of energies are always "
+                 "written");
+    return;
+  }
+  int count;
+  const char **names = field_names(s, false, &count);
+  deck_suggest(d, o->fields[k], names, count, "this run can store");
+  free(names);
 }
 
 bool frames_check(const simulation *s, diagnostics *d) {
-  static const char *const own[] = {"displacement", "velocity", "rotation",
-                                    "force",        "damage",   "energy"};
-  enum { OWN = sizeof own / sizeof *own };
-  const pl_law *law = s->law;
   const deck_output *o = &s->deck->output;
-  const span where = deck_where(&o->item, "fields");
-  const char **names =
-      must_calloc(OWN + (size_t)law->field_count + (size_t)law->output_count, sizeof *names);
-  int count = OWN;
-  memcpy(names, own, sizeof own);
-  for (int f = 0; f < law->field_count; f++)
-    names[count++] = law->fields[f].name;
-  for (int f = 0; f < law->output_count; f++)
-    names[count++] = law->outputs[f].name;
+  int count;
+  const char **names = field_names(s, true, &count);
   bool good = true;
-  for (int k = 0; k < o->field_count && has_written(&o->item, "fields"); k++) {
+  for (int k = 0; o->field_where && k < o->field_count; k++) {
     bool known = false;
     for (int n = 0; n < count; n++)
       known |= strcasecmp(names[n], o->fields[k]) == 0;
-    if (known && is_absent(s, o->fields[k]))
-      diag_report(d, DIAG_DECK_WARNING, where, "this run with the law `%s` has no `%s` to store",
-                  law->name, o->fields[k]);
-    if (known) continue;
-    good = false;
-    diag_report(d, DIAG_BAD_VALUE, where, "there is no field `%s` to store", o->fields[k]);
-    diag_suggest(d, o->fields[k], names, count);
+    good &= known;
+    if (!known)
+      report_no_field(s, k, d);
+    else if (is_absent(s, o->fields[k]))
+      diag_report(d, DIAG_DECK_WARNING, o->field_where[k],
+                  "this run with the law `%s` has no `%s` to store", s->law->name, o->fields[k]);
   }
   free(names);
   return good;
 }
 
-/* --- frames
- * --------------------------------------------------------------------------------------------------
- */
+/* --- frames ----------------------------------------------------------------------------------- */
 
 int64_t frames_step(const simulation *s, int64_t frame) {
   const int64_t frames = s->deck->output.frames;
@@ -146,16 +170,16 @@ static void bond_values(const simulation *s, const double *array, double *values
     values[b] = array[s->bonds[b].slot];
 }
 
-/* Mean over the reference bonds of a particle that exist. */
+/* Mean over the reference bonds of a particle that exist, of the largest of each one's damages. */
 static void particle_damage(const simulation *s, double *values) {
   const rows *w = s->lattice;
-  const double *damage = s->monitors->damage;
   int32_t *bonds = must_calloc((size_t)w->particle_count, sizeof *bonds);
   memset(values, 0, (size_t)w->particle_count * sizeof *values);
   for (long b = 0; b < w->bond_count; b++) {
     const int32_t ends[2] = {s->bonds[b].i, s->bonds[b].j};
+    const double damage = monitors_damage(s->monitors, s->bonds[b].slot);
     for (int e = 0; e < 2; e++) {
-      values[ends[e]] += damage[s->bonds[b].slot];
+      values[ends[e]] += damage;
       bonds[ends[e]]++;
     }
   }
@@ -203,6 +227,9 @@ void simulation_frame_values(simulation *s, int field, double *values) {
     break;
   case FROM_OUTPUT:
     output_values(s, from->index, values);
+    break;
+  case FROM_PARAMETER:
+    bond_values(s, s->fields->value[from->index], values);
     break;
   }
   sweep_leave(environment);

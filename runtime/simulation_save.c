@@ -1,6 +1,7 @@
 /* All that a later step depends on, as a checkpoint. */
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "runtime/checkpoint.h"
 #include "runtime/simulation_parts.h"
@@ -27,6 +28,11 @@ static void add_state(part_list *l, const simulation *s) {
   if (w->ledger) {
     add_part(l, "dissipated_state", w->dissipated_state, site);
     add_part(l, "dissipated_rate", w->dissipated_rate, site);
+  }
+  if (w->weight) {
+    add_part(l, "work_of_gravity", w->row_gravity, (size_t)s->lattice->row_count * sizeof(double));
+    add_part(l, "push", s->state->push, sizeof s->state->push);
+    add_part(l, "push_work", s->state->push_work, sizeof s->state->push_work);
   }
   add_part(l, "dissipated_mass", w->row_mass, (size_t)s->lattice->row_count * sizeof(double));
 }
@@ -63,20 +69,75 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
   return good;
 }
 
+/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at least one multiple of the
+   interval, the one at the end perhaps none. */
+static bool is_reachable(const simulation *s, const progress_state *at) {
+  const int64_t frames = s->deck->output.frames > 0 ? s->deck->output.frames : 0;
+  if (at->begun != 0 && at->begun != 1) return false;
+  if (at->status < STEP_OK || at->status > STEP_BAD) return false;
+  if (at->step < 0 || at->step > s->step_count || (!at->begun && at->step > 0)) return false;
+  if (at->next_sample < 0 || at->next_sample > s->history_capacity) return false;
+  if (at->samples < at->begun || at->samples > at->next_sample + 1) return false;
+  if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
+  return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
+         at->last_frame_step <= at->step && at->result_frames >= 0;
+}
+
+/* Places that the set-up chose: they index arrays, and no file may move them. */
+typedef struct own_places {
+  constraint *constraints;
+  applied *forces;
+} own_places;
+
+static own_places keep_places(const loads *l) {
+  const size_t held = (size_t)l->constraint_count * sizeof(constraint);
+  const size_t pushed = (size_t)l->force_count * sizeof(applied);
+  own_places own = {must_alloc(held + 1), must_alloc(pushed + 1)};
+  if (held) memcpy(own.constraints, l->constraints, held);
+  if (pushed) memcpy(own.forces, l->forces, pushed);
+  return own;
+}
+
+/* Of what was read only what steps change is taken over. */
+static void put_places_back(const simulation *s, own_places *own) {
+  loads *l = s->loads;
+  for (long k = 0; k < l->constraint_count; k++) {
+    const constraint read = l->constraints[k];
+    constraint *c = &l->constraints[k];
+    *c = own->constraints[k];
+    c->active = read.active;
+    c->anchor = read.anchor;
+    c->held = read.held;
+    c->velocity = read.velocity;
+    c->reaction = read.reaction;
+  }
+  for (long k = 0; k < l->force_count; k++) {
+    const applied read = l->forces[k];
+    l->forces[k] = own->forces[k];
+    l->forces[k].now = read.now;
+    l->forces[k].velocity = read.velocity;
+  }
+  for (int m = 0; m < s->monitors->count; m++) /* one push a step, and one before the first */
+    if (s->monitors->items[m].window > 1)
+      s->monitors->items[m].state.filled = s->at.begun ? s->at.step + 1 : 0;
+}
+
 bool simulation_restore(simulation *s, const char *path, const char *fingerprint, long *frames,
                         char *error, size_t size) {
   progress_state head;
   if (!checkpoint_peek(path, fingerprint, &head, sizeof head, error, size)) return false;
-  if (head.samples < 0 || head.samples > s->history_capacity || head.step < 0 ||
-      head.step > s->step_count) {
+  if (!is_reachable(s, &head)) {
     snprintf(error, size, "%s: the checkpoint holds a state of another size", path);
     return false;
   }
   part_list l = parts_of(s, &head);
+  own_places own = keep_places(s->loads);
   const bool good = checkpoint_read(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
-  if (!good) return false;
-  s->at = head;
-  if (frames) *frames = (long)head.result_frames;
-  return true;
+  if (good) s->at = head;
+  if (good) put_places_back(s, &own);
+  if (good && frames) *frames = (long)head.result_frames;
+  free(own.constraints);
+  free(own.forces);
+  return good;
 }

@@ -54,8 +54,7 @@ typedef struct wave {
   double rotation; /* share of its kinetic energy */
 } wave;
 
-/* --- one state of one bond ----------------------------------------------------------------------
- */
+/* --- one state of one bond -------------------------------------------------------------------- */
 
 /* Arguments of pl_law.states and .tangent for one state. */
 typedef struct bench {
@@ -126,8 +125,7 @@ static void bench_tangent(bench *b, kinematic_state k, double s, double tangent[
   memcpy(tangent, b->results, PLANES_TANGENT * sizeof(double));
 }
 
-/* --- rate terms ---------------------------------------------------------------------------------
- */
+/* --- rate terms ------------------------------------------------------------------------------- */
 
 /* Largest multiple u <= 1 of the state without damage (from the virgin state, in one step). */
 static double harmless_part(bench *b, kinematic_state full, double s) {
@@ -200,8 +198,7 @@ static rate_scan scan_rates(bench *b, double s) {
   return r;
 }
 
-/* --- one bond to matrices -----------------------------------------------------------------------
- */
+/* --- one bond to matrices --------------------------------------------------------------------- */
 
 /* Rates of stretch, theta_i, theta_j by the velocities of the ends: co-rotational kinematics about
    rest, with the chord's rotation (n . du)/s, n = e turned by +90 degrees. The transpose gives the
@@ -279,8 +276,7 @@ static void crystal_setup(crystal *c, const pl_law *law, const double *parameter
   memcpy(c->reciprocal, reciprocal, sizeof reciprocal);
 }
 
-/* --- waves --------------------------------------------------------------------------------------
- */
+/* --- waves ------------------------------------------------------------------------------------ */
 
 static void add_bond(const crystal *c, const double bond[MOST_ORDER][MOST_ORDER],
                      double complex phase, matrix out) {
@@ -394,8 +390,7 @@ static bool wave_at(const crystal *c, const double k[2], bool damped, wave *out)
   return true;
 }
 
-/* --- search over the Brillouin zone -------------------------------------------------------------
- */
+/* --- search over the Brillouin zone ----------------------------------------------------------- */
 
 typedef struct found {
   double at[2]; /* in reciprocal vectors */

@@ -16,9 +16,7 @@
 #define INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
-/* --- set-up
- * --------------------------------------------------------------------------------------------------
- */
+/* --- set-up ----------------------------------------------------------------------------------- */
 
 static double *doubles(sweep *w, long count) {
   size_t bytes = (size_t)count * sizeof(double);
@@ -94,6 +92,7 @@ static void new_block(sweep *w, int block) {
   b->observed = doubles(w, (1 + w->law->output_count) * pitch);
   b->pointers =
       must_calloc((size_t)(w->law->field_count + w->law->output_count + 2), sizeof *b->pointers);
+  b->parameters = must_calloc((size_t)w->law->varying_count + 1, sizeof *b->parameters);
   b->bad_site = -1;
 }
 
@@ -123,6 +122,13 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   return w;
 }
 
+void sweep_add_gravity(sweep *w) {
+  w->weight = doubles(w, w->lattice->size);
+  for (long q = 0; q < w->lattice->size; q++)
+    w->weight[q] = w->lattice->present[q] ? 1 : 0;
+  w->row_gravity = doubles(w, w->lattice->row_count);
+}
+
 static void free_block(sweep_block *b) {
   free(b->buffer[0]);
   free(b->buffer[1]);
@@ -131,6 +137,7 @@ static void free_block(sweep_block *b) {
   free(b->fields);
   free(b->observed);
   free(b->pointers);
+  free(b->parameters);
 }
 
 void sweep_free(sweep *w) {
@@ -152,14 +159,15 @@ void sweep_free(sweep *w) {
   free(w->row_stored);
   free(w->row_mass);
   free(w->row_pending);
+  free(w->row_gravity);
+  free(w->weight);
   free(w->begin);
   free(w->count);
   free(w->blocks);
   free(w);
 }
 
-/* --- floating point environment
- * ------------------------------------------------------------------------------ */
+/* --- floating point environment --------------------------------------------------------------- */
 
 #if defined(__SSE2__)
 enum { FLUSH_TO_ZERO = 0x8000, DENORMALS_ARE_ZERO = 0x0040 };
@@ -193,8 +201,7 @@ void sweep_leave(unsigned before) {
 }
 #endif
 
-/* --- bonds of a row
- * ------------------------------------------------------------------------------------------ */
+/* --- bonds of a row --------------------------------------------------------------------------- */
 
 static double *plane(const sweep *w, double *buffer, int p, int direction) {
   return buffer + ((long)p * w->lattice->directions + direction) * w->stride + PL_LANES;
@@ -208,13 +215,16 @@ static void clear_outside(const sweep *w, int row, double *strip) {
   memset(strip + end, 0, (size_t)(w->lattice->pitch - end) * sizeof *strip);
 }
 
-static void strip_ends(const sweep *w, int row, int direction, pl_strip *s) {
+static void strip_ends(const sweep *w, sweep_block *b, int row, int direction, pl_strip *s) {
   const rows *g = w->lattice;
   const long near = rows_start(g, row) + w->begin[row], far = near + g->offset[row & 1][direction];
   s->count = w->count[row];
   s->direction = direction;
   s->flags = g->flags + near;
   s->time_step = w->time_step;
+  s->parameter = b->parameters;
+  for (int k = 0; k < w->law->varying_count; k++)
+    b->parameters[k] = w->parameter[k] + direction * g->size + near;
   for (int d = 0; d < w->dof; d++) {
     s->displacement_i[d] = w->displacement[d] + near;
     s->displacement_j[d] = w->displacement[d] + far;
@@ -245,7 +255,7 @@ static void evaluate(sweep *w, sweep_block *b, int row, double *buffer) {
     for (int f = 0; f < w->law->field_count; f++)
       b->pointers[f] = w->field[f] + k * g->size + rows_start(g, row) + w->begin[row];
     pl_strip s = {.field = b->pointers, .force = force};
-    strip_ends(w, row, k, &s);
+    strip_ends(w, b, row, k, &s);
     kernel(w->law, uniforms_of(w, k), &s);
   }
 }
@@ -266,13 +276,12 @@ static void evaluate_aside(sweep *w, sweep_block *b, int row, double *buffer) {
              (size_t)w->count[row] * sizeof(double));
     }
     pl_strip s = {.field = b->pointers, .force = force};
-    strip_ends(w, row, k, &s);
+    strip_ends(w, b, row, k, &s);
     w->law->rows(w->law, uniforms_of(w, k), &s);
   }
 }
 
-/* --- particles of a row
- * -------------------------------------------------------------------------------------- */
+/* --- particles of a row ----------------------------------------------------------------------- */
 
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
@@ -321,14 +330,24 @@ kick(const gathered *from, int directions, double sign, long count, double kick_
   return bad;
 }
 
+/* Absent sites have no weight: they stay where they are. */
+static void add_push(long count, double push, const double *restrict weight,
+                     double *restrict next) {
+  INDEPENDENT
+  for (long q = 0; q < count; q++)
+    next[q] += push * weight[q];
+}
+
 /* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
    forces on j are the opposite of those on i. */
 static int64_t kick_component(const sweep *w, const gathered *s, int d, long count, const double *v,
                               double *next) {
   const double factor = w->time_step / w->mass[d];
   assert(w->lattice->directions == 3);
-  if (d < 2) return kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
-  return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
+  if (d >= 2) return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
+  const int64_t bad = kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
+  if (w->weight) add_push(count, w->push[d], w->weight + (v - w->velocity[d]), next);
+  return bad;
 }
 
 static void drift(long count, double time_step, const double *restrict next, double *restrict v,
@@ -348,6 +367,17 @@ static double lane_sum(long count, const double *restrict a, const double *restr
   for (long q = 0; q < count; q += PL_LANES)
     for (int l = 0; l < PL_LANES; l++)
       lane[l] += a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]);
+  double sum = 0;
+  for (int l = 0; l < PL_LANES; l++)
+    sum += lane[l];
+  return sum;
+}
+
+static double lane_total(long count, const double *restrict a) {
+  double lane[PL_LANES] = {0};
+  for (long q = 0; q < count; q += PL_LANES)
+    for (int l = 0; l < PL_LANES; l++)
+      lane[l] += a[q + l];
   double sum = 0;
   for (int l = 0; l < PL_LANES; l++)
     sum += lane[l];
@@ -384,6 +414,7 @@ static void move_row(sweep *w, sweep_block *b, int row, double *here, double *be
     double *next = b->next + d * w->lattice->pitch, *v = w->velocity[d] + start;
     if (w->decay < 1 && w->ledger)
       w->row_mass[row] += 0.5 * w->mass[d] * (1 - w->decay) * lane_sum(count, v, next, true);
+    if (w->weight && d < 2) w->row_gravity[row] += w->push_work[d] * lane_total(count, next);
     drift(count, w->time_step, next, v, w->displacement[d] + start);
   }
 }
@@ -414,9 +445,7 @@ int sweep_bad(const sweep *w) {
   return -1;
 }
 
-/* --- sampling
- * ------------------------------------------------------------------------------------------------
- */
+/* --- sampling --------------------------------------------------------------------------------- */
 
 /* Stored energy and outputs of a row's bonds of one direction, into the block's `observed`. */
 static pl_strip observe_strip(sweep *w, sweep_block *b, int row, int direction) {
@@ -427,7 +456,7 @@ static pl_strip observe_strip(sweep *w, sweep_block *b, int row, int direction) 
   for (int o = 0; o <= w->law->output_count; o++)
     observed[o] = b->observed + o * g->pitch;
   pl_strip s = {.field = b->pointers, .observed = observed};
-  strip_ends(w, row, direction, &s);
+  strip_ends(w, b, row, direction, &s);
   w->law->rows_observe(w->law, uniforms_of(w, direction), &s);
   return s;
 }
@@ -498,6 +527,7 @@ sweep_totals sweep_sum(const sweep *w) {
                     .stored = sum_of(w->row_stored, n),
                     .dissipated_mass = sum_of(w->row_mass, n),
                     .dissipated_pending = sum_of(w->row_pending, n)};
+  if (w->weight) t.gravity = sum_of(w->row_gravity, n);
   if (w->ledger) {
     t.dissipated_state = sum_of(w->dissipated_state, w->lattice->size);
     t.dissipated_rate = sum_of(w->dissipated_rate, w->lattice->size);

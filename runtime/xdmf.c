@@ -12,6 +12,34 @@ static const char *base_name(const char *path) {
   return slash ? slash + 1 : path;
 }
 
+/* Names of lattices and files may hold characters that mean something in XML. */
+static void print_text(FILE *out, const char *text) {
+  for (; *text; text++)
+    switch (*text) {
+    case '&':
+      fputs("&amp;", out);
+      break;
+    case '<':
+      fputs("&lt;", out);
+      break;
+    case '>':
+      fputs("&gt;", out);
+      break;
+    case '"':
+      fputs("&quot;", out);
+      break;
+    default:
+      fputc(*text, out);
+    }
+}
+
+/* `file:set`, as HDF5 data are named. */
+static void print_place(FILE *out, const char *file, const char *set) {
+  print_text(out, file);
+  fputc(':', out);
+  print_text(out, set);
+}
+
 /* A frame's slab of a data set [F, count(, components)]. `first` and `width` choose components. */
 static void print_slab(FILE *out, const char *file, const char *set, long frames, long frame, const result_field *f,
                        int first, int width) {
@@ -26,7 +54,9 @@ static void print_slab(FILE *out, const char *file, const char *set, long frames
   fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%ld %ld", frames, f->count);
   if (!flat)
     fprintf(out, " %d", f->components);
-  fprintf(out, "\">%s:%s</DataItem></DataItem>\n", file, set);
+  fputs("\">", out);
+  print_place(out, file, set);
+  fputs("</DataItem></DataItem>\n", out);
 }
 
 static void print_attribute(FILE *out, const char *file, long frames, long frame, const result_field *f) {
@@ -51,14 +81,16 @@ static void print_attribute(FILE *out, const char *file, long frames, long frame
 
 static void print_geometry(FILE *out, const char *file, const result_header *h) {
   fprintf(out, "<Geometry GeometryType=\"XY\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-               "Dimensions=\"%ld 2\">%s:/particles/reference</DataItem></Geometry>\n",
-          h->particle_count, file);
+               "Dimensions=\"%ld 2\">",
+          h->particle_count);
+  print_place(out, file, "/particles/reference");
+  fputs("</DataItem></Geometry>\n", out);
 }
 
 static void print_frame(FILE *out, const char *file, const result_header *h, long frames, long frame, double time) {
   fprintf(out, "<Grid Name=\"frame %ld\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
           frame, time);
-  fprintf(out, "<Grid Name=\"particles\"><Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%ld\"/>\n",
+  fprintf(out, "<Grid Name=\"particles\"><Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"%ld\"/>\n",
           h->particle_count);
   print_geometry(out, file, h);
   for (int k = 0; k < h->field_count; k++)
@@ -66,8 +98,11 @@ static void print_frame(FILE *out, const char *file, const result_header *h, lon
       print_attribute(out, file, frames, frame, &h->fields[k]);
   fprintf(out, "</Grid>\n<Grid Name=\"bonds\"><Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
                "NumberOfElements=\"%ld\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
-               "Dimensions=\"%ld 2\">%s:/bonds/%s</DataItem></Topology>\n",
-          h->bond_count, h->bond_count, file, h->interaction);
+               "Dimensions=\"%ld 2\">",
+          h->bond_count, h->bond_count);
+  print_place(out, file, "/bonds/");
+  print_text(out, h->interaction);
+  fputs("</DataItem></Topology>\n", out);
   print_geometry(out, file, h);
   for (int k = 0; k < h->field_count; k++)
     if (h->fields[k].interaction || strcmp(h->fields[k].name, "displacement") == 0)

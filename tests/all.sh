@@ -1,14 +1,13 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds with warnings as errors, does the main job, and passes all tests. The fast tests run a
-# second time under the address and undefined-behaviour sanitizers. Ends with ctest's own summary.
+# Installs what is missing, builds, does the main job, and passes all tests. The fast tests run a second time under the
+# address and undefined-behaviour sanitizers. Ends with ctest's own summary.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-.ci/setup -DPERILAT_WERROR=ON
 bash examples/first_light.sh
 
 sanitized=build-sanitize
-PERILAT_BUILD=$sanitized .ci/setup -DPERILAT_WERROR=ON -DPERILAT_SANITIZE=ON
+PERILAT_BUILD=$sanitized .ci/setup -DPERILAT_SANITIZE=ON
 ctest --test-dir "$sanitized" -L fast --output-on-failure -j 2
 
 ctest --test-dir build -LE long --output-on-failure -j 2

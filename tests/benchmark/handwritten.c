@@ -14,13 +14,19 @@
 #define JOIN(a, b)  JOIN2(a, b)
 #define NAMED(name) JOIN(HANDWRITTEN, name)
 
-/* The loops below each do a part of the work on the bonds of one direction of a row, through buffers that stay in the first
-   cache. In one loop a bond would be a chain of some 170 cycles, of which the processor cannot keep enough in flight; the
-   short chains overlap. */
+/* Units make most constants one: lengths in spacings s, velocities in s rate_0, forces in EA/2,
+   moments in -2 EI/s, rotations in 1/stiffness, where stiffness = 4 EI/(EA s^2).
 
-/* The series hold while the ends' relative displacement is below this part of the bond's length: the chord then turns by
-   less than asin(1/16), where five terms of the arc sine leave 2^-53. */
-#define NEAR_PART (1.0 / 16)
+   Each loop does a part of the work on the bonds of one direction of a row, through buffers that
+   stay in the first cache. In one loop a bond would be a chain of some 180 cycles, of which the
+   processor cannot keep enough in flight; short chains overlap. What goes into one loop is chosen
+   so that additions and multiplications balance. */
+
+/* The series hold while the ends' relative displacement is below this part of the bond's length:
+   the chord then turns by less than asin(1/16). And while no particle turned by more than
+   TURN_LIMIT no difference of rotations needs wrapping. */
+#define NEAR_PART  (1.0 / 16)
+#define TURN_LIMIT 3.0
 
 #if defined(__clang__)
 #define UNROLL
@@ -28,289 +34,347 @@
 #define UNROLL _Pragma("GCC unroll 2")
 #endif
 
-typedef struct direction {
-  long offset[2];             /* from a site to its partner, by parity of the row */
-  double chord_x, chord_y;    /* m */
-  double unit_x, unit_y;      /* chord over s^2, 1/m */
-} direction;
-
-typedef struct constants {
-  double per_square;          /* 1/s^2 */
-  double near_square;         /* of the displacements that the series bear, m^2 */
-  double bend_weight;         /* 4 beta: eps_mp doubled = 2 stretch + 4 beta max|2 theta + theta| */
-  double least_strain;        /* 2 S_t */
-  double soft_end, soft;      /* intact part on the first line: soft_end + soft/(2 eps_mp) */
-  double tail_end, tail;      /* and on the second */
-  double rate, zeta_rate;     /* of c.dv to stretch rate over rate_0, times L/s; the same times zeta */
-  double axial;               /* EA/(2 s) */
-  double shear;               /* 2 EI/s^3: bend_i + bend_j = 3 (theta_i + theta_j) */
-  double moment;              /* -2 EI/s */
-} constants;
-
-/* X(buffer of a row's bonds): their length a multiple of LANES, with LANES more before and behind */
+/* X(buffer of the bonds of one direction of a row). What a value is needed for last stores its
+   result in the same place: fewer lines of cache. */
 #define BUFFERS(X)                                                                                 \
-  X(c_x) X(c_y)                  /* chord now, m */                                                \
-  X(inverse)                     /* s/L */                                                         \
-  X(ratio)                       /* L/s */                                                         \
-  X(twice)                       /* twice the stretch */                                           \
-  X(bend_i) X(bend_j)            /* 2 theta_i + theta_j and the reverse, rad */
+  X(c_x)                                                                                           \
+  X(c_y)                  /* chord now */                                                          \
+      X(stretch)          /* L^2 - 1, then twice the stretch */                                    \
+      X(turn)             /* L times the sine of the chord's rotation, then the rotation */        \
+      X(inverse)          /* 1/L */                                                                \
+      X(pull)             /* L, then the axial force of an intact bond, damper included */         \
+      X(bend_i) X(bend_j) /* 2 theta_i + theta_j and the reverse */
 
-enum { FORCE_X, FORCE_Y, MOMENT_I, MOMENT_J, PLANES };
+enum { FORCE_X, FORCE_Y, MOMENT, PLANES };
+enum { SERIES = 4 };
+/* Doubles of a buffer: fixed, so that one address serves them all; not near a part of 4 KiB, at
+   which distance a store holds up the loads behind it. */
+enum { WIDTH = 328, MOST_SITES = WIDTH - 2 * LANES };
 
 struct handwritten {
   const problem *problem;
-  constants c;
-  direction directions[3];
-  double *u[3], *v[3];        /* [size] */
-  double *intact;             /* [3 * size] 1 - damage; 0 where no bond is: no force without a test */
-  double *held;               /* [3 * size] 1 where the damage must stay, else 0 */
-  unsigned char *row_held;    /* [row_count] some bond of the row is held */
-#define X(name) double *name;
+  long offset[2][3]; /* from a site to its partner: [parity of the row][direction] */
+  double chord[3][2];
+  double stiffness;
+  double series[SERIES]; /* of the arc sine, for rotations in their unit */
+  double
+      bend_weight; /* 4 beta/stiffness: eps_mp doubled = 2 stretch + 4 beta max|2 theta + theta| */
+  double least_strain;   /* 2 S_t */
+  double soft_end, soft; /* intact part on the first line: soft_end + soft/(2 eps_mp) */
+  double tail_end, tail; /* and on the second */
+  double zeta;
+  double kick[3], drift[3]; /* velocity by force, displacement by velocity, of one step */
+  double *u[3], *v[3];      /* [size] */
+  double *intact;           /* [3 * size] 1 - damage; 0 where no bond is: no force without a test */
+  double *held;             /* [3 * size] 1 where the damage must stay, else 0 */
+  unsigned char *row_held;  /* [row_count] some bond of the row is held */
+  unsigned char *row_turned; /* [row_count + 1] some particle is beyond TURN_LIMIT */
+  long *begin, *count;       /* [row_count] part of the row that holds sites, in whole lanes */
+#define X(name) double name[WIDTH] __attribute__((aligned(PL_ALIGNMENT)));
   BUFFERS(X)
 #undef X
-  double *force[2][3][PLANES]; /* [parity of the row][direction] */
-  double kick[3], limit[3];
+  double sum[PLANES][WIDTH];            /* forces on the row's particles so far */
+  double incoming[2][2][PLANES][WIDTH]; /* what the row's bonds of direction 1, 2 do to the row
+                                  above, from place LANES on: [parity of the row] */
   long rare;
 };
 
 /* --- the bonds of one direction of a row ------------------------------------------------------ */
 
-/* Chords and lengths. True when a bond that exists moved too far for the series. With sigma = sqrt(1 + h) - 1:
-   2 sigma = h - sigma^2, which forgives the cancellation in the sigma on the right. */
-static bool find_lengths(handwritten *h, const direction *k, long site, long far_site, const double *intact) {
-  const constants c = h->c;
-  const double *i_x = h->u[0] + site, *i_y = h->u[1] + site, *j_x = h->u[0] + far_site, *j_y = h->u[1] + far_site;
-  const double chord_x = k->chord_x, chord_y = k->chord_y, unit_x = 2 * k->unit_x, unit_y = 2 * k->unit_y;
-  double *to_x = h->c_x, *to_y = h->c_y, *to_inverse = h->inverse, *to_ratio = h->ratio, *to_twice = h->twice;
-  const long count = h->problem->lattice->pitch;
+typedef struct strip {
+  int row, direction;
+  long count;     /* a multiple of LANES */
+  long near, far; /* sites of the first bond's ends */
+  double *intact;
+  const double *held;
+} strip;
+
+/* Chords and what they grew by. Nonzero when a bond that exists moved too far for the series. */
+static unsigned find_chords(handwritten *h, const strip *s) {
+  const double *i_x = h->u[0] + s->near, *i_y = h->u[1] + s->near, *j_x = h->u[0] + s->far,
+               *j_y = h->u[1] + s->far;
+  const double *intact = s->intact, *chord = h->chord[s->direction];
+  const double x = chord[0], y = chord[1], stiff_x = h->stiffness * x, stiff_y = h->stiffness * y;
   unsigned far = 0;
   UNROLL
-  for (long q = 0; q < count; q += LANES) {
-    const lanes d_x = lanes_load(j_x + q) - lanes_load(i_x + q), d_y = lanes_load(j_y + q) - lanes_load(i_y + q);
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const lanes d_x = lanes_load(j_x + q) - lanes_load(i_x + q),
+                d_y = lanes_load(j_y + q) - lanes_load(i_y + q);
     const lanes square = d_x * d_x + d_y * d_y;
-    const lanes growth = (unit_x * d_x + unit_y * d_y) + square * c.per_square; /* (L/s)^2 - 1 */
-    const lanes ratio_square = lanes_max(1 + growth, lanes_all(0.125));
-    const lanes inverse = lanes_inverse_root(ratio_square), ratio = ratio_square * inverse;
-    const lanes rough = ratio - 1;
-    lanes_store(to_x + q, chord_x + d_x);
-    lanes_store(to_y + q, chord_y + d_y);
-    lanes_store(to_inverse + q, inverse);
-    lanes_store(to_ratio + q, ratio);
-    lanes_store(to_twice + q, growth - rough * rough);
-    far |= lanes_above(square, c.near_square, lanes_load(intact + q));
+    lanes_store(h->c_x + q, x + d_x);
+    lanes_store(h->c_y + q, y + d_y);
+    lanes_store(h->stretch + q, ((2 * x) * d_x + (2 * y) * d_y) + square);
+    lanes_store(h->turn + q, stiff_x * d_y - stiff_y * d_x);
+    far |= lanes_above(square, NEAR_PART * NEAR_PART, lanes_load(intact + q));
   }
-  return far != 0;
+  return far;
 }
 
-/* End rotations less the chord's, by the arc sine's series. True when a bond that exists may have to be wrapped. */
-static bool find_rotations(handwritten *h, const direction *k, long site, long far_site, const double *intact) {
-  const double *i_turn = h->u[2] + site, *j_turn = h->u[2] + far_site;
-  const double unit_x = k->unit_x, unit_y = k->unit_y;
-  const double *c_x = h->c_x, *c_y = h->c_y, *from_inverse = h->inverse;
-  double *to_i = h->bend_i, *to_j = h->bend_j;
-  const long count = h->problem->lattice->pitch;
-  unsigned far = 0;
+/* Where no bond is the ends may even meet; the least length keeps infinities away. */
+static void find_lengths(handwritten *h, const strip *s) {
   UNROLL
-  for (long q = 0; q < count; q += LANES) {
-    const lanes sine = (unit_x * lanes_load(c_y + q) - unit_y * lanes_load(c_x + q)) * lanes_load(from_inverse + q);
-    const lanes z = sine * sine, z_2 = z * z;
-    const lanes excess = ((1.0 / 6) + z * (3.0 / 40)) + z_2 * (((5.0 / 112) + z * (35.0 / 1152)) + z_2 * (63.0 / 2816));
-    const lanes turn = sine + (sine * z) * excess;
-    const lanes theta_i = lanes_load(i_turn + q) - turn, theta_j = lanes_load(j_turn + q) - turn;
-    const lanes both = theta_i + theta_j, bend_i = both + theta_i, bend_j = both + theta_j;
-    lanes_store(to_i + q, bend_i);
-    lanes_store(to_j + q, bend_j);
-    far |= lanes_above(lanes_max(lanes_abs(bend_i), lanes_abs(bend_j)), 3, lanes_load(intact + q));
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const lanes square = lanes_max(1 + lanes_load(h->stretch + q), lanes_all(1e-6));
+    const lanes inverse = lanes_inverse_root(square);
+    lanes_store(h->inverse + q, inverse);
+    lanes_store(h->pull + q, square * inverse);
   }
-  return far != 0;
 }
 
-static double wrapped(double angle) { return remainder(angle, 2 * M_PI); }
+/* Two independent chains: the chord's rotation by the arc sine's series; stretch and damper. With
+   sigma = sqrt(1 + h) - 1: 2 sigma = h - sigma^2, which forgives the cancellation in the sigma on
+   the right. */
+static void find_turns_and_pulls(handwritten *h, const strip *s) {
+  const double *i_x = h->v[0] + s->near, *i_y = h->v[1] + s->near, *j_x = h->v[0] + s->far,
+               *j_y = h->v[1] + s->far;
+  const double zeta = h->zeta, a = h->series[0], b = h->series[1], c = h->series[2],
+               d = h->series[3];
+  UNROLL
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const lanes sine = lanes_load(h->turn + q) * lanes_load(h->inverse + q);
+    const lanes speed = lanes_load(h->c_x + q) * (lanes_load(j_x + q) - lanes_load(i_x + q)) +
+                        lanes_load(h->c_y + q) * (lanes_load(j_y + q) - lanes_load(i_y + q));
+    const lanes z = sine * sine, length = lanes_load(h->pull + q);
+    const lanes damper = (zeta * speed) / (length + lanes_abs(speed));
+    lanes_store(h->turn + q, sine + (sine * z) * ((a + z * b) + (z * z) * (c + z * d)));
+    const lanes rough = length - 1, twice = lanes_load(h->stretch + q) - rough * rough;
+    lanes_store(h->stretch + q, twice);
+    lanes_store(h->pull + q, twice + lanes_abs(twice) * damper);
+  }
+}
 
-/* The same for the bonds beyond the series, with the full arc tangent: they are few. */
-static __attribute__((noinline, cold)) void find_far(handwritten *h, const direction *k, long site, long far_site,
-                                                     const double *intact) {
-  const constants *c = &h->c;
-  for (long q = 0; q < h->problem->lattice->pitch; q++) {
-    const double d_x = h->u[0][far_site + q] - h->u[0][site + q], d_y = h->u[1][far_site + q] - h->u[1][site + q];
-    const double c_x = h->c_x[q], c_y = h->c_y[q], square = d_x * d_x + d_y * d_y;
-    if (!(intact[q] > 0)) continue;
-    if (square <= c->near_square && fmax(fabs(h->bend_i[q]), fabs(h->bend_j[q])) <= 3) continue;
-    const double ratio = sqrt((c_x * c_x + c_y * c_y) * c->per_square);
-    const double turn = atan2(k->unit_x * d_y - k->unit_y * d_x, k->unit_x * c_x + k->unit_y * c_y);
-    const double theta_i = wrapped(h->u[2][site + q] - turn), theta_j = wrapped(h->u[2][far_site + q] - turn);
-    h->ratio[q] = ratio;
-    h->inverse[q] = 1 / ratio;
-    h->twice[q] = 2 * (2 * (k->unit_x * d_x + k->unit_y * d_y) + square * c->per_square) / (ratio + 1);
-    h->bend_i[q] = 2 * theta_i + theta_j;
-    h->bend_j[q] = 2 * theta_j + theta_i;
+/* Chords that turned too far for the series, by the arc tangent. Whole turns are taken from the
+   chord once, not from both ends: they could differ only in a bond bent by half a turn, which has
+   no strength left. */
+static __attribute__((noinline, cold)) void find_far_turns(handwritten *h, const strip *s) {
+  const double x = h->chord[s->direction][0], y = h->chord[s->direction][1];
+  for (long q = 0; q < s->count; q++) {
+    if (!(s->intact[q] > 0)) continue;
+    const double along = x * h->c_x[q] + y * h->c_y[q], across = x * h->c_y[q] - y * h->c_x[q];
+    const double turn = atan2(across, along), end = h->u[2][s->near + q] / h->stiffness;
+    h->turn[q] = h->stiffness * (end - remainder(end - turn, 2 * M_PI));
     h->rare++;
   }
 }
 
-/* Damage as the part that is left. On the curve's two lines that part is linear in 1/strain, and the curve is the larger
-   of the two, and zero: no case is chosen. */
-LANES_FUNCTION void find_damage(handwritten *h, double *intact, const double *held) {
-  const constants c = h->c;
-  const double *twice = h->twice, *bend_i = h->bend_i, *bend_j = h->bend_j;
-  const long count = h->problem->lattice->pitch;
+/* Damage as the part that is left. On the curve's two lines that part is linear in 1/strain, and
+   the curve is the larger of the two, and zero: no case is chosen. */
+LANES_FUNCTION void find_damage(handwritten *h, const strip *s, bool with_held) {
+  const double *i = h->u[2] + s->near, *j = h->u[2] + s->far, *held = s->held;
+  double *intact = s->intact;
+  const double weight = h->bend_weight, least = h->least_strain;
+  const double soft_end = h->soft_end, soft = h->soft, tail_end = h->tail_end, tail = h->tail;
   UNROLL
-  for (long q = 0; q < count; q += LANES) {
-    const lanes bend = lanes_max(lanes_abs(lanes_load(bend_i + q)), lanes_abs(lanes_load(bend_j + q)));
-    const lanes strain = lanes_load(twice + q) + c.bend_weight * bend;
-    const lanes per = 1 / lanes_max(strain, lanes_all(c.least_strain));
-    const lanes left = lanes_max(c.soft_end + c.soft * per, c.tail_end + c.tail * per);
-    const lanes floor = held ? lanes_load(held + q) : lanes_all(0);
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const lanes turn = lanes_load(h->turn + q), theta_i = lanes_load(i + q) - turn,
+                theta_j = lanes_load(j + q) - turn;
+    const lanes both = theta_i + theta_j, bend_i = both + theta_i, bend_j = both + theta_j;
+    const lanes strain =
+        lanes_load(h->stretch + q) + weight * lanes_max(lanes_abs(bend_i), lanes_abs(bend_j));
+    const lanes per = 1 / lanes_max(strain, lanes_all(least));
+    const lanes left = lanes_max(soft_end + soft * per, tail_end + tail * per);
+    const lanes floor = with_held ? lanes_load(held + q) : lanes_all(0);
+    lanes_store(h->bend_i + q, bend_i);
+    lanes_store(h->bend_j + q, bend_j);
     lanes_store(intact + q, lanes_min(lanes_load(intact + q), lanes_max(left, floor)));
   }
 }
 
-static void damage_of_row(handwritten *h, double *intact) { find_damage(h, intact, NULL); }
-static void damage_of_held_row(handwritten *h, double *intact, const double *held) { find_damage(h, intact, held); }
+static void damage_of_row(handwritten *h, const strip *s) {
+  find_damage(h, s, false);
+}
+static void damage_of_held_row(handwritten *h, const strip *s) {
+  find_damage(h, s, true);
+}
 
-static void find_forces(handwritten *h, long site, long far_site, const double *intact, double *const to[PLANES]) {
-  const constants c = h->c;
-  const double *i_x = h->v[0] + site, *i_y = h->v[1] + site, *j_x = h->v[0] + far_site, *j_y = h->v[1] + far_site;
-  const double *from_x = h->c_x, *from_y = h->c_y, *from_inverse = h->inverse, *from_ratio = h->ratio;
-  const double *from_twice = h->twice, *from_i = h->bend_i, *from_j = h->bend_j;
-  double *to_x = to[FORCE_X], *to_y = to[FORCE_Y], *to_i = to[MOMENT_I], *to_j = to[MOMENT_J];
-  const long count = h->problem->lattice->pitch;
+/* Everything about the strip's bonds but their forces. */
+static void find_bonds(handwritten *h, const strip *s) {
+  const bool far = find_chords(h, s) || h->row_turned[s->row] || h->row_turned[s->row + 1];
+  find_lengths(h, s);
+  find_turns_and_pulls(h, s);
+  if (__builtin_expect(far, false)) find_far_turns(h, s);
+  if (h->row_held[s->row])
+    damage_of_held_row(h, s);
+  else
+    damage_of_row(h, s);
+}
+
+typedef struct forces {
+  lanes x, y, moment_i, moment_j;
+} forces;
+
+LANES_FUNCTION forces bond_forces(const handwritten *h, const double *intact, long q) {
+  const lanes c_x = lanes_load(h->c_x + q), c_y = lanes_load(h->c_y + q),
+              inverse = lanes_load(h->inverse + q);
+  const lanes bend_i = lanes_load(h->bend_i + q), bend_j = lanes_load(h->bend_j + q),
+              left = lanes_load(intact + q);
+  const lanes left_inverse = left * inverse,
+              axial = left_inverse * lanes_load(h->pull + q);       /* N/L */
+  const lanes shear = (left_inverse * inverse) * (bend_i + bend_j); /* V/L */
+  return (forces){axial * c_x + shear * c_y, axial * c_y - shear * c_x, left * bend_i,
+                  left * bend_j};
+}
+
+/* Bonds to the row above: kept for its turn, and summed up with what the same direction brings from
+ * below. */
+LANES_FUNCTION void add_forces(handwritten *h, const strip *s, bool first) {
+  const int d = s->direction, parity = s->row & 1;
+  const long begin = h->begin[s->row] + LANES,
+             shift = begin - (h->offset[!parity][d] - h->problem->lattice->pitch);
+  double(*up)[WIDTH] = h->incoming[parity][d - 1], (*below)[WIDTH] = h->incoming[!parity][d - 1];
+  const double *intact = s->intact;
   UNROLL
-  for (long q = 0; q < count; q += LANES) {
-    const lanes c_x = lanes_load(from_x + q), c_y = lanes_load(from_y + q);
-    const lanes speed = c_x * (lanes_load(j_x + q) - lanes_load(i_x + q)) +
-                        c_y * (lanes_load(j_y + q) - lanes_load(i_y + q));
-    const lanes damper = (c.zeta_rate * speed) / (lanes_load(from_ratio + q) + lanes_abs(c.rate * speed));
-    const lanes left = lanes_load(intact + q), inverse = lanes_load(from_inverse + q), twice = lanes_load(from_twice + q);
-    const lanes bend_i = lanes_load(from_i + q), bend_j = lanes_load(from_j + q);
-    const lanes left_inverse = left * inverse, left_moment = left * c.moment;
-    const lanes axial = (c.axial * left_inverse) * (twice + lanes_abs(twice) * damper);        /* N/L */
-    const lanes shear = (left_inverse * inverse) * (c.shear * (bend_i + bend_j));              /* V/L */
-    lanes_store(to_x + q, axial * c_x + shear * c_y);
-    lanes_store(to_y + q, axial * c_y - shear * c_x);
-    lanes_store(to_i + q, left_moment * bend_i);
-    lanes_store(to_j + q, left_moment * bend_j);
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const forces f = bond_forces(h, intact, q);
+    const lanes x = f.x - lanes_load(below[FORCE_X] + shift + q),
+                y = f.y - lanes_load(below[FORCE_Y] + shift + q);
+    const lanes m = f.moment_i + lanes_load(below[MOMENT] + shift + q);
+    lanes_store(up[FORCE_X] + begin + q, f.x);
+    lanes_store(up[FORCE_Y] + begin + q, f.y);
+    lanes_store(up[MOMENT] + begin + q, f.moment_j);
+    lanes_store(h->sum[FORCE_X] + q, first ? x : x + lanes_load(h->sum[FORCE_X] + q));
+    lanes_store(h->sum[FORCE_Y] + q, first ? y : y + lanes_load(h->sum[FORCE_Y] + q));
+    lanes_store(h->sum[MOMENT] + q, first ? m : m + lanes_load(h->sum[MOMENT] + q));
   }
 }
 
-static void evaluate(handwritten *h, int row, int d) {
-  const rows *g = h->problem->lattice;
-  const direction *k = &h->directions[d];
-  const long site = rows_start(g, row), far_site = site + k->offset[row & 1];
-  double *intact = h->intact + d * g->size + site;
-  bool far = find_lengths(h, k, site, far_site, intact);
-  far |= find_rotations(h, k, site, far_site, intact);
-  if (__builtin_expect(far, false)) find_far(h, k, site, far_site, intact);
-  if (h->row_held[row])
-    damage_of_held_row(h, intact, h->held + d * g->size + site);
-  else
-    damage_of_row(h, intact);
-  find_forces(h, site, far_site, intact, h->force[row & 1][d]);
+static void first_forces(handwritten *h, const strip *s) {
+  add_forces(h, s, true);
+}
+static void second_forces(handwritten *h, const strip *s) {
+  add_forces(h, s, false);
 }
 
-/* --- the particles of a row ------------------------------------------------------------------- */
-
-/* Kick and drift of one component. Nonzero when a velocity is beyond its limit or no number. */
-LANES_FUNCTION unsigned move(handwritten *h, int row, int d, int own, int incoming, double sign) {
-  const rows *g = h->problem->lattice;
-  const int parity = row & 1;
-  const double *const own_0 = h->force[parity][0][own], *const own_1 = h->force[parity][1][own];
-  const double *const own_2 = h->force[parity][2][own], *const in_0 = h->force[parity][0][incoming] - 1;
-  const double *const in_1 = h->force[!parity][1][incoming] - (h->directions[1].offset[!parity] - g->pitch);
-  const double *const in_2 = h->force[!parity][2][incoming] - (h->directions[2].offset[!parity] - g->pitch);
-  double *const v = h->v[d] + rows_start(g, row), *const u = h->u[d] + rows_start(g, row);
-  const double kick = h->kick[d], time_step = h->problem->time_step, limit = h->limit[d];
-  const long count = g->pitch;
+/* Bonds along the row complete the forces on its particles, which move at once. Nonzero when one
+ * turned too far. */
+static unsigned move_particles(handwritten *h, const strip *s) {
+  const double *intact = s->intact;
+  double *u_x = h->u[0] + s->near, *u_y = h->u[1] + s->near, *turn = h->u[2] + s->near;
+  double *v_x = h->v[0] + s->near, *v_y = h->v[1] + s->near, *spin = h->v[2] + s->near;
+  const double kick = h->kick[0], kick_turn = h->kick[2], drift = h->drift[0],
+               drift_turn = h->drift[2];
+  const double limit = TURN_LIMIT * h->stiffness;
+  forces before = {lanes_all(0), lanes_all(0), lanes_all(0), lanes_all(0)};
   unsigned beyond = 0;
   UNROLL
-  for (long q = 0; q < count; q += LANES) {
-    const lanes owned = (lanes_load(own_0 + q) + lanes_load(own_1 + q)) + lanes_load(own_2 + q);
-    const lanes others = (lanes_load(in_0 + q) + lanes_load(in_1 + q)) + lanes_load(in_2 + q);
-    const lanes now = lanes_load(v + q) + kick * (sign < 0 ? owned - others : owned + others);
-    lanes_store(v + q, now);
-    lanes_store(u + q, lanes_load(u + q) + time_step * now);
-    beyond |= lanes_beyond(now, limit);
+  for (long q = 0, count = s->count; q < count; q += LANES) {
+    const forces f = bond_forces(h, intact, q);
+    const lanes x = lanes_load(h->sum[FORCE_X] + q) + (f.x - lanes_shift_in(before.x, f.x));
+    const lanes y = lanes_load(h->sum[FORCE_Y] + q) + (f.y - lanes_shift_in(before.y, f.y));
+    const lanes m =
+        lanes_load(h->sum[MOMENT] + q) + (f.moment_i + lanes_shift_in(before.moment_j, f.moment_j));
+    const lanes now_x = lanes_load(v_x + q) + kick * x, now_y = lanes_load(v_y + q) + kick * y;
+    const lanes now = lanes_load(spin + q) + kick_turn * m,
+                turned = lanes_load(turn + q) + drift_turn * now;
+    before = f;
+    lanes_store(v_x + q, now_x);
+    lanes_store(v_y + q, now_y);
+    lanes_store(spin + q, now);
+    lanes_store(u_x + q, lanes_load(u_x + q) + drift * now_x);
+    lanes_store(u_y + q, lanes_load(u_y + q) + drift * now_y);
+    lanes_store(turn + q, turned);
+    beyond |= lanes_beyond(turned, limit);
   }
   return beyond;
 }
 
-static bool move_row(handwritten *h, int row) {
-  return (move(h, row, 0, FORCE_X, FORCE_X, -1) | move(h, row, 1, FORCE_Y, FORCE_Y, -1) |
-          move(h, row, 2, MOMENT_I, MOMENT_J, 1)) == 0;
+/* --- a step ----------------------------------------------------------------------------------- */
+
+static strip strip_of(const handwritten *h, int row, int d) {
+  const rows *g = h->problem->lattice;
+  const long near = rows_start(g, row) + h->begin[row];
+  return (strip){row,
+                 d,
+                 h->count[row],
+                 near,
+                 near + h->offset[row & 1][d],
+                 h->intact + d * g->size + near,
+                 h->held + d * g->size + near};
 }
 
-static size_t stride_bytes(const handwritten *h) {
-  return (size_t)(h->problem->lattice->pitch + 2 * LANES) * sizeof(double);
+/* No force comes from a row below the first, nor from places of a row without sites. */
+static void clear_incoming(handwritten *h, int parity) {
+  memset(h->incoming[parity], 0, sizeof h->incoming[parity]);
 }
 
-bool NAMED(_advance)(handwritten *h, long steps) {
-  bool good = true;
-  for (long step = 0; step < steps && good; step++) {
-    for (int d = 1; d < 3; d++) /* nothing below the first row */
-      for (int p = 0; p < PLANES; p++)
-        memset(h->force[1][d][p] - LANES, 0, stride_bytes(h));
-    for (int row = 0; row < h->problem->lattice->row_count; row++) {
-      for (int d = 0; d < 3; d++)
-        evaluate(h, row, d);
-      good &= move_row(h, row);
-    }
+static void advance_row(handwritten *h, int row) {
+  const strip along = strip_of(h, row, 0), right = strip_of(h, row, 1), left = strip_of(h, row, 2);
+  if (h->count[row] < h->problem->lattice->pitch) clear_incoming(h, row & 1);
+  find_bonds(h, &right);
+  first_forces(h, &right);
+  find_bonds(h, &left);
+  second_forces(h, &left);
+  find_bonds(h, &along);
+  h->row_turned[row] = move_particles(h, &along) != 0;
+}
+
+void NAMED(_advance)(handwritten *h, long steps) {
+  for (long step = 0; step < steps; step++) {
+    clear_incoming(h, 1);
+    for (int row = 0; row < h->problem->lattice->row_count; row++)
+      advance_row(h, row);
   }
-  return good;
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 static double *zeros(long count) {
-  const size_t bytes = ((size_t)count * sizeof(double) + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
+  const size_t bytes =
+      ((size_t)count * sizeof(double) + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
   double *p = aligned_alloc(PL_ALIGNMENT, bytes);
   if (!p) must_alloc(SIZE_MAX); /* ends the program with the usual message */
   return memset(p, 0, bytes);
 }
 
-static double *buffer(const handwritten *h) { return zeros(h->problem->lattice->pitch + 2 * LANES) + LANES; }
+/* (asin(x)/x - 1)/x^2 in x^2 through Chebyshev's points of |x| < 1/16: asin(x) to 2^-52. */
+static const double arc_sine[SERIES] = {0x1.5555555554f92p-3, 0x1.3333334a3f0fap-4,
+                                        0x1.6db5f5154638dp-5, 0x1.f4a7447a72cffp-6};
 
-static constants constants_of(const problem *p) {
+static void set_law(handwritten *h) {
+  const problem *p = h->problem;
   const bilinear_law *l = &p->law;
-  const double s = p->lattice->spacing, EA = problem_axial_rigidity(p), EI = problem_bending_rigidity(p);
-  const double soft = (l->alpha2 - l->alpha1) / (l->alpha2 - 1), tail = l->alpha1 / (l->alpha3 - l->alpha2);
+  const double s = p->lattice->spacing, EA = problem_axial_rigidity(p),
+               EI = problem_bending_rigidity(p);
+  const double soft = (l->alpha2 - l->alpha1) / (l->alpha2 - 1),
+               tail = l->alpha1 / (l->alpha3 - l->alpha2);
   assert(soft >= tail * l->alpha3); /* the curve is convex, so that it is the larger of its lines */
-  return (constants){.per_square = 1 / (s * s),
-                     .near_square = NEAR_PART * NEAR_PART * s * s,
-                     .bend_weight = 4 * l->beta,
-                     .least_strain = 2 * l->S_t,
-                     .soft_end = 1 - soft,
-                     .soft = 2 * soft * l->S_t,
-                     .tail_end = -tail,
-                     .tail = 2 * tail * l->alpha3 * l->S_t,
-                     .rate = 1 / (s * s * l->rate_0),
-                     .zeta_rate = l->zeta / (s * s * l->rate_0),
-                     .axial = EA / (2 * s),
-                     .shear = 2 * EI / (s * s * s),
-                     .moment = -2 * EI / s};
+  h->stiffness = 4 * EI / (EA * s * s);
+  assert(h->stiffness > 0);
+  for (int k = 0; k < SERIES; k++)
+    h->series[k] = arc_sine[k] / pow(h->stiffness, 2 * k + 2);
+  h->bend_weight = 4 * l->beta / h->stiffness;
+  h->least_strain = 2 * l->S_t;
+  h->soft_end = 1 - soft;
+  h->soft = 2 * soft * l->S_t;
+  h->tail_end = -tail;
+  h->tail = 2 * tail * l->alpha3 * l->S_t;
+  h->zeta = l->zeta;
+  for (int d = 0; d < 2; d++) {
+    h->kick[d] = p->time_step / p->lattice->mass * (EA / 2) / (s * l->rate_0);
+    h->drift[d] = p->time_step * l->rate_0;
+  }
+  h->kick[2] = -p->time_step / p->lattice->inertia * (2 * EI / s);
+  h->drift[2] = p->time_step;
 }
 
-handwritten *NAMED(_new)(const problem *p) {
-  const rows *g = p->lattice;
-  const double square = g->spacing * g->spacing;
-  handwritten *h = must_calloc(1, sizeof *h);
-  h->problem = p;
-  h->c = constants_of(p);
-  for (int d = 0; d < 3; d++) {
-    h->directions[d] = (direction){{g->offset[0][d], g->offset[1][d]}, g->chord[d][0], g->chord[d][1],
-                                   g->chord[d][0] / square, g->chord[d][1] / square};
-    h->u[d] = zeros(g->size);
-    h->v[d] = zeros(g->size);
-    h->kick[d] = p->time_step / (d < 2 ? g->mass : g->inertia);
-    h->limit[d] = (d < 2 ? g->spacing : M_PI) / p->time_step;
+static void find_spans(handwritten *h) {
+  const rows *g = h->problem->lattice;
+  h->begin = must_calloc((size_t)g->row_count, sizeof *h->begin);
+  h->count = must_calloc((size_t)g->row_count, sizeof *h->count);
+  for (int row = 0; row < g->row_count; row++) {
+    const unsigned char *present = g->present + rows_start(g, row);
+    long first = 0, end = g->pitch;
+    while (first < end && !present[first])
+      first++;
+    while (end > first && !present[end - 1])
+      end--;
+    h->begin[row] = first / LANES * LANES;
+    h->count[row] = (end - h->begin[row] + LANES - 1) / LANES * LANES;
   }
-  h->intact = zeros(3 * g->size);
-  h->held = zeros(3 * g->size);
-  h->row_held = must_calloc((size_t)g->row_count, 1);
-#define X(name) h->name = buffer(h);
-  BUFFERS(X)
-#undef X
-  for (int k = 0; k < 6 * PLANES; k++)
-    h->force[k / PLANES % 2][k / PLANES / 2][k % PLANES] = buffer(h);
+}
+
+static void hold_bonds(handwritten *h) {
+  const rows *g = h->problem->lattice;
   for (int row = 0; row < g->row_count; row++)
     for (long q = 0; q < 3 * g->pitch; q++) {
       const long d = q / g->pitch, site = rows_start(g, row) + q % g->pitch;
@@ -318,6 +382,28 @@ handwritten *NAMED(_new)(const problem *p) {
       h->held[d * g->size + site] = 1;
       h->row_held[row] = 1;
     }
+}
+
+handwritten *NAMED(_new)(const problem *p) {
+  const rows *g = p->lattice;
+  assert(g->pitch <= MOST_SITES);
+  handwritten *h = (void *)zeros((long)(sizeof *h / sizeof(double)));
+  h->problem = p;
+  for (int d = 0; d < 3; d++) {
+    for (int c = 0; c < 2; c++) {
+      h->offset[c][d] = g->offset[c][d];
+      h->chord[d][c] = g->chord[d][c] / g->spacing;
+    }
+    h->u[d] = zeros(g->size);
+    h->v[d] = zeros(g->size);
+  }
+  h->intact = zeros(3 * g->size);
+  h->held = zeros(3 * g->size);
+  h->row_held = must_calloc((size_t)g->row_count, 1);
+  h->row_turned = must_calloc((size_t)g->row_count + 1, 1);
+  set_law(h);
+  find_spans(h);
+  hold_bonds(h);
   return h;
 }
 
@@ -329,33 +415,47 @@ void NAMED(_free)(handwritten *h) {
   free(h->intact);
   free(h->held);
   free(h->row_held);
-#define X(name) free(h->name - LANES);
-  BUFFERS(X)
-#undef X
-  for (int k = 0; k < 6 * PLANES; k++)
-    free(h->force[k / PLANES % 2][k / PLANES / 2][k % PLANES] - LANES);
+  free(h->row_turned);
+  free(h->begin);
+  free(h->count);
   free(h);
+}
+
+static double length_unit(const handwritten *h, int d) {
+  return d < 2 ? h->problem->lattice->spacing : 1 / h->stiffness;
+}
+static double velocity_unit(const handwritten *h, int d) {
+  return length_unit(h, d) * (d < 2 ? h->problem->law.rate_0 : 1);
 }
 
 void NAMED(_set)(handwritten *h, const motion *from) {
   const rows *g = h->problem->lattice;
-  for (int d = 0; d < 3; d++) {
-    memcpy(h->u[d], from->displacement[d], (size_t)g->size * sizeof(double));
-    memcpy(h->v[d], from->velocity[d], (size_t)g->size * sizeof(double));
-    for (long q = 0; q < g->size; q++)
-      h->intact[d * g->size + q] = g->flags[q] & PL_PRESENT(d) ? 1 - from->damage[d * g->size + q] : 0;
-  }
+  memset(h->row_turned, 0, (size_t)g->row_count + 1);
+  for (int d = 0; d < 3; d++)
+    for (long q = 0; q < g->size; q++) {
+      const long slot = d * g->size + q;
+      h->u[d][q] = from->displacement[d][q] / length_unit(h, d);
+      h->v[d][q] = from->velocity[d][q] / velocity_unit(h, d);
+      h->intact[slot] = g->flags[q] & PL_PRESENT(d) ? 1 - from->damage[slot] : 0;
+    }
+  for (int row = 0; row < g->row_count; row++)
+    for (long q = 0; q < g->pitch; q++)
+      if (!(fabs(h->u[2][rows_start(g, row) + q]) <= TURN_LIMIT * h->stiffness))
+        h->row_turned[row] = 1;
   h->rare = 0;
 }
 
 void NAMED(_get)(const handwritten *h, motion *to) {
   const rows *g = h->problem->lattice;
-  for (int d = 0; d < 3; d++) {
-    memcpy(to->displacement[d], h->u[d], (size_t)g->size * sizeof(double));
-    memcpy(to->velocity[d], h->v[d], (size_t)g->size * sizeof(double));
-    for (long q = 0; q < g->size; q++)
-      to->damage[d * g->size + q] = g->flags[q] & PL_PRESENT(d) ? 1 - h->intact[d * g->size + q] : 0;
-  }
+  for (int d = 0; d < 3; d++)
+    for (long q = 0; q < g->size; q++) {
+      const long slot = d * g->size + q;
+      to->displacement[d][q] = h->u[d][q] * length_unit(h, d);
+      to->velocity[d][q] = h->v[d][q] * velocity_unit(h, d);
+      to->damage[slot] = g->flags[q] & PL_PRESENT(d) ? 1 - h->intact[slot] : 0;
+    }
 }
 
-long NAMED(_rare)(const handwritten *h) { return h->rare; }
+long NAMED(_rare)(const handwritten *h) {
+  return h->rare;
+}

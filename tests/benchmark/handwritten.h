@@ -1,6 +1,7 @@
-/* The law as a specialist would program it for this one lattice: rows without a neighbour list, structure of arrays, eight
-   bonds at once, bond forces that stay in registers and in two rows of buffers, one division a bond and the arc sine's
-   series for the chord's rotation. What a compiler of laws should come near to.
+/* The law as a specialist would program it for this one lattice: rows without a neighbour list,
+   structure of arrays, eight bonds at once, bond forces that stay in registers and in two rows of
+   buffers, one division a bond and the arc sine's series for the chord's rotation. What a compiler
+   of laws should come near to.
 
    It exists twice, compiled without and with contraction to fused multiply-adds. */
 #ifndef PERILAT_BENCHMARK_HANDWRITTEN_H
@@ -15,9 +16,9 @@ typedef struct handwritten handwritten;
   void prefix##_free(handwritten *h);                                                              \
   void prefix##_set(handwritten *h, const motion *from);                                           \
   void prefix##_get(const handwritten *h, motion *to);                                             \
-  /* False when a velocity left its limit: a spacing, half a turn a step. */                       \
-  bool prefix##_advance(handwritten *h, long steps);                                               \
-  /* Groups of eight bonds so far that turned or stretched too far for the series. */              \
+  void prefix##_advance(handwritten *h, long steps);                                               \
+  /* Bonds, summed over the steps since the start, of rows where one moved too far for the series. \
+   */                                                                                              \
   long prefix##_rare(const handwritten *h);
 
 HANDWRITTEN_FUNCTIONS(handwritten)

@@ -1,9 +1,10 @@
-/* How fast the compiled law is: the notched beam D6 at a spacing of 3.175 mm (Asadollahi 2014), free of loads, moved by a
-   naive program, by a hand-written loop, by the generated kernel and by a whole run, in one process on one core.
+/* How fast the compiled law is: the notched beam D6 at a spacing of 3.175 mm (Asadollahi 2014),
+   free of loads, moved by a naive program, by a hand-written loop, by the generated kernel and by a
+   whole run, in one process on one core.
 
-   All but the whole run must reach the same motion from the same start before anything is timed. Each is then timed in
-   turn, round after round, by the thread's processor time, so that neither a slow moment of the machine nor other
-   programs favour one of them.
+   All but the whole run must reach the same motion from the same start before anything is timed.
+   Each is then timed in turn, round after round, by the thread's processor time, so that neither a
+   slow moment of the machine nor other programs favour one of them.
 
      benchmark_kernels [result.json] */
 #include <math.h>
@@ -23,13 +24,19 @@
 #define MODEL SOURCE_DIR "/models/mplm_bilinear.plm"
 
 enum { ROUNDS = 11, SETTLING_STEPS = 50, MOST_CONTESTANTS = 8 };
-#define ROUND_SECONDS    0.15
-#define AGREEMENT        1e-9 /* after AGREEMENT_STEPS, relative */
-#define AGREEMENT_STEPS  2000
-#define FAR_STEPS        200
-#define START_STRETCH    1e-4
-#define FAR_STRETCH      5e-4 /* beside displacements of the size of the body, whose rounding would show otherwise */
-#define LEAST_ADVANTAGE  15.0 /* of the hand-written loop over the naive program: else it is no yardstick */
+#define ROUND_SECONDS   0.15
+#define START_STRETCH   1e-4
+#define AGREEMENT_STEPS 2000
+#define AGREEMENT       1e-9 /* relative */
+/* Turned by more than half a turn the particles stand 150 spacings away from their places: a
+   rounding error of that in the start, which units other than metres make, is 3e-11 of a stretch of
+   1e-3, and grows by the steps. */
+#define FAR_TURN      3.5
+#define FAR_STRETCH   1e-3
+#define FAR_STEPS     200
+#define FAR_AGREEMENT 1e-8
+#define WANTED_ADVANTAGE                                                                           \
+  15.0 /* of the hand-written loop over the naive program: else it is a poor yardstick */
 
 /* --- what is measured ------------------------------------------------------------------------- */
 
@@ -39,34 +46,31 @@ typedef struct contestant {
   void (*set)(void *state, const motion *from);
   void (*get)(const void *state, motion *to);
   void (*advance)(void *state, long steps);
-  bool same_motion;        /* free of loads: must agree with the first */
+  bool same_motion; /* free of loads: must agree with the first */
   double difference, difference_far;
-  long steps;              /* a round */
-  double seconds[ROUNDS];  /* a step */
-  double median, spread;   /* s; half the range of the middle half of the rounds over the median */
+  long steps;             /* a round */
+  double seconds[ROUNDS]; /* a step */
+  double median, spread;  /* s; half the range of the middle half of the rounds over the median */
 } contestant;
 
 /* X(prefix, type): the functions of a contestant behind untyped pointers */
 #define PROGRAMS(X) X(naive, naive) X(handwritten, handwritten) X(handwritten_fused, handwritten)
 #define X(prefix, type)                                                                            \
-  static void prefix##_set_any(void *state, const motion *from) { prefix##_set(state, from); }     \
-  static void prefix##_get_any(const void *state, motion *to) { prefix##_get(state, to); }
+  static void prefix##_set_any(void *state, const motion *from) {                                  \
+    prefix##_set(state, from);                                                                     \
+  }                                                                                                \
+  static void prefix##_get_any(const void *state, motion *to) {                                    \
+    prefix##_get(state, to);                                                                       \
+  }                                                                                                \
+  static void prefix##_advance_any(void *state, long steps) {                                      \
+    prefix##_advance(state, steps);                                                                \
+  }
 PROGRAMS(X)
 #undef X
-
-static void naive_advance_any(void *state, long steps) { naive_advance(state, steps); }
 
 static void give_up(const char *why) {
   fprintf(stderr, "benchmark_kernels: %s\n", why);
   exit(EXIT_FAILURE);
-}
-
-static void handwritten_advance_any(void *state, long steps) {
-  if (!handwritten_advance(state, steps)) give_up("the hand-written loop ran away");
-}
-
-static void handwritten_fused_advance_any(void *state, long steps) {
-  if (!handwritten_fused_advance(state, steps)) give_up("the fused hand-written loop ran away");
 }
 
 static void sweep_set(void *state, const motion *from) {
@@ -97,8 +101,12 @@ static void sweep_advance(void *state, long steps) {
   if (sweep_bad(state) >= 0) give_up("the generated kernel ran away");
 }
 
-static void run_set(void *state, const motion *from) { sweep_set(simulation_state(state), from); }
-static void run_get(const void *state, motion *to) { sweep_get(simulation_state((simulation *)state), to); }
+static void run_set(void *state, const motion *from) {
+  sweep_set(simulation_state(state), from);
+}
+static void run_get(const void *state, motion *to) {
+  sweep_get(simulation_state((simulation *)state), to);
+}
 
 static void run_advance(void *state, long steps) {
   for (long until = simulation_step_done(state) + steps; simulation_step_done(state) < until;) {
@@ -143,12 +151,14 @@ static void read_deck(beam *b) {
 static void compile_law(beam *b) {
   char error[4096];
   const char *note;
-  must_be_good(b, model_open(&b->model, MODEL, NULL, 0) && model_plan(&b->model), "the law is faulty");
+  must_be_good(b, model_open(&b->model, MODEL, NULL, 0) && model_plan(&b->model),
+               "the law is faulty");
   b->law.law = model_kernel(&b->model, false, &note, error, sizeof error);
   if (!b->law.law) give_up(error);
   if (note) give_up(note);
   b->law.parameters = must_calloc((size_t)b->law.law->parameter_count + 1, sizeof(double));
-  must_be_good(b, material_parameters(&b->deck->materials[0], b->law.law, b->law.parameters, &b->said),
+  must_be_good(b,
+               material_parameters(&b->deck->materials[0], b->law.law, b->law.parameters, &b->said),
                "the parameters do not fit the law");
 }
 
@@ -189,11 +199,11 @@ typedef struct field {
   beam *beam;
   contestant items[MOST_CONTESTANTS];
   int count;
-  double damaged, softened, far_groups; /* shares of bonds; groups of eight per row of the lattice and step */
+  double damaged, softened; /* shares of bonds */
 } field;
 
-static double disagreement(const problem *p, const contestant *first, const contestant *other, const motion *start,
-                           long steps) {
+static double disagreement(const problem *p, const contestant *first, const contestant *other,
+                           const motion *start, long steps) {
   motion a = motion_new(p->lattice), b = motion_new(p->lattice);
   first->set(first->state, start);
   first->advance(first->state, steps);
@@ -207,12 +217,12 @@ static double disagreement(const problem *p, const contestant *first, const cont
   return difference;
 }
 
-/* From a shaken start, and for the paths of large rotations from one turned by 2.5 rad. */
+/* From a shaken start, and for the paths of large rotations from one that is turned, too. */
 static void compare(field *f) {
   const problem *p = &f->beam->problem;
   motion start = motion_new(p->lattice), turned = motion_new(p->lattice);
   motion_start(&start, p, START_STRETCH, 0);
-  motion_start(&turned, p, FAR_STRETCH, 2.5);
+  motion_start(&turned, p, FAR_STRETCH, FAR_TURN);
   for (int k = 1; k < f->count; k++) {
     contestant *c = &f->items[k];
     if (!c->same_motion) continue;
@@ -311,17 +321,17 @@ static void print_table(const field *f) {
   processor_fact("cpu MHz", clock, sizeof clock);
   printf("Notched beam D6, spacing %.4g mm: %ld particles, %ld bonds, %d rows\n", 1e3 * g->spacing,
          g->particle_count, g->bond_count, g->row_count);
-  printf("%s, %s MHz as told, vectors of %d bits; %s; one core, medians of %d rounds\n", name, clock, vector_bits(),
-         __VERSION__, ROUNDS);
-  printf("Shaken start: %.1f %% of the bonds damaged, %.1f %% above a half, after %d steps\n\n", 100 * f->damaged,
-         100 * f->softened, AGREEMENT_STEPS);
-  printf("%-22s %14s %9s %8s %9s %9s %11s %11s\n", "", "1e6 bonds/s", "ns/bond", "spread", "x naive", "of best",
-         "difference", "turned");
+  printf("%s, %s MHz as told, vectors of %d bits; %s; one core, medians of %d rounds\n", name,
+         clock, vector_bits(), __VERSION__, ROUNDS);
+  printf("Shaken start: %.1f %% of the bonds damaged, %.1f %% above a half, after %d steps\n\n",
+         100 * f->damaged, 100 * f->softened, AGREEMENT_STEPS);
+  printf("%-22s %14s %9s %8s %9s %9s %11s %11s\n", "", "1e6 bonds/s", "ns/bond", "spread",
+         "x naive", "of best", "difference", "turned");
   for (int k = 0; k < f->count; k++) {
     const contestant *c = &f->items[k];
     const double rate = updates_per_second(f, c);
-    printf("%-22s %14.1f %9.2f %7.1f%% %9.1f %8.0f%%", c->about, 1e-6 * rate, 1e9 / rate, 100 * c->spread,
-           f->items[0].median / c->median, 100 * f->items[1].median / c->median);
+    printf("%-22s %14.1f %9.2f %7.1f%% %9.1f %8.0f%%", c->about, 1e-6 * rate, 1e9 / rate,
+           100 * c->spread, f->items[0].median / c->median, 100 * f->items[1].median / c->median);
     if (k > 0 && c->same_motion) printf(" %11.1e %11.1e", c->difference, c->difference_far);
     putchar('\n');
   }
@@ -336,9 +346,10 @@ static void write_json(const field *f, const char *path) {
     exit(EXIT_FAILURE);
   }
   processor_fact("model name", name, sizeof name);
-  fprintf(out, "{\n  \"processor\": \"%s\",\n  \"compiler\": \"%s\",\n  \"vector_bits\": %d,\n", name, __VERSION__,
-          vector_bits());
-  fprintf(out, "  \"particles\": %ld,\n  \"bonds\": %ld,\n  \"rounds\": %d", g->particle_count, g->bond_count, ROUNDS);
+  fprintf(out, "{\n  \"processor\": \"%s\",\n  \"compiler\": \"%s\",\n  \"vector_bits\": %d,\n",
+          name, __VERSION__, vector_bits());
+  fprintf(out, "  \"particles\": %ld,\n  \"bonds\": %ld,\n  \"rounds\": %d", g->particle_count,
+          g->bond_count, ROUNDS);
   for (int k = 0; k < f->count; k++) {
     const contestant *c = &f->items[k];
     fprintf(out, ",\n  \"%s_mbonds_per_second\": %.2f", c->name, 1e-6 * updates_per_second(f, c));
@@ -351,21 +362,24 @@ static void write_json(const field *f, const char *path) {
   if (fclose(out) != 0) give_up("the result cannot be written");
 }
 
-/* A comparison of programs that compute different things, or with a poor yardstick, says nothing. */
+/* A comparison of programs that compute different things says nothing. */
 static bool is_fair(const field *f) {
   bool fair = true;
   for (int k = 1; k < f->count; k++) {
     const contestant *c = &f->items[k];
-    if (!c->same_motion || (c->difference <= AGREEMENT && c->difference_far <= AGREEMENT)) continue;
-    fprintf(stderr, "benchmark_kernels: %s differs from %s by more than %g\n", c->name, f->items[0].name, AGREEMENT);
-    fair = false;
-  }
-  if (f->items[0].median / f->items[1].median < LEAST_ADVANTAGE) {
-    fprintf(stderr, "benchmark_kernels: %s is not %g times as fast as %s\n", f->items[1].name, LEAST_ADVANTAGE,
-            f->items[0].name);
+    if (!c->same_motion || (c->difference <= AGREEMENT && c->difference_far <= FAR_AGREEMENT))
+      continue;
+    fprintf(stderr, "benchmark_kernels: %s moves otherwise than %s\n", c->name, f->items[0].name);
     fair = false;
   }
   return fair;
+}
+
+static void judge_yardstick(const field *f) {
+  const double advantage = f->items[0].median / fmin(f->items[1].median, f->items[2].median);
+  printf("\nThe better hand-written loop is %.1f times as fast as the naive program%s.\n",
+         advantage,
+         advantage < WANTED_ADVANTAGE ? ", too little for a yardstick: was the machine busy?" : "");
 }
 
 int main(int argc, char **argv) {
@@ -378,23 +392,42 @@ int main(int argc, char **argv) {
   sweep *lean = sweep_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, false, false);
   sweep *ledger = sweep_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, true, false);
 #define CONTESTANT(prefix, about, state, same)                                                     \
-  { #prefix, about, state, prefix##_set_any, prefix##_get_any, prefix##_advance_any, same, 0, 0, 0, {0}, 0, 0 }
+  {#prefix, about, state, prefix##_set_any, prefix##_get_any, prefix##_advance_any, same, 0, 0, 0, \
+   {0},     0,     0}
   field f = {.beam = &b,
              .count = 6,
              .items = {CONTESTANT(naive, "naive", plain, true),
                        CONTESTANT(handwritten, "hand-written", best, true),
                        CONTESTANT(handwritten_fused, "hand-written, fused", fused, true),
-                       {.name = "generated", .about = "generated", .state = lean, .set = sweep_set,
-                        .get = sweep_get, .advance = sweep_advance, .same_motion = true},
-                       {.name = "generated_ledger", .about = "generated, ledger", .state = ledger, .set = sweep_set,
-                        .get = sweep_get, .advance = sweep_advance, .same_motion = true},
-                       {.name = "run", .about = "whole run", .state = b.run, .set = run_set, .get = run_get,
-                        .advance = run_advance, .same_motion = false}}};
+                       {.name = "generated",
+                        .about = "generated",
+                        .state = lean,
+                        .set = sweep_set,
+                        .get = sweep_get,
+                        .advance = sweep_advance,
+                        .same_motion = true},
+                       {.name = "generated_ledger",
+                        .about = "generated, ledger",
+                        .state = ledger,
+                        .set = sweep_set,
+                        .get = sweep_get,
+                        .advance = sweep_advance,
+                        .same_motion = true},
+                       {.name = "run",
+                        .about = "whole run",
+                        .state = b.run,
+                        .set = run_set,
+                        .get = run_get,
+                        .advance = run_advance,
+                        .same_motion = false}}};
   const unsigned environment = sweep_enter();
   compare(&f);
+  if (handwritten_rare(best) == 0)
+    give_up("the turned start does not reach the path of large rotations");
   measure(&f);
   sweep_leave(environment);
   print_table(&f);
+  judge_yardstick(&f);
   if (argc > 1) write_json(&f, argv[1]);
   const bool fair = is_fair(&f);
   naive_free(plain);

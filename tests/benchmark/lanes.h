@@ -1,4 +1,5 @@
-/* Eight doubles that are computed together. With AVX-512 one register; elsewhere the compiler splits them. */
+/* Eight doubles that are computed together. With AVX-512 one register; elsewhere the compiler
+ * splits them. */
 #ifndef PERILAT_BENCHMARK_LANES_H
 #define PERILAT_BENCHMARK_LANES_H
 
@@ -12,29 +13,46 @@
 #define LANES_AVX512 0
 #endif
 
-#define LANES 8
+#define LANES          8
 #define LANES_FUNCTION static inline __attribute__((always_inline, unused))
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
 typedef double lanes_anywhere
     __attribute__((vector_size(LANES * sizeof(double)), aligned(sizeof(double)), may_alias));
 
-LANES_FUNCTION lanes lanes_load(const double *p) { return *(const lanes_anywhere *)p; }
-LANES_FUNCTION void lanes_store(double *p, lanes x) { *(lanes_anywhere *)p = x; }
-LANES_FUNCTION lanes lanes_all(double x) { return (lanes){x, x, x, x, x, x, x, x}; }
+LANES_FUNCTION lanes lanes_load(const double *p) {
+  return *(const lanes_anywhere *)p;
+}
+LANES_FUNCTION void lanes_store(double *p, lanes x) {
+  *(lanes_anywhere *)p = x;
+}
+LANES_FUNCTION lanes lanes_all(double x) {
+  return (lanes){x, x, x, x, x, x, x, x};
+}
+
+/* The last lane of `before`, then all but the last of `x`. */
+LANES_FUNCTION lanes lanes_shift_in(lanes before, lanes x) {
+  return __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);
+}
 
 #if LANES_AVX512
 
-LANES_FUNCTION lanes lanes_abs(lanes x) { return (lanes)_mm512_abs_pd((__m512d)x); }
-LANES_FUNCTION lanes lanes_max(lanes a, lanes b) { return (lanes)_mm512_max_pd((__m512d)a, (__m512d)b); }
-LANES_FUNCTION lanes lanes_min(lanes a, lanes b) { return (lanes)_mm512_min_pd((__m512d)a, (__m512d)b); }
+LANES_FUNCTION lanes lanes_abs(lanes x) {
+  return (lanes)_mm512_abs_pd((__m512d)x);
+}
+LANES_FUNCTION lanes lanes_max(lanes a, lanes b) {
+  return (lanes)_mm512_max_pd((__m512d)a, (__m512d)b);
+}
+LANES_FUNCTION lanes lanes_min(lanes a, lanes b) {
+  return (lanes)_mm512_min_pd((__m512d)a, (__m512d)b);
+}
 
-/* 1/sqrt(x) to an ulp or two, for normal x > 0, without the slow divider: the machine's 14 bits, and one step of fourth
-   order, 1/sqrt(1 - e) = 1 + e/2 + 3 e^2/8 + 5 e^3/16 + ... */
+/* 1/sqrt(x) to an ulp or two, for normal x > 0, without the slow divider: the machine's 14 bits,
+   and one step of fourth order, 1/sqrt(1 - e) = 1 + e/2 + 3 e^2/8 + 5 e^3/16 + ... */
 LANES_FUNCTION lanes lanes_inverse_root(lanes x) {
   const lanes y = (lanes)_mm512_rsqrt14_pd((__m512d)x);
   const lanes e = 1 - (x * y) * y;
-  return y + y * (e * (0.5 + e * (0.375 + e * 0.3125)));
+  return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125));
 }
 
 /* A bit for each lane with |x| > limit, or x no number. */

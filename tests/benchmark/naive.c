@@ -101,11 +101,13 @@ static double softening(const bilinear_law *law, double strain) {
   if (strain <= law->alpha2 * law->S_t)
     return (law->alpha2 - law->alpha1) / (law->alpha2 - 1) * (strain - law->S_t) / strain;
   if (strain <= law->alpha3 * law->S_t)
-    return 1 - law->alpha1 / (law->alpha3 - law->alpha2) * (law->alpha3 * law->S_t - strain) / strain;
+    return 1 -
+           law->alpha1 / (law->alpha3 - law->alpha2) * (law->alpha3 * law->S_t - strain) / strain;
   return 1;
 }
 
-static __attribute__((noinline)) void bond_force(const naive *n, bond *b, particle *i, particle *j) {
+static __attribute__((noinline)) void bond_force(const naive *n, bond *b, particle *i,
+                                                 particle *j) {
   const bilinear_law *law = &n->problem->law;
   const double s = b->length;
   const double d_x = j->u_x - i->u_x, d_y = j->u_y - i->u_y;
@@ -113,8 +115,7 @@ static __attribute__((noinline)) void bond_force(const naive *n, bond *b, partic
   const double length = sqrt(c_x * c_x + c_y * c_y);
   const double e_x = c_x / length, e_y = c_y / length;
   /* (L - s)/s, written so that a small stretch keeps its digits */
-  const double stretch =
-      (d_x * (b->chord_x + c_x) + d_y * (b->chord_y + c_y)) / (s * (length + s));
+  const double stretch = (d_x * (b->chord_x + c_x) + d_y * (b->chord_y + c_y)) / (s * (length + s));
   const double rate = (e_x * (j->v_x - i->v_x) + e_y * (j->v_y - i->v_y)) / s;
   const double chord_rotation =
       atan2(b->chord_x * d_y - b->chord_y * d_x, b->chord_x * c_x + b->chord_y * c_y);

@@ -1,5 +1,6 @@
-/* The law as a careful beginner would program it: a structure per particle, a structure per bond, a function per bond, the
-   library's square root and arc tangent, a branch per case. The yardstick for the faster ones. */
+/* The law as a careful beginner would program it: a structure per particle, a structure per bond, a
+   function per bond, the library's square root and arc tangent, a branch per case. The yardstick
+   for the faster ones. */
 #ifndef PERILAT_BENCHMARK_NAIVE_H
 #define PERILAT_BENCHMARK_NAIVE_H
 

@@ -45,7 +45,8 @@ static double random_sign(uint64_t *state) {
 
 void motion_start(motion *m, const problem *p, double stretch, double turn) {
   const rows *g = p->lattice;
-  const double centre[2] = {g->x[g->particle_site[0]] + g->width / 2, g->y[g->particle_site[0]] + g->height / 2};
+  const double centre[2] = {g->x[g->particle_site[0]] + g->width / 2,
+                            g->y[g->particle_site[0]] + g->height / 2};
   uint64_t random = UINT64_C(0x9e3779b97f4a7c15);
   memset(m->damage, 0, (size_t)(g->directions * g->size) * sizeof *m->damage);
   for (long q = 0; q < g->size; q++) {
@@ -55,8 +56,7 @@ void motion_start(motion *m, const problem *p, double stretch, double turn) {
     for (int d = 0; d < 3; d++) {
       const double size = stretch * (d < 2 ? g->spacing : 1);
       m->displacement[d][q] = g->present[q] ? rigid[d] + size * random_sign(&random) : 0;
-      m->velocity[d][q] =
-          g->present[q] ? size / (10 * p->time_step) * random_sign(&random) : 0;
+      m->velocity[d][q] = g->present[q] ? size / (10 * p->time_step) * random_sign(&random) : 0;
     }
   }
 }
@@ -84,7 +84,8 @@ double motion_difference(const motion *a, const motion *b, const rows *lattice) 
   for (int k = 0; k < lattice->directions; k++)
     for (long q = 0; q < lattice->size; q++) {
       const long slot = k * lattice->size + q;
-      if (lattice->flags[q] & PL_PRESENT(k)) most = larger(most, fabs(a->damage[slot] - b->damage[slot]));
+      if (lattice->flags[q] & PL_PRESENT(k))
+        most = larger(most, fabs(a->damage[slot] - b->damage[slot]));
     }
   return most;
 }

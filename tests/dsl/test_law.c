@@ -92,7 +92,7 @@ static void is_of(const law *l, const char *name, symbol_kind kind, const char *
   "\nend model\n"
 #define STATE(body) "model m\nlaw state\nparameter a = 2 [MN]\n" body "\nend model\n"
 
-/* --- what a good law becomes --- */
+/* --- what a good law becomes ------------------------------------------------------------------ */
 
 static void micropolar_law_is_understood(void **state) {
   (void)state;
@@ -401,7 +401,7 @@ static void every_builtin_has_a_unit(void **state) {
   assert_int_equal(builtin_function_find("stretch"), -1);
 }
 
-/* --- texts that want to hang or crash it --- */
+/* --- texts that want to hang or crash it ------------------------------------------------------ */
 
 typedef struct page {
   char *text;

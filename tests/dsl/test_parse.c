@@ -18,8 +18,7 @@
 #define HEAD   "model m\nlaw central bond\n"
 #define TAIL   "end model\n"
 
-/* --- one parse and all that belongs to it
- * --------------------------------------------------------- */
+/* --- one parse and all that belongs to it ----------------------------------------------------- */
 
 typedef struct parsed {
   arena *memory;
@@ -104,8 +103,7 @@ static expr *parse_expr(parsed **p, const char *text) {
   return (*p)->messages.count == 0 ? (*p)->model->first->value : NULL;
 }
 
-/* --- golden trees
- * --------------------------------------------------------------------------------- */
+/* --- golden trees ----------------------------------------------------------------------------- */
 
 static void golden(const char *name) {
   char path[1024];
@@ -152,8 +150,7 @@ static void shipped_law_parses(void **state) {
   free(text);
 }
 
-/* --- precedence: values by Fortran's rules, with a = 2, b = 3, c = 5
- * -------------------------------- */
+/* --- precedence: values by Fortran's rules, with a = 2, b = 3, c = 5 -------------------------- */
 
 static double value_of(const expr *e) {
   if (e->kind == EXPR_NUMBER) return e->number;
@@ -243,8 +240,7 @@ static void precedence_is_fortrans(void **state) {
   }
 }
 
-/* --- printing reads back
- * -------------------------------------------------------------------------- */
+/* --- printing reads back ---------------------------------------------------------------------- */
 
 static uint64_t random_state;
 
@@ -399,8 +395,7 @@ static void printing_reads_back(void **state) {
   }
 }
 
-/* --- spans, docs, forms
- * --------------------------------------------------------------------------- */
+/* --- spans, docs, forms ----------------------------------------------------------------------- */
 
 static void expect_span(const parsed *p, span where, const char *text) {
   const source *s = &p->sources.items[where.file];
@@ -549,8 +544,7 @@ static void errors_are_all_reported(void **state) {
   parsed_free(p);
 }
 
-/* --- includes
- * ------------------------------------------------------------------------------------- */
+/* --- includes --------------------------------------------------------------------------------- */
 
 /* Answers from a table; "chain_N" includes "chain_N+1" without end, "wide" includes many. */
 static char *answer(void *context, const char *name, const char *from, char **found) {
@@ -609,8 +603,7 @@ static void includes_have_limits(void **state) {
   parsed_free(p);
 }
 
-/* --- limits and hostile texts
- * --------------------------------------------------------------------- */
+/* --- limits and hostile texts ----------------------------------------------------------------- */
 
 static char *repeated(const char *piece, size_t count) {
   size_t length = strlen(piece);

@@ -116,7 +116,7 @@ static inline void evaluate_law(const tested_law *t, tested_state *x, int with_t
   if (with_tangent) t->kernel->tangent(t->kernel, t->uniforms, 1, in, out);
 }
 
-/* --- random numbers ---------------------------------------------------------------------- */
+/* --- random numbers --------------------------------------------------------------------------- */
 
 static inline double random_uniform(uint64_t *seed, double low, double high) {
   *seed ^= *seed << 13;

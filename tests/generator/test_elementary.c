@@ -250,7 +250,7 @@ static void symmetry(void **unused) {
   }
 }
 
-/* --- the compiler's report: every function vectorises -------------------------------- */
+/* --- the compiler's report: every function vectorises ----------------------------------------- */
 
 static const char *const one_argument[] = {"abs", "sqrt", "sign", "exp",  "log",       "cbrt",
                                            "sin", "cos",  "tan",  "tanh", "wrap_angle"};

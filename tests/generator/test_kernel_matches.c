@@ -45,7 +45,7 @@ static const pl_law *open_kernel(model *m, const char *path, const law_choice *c
   return kernel;
 }
 
-/* --- parameters ------------------------------------------------------------------------------ */
+/* --- parameters ------------------------------------------------------------------------------- */
 
 /* Set 0 are the defaults; the others vary each by a factor of up to 2 where its bounds let them. */
 static double **parameter_sets(const pl_law *k) {
@@ -74,7 +74,7 @@ static kernel_check check(const model *m, const pl_law *kernel, long states) {
   return c;
 }
 
-/* --- the text -------------------------------------------------------------------------------- */
+/* --- the text --------------------------------------------------------------------------------- */
 
 /* Compiles the kernel again with more flags; what the compiler says (malloc'ed), or NULL without
  * such a compiler. */
@@ -107,7 +107,7 @@ static void assert_clean_and_vectorised(const model *m) {
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }
 
-/* --- all models ------------------------------------------------------------------------------ */
+/* --- all models ------------------------------------------------------------------------------- */
 
 static void assert_same_bits(const model *m, const pl_law *kernel, long states) {
   kernel_check c = check(m, kernel, states);
@@ -189,7 +189,7 @@ static void many_fields_match(void **state) {
   model_close(&m);
 }
 
-/* --- faulty kernels are caught --------------------------------------------------------------- */
+/* --- faulty kernels are caught ---------------------------------------------------------------- */
 
 /* Each stands in for a function of the compiled kernel, which is behind `context`. */
 static const pl_law *good(const pl_law *faulty) {

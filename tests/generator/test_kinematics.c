@@ -37,7 +37,7 @@ typedef struct bond_state {
   double N, M_i, M_j;
 } bond_state;
 
-/* --- random numbers ---------------------------------------------------------------------- */
+/* --- random numbers --------------------------------------------------------------------------- */
 
 static uint64_t seed = 88172645463325252u;
 
@@ -74,7 +74,7 @@ static bond_state random_state(double most) {
   return b;
 }
 
-/* --- evaluation on the interpreter ------------------------------------------------------- */
+/* --- evaluation on the interpreter ------------------------------------------------------------ */
 
 /* N, M_i, M_j enter the graph as fields 0, 1, 2. */
 static void evaluate(const bond_state *b, bool rows, double *value) {
@@ -110,7 +110,7 @@ static void evaluate(const bond_state *b, bool rows, double *value) {
   ir_free(g);
 }
 
-/* --- the definition, in extended precision ----------------------------------------------- */
+/* --- the definition, in extended precision ---------------------------------------------------- */
 
 typedef struct exact_bond {
   long double stretch, theta[2], length, e[2];

@@ -232,7 +232,7 @@ static void repeated_calls_are_expanded_once(void **state) {
   close_law(t);
 }
 
-/* --- energy ------------------------------------------------------------------------------ */
+/* --- energy ----------------------------------------------------------------------------------- */
 
 typedef struct observed_bond {
   double stored, rate_lost, state_lost, field[MOST_FIELDS];

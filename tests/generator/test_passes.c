@@ -34,7 +34,7 @@ static void assert_near(double value, double expected, double tolerance, const c
     fail_msg("%s: %.17g is not %.17g within %g", what, value, expected, tolerance);
 }
 
-/* --- the law by hand (Asadollahi 2014, eqs 2.49 and 3.1-3.15) ---------------------------- */
+/* --- the law by hand (Asadollahi 2014, eqs 2.49 and 3.1-3.15) --------------------------------- */
 
 typedef struct hand_law {
   double N, M_i, M_j, omega, EA, EI;
@@ -130,7 +130,7 @@ static void ends_and_mirror_images_agree(void **state) {
   close_law(t);
 }
 
-/* --- tangent ----------------------------------------------------------------------------- */
+/* --- tangent ---------------------------------------------------------------------------------- */
 
 static double *input_of(tested_state *x, int k) {
   double *const inputs[] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j};
@@ -192,7 +192,7 @@ static void the_tangent_is_the_slope(void **state) {
   close_law(t);
 }
 
-/* --- strips ------------------------------------------------------------------------------ */
+/* --- strips ----------------------------------------------------------------------------------- */
 
 enum { MOST_BONDS = 200, PLANES = 4, DOF = 3 };
 
@@ -440,7 +440,7 @@ static void many_threads_give_the_same_bits(void **state) {
   close_law(t);
 }
 
-/* --- the plan itself --------------------------------------------------------------------- */
+/* --- the plan itself -------------------------------------------------------------------------- */
 
 static void bounds_follow_the_parameters(void **state) {
   (void)state;
@@ -518,7 +518,7 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
   close_law(t);
 }
 
-/* --- rewrites ---------------------------------------------------------------------------- */
+/* --- rewrites --------------------------------------------------------------------------------- */
 
 static ir_node input(ir *g, int k, placement on) {
   return ir_input(g, IR_FROM_FIELD, k, NULL, on);

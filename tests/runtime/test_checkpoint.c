@@ -31,6 +31,8 @@ static void open_busy(small_run *r, double length, int threads) {
       "&drive region = 'right' component = 'x' velocity = 0.2 rise = 1e-5 start = 6e-5 /\n"
       "&force region = 'mid' component = 'y' force = 500 history = 'ramp' rise = 1e-4 /\n"
       "&damping rate = 3000 until = 1.1e-4 /\n"
+      "&gravity acceleration = 500, -2000 rise = 1.5e-4 /\n"
+      "&initial_velocity region = 'mid' component = 'y' value = 0.02 /\n"
       "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' average = 3e-5 /\n"
       "&monitor name = 'open' kind = 'opening' between = 'left', 'right' component = 'x' zero_at = "
       "1.2e-4 /\n"

@@ -13,6 +13,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "runtime/canvas.h"
+#include "runtime/hdf5_tools.h"
 #include "runtime/plot.h"
 #include "runtime/result.h"
 
@@ -23,8 +25,8 @@ static const double volume[PARTICLES] = {1, 2, 3};
 static const int32_t body[PARTICLES] = {0, 0, 1};
 static const int32_t bonds[2 * BONDS] = {0, 1, 1, 2};
 static const result_text deck_models[] = {{"law", "model law"}}, kernels[] = {{"law", "int x;"}};
-static const result_field fields[] = {{"displacement", "m", NULL, 2, PARTICLES},
-                                      {"omega", "1", "concrete", 1, BONDS}};
+static const result_field fields[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
+                                      {"omega", "1", "concrete", 1, BONDS, "damage"}};
 static char error[512];
 
 static result_header header(const char *path) {
@@ -192,6 +194,61 @@ static void damaged_files_are_refused(void **state) {
   unlink("result_e.h5");
 }
 
+/* Every element that is opened is closed, and every `&` begins an entity. Returns the number of elements. */
+static int count_elements(const char *text) {
+  char open[32][32];
+  int depth = 0, elements = 0;
+  for (const char *at = strpbrk(text, "<&"); at; at = strpbrk(at + 1, "<&")) {
+    if (*at == '&') {
+      assert_true(!strncmp(at, "&amp;", 5) || !strncmp(at, "&lt;", 4) || !strncmp(at, "&gt;", 4) || !strncmp(at, "&quot;", 6));
+      continue;
+    }
+    const char *end = strchr(at, '>');
+    assert_non_null(end);
+    if (at[1] == '?')
+      continue;
+    size_t length = strcspn(at + 1 + (at[1] == '/'), " />");
+    if (at[1] == '/') {
+      assert_true(depth > 0 && strlen(open[depth - 1]) == length && !strncmp(open[depth - 1], at + 2, length));
+      depth--;
+      continue;
+    }
+    elements++;
+    if (end[-1] == '/')
+      continue;
+    assert_true(depth < 32 && length < 32);
+    snprintf(open[depth++], 32, "%.*s", (int)length, at + 1);
+  }
+  assert_int_equal(depth, 0);
+  return elements;
+}
+
+static void the_sidecar_is_xml_whatever_the_names(void **state) {
+  (void)state;
+  static const result_field odd[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
+                                     {"omega", "1", "a<b", 1, BONDS, "damage"}};
+  char text[16384];
+  result_header h = header("result_<&>.h5");
+  h.interaction = "a<b";
+  h.fields = odd;
+  result *r = result_open(&h, -1, error, sizeof error);
+  assert_non_null(r);
+  write_frame(r, 0);
+  write_frame(r, 1);
+  finish(r);
+  FILE *in = fopen("result_<&>.xdmf", "r");
+  assert_non_null(in);
+  text[fread(text, 1, sizeof text - 1, in)] = 0;
+  fclose(in);
+  /* either grid of a frame: itself, topology, geometry 2, displacement 2 + 2*3; bonds: their pairs, damage 1 + 3 */
+  enum { HEAD = 3, FRAME = 2, GRID = 1 + 1 + 2 + 8, BONDS_MORE = 1 + 4 };
+  assert_int_equal(count_elements(text), HEAD + 2 * (FRAME + 2 * GRID + BONDS_MORE));
+  assert_non_null(strstr(text, ">result_&lt;&amp;&gt;.h5:/frames/a&lt;b/omega</DataItem>"));
+  assert_non_null(strstr(text, ">result_&lt;&amp;&gt;.h5:/bonds/a&lt;b</DataItem>"));
+  unlink("result_<&>.xdmf");
+  unlink("result_<&>.h5");
+}
+
 static long size_of(const char *path) {
   struct stat about;
   return stat(path, &about) == 0 ? (long)about.st_size : -1;
@@ -225,11 +282,231 @@ static void pictures(void **state) {
   assert_non_null(strstr(error, "2 frames"));
 }
 
+/* --- kinds of fields ---------------------------------------------------------------------------- */
+
+enum { KINDS = 6 };
+static const result_field of_kinds[KINDS] = {
+    {"displacement", "m", NULL, 2, PARTICLES, "other"}, {"damage", "1", NULL, 1, PARTICLES, "damage"},
+    {"alpha", "1", "concrete", 1, BONDS, "state"},      {"omega_c", "1", "concrete", 1, BONDS, "damage"},
+    {"omega_t", "1", "concrete", 1, BONDS, "damage"},   {"w", "m", "concrete", 1, BONDS, "output"}};
+
+/* One frame of a law with a state, two damages and an output; without the first `skip` fields. */
+static void write_kinds(const char *path, int skip, int count) {
+  static const double u[2 * PARTICLES] = {0}, mean[PARTICLES] = {0.2, 0.6, 1}, alpha[BONDS] = {5, 7},
+                      crushed[BONDS] = {0.2, 0.3}, torn[BONDS] = {0.1, 1}, width[BONDS] = {0, 1e-3};
+  const double *values[KINDS] = {u, mean, alpha, crushed, torn, width};
+  result_header h = header(path);
+  h.fields = of_kinds + skip;
+  h.field_count = count;
+  result *r = result_open(&h, -1, error, sizeof error);
+  assert_non_null(r);
+  assert_true(result_frame(r, 0, values + skip, error, sizeof error));
+  finish(r);
+}
+
+static void damage_is_the_largest_of_the_damages(void **state) {
+  (void)state;
+  char name[64];
+  long count;
+  write_kinds("result_k.h5", 0, KINDS);
+  result_file *f = result_read("result_k.h5", error, sizeof error);
+  double *damage = result_read_damage(f, 0, &count, error, sizeof error);
+  assert_non_null(damage);
+  assert_int_equal(count, BONDS);
+  assert_true(damage[0] == 0.2 && damage[1] == 1);
+  free(damage);
+  assert_null(result_read_damage(f, 3, &count, error, sizeof error));
+  assert_non_null(strstr(error, "there is no frame 3"));
+  static const char *const given[][2] = {
+      {"w", "concrete/w"}, {"concrete/w", "concrete/w"}, {"displacement", "displacement"}, {"damage", "damage"}};
+  for (int k = 0; k < 4; k++) {
+    assert_true(result_find_field(f, given[k][0], name, sizeof name));
+    assert_string_equal(name, given[k][1]);
+  }
+  assert_false(result_find_field(f, "v", name, sizeof name));
+  assert_false(result_find_field(f, "concrete", name, sizeof name)); /* a group */
+  result_read_close(f);
+  write_kinds("result_n.h5", 0, 3); /* a state, but no damage on bonds */
+  f = result_read("result_n.h5", error, sizeof error);
+  assert_null(result_read_damage(f, 0, &count, error, sizeof error));
+  assert_string_equal(error, "");
+  result_read_close(f);
+}
+
+static void expect_text(hid_t object, const char *name, const char *text) {
+  char found[64];
+  hid_t a = H5Aopen(object, name, H5P_DEFAULT), type = H5Aget_type(a);
+  assert_true(H5Tis_variable_str(type) > 0 && H5Tget_cset(type) == H5T_CSET_UTF8);
+  assert_true(h5_read_attribute_text(object, name, found, sizeof found));
+  assert_string_equal(found, text);
+  H5Tclose(type);
+  H5Aclose(a);
+}
+
+/* As Python's h5py wants it: texts of variable length are its str, counts are whole numbers. */
+static void attributes_have_the_types_readers_expect(void **state) {
+  (void)state;
+  write_kinds("result_k.h5", 0, KINDS);
+  hid_t file = H5Fopen("result_k.h5", H5F_ACC_RDONLY, H5P_DEFAULT);
+  assert_true(file >= 0);
+  expect_text(file, "title", "three particles");
+  static const char *const sets[][3] = {{"/history/load", "units", "N"},
+                                        {"/frames/displacement", "kind", "other"},
+                                        {"/frames/concrete/alpha", "kind", "state"},
+                                        {"/frames/concrete/omega_c", "kind", "damage"},
+                                        {"/frames/concrete/w", "kind", "output"},
+                                        {"/frames/concrete/w", "units", "m"}};
+  for (size_t k = 0; k < sizeof sets / sizeof *sets; k++) {
+    hid_t set = H5Dopen2(file, sets[k][0], H5P_DEFAULT);
+    expect_text(set, sets[k][1], sets[k][2]);
+    H5Dclose(set);
+  }
+  int64_t steps = 0;
+  hid_t a = H5Aopen(file, "steps", H5P_DEFAULT), type = H5Aget_type(a);
+  assert_int_equal(H5Tget_class(type), H5T_INTEGER);
+  assert_true(H5Aread(a, H5T_NATIVE_INT64, &steps) >= 0);
+  assert_int_equal(steps, 42);
+  H5Tclose(type);
+  H5Aclose(a);
+  H5Fclose(file);
+}
+
+/* Files of others, and of earlier versions, may hold texts of fixed length. */
+static void texts_of_fixed_length_are_read(void **state) {
+  (void)state;
+  char text[16];
+  hid_t file = h5_create("fixed.h5"), space = H5Screate(H5S_SCALAR);
+  static const H5T_cset_t sets[] = {H5T_CSET_ASCII, H5T_CSET_UTF8};
+  static const char *const names[] = {"ascii", "utf8"};
+  for (int k = 0; k < 2; k++) {
+    hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, 8);
+    H5Tset_cset(type, sets[k]);
+    hid_t a = H5Acreate2(file, names[k], type, space, H5P_DEFAULT, H5P_DEFAULT);
+    hid_t d = H5Dcreate2(file, names[k], type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+    assert_true(H5Awrite(a, type, "eight ch") >= 0 && H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, "eight ch") >= 0);
+    assert_true(h5_read_attribute_text(file, names[k], text, sizeof text));
+    assert_string_equal(text, "eight ch");
+    assert_true(h5_read_attribute_text(file, names[k], text, 6)); /* cut */
+    assert_string_equal(text, "eight");
+    char *whole = h5_read_text(d);
+    assert_string_equal(whole, "eight ch");
+    free(whole);
+    H5Dclose(d);
+    H5Aclose(a);
+    H5Tclose(type);
+  }
+  assert_true(h5_attribute_text(file, "empty", "") && h5_attribute_text(file, "long", "longer than the place for it"));
+  assert_true(h5_read_attribute_text(file, "empty", text, sizeof text));
+  assert_string_equal(text, "");
+  assert_true(h5_read_attribute_text(file, "long", text, sizeof text));
+  assert_string_equal(text, "longer than the");
+  assert_true(h5_attribute_integer(file, "number", 3));
+  assert_false(h5_read_attribute_text(file, "number", text, sizeof text));
+  H5Sclose(space);
+  H5Fclose(file);
+  unlink("fixed.h5");
+}
+
+/* --- what pictures show ------------------------------------------------------------------------- */
+
+/* Pixels of a colour in the part of a picture between its head and its foot. */
+static long pixels(const char *path, colour ink) {
+  enum { ABOVE = 64, BELOW = 100, NEAR = 6 };
+  cairo_surface_t *s = cairo_image_surface_create_from_png(path);
+  assert_int_equal(cairo_surface_status(s), CAIRO_STATUS_SUCCESS);
+  const unsigned char *data = cairo_image_surface_get_data(s);
+  long count = 0;
+  for (int y = ABOVE; y < cairo_image_surface_get_height(s) - BELOW; y++)
+    for (int x = 0; x < cairo_image_surface_get_width(s); x++) {
+      const unsigned char *p = data + y * cairo_image_surface_get_stride(s) + 4 * x; /* B G R */
+      count += fabs(p[2] - 255 * ink.r) < NEAR && fabs(p[1] - 255 * ink.g) < NEAR && fabs(p[0] - 255 * ink.b) < NEAR;
+    }
+  cairo_surface_destroy(s);
+  return count;
+}
+
+static const colour yellow = {0.95, 0.80, 0.10}, black = {0, 0, 0}, lowest = {0.27, 0.00, 0.33}, highest = {0.99, 0.91, 0.14};
+
+static bool map_of(const char *path, const char *field) {
+  const plot_map_options o = {.output = "map_k.png", .frame = -1, .field = field, .component = -1, .factor = 1};
+  return plot_map(path, &o, error, sizeof error);
+}
+
+static void maps_show_their_field(void **state) {
+  (void)state;
+  write_kinds("result_k.h5", 0, KINDS);
+  assert_true(map_of("result_k.h5", "damage")); /* 0.2 is yellow, 1 a crack; the state 5, 7 would be two cracks */
+  assert_true(pixels("map_k.png", yellow) > 500 && pixels("map_k.png", black) > 500);
+  static const char *const width[] = {"w", "concrete/w"};
+  for (int k = 0; k < 2; k++) {
+    assert_true(map_of("result_k.h5", width[k]));
+    assert_true(pixels("map_k.png", lowest) > 500 && pixels("map_k.png", highest) > 500);
+    assert_true(pixels("map_k.png", black) > 500 && pixels("map_k.png", yellow) == 0);
+  }
+  assert_false(map_of("result_k.h5", "nothing"));
+  assert_non_null(strstr(error, "fields of particles: damage, displacement; of bonds: concrete/alpha, concrete/omega_c"));
+  write_kinds("result_n.h5", 0, 3);
+  assert_false(map_of("result_n.h5", "damage"));
+  assert_non_null(strstr(error, "holds no damage of bonds: write fields = 'displacement', 'damage' in &output"));
+  assert_true(map_of("result_n.h5", "alpha"));
+  assert_int_equal(pixels("map_k.png", black), 0); /* no damage, no cracks */
+  write_kinds("result_n.h5", 1, 4);
+  assert_false(map_of("result_n.h5", "damage"));
+  assert_non_null(strstr(error, "add 'displacement' to `fields` in &output"));
+}
+
+static void several_histories_are_several_curves(void **state) {
+  (void)state;
+  static const colour first = {0.00, 0.27, 0.55}, second = {0.80, 0.25, 0.05};
+  const char *results[] = {"result_k.h5"}, *ys[] = {"energy/kinetic", "time"}, *loads[] = {"load", "load"};
+  write_kinds("result_k.h5", 0, KINDS);
+  plot_curve_options o = {.output = "curve_k.png", .ys = loads, .y_count = 1};
+  assert_true(plot_curve(results, 1, &o, error, sizeof error));
+  assert_true(pixels("curve_k.png", first) > 100 && pixels("curve_k.png", second) == 0);
+  o.y_count = 2; /* the second one hides the first, but for the legend */
+  assert_true(plot_curve(results, 1, &o, error, sizeof error));
+  assert_true(pixels("curve_k.png", first) > 50 && pixels("curve_k.png", second) > 100);
+  o.ys = ys;
+  assert_false(plot_curve(results, 1, &o, error, sizeof error));
+  assert_non_null(strstr(error, "`time` of `result_k.h5` is in s, but `energy/kinetic` of `result_k.h5` is in J"));
+}
+
+/* The numbers along the x axis of a curve from `low` to 1. */
+static unsigned char *x_numbers(double low, size_t *size) {
+  enum { FROM = 710, TO = 740 }; /* rows of pixels */
+  const double x[] = {low, 0, 1}, y[] = {0, 0.1, 1};
+  const plot_curve_options o = {.output = "axis.png", .x = "x", .y = "y"};
+  assert_true(plot_values(x, y, 3, "1", "1", &o, error, sizeof error));
+  cairo_surface_t *s = cairo_image_surface_create_from_png("axis.png");
+  const size_t stride = (size_t)cairo_image_surface_get_stride(s);
+  *size = stride * (TO - FROM);
+  unsigned char *numbers = malloc(*size);
+  memcpy(numbers, cairo_image_surface_get_data(s) + FROM * stride, *size);
+  cairo_surface_destroy(s);
+  return numbers;
+}
+
+static void an_axis_gets_no_step_for_what_cannot_be_seen(void **state) {
+  (void)state;
+  size_t size;
+  unsigned char *exact = x_numbers(0, &size), *nearly = x_numbers(-1e-3, &size), *less = x_numbers(-0.05, &size);
+  assert_memory_equal(exact, nearly, size);
+  assert_memory_not_equal(exact, less, size);
+  free(exact);
+  free(nearly);
+  free(less);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(written_and_read_back),       cmocka_unit_test(resumed_after_a_kill),
       cmocka_unit_test(resume_needs_its_frames),     cmocka_unit_test(two_runs_do_not_share_a_result),
       cmocka_unit_test(an_old_result_survives_a_failed_write), cmocka_unit_test(damaged_files_are_refused),
-      cmocka_unit_test(pictures)};
+      cmocka_unit_test(the_sidecar_is_xml_whatever_the_names), cmocka_unit_test(pictures),
+      cmocka_unit_test(damage_is_the_largest_of_the_damages), cmocka_unit_test(attributes_have_the_types_readers_expect),
+      cmocka_unit_test(texts_of_fixed_length_are_read), cmocka_unit_test(maps_show_their_field),
+      cmocka_unit_test(several_histories_are_several_curves),
+      cmocka_unit_test(an_axis_gets_no_step_for_what_cannot_be_seen)};
   return cmocka_run_group_tests_name("result", tests, NULL, NULL);
 }

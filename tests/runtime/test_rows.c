@@ -517,6 +517,31 @@ static void conditional_extra_point(void **unused) {
   end(&b, w);
 }
 
+/* The first body that holds a site is its body; bodies of other lattices are counted, too. */
+static void particles_know_their_bodies(void **unused) {
+  (void)unused;
+  bench b;
+  begin(&b, 6e-3);
+  body(&b, rectangle(0, 0, 0.06, 0.02));
+  body(&b, rectangle(0, 0, 1, 1));
+  body(&b, rectangle(0, 0, 0.06, 0.06));
+  body(&b, point(0.066, 0));
+  b.bodies[1].lattice = "steel";
+  rows *w = build(&b);
+  int32_t *of = must_calloc((size_t)w->particle_count, sizeof *of);
+  long counts[4] = {0};
+  rows_bodies(w, &b.deck, 0, of);
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    const int32_t expected = w->x[site] > 0.063 ? 3 : w->y[site] < 0.0200001 ? 0 : 2;
+    assert_int_equal(of[p], expected);
+    counts[of[p]]++;
+  }
+  assert_true(counts[0] > 10 && counts[1] == 0 && counts[2] > 10 && counts[3] == 1);
+  free(of);
+  end(&b, w);
+}
+
 static void other_lattices_bodies_stay_out(void **unused) {
   (void)unused;
   bench b;
@@ -542,6 +567,7 @@ int main(void) {
       cmocka_unit_test(bad_geometry_is_reported),
       cmocka_unit_test(absurd_sizes_are_refused),
       cmocka_unit_test(conditional_extra_point),
+      cmocka_unit_test(particles_know_their_bodies),
       cmocka_unit_test(other_lattices_bodies_stay_out),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -35,8 +35,7 @@ static void must_open(small_run *r, const pl_law *law, const char *text) {
   assert_non_null(r->simulation);
 }
 
-/* --- two particles
- * ------------------------------------------------------------------------------------------- */
+/* --- two particles ---------------------------------------------------------------------------- */
 
 /* Frequency of a free pair of particles: sqrt(2 k/m). Displacements of a leapfrog oscillator lie on
    a sine exactly: u(n+1) + u(n-1) = 2 cos(omega' dt) u(n). */
@@ -79,8 +78,7 @@ static double pair_step(void) {
   return 0.05 / sqrt(2 * rigidity_axial(0.2) / SPACING / particle_mass());
 }
 
-/* --- chains in equilibrium
- * ----------------------------------------------------------------------------------- */
+/* --- chains in equilibrium -------------------------------------------------------------------- */
 
 /* A chain of bars under a force at its end: F L/EA, reaction -F. */
 static void a_chain_stretches_by_its_closed_form(void **state) {
@@ -188,8 +186,7 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   small_close(&r);
 }
 
-/* --- loads in time
- * ------------------------------------------------------------------------------------------- */
+/* --- loads in time ---------------------------------------------------------------------------- */
 
 static void a_drive_is_followed_exactly_from_its_start(void **state) {
   (void)state;
@@ -279,9 +276,7 @@ static void reactions_balance_the_momentum(void **state) {
   small_close(&r);
 }
 
-/* --- energy
- * --------------------------------------------------------------------------------------------------
- */
+/* --- energy ----------------------------------------------------------------------------------- */
 
 typedef struct balance {
   double imbalance, external, damage;
@@ -338,9 +333,7 @@ static void the_ledger_closes_with_dissipation(void **state) {
   assert_true(b.imbalance < 0.01 * b.external && b.imbalance < 0.7 * a.imbalance);
 }
 
-/* --- monitors
- * ------------------------------------------------------------------------------------------------
- */
+/* --- monitors --------------------------------------------------------------------------------- */
 
 #define COASTING                                                                                   \
   "&simulation end_time = 1e-5 step = 1e-7 /\n" CHAIN                                              \
@@ -470,8 +463,66 @@ static void damage_is_counted_and_protection_kept(void **state) {
   }
 }
 
-/* --- what a deck that does not fit is told
- * ------------------------------------------------------------------- */
+/* A law with two damages and a state before them: the larger damage of a bond counts everywhere. The chain has two
+   bonds, far below any growth of damage. */
+static void the_larger_of_two_damages_counts(void **state) {
+  (void)state;
+  static const pl_field fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE},
+                                    {"alpha", "1", "state", 0, PL_FIELD_STATE},
+                                    {"crush", "1", "damage", 0, PL_FIELD_DAMAGE}};
+  pl_law law = elastic_bar;
+  law.field_count = 3;
+  law.fields = fields;
+  char text[2048];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-5 step = 1e-7 /\n" CHAIN
+           "&material lattice = 'c' model = 'm' /\n"
+           "&monitor name = 'half' kind = 'damaged' above = 0.5 /\n"
+           "&monitor name = 'most' kind = 'damaged' above = 0.6 /\n"
+           "&monitor name = 'nearly' kind = 'broken' above = 0.9 /\n"
+           "&monitor name = 'gone' kind = 'broken' /\n"
+           "&output frames = 0 fields = 'damage', 'dissipated', 'alpha', 'axial' /\n",
+           2.0 * SPACING);
+  small_run r;
+  must_open(&r, &law, text);
+  sweep *w = simulation_state(r.simulation);
+  rows_bond *bonds = rows_bonds(simulation_rows(r.simulation, 0));
+  assert_int_equal(w->lattice->bond_count, 2);
+  const double given[2][3] = {{0.3, 0.99, 0.6}, {0.9, 0.99, 0.1}}; /* of each bond: omega, alpha, crush */
+  int32_t ends[3] = {0};
+  for (int b = 0; b < 2; b++) {
+    for (int f = 0; f < 3; f++)
+      w->field[f][bonds[b].slot] = given[b][f];
+    ends[bonds[b].i]++;
+    ends[bonds[b].j]++;
+  }
+  static const struct {
+    const char *name, *kind;
+    bool on_bonds;
+  } expected[] = {{"damage", "damage", false}, {"dissipated", "other", false}, {"omega", "damage", true},
+                  {"alpha", "state", true},    {"crush", "damage", true},      {"axial", "output", true}};
+  const frame_field *offered;
+  assert_int_equal(simulation_frame_fields(r.simulation, &offered), 6);
+  for (int k = 0; k < 6; k++) {
+    assert_string_equal(offered[k].name, expected[k].name);
+    assert_string_equal(offered[k].kind, expected[k].kind);
+    assert_int_equal(offered[k].on_bonds, expected[k].on_bonds);
+  }
+  double values[3];
+  simulation_frame_values(r.simulation, 0, values);
+  for (int b = 0; b < 2; b++) { /* 0.6 and 0.9 at the ends, their mean in the middle */
+    const int32_t pair[2] = {bonds[b].i, bonds[b].j};
+    for (int e = 0; e < 2; e++)
+      assert_true(fabs(values[pair[e]] - (ends[pair[e]] == 2 ? 0.75 : b ? 0.9 : 0.6)) < 1e-15);
+  }
+  free(bonds);
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(small_last(&r, "half") == 2 && small_last(&r, "most") == 1);
+  assert_true(small_last(&r, "nearly") == 1 && small_last(&r, "gone") == 0);
+  small_close(&r);
+}
+
+/* --- what a deck that does not fit is told ---------------------------------------------------- */
 
 typedef struct misfit {
   const char *groups;
@@ -505,6 +556,13 @@ static const misfit misfits[] = {
      "lie at one height"},
     {RUN LAW BLOCK USE "&output fields = 'displacment' /\n", DIAG_BAD_VALUE,
      "no field `displacment`"},
+    {RUN LAW BLOCK USE "&output fields = 'energy' /\n", DIAG_BAD_VALUE, "no field `energy`"},
+    {RUN LAW BLOCK USE "&output energy = .false. fields = 'dissipated' /\n", DIAG_DECK_WARNING,
+     "no `dissipated` to store"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'broken' above = 1.5 /\n", DIAG_OUT_OF_BOUNDS,
+     "greater than 0 and at most 1"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'broken' above = 0 /\n", DIAG_OUT_OF_BOUNDS,
+     "greater than 0 and at most 1"},
     {RUN LAW BLOCK USE "&output fields = 'rotation' /\n", DIAG_DECK_WARNING,
      "no `rotation` to store"},
     {"&simulation end_time = 1e-4 step = 1e-5 /\n" LAW BLOCK USE, DIAG_UNSTABLE_STEP,
@@ -541,6 +599,27 @@ static void misfits_are_told_at_their_line(void **state) {
     assert_int_equal(r.simulation != NULL, warning);
     small_close(&r);
   }
+}
+
+/* The caret stands under the word that is wrong; the hint lists what this law can store. */
+static void an_unknown_field_is_answered_with_the_known_ones(void **state) {
+  (void)state;
+  static const char text[] = RUN LAW BLOCK USE "&output fields = 'damage', 'stress', 'energy' /\n";
+  small_run r;
+  small_open(&r, &elastic_bar, text);
+  assert_null(r.simulation);
+  assert_int_equal(r.said.count, 2);
+  static const char *const words[] = {"'stress'", "'energy'"};
+  for (int k = 0; k < 2; k++) {
+    const span where = r.said.items[k].where;
+    assert_int_equal(where.end - where.begin, strlen(words[k]));
+    assert_memory_equal(text + where.begin, words[k], strlen(words[k]));
+  }
+  assert_string_equal(r.said.items[0].hint,
+                      "this run can store `displacement`, `velocity`, `force`, `damage`, "
+                      "`dissipated`, `omega`, `axial`");
+  assert_non_null(strstr(r.said.items[1].hint, "is `dissipated`"));
+  small_close(&r);
 }
 
 static void parameters_are_matched_without_case(void **state) {
@@ -603,7 +682,9 @@ int main(void) {
       cmocka_unit_test(a_stop_ends_the_run_at_its_sample),
       cmocka_unit_test(an_interrupt_ends_an_advance_at_a_step),
       cmocka_unit_test(damage_is_counted_and_protection_kept),
+      cmocka_unit_test(the_larger_of_two_damages_counts),
       cmocka_unit_test(misfits_are_told_at_their_line),
+      cmocka_unit_test(an_unknown_field_is_answered_with_the_known_ones),
       cmocka_unit_test(parameters_are_matched_without_case),
       cmocka_unit_test(a_value_without_default_is_asked_for),
       cmocka_unit_test(a_law_without_density_is_refused),

@@ -212,6 +212,8 @@ static void a_number_gone_bad_is_caught_in_its_step(void **state) {
     assert_string_equal(bad.what, "not a number");
     assert_true(isfinite(bad.stretch) && fabs(bad.stretch) < 0.1);
     assert_true(isfinite(bad.theta_i) && fabs(bad.theta_i) < 0.1);
+    assert_int_equal(bad.field_count, elastic_beam.field_count);
+    assert_true(bad.fields[0] == elastic_beam.fields[0].initial); /* what it held was no number */
     assert_int_equal(simulation_advance(r.simulation, 10, NULL), STEP_BAD);
     small_close(&r);
   }

@@ -39,9 +39,9 @@ static void open_beam(deck_case *c, const char *const *more, int count) {
   assert_true(deck_case_run(c, DECK, overrides, 1 + count));
 }
 
-/* --- figures ------------------------------------------------------------------------------- */
+/* --- figures ---------------------------------------------------------------------------------- */
 
-/* Reference computation of the same protocol by other hands: 5.90 kN at the loaded particle, 5.87
+/* An independent computation of the same protocol: 5.90 kN at the loaded particle, 5.87
    kN at the feet, at an opening of 0.031 mm. 2 %: the printed digits are 0.2 %, the form of the
    damper moves the peak by 1 %, and so may where the load's ramp is sampled. 5 % of the opening:
    near the peak the load is flat. */
@@ -72,7 +72,7 @@ static void the_peak_is_that_of_the_reference(void **state) {
   deck_case_close(&c);
 }
 
-/* --- mirror images --------------------------------------------------------------------------- */
+/* --- mirror images ---------------------------------------------------------------------------- */
 
 /* Largest difference between particles mirrored about midspan, over the largest displacement. */
 static double asymmetry(const sweep *w, double midspan) {

@@ -9,8 +9,7 @@
 
 #include "tests/verification/case.h"
 
-/* --- time step ---------------------------------------------------------------------------------
- */
+/* --- time step -------------------------------------------------------------------------------- */
 
 /* Largest imbalance over the external work at the end, of a driven elastic beam. */
 static double imbalance(double safety, double zeta) {
@@ -65,8 +64,7 @@ static void energy_balances_better_with_smaller_steps(void **state) {
   }
 }
 
-/* --- spacing -------------------------------------------------------------------------------------
- */
+/* --- spacing ---------------------------------------------------------------------------------- */
 
 static const double depth = 0.1, thickness = 0.1;                 /* m */
 static const double modulus = 30e9, ratio = 0.2, end_load = 1000; /* Pa, 1, N */

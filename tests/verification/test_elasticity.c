@@ -46,7 +46,7 @@ static double worse(double *largest, double value, double expected, double scale
   return error;
 }
 
-/* --- the symbolic tangent ------------------------------------------------------------------- */
+/* --- the symbolic tangent --------------------------------------------------------------------- */
 
 /* Plane-stress isotropy (Asadollahi 2014, eqs 2.12, 2.24): E, nu, G = E/(2(1 + nu)). */
 static void the_tangent_is_isotropic(void **state) {
@@ -107,8 +107,7 @@ static void rigidities_have_their_closed_forms(void **state) {
   }
 }
 
-/* --- bond forces of the compiled kernel --------------------------------------------------------
- */
+/* --- bond forces of the compiled kernel ------------------------------------------------------- */
 
 static sweep *patch_of(const rows *w) {
   return sweep_new(w, law_under_test.compiled, law_under_test.parameters, 1e-7, 1, false, true);
@@ -223,8 +222,7 @@ static void the_kernel_is_isotropic(void **state) {
   assert_true(uneven < 1e-8);
 }
 
-/* --- unit cell ---------------------------------------------------------------------------------
- */
+/* --- unit cell -------------------------------------------------------------------------------- */
 
 /* Force of the bond whose chord makes `degrees` with x, as exerted on the body through the bond's
  * far end. */

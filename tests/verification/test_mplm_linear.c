@@ -63,8 +63,8 @@ static double last_frame(result_file *f, const char *name) {
   char error[256], unit[32];
   long count;
   int components;
-  double *values = result_read_frame(f, name, -1, &count, &components, unit, sizeof unit, error,
-                                     sizeof error);
+  double *values =
+      result_read_frame(f, name, -1, &count, &components, unit, sizeof unit, error, sizeof error);
   if (!values) fail_msg("%s", error);
   const double value = values[0];
   free(values);
@@ -99,7 +99,8 @@ static double damper(double spacing, double velocity) {
 
 /* The triangle under the force: half EA eps_t^2 s alpha. */
 static void tears(const char *settings, double spacing, double alpha, double per_area) {
-  const double velocity = 1e-3, bond = 0.5 * axial_rigidity(spacing) * eps_t * eps_t * spacing * alpha;
+  const double velocity = 1e-3,
+               bond = 0.5 * axial_rigidity(spacing) * eps_t * eps_t * spacing * alpha;
   run(settings, spacing, velocity, 1.1 * alpha * eps_t * spacing / velocity + 1e-3);
   result_file *f = open_result();
   long count;
@@ -111,7 +112,7 @@ static void tears(const char *settings, double spacing, double alpha, double per
   const double area = sqrt(3) / 2 * spacing * thickness; /* of a row bond in a crack across rows */
   print_message("%s s = %g mm: %.5g N/m, %.6f of theory; strength %.6f of theory\n", settings,
                 1e3 * spacing, lost / area, lost / bond, strength / expected);
-  assert_true(fabs(lost / bond - 1) < 1e-4);
+  assert_true(fabs(lost / bond - 1) < 3e-4); /* the damage of a step comes all at its end */
   assert_true(fabs(lost / area / per_area - 1) < 2e-3);
   /* a sample every 0.02 ms stands within 1 % of the stretch of the peak */
   assert_true(strength / expected < 1 + 1e-6 && strength / expected > 0.99);
@@ -121,11 +122,18 @@ static void tears(const char *settings, double spacing, double alpha, double per
   clean_up(f);
 }
 
+/* Stretch ratio at separation for a crack energy (N/m), counting the row bonds of a crack across
+   the rows. */
+static double ratio_for(double G_F, double spacing) {
+  return 3 * (1 - nu) * G_F / (E * spacing * eps_t * eps_t);
+}
+
 static void tension_costs_what_the_law_says(void **state) {
   (void)state;
   tears("", 20e-3, 10, 32.9);
-  tears("tension = 'energy'", 20e-3, 53.2, 175);
-  tears("tension = 'energy'", 10e-3, 106.4, 175);
+  tears("tension = 'energy'", 20e-3, ratio_for(175, 20e-3), 175);
+  tears("tension = 'energy'", 10e-3, ratio_for(175, 10e-3), 175);
+  assert_true(fabs(ratio_for(175, 20e-3) - 53.2) < 0.05);
 }
 
 /* Pushed together to a strain of -0.002: the axial force is that of an intact bond. */

@@ -1,5 +1,5 @@
-/* The notched beams of examples/ in full (Asadollahi 2014, chapter 4), beside a reference
-   computation of the same protocol by other hands: prints what there is to compare, and holds the
+/* The notched beams of examples/ in full (Asadollahi 2014, chapter 4), beside an independent
+   computation of the same protocol: prints what there is to compare, and holds the
    peaks. */
 #include <setjmp.h>
 #include <stdarg.h>

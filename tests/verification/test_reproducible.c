@@ -26,8 +26,7 @@
 
 enum { MOST_ARGUMENTS = 24, MOST_RUNS = 16 };
 
-/* --- the command -------------------------------------------------------------------------------
- */
+/* --- the command ------------------------------------------------------------------------------ */
 
 typedef struct command {
   const char *words[MOST_ARGUMENTS];
@@ -128,8 +127,7 @@ static void nap(void) {
   nanosleep(&(struct timespec){0, 1000000}, NULL);
 }
 
-/* --- comparing results ---------------------------------------------------------------------------
- */
+/* --- comparing results ------------------------------------------------------------------------ */
 
 typedef struct comparison {
   hid_t other;
@@ -235,8 +233,7 @@ static double largest(const char *path, const char *name) {
   return most;
 }
 
-/* --- threads -----------------------------------------------------------------------------------
- */
+/* --- threads ---------------------------------------------------------------------------------- */
 
 /* The whole run, with the crack through the beam. */
 static void any_number_of_threads_gives_the_same_bits(void **state) {
@@ -256,8 +253,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
   assert_same("3 threads against 1", results[0], results[2]);
 }
 
-/* --- stopped and resumed -------------------------------------------------------------------------
- */
+/* --- stopped and resumed ---------------------------------------------------------------------- */
 
 /* The unbroken run for the two tests below. */
 static const char *unbroken(void) {
@@ -333,8 +329,23 @@ static void an_interrupted_run_leaves_a_result_and_resumes(void **state) {
   assert_same("interrupted and resumed", unbroken(), target);
 }
 
-/* --- steps and readers of the law
- * ------------------------------------------------------------------ */
+/* A full disk: the frame that did not fit is the first that the resumed run writes. */
+static void a_run_without_room_resumes_with_the_same_bits(void **state) {
+  (void)state;
+  const char *target = in_folder("full.h5"), *log = in_folder("full.log");
+  command c = {{"/bin/sh", "-c", "ulimit -f 400 && exec \"$@\"", "sh", PERILAT_PROGRAM, "run", DECK}, 7};
+  char text[256];
+  set_result(&c, target, text, sizeof text);
+  assert_int_equal(finish(&c, log), 2);
+  assert_true(log_has(log, "cannot write a frame") && log_has(log, "--resume"));
+  assert_true(exists(beside(target, ".checkpoint")));
+  c.words[2] = "exec \"$@\"";
+  add(&c, "--resume");
+  must_finish(&c);
+  assert_same("without room and resumed", unbroken(), target);
+}
+
+/* --- steps and readers of the law ------------------------------------------------------------- */
 
 static void an_unstable_step_is_refused_with_the_limit(void **state) {
   (void)state;
@@ -403,6 +414,7 @@ int main(void) {
       cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
       cmocka_unit_test(a_killed_run_resumes_with_the_same_bits),
       cmocka_unit_test(an_interrupted_run_leaves_a_result_and_resumes),
+      cmocka_unit_test(a_run_without_room_resumes_with_the_same_bits),
       cmocka_unit_test(an_unstable_step_is_refused_with_the_limit),
       cmocka_unit_test(the_interpreter_gives_the_bits_of_the_kernel),
   };

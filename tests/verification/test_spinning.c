@@ -28,7 +28,7 @@ static void open_patch(deck_case *c, double rotation, double end_time, double ze
   assert_true(deck_case_text(c, text));
 }
 
-/* --- at rest ------------------------------------------------------------------------------- */
+/* --- at rest ---------------------------------------------------------------------------------- */
 
 static void turn(sweep *w, double angle, const double about[2]) {
   const double cosine = cos(angle), sine = sin(angle);
@@ -86,7 +86,7 @@ static void a_rigid_rotation_stretches_nothing(void **state) {
   }
 }
 
-/* --- spinning ------------------------------------------------------------------------------ */
+/* --- spinning --------------------------------------------------------------------------------- */
 
 typedef struct motion {
   double mass, momentum[2], angular, kinetic;

@@ -13,8 +13,7 @@
 #include "runtime/rows.h"
 #include "runtime/stability.h"
 
-/* --- laws written by hand: the linear micropolar bond, with dampers ------------------------------
- */
+/* --- laws written by hand: the linear micropolar bond, with dampers --------------------------- */
 
 enum { E_, NU, ZETA, OMEGA_N, DAMPER, DAMAGE_AT, PARAMETERS };
 enum { NONE, VISCOUS, FRICTION, CONSTANT };
@@ -101,8 +100,7 @@ static const pl_law micropolar = {.abi = PL_KERNEL_ABI,
                                   .states = states,
                                   .tangent = tangent};
 
-/* --- the lattice --------------------------------------------------------------------------------
- */
+/* --- the lattice ------------------------------------------------------------------------------ */
 
 static const double modulus = 30e9, density = 2323, spacing = 6.35e-3, thickness = 0.1524;
 static const double poisson[] = {0, 0.1, 0.2, 1.0 / 3};
@@ -160,8 +158,7 @@ static double closed_form(double nu) {
   return fmax(rotation_mode(nu), 2 * sqrt(2 / (1 - nu)));
 }
 
-/* --- theory -------------------------------------------------------------------------------------
- */
+/* --- theory ----------------------------------------------------------------------------------- */
 
 static void published_frequencies(void **unused) {
   (void)unused;
@@ -236,8 +233,7 @@ static void long_waves_travel_at_the_speed_of_sound(void **unused) {
               1e-12);
 }
 
-/* --- a lattice that moves -----------------------------------------------------------------------
- */
+/* --- a lattice that moves --------------------------------------------------------------------- */
 
 enum { SIDE = 6, PARTICLES = SIDE * SIDE }; /* periodic; carries the waves of G, K and M */
 
@@ -336,8 +332,7 @@ static void lattices_bear_the_limit_and_no_more(void **unused) {
   }
 }
 
-/* --- damping ------------------------------------------------------------------------------------
- */
+/* --- damping ---------------------------------------------------------------------------------- */
 
 /* N += 2 zeta m omega_n dL/dt with omega_n of the closed form (Gerstle et al. 2013, eq 18). */
 static material damped(double nu, int damper, double zeta) {
@@ -402,8 +397,7 @@ static void constant_damper_counts(void **unused) {
   assert_true(l.limit < 0.5 * 2 / l.omega_max);
 }
 
-/* --- laws that are not what they should be ------------------------------------------------------
- */
+/* --- laws that are not what they should be ---------------------------------------------------- */
 
 static void odd_laws_do_no_harm(void **unused) {
   (void)unused;

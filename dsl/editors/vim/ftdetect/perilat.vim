@@ -1,0 +1,1 @@
+autocmd BufNewFile,BufRead *.plm set filetype=perilat

@@ -1,0 +1,17 @@
+/* A checked law read back as equations, with tables of its symbols: units, bounds, descriptions.
+   Values of the last step bear the index (n-1), those of the present step (n). */
+#ifndef PERILAT_DSL_EXPLAIN_H
+#define PERILAT_DSL_EXPLAIN_H
+
+#include <stdio.h>
+
+#include "dsl/law.h"
+
+typedef enum explain_form {
+  EXPLAIN_MARKDOWN, /* formulas in $...$ and $$...$$, as GitHub, GitLab and pandoc read them */
+  EXPLAIN_LATEX     /* a whole document for pdflatex */
+} explain_form;
+
+void explain_law(const law *l, explain_form form, FILE *out);
+
+#endif

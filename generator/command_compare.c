@@ -1,0 +1,441 @@
+/* perilat compare: where two results differ most, history by history and field by field.
+   A difference is relative to the largest absolute value that the quantity has in either result;
+   energies are relative to the largest energy of all, since the smaller terms are differences of
+   larger ones. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "dsl/diagnostics.h"
+#include "generator/commands.h"
+#include "generator/result_table.h"
+
+enum { SAME = 0, WRONG = 1, DIFFERENT = 2 };
+static const char program[] = "perilat compare";
+
+typedef struct compare_request {
+  const char *results[2];
+  int result_count;
+  double tolerance;
+  const char **histories, **fields; /* the only ones to look at; none given: all */
+  int history_count, field_count;
+} compare_request;
+
+typedef struct comparison_run {
+  const compare_request *request;
+  result_file *files[2];
+  int compared, different;
+  bool wrong; /* something asked for is not there */
+} comparison_run;
+
+/* The largest difference of a quantity so far, and the largest value as its measure. */
+typedef struct gap {
+  double largest, scale;
+  long frame, row; /* where it is */
+} gap;
+
+static const gap no_gap = {0, 0, -1, -1};
+
+/* Two values that are no numbers are the same; one alone differs without bound. */
+static void widen(gap *g, double a, double b, long frame, long row) {
+  const bool differ = a != b && !(isnan(a) && isnan(b));
+  const double d = differ ? fabs(a - b) : 0;
+  if (!isnan(a)) g->scale = fmax(g->scale, fabs(a));
+  if (!isnan(b)) g->scale = fmax(g->scale, fabs(b));
+  if (!differ || (g->row >= 0 && !(isnan(d) ? !isnan(g->largest) : d > g->largest))) return;
+  g->largest = d;
+  g->frame = frame;
+  g->row = row;
+}
+
+static double relative(const gap *g) {
+  if (g->row < 0) return 0;
+  return g->scale > 0 && isfinite(g->largest) && isfinite(g->scale) ? g->largest / g->scale
+                                                                    : INFINITY;
+}
+
+/* Counts the quantity; prints its line up to the place, which the caller adds. */
+static bool report(comparison_run *c, const char *name, const char *unit, const gap *g) {
+  const double r = relative(g);
+  const bool over = r > c->request->tolerance;
+  char title[128];
+  snprintf(title, sizeof title, "%s [%s]", name, *unit ? unit : "1");
+  c->compared++;
+  c->different += over;
+  printf("%c %-34s %12.4g %12.4g", over ? '*' : ' ', title, g->largest, r);
+  return g->row >= 0;
+}
+
+static bool only_in_one(comparison_run *c, const char *name, int here) {
+  printf("* %-34s only in %s\n", name, c->request->results[here]);
+  c->compared++;
+  c->different++;
+  return false;
+}
+
+/* --- histories -------------------------------------------------------------------------------- */
+
+typedef struct time_axis {
+  double *time[2];
+  long count[2];
+  bool same;    /* sample by sample, to rounding */
+  double until; /* s: what both have */
+} time_axis;
+
+static bool read_axis(comparison_run *c, time_axis *x) {
+  char error[1024], unit[64];
+  for (int k = 0; k < 2; k++) {
+    x->time[k] = result_read_series(c->files[k], "time", &x->count[k], unit, sizeof unit, error,
+                                    sizeof error);
+    if (!x->time[k] || x->count[k] == 0) {
+      fprintf(stderr, "perilat: error: %s\n", x->time[k] ? "a result has no samples" : error);
+      return false;
+    }
+  }
+  const double end[2] = {x->time[0][x->count[0] - 1], x->time[1][x->count[1] - 1]};
+  x->until = fmin(end[0], end[1]);
+  x->same = x->count[0] == x->count[1];
+  for (long n = 0; x->same && n < x->count[0]; n++)
+    x->same = fabs(x->time[0][n] - x->time[1][n]) <= 1e-9 * fmax(end[0], end[1]);
+  return true;
+}
+
+/* Value of the second result's history at time t, on the straight line between its samples. */
+static double value_at(const time_axis *x, const double *values, double t, long *from) {
+  const double *time = x->time[1];
+  const long last = x->count[1] - 1;
+  while (*from < last && time[*from + 1] < t)
+    ++*from;
+  if (*from == last || t <= time[*from]) return values[*from];
+  const double part = (t - time[*from]) / (time[*from + 1] - time[*from]);
+  return part >= 1 ? values[*from + 1] : values[*from] + part * (values[*from + 1] - values[*from]);
+}
+
+static gap gap_of_series(const time_axis *x, const double *a, const double *b) {
+  gap g = no_gap;
+  long from = 0;
+  for (long n = 0; n < x->count[0]; n++) {
+    if (x->time[0][n] > x->until * (1 + 1e-9)) break;
+    widen(&g, a[n], x->same ? b[n] : value_at(x, b, x->time[0][n], &from), 0, n);
+  }
+  return g;
+}
+
+static bool is_energy(const char *name) {
+  return strncmp(name, "energy/", 7) == 0;
+}
+
+/* Largest of all energies in either result, J. */
+static double largest_energy(const comparison_run *c) {
+  double most = 0;
+  char error[1024];
+  for (int k = 0; k < 2; k++) {
+    table_names names = table_names_of(c->files[k], "/history");
+    for (int n = 0; n < names.count; n++) {
+      table_values v;
+      if (!is_energy(names.items[n]) ||
+          !table_read(c->files[k], names.items[n], -1, &v, error, sizeof error))
+        continue;
+      for (long i = 0; i < v.count; i++)
+        if (isfinite(v.values[i])) most = fmax(most, fabs(v.values[i]));
+      free(v.values);
+    }
+    table_names_free(&names);
+  }
+  return most;
+}
+
+static void compare_history(comparison_run *c, const time_axis *x, const char *name,
+                            double energy) {
+  char error[1024];
+  table_values a, b = {.values = NULL};
+  const bool good = table_read(c->files[0], name, -1, &a, error, sizeof error) &&
+                    table_read(c->files[1], name, -1, &b, error, sizeof error);
+  if (!good || a.count != x->count[0] || b.count != x->count[1]) {
+    fprintf(stderr, "perilat: error: %s\n",
+            good ? "a history has not as many values as times" : error);
+    c->wrong = true;
+  } else if (strcmp(a.unit, b.unit) != 0) {
+    printf("* %-34s [%s] and [%s]: not the same unit\n", name, a.unit, b.unit);
+    c->compared++;
+    c->different++;
+  } else {
+    gap g = gap_of_series(x, a.values, b.values);
+    if (is_energy(name)) g.scale = fmax(g.scale, energy);
+    if (report(c, name, a.unit, &g))
+      printf("  t = %.6g ms: %.9g and %.9g", 1e3 * x->time[0][g.row], a.values[g.row],
+             x->same ? b.values[g.row] : value_at(x, b.values, x->time[0][g.row], &(long){0}));
+    putchar('\n');
+  }
+  free(a.values);
+  free(b.values);
+}
+
+static void compare_ends(comparison_run *c, const time_axis *x) {
+  if (x->same) return;
+  gap g = no_gap;
+  const long last[2] = {x->count[0] - 1, x->count[1] - 1};
+  widen(&g, x->time[0][last[0]], x->time[1][last[1]], 0, 0);
+  report(c, "time", "s", &g);
+  printf("  %ld samples to %.6g ms and %ld to %.6g ms; compared at the times of the first\n",
+         x->count[0], 1e3 * x->time[0][last[0]], x->count[1], 1e3 * x->time[1][last[1]]);
+}
+
+/* Names that both have; what only one has is reported. Those asked for must be in both. */
+typedef void compare_one(comparison_run *c, const char *name, void *context);
+
+static bool is_asked(const char *name, const char *const *asked, int count) {
+  for (int k = 0; k < count; k++)
+    if (strcmp(asked[k], name) == 0) return true;
+  return count == 0;
+}
+
+static bool asked_are_there(comparison_run *c, const table_names names[2], const char *kind,
+                            const char *const *asked, int count) {
+  bool good = true;
+  for (int k = 0; k < count; k++)
+    for (int n = 0; n < 2; n++) {
+      if (table_names_find(&names[n], asked[k]) >= 0) continue;
+      fprintf(stderr, "perilat: error: `%s` has no %s `%s`", c->request->results[n], kind,
+              asked[k]);
+      const char *near =
+          nearest_name(asked[k], (const char *const *)names[n].items, names[n].count);
+      fprintf(stderr, near ? "; did you mean `%s`?\n" : "\n", near);
+      good = false;
+    }
+  return good;
+}
+
+static void each_name(comparison_run *c, const char *group, const char *kind,
+                      const char *const *asked, int count, compare_one *compare, void *context) {
+  table_names names[2];
+  for (int n = 0; n < 2; n++)
+    names[n] = table_names_of(c->files[n], group);
+  if (!asked_are_there(c, names, kind, asked, count)) {
+    c->wrong = true;
+  } else {
+    for (int k = 0; k < names[0].count; k++) {
+      const char *name = names[0].items[k];
+      if (!is_asked(name, asked, count)) continue;
+      if (table_names_find(&names[1], name) >= 0)
+        compare(c, name, context);
+      else
+        only_in_one(c, name, 0);
+    }
+    for (int k = 0; k < names[1].count; k++)
+      if (is_asked(names[1].items[k], asked, count) &&
+          table_names_find(&names[0], names[1].items[k]) < 0)
+        only_in_one(c, names[1].items[k], 1);
+  }
+  for (int n = 0; n < 2; n++)
+    table_names_free(&names[n]);
+}
+
+typedef struct history_context {
+  time_axis axis;
+  double energy;
+} history_context;
+
+static void compare_one_history(comparison_run *c, const char *name, void *context) {
+  const history_context *h = context;
+  compare_history(c, &h->axis, name, h->energy);
+}
+
+static void compare_histories(comparison_run *c) {
+  history_context h = {.axis = {.until = 0}};
+  if (read_axis(c, &h.axis)) {
+    h.energy = largest_energy(c);
+    printf("  %-34s %12s %12s  where\n", "history", "largest gap", "relative");
+    compare_ends(c, &h.axis);
+    each_name(c, "/history", "history", c->request->histories, c->request->history_count,
+              compare_one_history, &h);
+  } else
+    c->wrong = true;
+  for (int k = 0; k < 2; k++)
+    free(h.axis.time[k]);
+}
+
+/* --- frames ----------------------------------------------------------------------------------- */
+
+typedef struct frame_context {
+  double *reference[2], *time[2];
+  int32_t *bonds;
+  long particles[2], bond_count, frames[2];
+} frame_context;
+
+static bool same_particles(const frame_context *x) {
+  if (!x->reference[0] || !x->reference[1] || x->particles[0] != x->particles[1]) return false;
+  double extent = 0, apart = 0;
+  for (long n = 0; n < 2 * x->particles[0]; n++) {
+    extent = fmax(extent, fabs(x->reference[0][n]));
+    apart = fmax(apart, fabs(x->reference[0][n] - x->reference[1][n]));
+  }
+  return apart <= 1e-9 * extent;
+}
+
+static void print_place(const frame_context *x, const char *field, const gap *g) {
+  const double *at = x->reference[0];
+  printf("  frame %ld, t = %.6g ms, ", g->frame, 1e3 * x->time[0][g->frame]);
+  if (!table_on_bonds(field))
+    printf("particle %ld at (%.6g, %.6g) mm", g->row, 1e3 * at[2 * g->row],
+           1e3 * at[2 * g->row + 1]);
+  else if (x->bonds && g->row < x->bond_count) {
+    const int32_t *ends = &x->bonds[2 * g->row];
+    printf("bond %ld at (%.6g, %.6g) mm", g->row, 500 * (at[2 * ends[0]] + at[2 * ends[1]]),
+           500 * (at[2 * ends[0] + 1] + at[2 * ends[1] + 1]));
+  }
+}
+
+/* One field in all frames that both have. */
+static void compare_field(comparison_run *c, const char *name, void *context) {
+  const frame_context *x = context;
+  const long frames = x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1];
+  gap g = no_gap;
+  char unit[64] = "";
+  for (long f = 0; f < frames; f++) {
+    char error[1024];
+    table_values a, b = {.values = NULL};
+    const bool good = table_read(c->files[0], name, f, &a, error, sizeof error) &&
+                      table_read(c->files[1], name, f, &b, error, sizeof error);
+    const bool fit =
+        good && a.count == b.count && a.components == b.components && strcmp(a.unit, b.unit) == 0;
+    for (long n = 0; fit && n < a.count * a.components; n++)
+      widen(&g, a.values[n], b.values[n], f, n / a.components);
+    if (good) memcpy(unit, a.unit, sizeof unit);
+    free(a.values);
+    free(b.values);
+    if (fit) continue;
+    if (good) {
+      printf("* %-34s not of the same size and unit\n", name);
+      c->compared++;
+      c->different++;
+    } else {
+      fprintf(stderr, "perilat: error: %s\n", error);
+      c->wrong = true;
+    }
+    return;
+  }
+  if (report(c, name, unit, &g)) print_place(x, name, &g);
+  putchar('\n');
+}
+
+static void compare_frame_times(comparison_run *c, const frame_context *x) {
+  gap g = no_gap;
+  for (long f = 0; f < x->frames[0] && f < x->frames[1]; f++)
+    widen(&g, x->time[0][f], x->time[1][f], f, f);
+  if (relative(&g) > 1e-9) {
+    report(c, "time of frames", "s", &g);
+    printf("  frame %ld: %.6g and %.6g ms\n", g.frame, 1e3 * x->time[0][g.frame],
+           1e3 * x->time[1][g.frame]);
+  }
+  if (x->frames[0] == x->frames[1]) return;
+  printf("* %-34s %ld and %ld; the first %ld are compared\n", "number of frames", x->frames[0],
+         x->frames[1], x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1]);
+  c->compared++;
+  c->different++;
+}
+
+static void compare_frames(comparison_run *c) {
+  frame_context x = {.bond_count = 0};
+  for (int k = 0; k < 2; k++) {
+    x.reference[k] = result_read_reference(c->files[k], &x.particles[k]);
+    x.time[k] = result_read_frame_times(c->files[k], &x.frames[k]);
+    x.frames[k] = x.time[k] ? x.frames[k] : 0;
+  }
+  x.bonds = result_read_bonds(c->files[0], NULL, &x.bond_count);
+  printf("  %-34s %12s %12s  where\n", "field of frames", "largest gap", "relative");
+  if (same_particles(&x)) {
+    compare_frame_times(c, &x);
+    each_name(c, "/frames", "field", c->request->fields, c->request->field_count, compare_field,
+              &x);
+  } else {
+    printf("* %-34s %ld and %ld, or at other places: no frames are compared\n", "particles",
+           x.particles[0], x.particles[1]);
+    c->compared++;
+    c->different++;
+  }
+  for (int k = 0; k < 2; k++) {
+    free(x.reference[k]);
+    free(x.time[k]);
+  }
+  free(x.bonds);
+}
+
+/* --- the command ------------------------------------------------------------------------------ */
+
+static bool read_tolerance(const char *text, double *tolerance) {
+  char *end;
+  *tolerance = strtod(text, &end);
+  if (!*end && end != text && *tolerance >= 0 && isfinite(*tolerance)) return true;
+  fprintf(stderr, "perilat: error: --tolerance needs a number that is not negative, not `%s`\n",
+          text);
+  return false;
+}
+
+static bool read_request(int argc, char **argv, compare_request *q) {
+  int bad = 0;
+  const char *v;
+  for (int at = 0; at < argc && !bad;) {
+    if ((v = option_value(argc, argv, &at, "--tolerance", &bad)))
+      bad = bad || !read_tolerance(v, &q->tolerance);
+    else if ((v = option_value(argc, argv, &at, "--history", &bad)))
+      q->histories[q->history_count++] = v;
+    else if ((v = option_value(argc, argv, &at, "--field", &bad)))
+      q->fields[q->field_count++] = v;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("compare", argv[at]);
+    else if (q->result_count == 2) {
+      fprintf(stderr, "perilat: error: `%s` takes two results; `%s` is a third one\n", program,
+              argv[at]);
+      bad = 1;
+    } else
+      q->results[q->result_count++] = argv[at++];
+  }
+  if (!bad && q->result_count < 2) {
+    fputs("perilat: error: `perilat compare` needs two results\n  perilat compare a.h5 b.h5 "
+          "--tolerance 1e-6\n",
+          stderr);
+    bad = 1;
+  }
+  return !bad;
+}
+
+static int conclude(const comparison_run *c) {
+  const double tolerance = c->request->tolerance;
+  if (c->wrong) return WRONG;
+  if (c->different == 0)
+    printf("same: %d quantit%s, none differs by more than %g\n", c->compared,
+           c->compared == 1 ? "y" : "ies", tolerance);
+  else
+    printf("different: %d of %d quantit%s (marked *) by more than %g\n", c->different, c->compared,
+           c->compared == 1 ? "y" : "ies", tolerance);
+  return c->different ? DIFFERENT : SAME;
+}
+
+static int compare_results(const compare_request *q) {
+  comparison_run c = {.request = q};
+  int status = WRONG;
+  for (int k = 0; k < 2; k++)
+    c.files[k] = table_open(program, q->results[k]);
+  if (c.files[0] && c.files[1]) {
+    const bool all = !q->history_count && !q->field_count;
+    if (all || q->history_count) compare_histories(&c);
+    if (all || q->field_count) compare_frames(&c);
+    status = conclude(&c);
+  }
+  for (int k = 0; k < 2; k++)
+    if (c.files[k]) result_read_close(c.files[k]);
+  return status;
+}
+
+int command_compare(int argc, char **argv) {
+  compare_request q = {.tolerance = 0};
+  q.histories = must_calloc((size_t)argc + 1, sizeof *q.histories);
+  q.fields = must_calloc((size_t)argc + 1, sizeof *q.fields);
+  const int status = read_request(argc, argv, &q) ? compare_results(&q) : WRONG;
+  free(q.histories);
+  free(q.fields);
+  return status;
+}

@@ -1,0 +1,306 @@
+/* perilat drive: one bond along a path. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "generator/commands.h"
+#include "generator/drive.h"
+#include "generator/explain_bad.h"
+#include "generator/run.h"
+#include "generator/settings.h"
+#include "runtime/implied.h"
+
+#define PATH_LIMIT_BYTES ((size_t)16 << 20)
+enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
+
+typedef struct drive_options {
+  const char *law, *path;
+  const char *csv, *hdf5, *picture;
+  const char **settings;
+  int setting_count;
+  bool compiled;
+} drive_options;
+
+/* Everything a drive holds. */
+typedef struct driving {
+  const drive_options *options;
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  drive_input *in;
+  model model;
+  bool opened;
+  const pl_law *law;
+  double *parameters, *initial;
+  drive_table table;
+} driving;
+
+/* --- options ---------------------------------------------------------------------------------- */
+
+static bool take_file(drive_options *o, const char *file) {
+  file_kind kind = kind_of_file(file);
+  if (kind == FILE_RESULT) {
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat drive` needs a law and a path\n",
+            file);
+    return false;
+  }
+  const char **slot = kind == FILE_DECK ? &o->path : &o->law;
+  if (*slot) {
+    fprintf(stderr, "perilat: error: `perilat drive` takes one %s; `%s` is a second one\n",
+            kind == FILE_DECK ? "path" : "law", file);
+    return false;
+  }
+  *slot = file;
+  return true;
+}
+
+static bool read_options(int argc, char **argv, drive_options *o) {
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    const char *value;
+    if (option_flag(argv, &at, "--compiled"))
+      o->compiled = true;
+    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
+      o->settings[o->setting_count++] = value;
+    else if ((value = option_value(argc, argv, &at, "--csv", &bad)))
+      o->csv = value;
+    else if ((value = option_value(argc, argv, &at, "--hdf5", &bad)))
+      o->hdf5 = value;
+    else if ((value = option_value(argc, argv, &at, "--picture", &bad)))
+      o->picture = value;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("drive", argv[at]);
+    else
+      bad = !take_file(o, argv[at++]);
+  }
+  if (!bad && !o->path)
+    fputs("perilat: error: `perilat drive` needs a path\n  perilat drive law.plm path.nml\n",
+          stderr);
+  return !bad && o->path;
+}
+
+/* --- what is driven --------------------------------------------------------------------------- */
+
+static bool read_input(driving *r) {
+  const drive_options *o = r->options;
+  char error[ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(o->path, PATH_LIMIT_BYTES, &length, error, sizeof error);
+  if (!text) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    return false;
+  }
+  int file = source_add(&r->sources, o->path, text, length);
+  free(text);
+  r->in = drive_read(r->memory, &r->sources, file, &r->said);
+  if (!r->in || !settings_read(r->memory, &r->sources, o->settings, o->setting_count,
+                               &r->in->material, &r->said))
+    return false;
+  r->in->output.csv = o->csv ? o->csv : r->in->output.csv;
+  r->in->output.hdf5 = o->hdf5 ? o->hdf5 : r->in->output.hdf5;
+  r->in->output.picture = o->picture ? o->picture : r->in->output.picture;
+  r->in->material.model = o->law ? o->law : r->in->material.model;
+  if (r->in->material.model) return true;
+  diag_report(&r->said, DIAG_MISSING_KEY, r->in->material.item.where, "no law is named");
+  diag_hint(&r->said, "perilat drive law.plm path.nml, or &material model = 'name' / in the path");
+  return false;
+}
+
+static int open_law(driving *r) {
+  char error[ERROR_LENGTH];
+  const char *note;
+  bool good = run_open_material(&r->in->material, r->options->path, &r->model, &r->said);
+  r->opened = r->model.memory != NULL;
+  if (r->opened) diag_print(&r->model.said, stderr);
+  if (!good) return INPUT_WRONG;
+  r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
+  if (note) fprintf(stderr, "perilat: warning: %s\n", note);
+  if (r->law) return 0;
+  fprintf(stderr, "perilat: error: %s\n", error);
+  return DRIVE_FAILED;
+}
+
+static int find_field(const pl_law *kernel, const char *name) {
+  for (int f = 0; f < kernel->field_count; f++)
+    if (strcasecmp(kernel->fields[f].name, name) == 0) return f;
+  return -1;
+}
+
+static bool refuse_field(driving *r, const deck_assignment *a) {
+  const pl_law *kernel = r->law;
+  const char **names = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof *names);
+  for (int f = 0; f < kernel->field_count; f++)
+    names[f] = kernel->fields[f].name;
+  diag_report(&r->said, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no state or damage `%s`",
+              kernel->name, a->name);
+  diag_suggest(&r->said, a->name, names, kernel->field_count);
+  return false;
+}
+
+static bool set_field(driving *r, const deck_assignment *a) {
+  int f = find_field(r->law, a->name);
+  if (f < 0) return refuse_field(r, a);
+  const pl_field *field = &r->law->fields[f];
+  unit wanted = {.dim = DIMENSIONLESS};
+  const char *bad;
+  size_t bad_length;
+  if (*field->unit) (void)unit_parse(field->unit, strlen(field->unit), &wanted, &bad, &bad_length);
+  if (a->word || (a->has_unit && !dim_equal(a->dim, wanted.dim))) {
+    char needs[96];
+    dim_describe(wanted.dim, needs, sizeof needs);
+    diag_report(&r->said, DIAG_UNITS, a->value_where, "`%s` is %s", field->name, needs);
+    return false;
+  }
+  if (field->kind == PL_FIELD_DAMAGE && !(a->value >= 0 && a->value <= 1)) {
+    diag_report(&r->said, DIAG_OUT_OF_BOUNDS, a->value_where, "the damage `%s` is between 0 and 1",
+                field->name);
+    return false;
+  }
+  r->initial[f] = a->value;
+  return true;
+}
+
+/* Parameters, and where state and damage begin. */
+static bool set_values(driving *r) {
+  const pl_law *kernel = r->law;
+  r->parameters = arena_alloc(r->memory, ((size_t)kernel->parameter_count + 1) * sizeof(double));
+  r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
+  for (int f = 0; f < kernel->field_count; f++)
+    r->initial[f] = kernel->fields[f].initial;
+  bool good = material_parameters(&r->in->material, kernel, r->parameters, &r->said);
+  for (int k = 0; k < r->in->initial.assignment_count; k++)
+    good = set_field(r, &r->in->initial.assignments[k]) && good;
+  return good;
+}
+
+/* --- what came out ---------------------------------------------------------------------------- */
+
+static void report_bad(const driving *r) {
+  const drive_table *t = &r->table;
+  const long row = t->bad_row;
+  int column = 0;
+  while (isfinite(t->columns[column].values[row]))
+    column++;
+  fprintf(stderr, "perilat: error: `%s` is not a number at %.6g s, stretch %.6g\n",
+          t->columns[column].name, t->columns[DRIVE_COLUMN_TIME].values[row],
+          t->columns[DRIVE_COLUMN_STRETCH].values[row]);
+  double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
+  for (int f = 0; f < t->fields; f++)
+    fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->initial[f];
+  bad_state at = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+                  .stretch_rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
+                  .theta_i = t->columns[DRIVE_COLUMN_THETA_I].values[row],
+                  .theta_j = t->columns[DRIVE_COLUMN_THETA_J].values[row],
+                  .fields = fields,
+                  .field_count = t->fields};
+  rows *w = implied_lattice(r->in->bond.spacing, r->in->bond.thickness, 0);
+  if (w) {
+    w->mass = drive_bond_class(r->in, 1).mass_i;
+    explain_bad(r->model.plan, r->parameters, w, &at, stderr);
+    rows_free(w);
+  }
+  free(fields);
+}
+
+static void describe(const driving *r) {
+  const drive_table *t = &r->table;
+  const drive_bond *b = &r->in->bond;
+  printf("%s on one bond, s = %.6g mm, t = %.6g mm: %ld rows to %.6g s (%s)\n", r->law->name,
+         1e3 * b->spacing, 1e3 * b->thickness, t->rows,
+         t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
+         r->law->context ? "interpreter" : "compiled");
+  drive_print(t, r->in->output.rows, stdout);
+}
+
+static bool spares_inputs(const driving *r) {
+  const drive_output *o = &r->in->output;
+  const char *const written[] = {o->csv, o->hdf5, o->picture};
+  for (size_t k = 0; k < sizeof written / sizeof *written; k++)
+    if (written[k] &&
+        (same_file(written[k], r->options->path) || same_file(written[k], r->model.path))) {
+      fprintf(stderr, "perilat: error: the output would overwrite `%s`\n", written[k]);
+      return false;
+    }
+  return true;
+}
+
+static bool write_files(const driving *r) {
+  const drive_output *o = &r->in->output;
+  char error[ERROR_LENGTH];
+  bool good = true;
+  const struct {
+    const char *path;
+    bool written;
+  } files[] = {
+      {o->csv, !o->csv || drive_write_csv(&r->table, o->csv, error, sizeof error)},
+      {o->hdf5, !o->hdf5 || drive_write_hdf5(r->in, &r->table, o->hdf5, error, sizeof error)},
+      {o->picture, !o->picture || drive_draw(r->in, &r->table, o->picture, error, sizeof error)}};
+  for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+    if (files[k].path && files[k].written) printf("written %s\n", files[k].path);
+    good = good && files[k].written;
+  }
+  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  return good;
+}
+
+static void print_verdict(const driving *r, const drive_expect *e, const drive_verdict *v) {
+  place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
+  const char *unit_text = strcmp(v->unit, "1") == 0 ? "" : v->unit;
+  printf("%s  %s:%d: %s = %.9g%s%s", v->passed ? "PASS" : "FAIL", r->options->path, at.line,
+         e->quantity, v->found, *unit_text ? " " : "", unit_text);
+  if (v->passed)
+    printf(" (expected %.9g)\n", v->expected);
+  else
+    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, stretch %.6g)\n", v->expected,
+           fabs(v->found - v->expected), v->allowed, v->time, v->stretch);
+}
+
+static int judge(driving *r) {
+  const int count = r->in->expect_count;
+  drive_verdict *verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *verdicts);
+  if (!drive_judge(r->in, &r->model, r->parameters, &r->table, verdicts, &r->said))
+    return INPUT_WRONG;
+  int passed = 0;
+  for (int k = 0; k < count; k++) {
+    print_verdict(r, &r->in->expects[k], &verdicts[k]);
+    passed += verdicts[k].passed;
+  }
+  if (count) printf("%d of %d expectations hold\n", passed, count);
+  return passed == count ? 0 : DRIVE_FAILED;
+}
+
+/* 0, or an exit status. */
+static int drive(driving *r) {
+  if (!read_input(r)) return INPUT_WRONG;
+  int status = open_law(r);
+  if (status) return status;
+  if (!set_values(r) || !spares_inputs(r) ||
+      !drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said))
+    return INPUT_WRONG;
+  describe(r);
+  bool written = write_files(r);
+  if (r->table.bad_row >= 0) {
+    report_bad(r);
+    return DRIVE_FAILED;
+  }
+  status = judge(r);
+  return status ? status : written ? 0 : DRIVE_FAILED;
+}
+
+int command_drive(int argc, char **argv) {
+  drive_options o = {.settings = must_calloc((size_t)argc + 1, sizeof(char *))};
+  driving r = {.options = &o, .memory = arena_new()};
+  diag_begin(&r.said, &r.sources);
+  int status = read_options(argc, argv, &o) ? drive(&r) : INPUT_WRONG;
+  fflush(stdout);
+  diag_print(&r.said, stderr);
+  if (r.table.memory) drive_table_free(&r.table);
+  if (r.opened) model_close(&r.model);
+  diag_clear(&r.said);
+  source_clear(&r.sources);
+  arena_free(r.memory);
+  free(o.settings);
+  return status;
+}

@@ -1,0 +1,230 @@
+/* perilat format, explain, help: laws and the language as text. */
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "dsl/explain.h"
+#include "dsl/format.h"
+#include "dsl/help.h"
+#include "generator/commands.h"
+#include "generator/model.h"
+#include "runtime/deck_table.h"
+
+enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
+#define LAW_LIMIT ((size_t)1 << 20)
+
+/* --- format ----------------------------------------------------------------------------------- */
+
+/* Beside the file, then in its place: a reader sees the old text or the new one, whatever happens. */
+static bool write_in_place(const char *given, const char *text, char *error, size_t size) {
+  struct stat about;
+  char *path = realpath(given, NULL); /* a link stays a link */
+  char *beside = must_calloc(strlen(path ? path : given) + 8, 1);
+  sprintf(beside, "%s.XXXXXX", path ? path : given);
+  int file = path && stat(path, &about) == 0 ? mkstemp(beside) : -1;
+  FILE *out = file >= 0 ? fdopen(file, "wb") : NULL;
+  bool good = out && fputs(text, out) >= 0 && fflush(out) == 0 && fsync(file) == 0 &&
+              fchmod(file, about.st_mode & 07777) == 0;
+  if (out)
+    good = fclose(out) == 0 && good;
+  good = good && rename(beside, path) == 0;
+  if (!good) {
+    snprintf(error, size, "cannot write `%s`: %s", given, strerror(errno));
+    if (file >= 0)
+      unlink(beside);
+  }
+  free(beside);
+  free(path);
+  return good;
+}
+
+typedef enum format_mode { FORMAT_PRINT, FORMAT_CHECK, FORMAT_IN_PLACE } format_mode;
+
+/* 0, or an exit status. */
+static int put_formatted(const char *path, const char *before, const char *after, format_mode mode) {
+  char error[ERROR_LENGTH];
+  bool same = strcmp(before, after) == 0;
+  if (mode == FORMAT_PRINT)
+    fputs(after, stdout);
+  if (mode == FORMAT_CHECK && !same)
+    fprintf(stderr, "%s: not laid out as `perilat format` does\n", path);
+  if (mode != FORMAT_IN_PLACE)
+    return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
+  if (same || write_in_place(path, after, error, sizeof error))
+    return 0;
+  fprintf(stderr, "perilat: error: %s\n", error);
+  return INPUT_WRONG;
+}
+
+static int format_file(const char *path, format_mode mode) {
+  char error[ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(path, LAW_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    return INPUT_WRONG;
+  }
+  source_set sources = {NULL, 0};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  int file = source_add(&sources, path, text, length);
+  char *formatted = format_model(&sources, file, &said);
+  diag_print(&said, stderr);
+  int status = formatted ? put_formatted(path, text, formatted, mode) : INPUT_WRONG;
+  free(formatted);
+  free(text);
+  diag_clear(&said);
+  source_clear(&sources);
+  return status;
+}
+
+int command_format(int argc, char **argv) {
+  format_mode mode = FORMAT_PRINT;
+  int files = 0, status = 0;
+  for (int at = 0; at < argc;) {
+    if (option_flag(argv, &at, "--check"))
+      mode = FORMAT_CHECK;
+    else if (option_flag(argv, &at, "-i"))
+      mode = FORMAT_IN_PLACE;
+    else if (argv[at][0] == '-')
+      return option_unknown("format", argv[at]);
+    else
+      argv[files++] = argv[at++];
+  }
+  if (files == 0) {
+    fputs("perilat: error: `perilat format` needs a law\n", stderr);
+    return INPUT_WRONG;
+  }
+  for (int k = 0; k < files; k++)
+    if (format_file(argv[k], mode) != 0)
+      status = INPUT_WRONG;
+  return status;
+}
+
+/* --- explain ---------------------------------------------------------------------------------- */
+
+static int explain_file(const char *path, explain_form form, const law_choice *choices, int count) {
+  model m;
+  bool good = model_open(&m, path, choices, count);
+  diag_print(&m.said, stderr);
+  if (good)
+    explain_law(m.law, form, stdout);
+  model_close(&m);
+  return good ? 0 : INPUT_WRONG;
+}
+
+/* "option=choice" is cut in two in place. */
+static bool read_choice(char *given, law_choice *choice) {
+  char *equals = strchr(given, '=');
+  if (!equals || equals == given || !equals[1]) {
+    fprintf(stderr, "perilat: error: --set chooses an option of the law, option=choice, not `%s`\n", given);
+    return false;
+  }
+  *equals = 0;
+  *choice = (law_choice){given, equals + 1};
+  return true;
+}
+
+int command_explain(int argc, char **argv) {
+  explain_form form = EXPLAIN_MARKDOWN;
+  const char *path = NULL, *value;
+  law_choice *choices = must_calloc((size_t)argc + 1, sizeof *choices);
+  int bad = 0, count = 0;
+  for (int at = 0; at < argc && !bad;) {
+    if (option_flag(argv, &at, "--latex"))
+      form = EXPLAIN_LATEX;
+    else if (option_flag(argv, &at, "--markdown"))
+      form = EXPLAIN_MARKDOWN;
+    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
+      bad = bad || !read_choice((char *)(size_t)value, &choices[count++]);
+    else if (argv[at][0] == '-')
+      bad = option_unknown("explain", argv[at]);
+    else if (path) {
+      fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n", argv[at]);
+      bad = 1;
+    } else
+      path = argv[at++];
+  }
+  if (!bad && !path) {
+    fputs("perilat: error: `perilat explain` needs a law\n", stderr);
+    bad = 1;
+  }
+  char *found = bad ? NULL : model_find(path, NULL);
+  int status = bad ? INPUT_WRONG : explain_file(found ? found : path, form, choices, count);
+  free(found);
+  free(choices);
+  return status;
+}
+
+/* --- help ------------------------------------------------------------------------------------- */
+
+static void show_command(int k) {
+  printf("%s (a command)\n\n", commands[k].name);
+  command_print(k, stdout);
+}
+
+static void show_key(const deck_key_info *key) {
+  static const char *const limits[] = {"", ", greater than 0", ", not negative", ", greater than 0 and at most 1"};
+  printf("  %-20s %s", key->name, key->doc ? key->doc : "");
+  if (key->unit && strcmp(key->unit, "1") != 0)
+    printf(" (%s%s)", key->unit, limits[key->bound]);
+  else if (key->bound)
+    printf(" (%s)", limits[key->bound] + 2);
+  if (key->choices)
+    printf("; one of %s", key->choices);
+  if (key->required)
+    fputs("; required", stdout);
+  else if (key->fallback)
+    printf("; default %s", key->fallback[0] == '=' ? key->fallback + 2 : key->fallback);
+  putchar('\n');
+}
+
+static void show_group(int g) {
+  const deck_group_info *group = &deck_groups[g];
+  printf("&%s (a group of decks)\n\n%s\n\n", group->name, group->doc);
+  for (int k = 0; k < group->key_count; k++)
+    show_key(&group->keys[k]);
+}
+
+static int show_topic(const char *topic) {
+  int shown = help_show(topic[0] == '&' ? "" : topic, stdout);
+  int group = deck_group_find(topic[0] == '&' ? topic + 1 : topic);
+  if (group >= 0) {
+    if (shown++)
+      putchar('\n');
+    show_group(group);
+  }
+  for (int k = 0; k < command_count; k++)
+    if (strcmp(commands[k].name, topic) == 0) {
+      if (shown++)
+        putchar('\n');
+      show_command(k);
+    }
+  return shown;
+}
+
+static int unknown_topic(const char *topic) {
+  int written = help_topic_count();
+  const char **names = must_calloc((size_t)(written + DECK_GROUP_COUNT + command_count), sizeof *names);
+  help_topics(names);
+  int count = written + deck_group_names(names + written);
+  for (int k = 0; k < command_count; k++)
+    names[count++] = commands[k].name;
+  const char *near = nearest_name(topic, names, count);
+  fprintf(stderr, "perilat: error: there is no help on `%s`", topic);
+  if (near)
+    fprintf(stderr, "; did you mean `%s`?", near);
+  fputs("\n  topics are commands, codes of messages, words and names of the language, groups of decks, units\n", stderr);
+  free(names);
+  return INPUT_WRONG;
+}
+
+int command_help(int argc, char **argv) {
+  if (argc == 1)
+    return show_topic(argv[0]) ? 0 : unknown_topic(argv[0]);
+  fputs("perilat: error: `perilat help` takes one topic, e.g. `perilat help damage`\n", stderr);
+  return INPUT_WRONG;
+}

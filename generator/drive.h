@@ -1,0 +1,185 @@
+/* One bond driven along a path, without a lattice: what a law answers, row by row, with its
+   energies; and what it is expected to answer. Exercises and tests of laws are written in such
+   paths.
+
+   A path is a namelist file (groups in drive_path.c's table, printed by drive_reference). The bond
+   lies along x between two particles; the passes that a beam runs drive it, compiled or on the
+   interpreter. */
+#ifndef PERILAT_GENERATOR_DRIVE_H
+#define PERILAT_GENERATOR_DRIVE_H
+
+#include "generator/model.h"
+#include "runtime/deck.h"
+#include "runtime/namelist.h"
+
+/* What a path prescribes: X(code, name, unit) */
+#define DRIVE_QUANTITIES(X)                                                                        \
+  X(STRETCH, "stretch", "1")                                                                       \
+  X(THETA_I, "theta_i", "1")                                                                       \
+  X(THETA_J, "theta_j", "1")                                                                       \
+  X(STRETCH_RATE, "stretch_rate", "1/s")
+
+typedef enum drive_quantity {
+#define X(code, name, unit) DRIVE_##code,
+  DRIVE_QUANTITIES(X)
+#undef X
+      DRIVE_QUANTITY_COUNT
+} drive_quantity;
+
+typedef enum drive_wave { WAVE_TRIANGLE, WAVE_SINE, WAVE_PULSE } drive_wave;
+
+/* One group &path; those of one quantity add up. */
+typedef struct drive_piece {
+  drive_quantity quantity;
+  span where;
+  bool cyclic;
+  time_function f; /* unless cyclic */
+  drive_wave wave;
+  double amplitude, period, start; /* cyclic: 1 or 1/s, s, s */
+  int cycles;
+} drive_piece;
+
+/* One group &expect. */
+typedef struct drive_expect {
+  deck_item item;
+  const char *quantity;       /* a column, "peak N", "final omega", "stretch at peak N" */
+  double at_time, at_stretch; /* NaN: not given */
+  double after;               /* s: the stretch is looked for from then on */
+  const char *formula;        /* closed form in the law's language, or NULL */
+  span formula_where;
+  const namelist_key *value;    /* NULL with a formula */
+  double tolerance;             /* relative */
+  const namelist_key *absolute; /* tolerance in the quantity's unit, or NULL */
+} drive_expect;
+
+typedef struct drive_simulation {
+  deck_item item;
+  const char *title;
+  double end_time; /* s; negative: where the last piece ends */
+  int steps;
+} drive_simulation;
+
+typedef struct drive_bond {
+  deck_item item;
+  double spacing, thickness; /* m */
+  double mass_i, mass_j;     /* kg; negative: from rho */
+} drive_bond;
+
+typedef struct drive_output {
+  deck_item item;
+  const char *csv, *hdf5, *picture; /* paths, or NULL */
+  const char *x, *y;                /* columns of the picture */
+  int rows;                         /* of the printed table */
+} drive_output;
+
+typedef struct drive_input {
+  const char *path; /* of the file */
+  drive_simulation simulation;
+  drive_bond bond;
+  drive_output output;
+  deck_material material; /* model may be NULL */
+  deck_material initial;  /* state and damage at the start, as assignments */
+  drive_piece *pieces;
+  int piece_count;
+  drive_expect *expects;
+  int expect_count;
+} drive_input;
+
+/* Reads sources->items[file]; a table in a &path is read from its file beside it. NULL on errors.
+ */
+drive_input *drive_read(arena *a, source_set *sources, int file, diagnostics *d);
+/* Every group and key, as Markdown. */
+void drive_reference(FILE *out);
+
+/* Value at a time, and the slope there, which is taken at a time between two steps. */
+double drive_at(const drive_input *in, drive_quantity q, double time);
+double drive_slope(const drive_input *in, drive_quantity q, double time);
+bool drive_prescribes(const drive_input *in, drive_quantity q);
+/* Times from 0 to the end at which the bond is evaluated, ascending: even steps, the corners of the
+   path and the times that expectations name; malloc'ed. */
+double *drive_times(const drive_input *in, long *count);
+double drive_end(const drive_input *in);
+/* First time from `after` on at which the stretch takes the value, or NaN. */
+double drive_time_of_stretch(const drive_input *in, double stretch, double after);
+
+/* --- driving ---------------------------------------------------------------------------------- */
+
+/* The columns before and after those of the law: X(code, name, unit) */
+#define DRIVE_FIRST_COLUMNS(X)                                                                     \
+  X(TIME, "time", "s")                                                                             \
+  X(STRETCH, "stretch", "1") X(STRETCH_RATE, "stretch_rate", "1/s") X(THETA_I, "theta_i", "1")     \
+      X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
+/* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
+   row holds; `imbalance` is external less stored less dissipated. */
+#define DRIVE_LAST_COLUMNS(X)                                                                      \
+  X(STORED, "stored")                                                                              \
+  X(DISSIPATED_DAMAGE, "dissipated_damage") X(DISSIPATED_DAMPING, "dissipated_damping")            \
+      X(DISSIPATED, "dissipated") X(EXTERNAL, "external") X(IMBALANCE, "imbalance")
+
+enum {
+#define X(code, name, unit) DRIVE_COLUMN_##code,
+  DRIVE_FIRST_COLUMNS(X)
+#undef X
+      DRIVE_COLUMN_LAW /* fields and outputs follow */
+};
+enum {
+#define X(code, name) DRIVE_ENERGY_##code,
+  DRIVE_LAST_COLUMNS(X)
+#undef X
+      DRIVE_ENERGY_COUNT
+};
+
+typedef struct drive_column {
+  const char *name, *unit;
+  double *values; /* [rows] */
+} drive_column;
+
+typedef struct drive_table {
+  drive_column *columns;
+  int column_count;
+  long rows;
+  int fields;    /* columns DRIVE_COLUMN_LAW .. are those of the law's fields, then its outputs */
+  long bad_row;  /* first row in which a value is not finite, or -1; rows then end with it */
+  arena *memory; /* owns all */
+} drive_table;
+
+/* Drives `kernel`. `initial` [fields] is where state and damage begin. The table must be freed.
+   False, with a message, when the path leaves what a bond can do (a stretch of -1). */
+bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
+               const double *initial, drive_table *out, diagnostics *d);
+void drive_table_free(drive_table *t);
+int drive_column_find(const drive_table *t, const char *name); /* or -1 */
+/* What the law is told about the bond. rho may be 0. */
+pl_bond_class drive_bond_class(const drive_input *in, double rho);
+
+/* The law's outputs, of whatever law with the same parameters and fields, in the state of one row.
+ */
+void drive_observe(const drive_input *in, const pl_law *kernel, const double *parameters,
+                   const drive_table *t, long row, double *outputs);
+
+/* --- expectations (drive_expect.c) ------------------------------------------------------------ */
+
+typedef struct drive_verdict {
+  bool passed;
+  double found, expected, allowed;
+  const char *unit;
+  double time, stretch; /* of the row */
+} drive_verdict;
+
+/* Judges every &expect; verdicts[expect_count]. `m` is the law as it was driven: closed forms are
+   compiled as further outputs of it. False, with messages, when one cannot be understood. */
+bool drive_judge(const drive_input *in, const model *m, const double *parameters,
+                 const drive_table *t, drive_verdict *verdicts, diagnostics *d);
+
+/* --- what is written (drive_write.c) ---------------------------------------------------------- */
+
+/* At most `most` rows, evenly spread. */
+void drive_print(const drive_table *t, long most, FILE *out);
+bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size);
+/* As a result file of two particles: `perilat plot` and `perilat info` read it. */
+bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
+                      size_t size);
+bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
+                size_t size);
+
+#endif

@@ -1,0 +1,433 @@
+#include "generator/info_law.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/json.h"
+#include "generator/model.h"
+#include "generator/run.h"
+#include "generator/settings.h"
+#include "runtime/deck_value.h"
+#include "runtime/implied.h"
+#include "runtime/stability.h"
+
+static const char *const law_kinds[] = {"central bond", "micropolar bond", "state"};
+
+/* --- what is known of the law ----------------------------------------------------------------- */
+
+typedef struct implied {
+  implied_elasticity elastic;
+  bool stiff;
+  double strength[2], strain[2]; /* under uniform uniaxial strain along x, y */
+  implied_bond bond;
+  implied_waves waves;
+  step_limit step;
+  bool has_mass;
+} implied;
+
+typedef struct facts {
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  model model;
+  deck_material material;
+  pl_law *law;         /* interpreted; NULL for state laws */
+  double *values;      /* [parameters] */
+  bool *given;         /* a default or a setting */
+  const char *missing; /* a parameter without a value, or NULL */
+  double spacing, thickness;
+  implied implied;
+} facts;
+
+static bool read_length(facts *f, const char *option, const char *text, double *value) {
+  double number;
+  int file = source_add(&f->sources, option, text, strlen(text));
+  const span where = {0, (uint32_t)strlen(text), (uint16_t)file};
+  namelist_value v = {.kind = NAMELIST_TEXT, .text = text, .where = where, .text_where = where};
+  if (*text && namelist_number(text, strlen(text), &number) == strlen(text) && isfinite(number)) {
+    v.kind = NAMELIST_NUMBER;
+    v.number = number;
+  }
+  return deck_real_read(&v, option + 2, "m", BOUND_POSITIVE, value, &f->said);
+}
+
+static bool open_law(facts *f, const info_law_options *o) {
+  char *path = model_find(o->law, NULL);
+  bool good;
+  if (o->setting_count) {
+    f->material.model = path ? path : o->law;
+    f->material.item.where = (span){0, 0, UINT16_MAX};
+    good = settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
+                         &f->said) &&
+           run_open_material(&f->material, NULL, &f->model, &f->said);
+  } else {
+    good = model_open(&f->model, path ? path : o->law, NULL, 0) &&
+           (f->model.law->tree->law == LAW_STATE || model_plan(&f->model));
+  }
+  if (f->model.memory) diag_print(&f->model.said, stderr);
+  free(path);
+  return good;
+}
+
+static const deck_assignment *setting_of(const facts *f, const char *name) {
+  for (int k = 0; k < f->material.assignment_count; k++)
+    if (strcasecmp(f->material.assignments[k].name, name) == 0) return &f->material.assignments[k];
+  return NULL;
+}
+
+/* Values, and which of them are known. False on a setting that the law refuses. */
+static bool take_values(facts *f) {
+  const symbol_list *p = &f->model.law->parameters;
+  f->values = arena_alloc(f->memory, ((size_t)p->count + 1) * sizeof *f->values);
+  f->given = arena_alloc(f->memory, (size_t)p->count + 1);
+  for (int k = 0; k < p->count; k++) {
+    const deck_assignment *a = setting_of(f, p->items[k]->name);
+    f->given[k] = a || p->items[k]->has_default;
+    f->values[k] = a ? a->value : p->items[k]->initial;
+    if (!f->given[k] && !f->missing) f->missing = p->items[k]->name;
+  }
+  if (!f->law || f->missing) return true;
+  return material_parameters(&f->material, f->law, f->values, &f->said);
+}
+
+static double rho_of(const facts *f) {
+  for (int p = 0; p < f->law->parameter_count; p++)
+    if (strcmp(f->law->parameters[p].name, "rho") == 0) return f->values[p];
+  return 0;
+}
+
+static bool imply(facts *f) {
+  implied *i = &f->implied;
+  rows *w = implied_lattice(f->spacing, f->thickness, rho_of(f));
+  if (!w) return false;
+  i->has_mass = w->mass > 0;
+  i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
+  for (int c = 0; c < 2; c++)
+    i->strength[c] = implied_strength(f->law, f->values, w, c, &i->strain[c]);
+  implied_bond_curve(f->law, f->values, w, 0, &i->bond);
+  if (i->has_mass) {
+    implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
+    stability_limit(f->law, f->values, w, &i->step);
+  }
+  rows_free(w);
+  return true;
+}
+
+/* Bytes that one bond reads and writes in a step, most of them from a cache: neighbouring bonds
+ * share their ends. */
+static long bytes_per_bond(const kernel_plan *p) {
+  const pass *a = &p->passes[PASS_ROWS];
+  unsigned char *needed = must_calloc((size_t)ir_count(p->graph) + 1, 1);
+  long count = a->root_count + 1; /* the flags */
+  for (int k = 0; k < a->root_count; k++) {
+    ir_mark(p->graph, &a->roots[k].node, 1, needed);
+    count += a->roots[k].target == TO_FIELD; /* read, too, to keep it where a bond is absent */
+  }
+  for (ir_node n = 0; n < ir_count(p->graph); n++)
+    count += needed[n] && ir_operation(p->graph, n) == IR_INPUT &&
+             ir_place(p->graph, n) > ON_BODY && ir_input_source(p->graph, n) == IR_FROM_ENDS;
+  free(needed);
+  return 8 * count;
+}
+
+/* --- as text ---------------------------------------------------------------------------------- */
+
+static void print_parameter(const facts *f, int p) {
+  const law *l = f->model.law;
+  const symbol *s = l->parameters.items[p];
+  char unit_text[64], interval[128] = "", value[32] = "(required)";
+  dim_unit(s->dim, unit_text, sizeof unit_text);
+  if (s->declared->in.given) law_parameter_bounds(l, p, f->values, interval, sizeof interval);
+  if (f->given[p]) snprintf(value, sizeof value, "%.6g", f->values[p]);
+  printf("  %-12s %-12s %-10s %-18s %s\n", s->name, value, unit_text, interval,
+         s->doc ? s->doc : "");
+}
+
+/* Further lines of a description stand below its first one. */
+static void print_description(const char *text) {
+  for (; *text; text++) {
+    putchar(*text);
+    if (*text == '\n') printf("%*s", 38, "");
+  }
+  putchar('\n');
+}
+
+static void print_symbols(const char *title, const symbol_list *list) {
+  if (list->count) printf("%s\n", title);
+  for (int k = 0; k < list->count; k++) {
+    const symbol *s = list->items[k];
+    char unit_text[64];
+    dim_unit(s->dim, unit_text, sizeof unit_text);
+    printf("  %-12s %-10s on %-9s ", s->name, unit_text, placement_name(s->place));
+    print_description(s->doc ? s->doc : "");
+  }
+}
+
+static void print_options(const law *l) {
+  for (int k = 0; k < l->options.count; k++) {
+    const stmt *declared = l->options.items[k]->declared;
+    printf("option %s =", declared->name);
+    for (int w = 0; w < declared->word_count; w++)
+      printf("%s %s", w ? " |" : "", declared->words[w]);
+    printf("   (now: %s)\n", l->chosen[k]);
+  }
+}
+
+static void print_cost(const facts *f) {
+  const kernel_plan *p = f->model.plan;
+  printf("Cost per bond and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; 1 "
+         "pass; %d value%s computed once "
+         "per lattice\n",
+         p->flops_per_bond + p->divisions_per_bond, p->divisions_per_bond, bytes_per_bond(p),
+         p->uniform_count, p->uniform_count == 1 ? "" : "s");
+}
+
+static void print_strength(const implied *i) {
+  for (int c = 0; c < 2; c++) {
+    printf("  peak stress along %c   ", "xy"[c]);
+    if (isfinite(i->strength[c]))
+      printf("%.6g MPa at a uniform strain of %.6g, the other strains held at 0\n",
+             1e-6 * i->strength[c], i->strain[c]);
+    else
+      printf("none: it only grows\n");
+  }
+}
+
+static void print_bond(const implied_bond *b) {
+  if (isfinite(b->peak_force))
+    printf("  a bond drawn out      largest force %.6g N at a stretch of %.6g\n", b->peak_force,
+           b->stretch_at_peak);
+  if (b->separates)
+    printf(
+        "  work of fracture      %.6g J a bond: %.6g N/m across the rows, by aligned bonds alone\n",
+        b->energy, b->row_energy);
+  else
+    printf("  work of fracture      none: a bond never separates\n");
+}
+
+static void print_dynamics(const implied *i, bool rotations) {
+  if (!i->has_mass) {
+    printf("  waves, stable step    unknown: the law has no `rho`\n");
+    return;
+  }
+  printf("  wave speeds           longitudinal %.6g m/s", i->waves.longitudinal[0]);
+  if (fabs(i->waves.longitudinal[1] - i->waves.longitudinal[0]) > 1e-6 * i->waves.longitudinal[0])
+    printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
+  printf(", transverse %.6g m/s", i->waves.transverse);
+  if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
+  printf("\n  stable step           %.6g us (%s mode rules, %.6g rad/s", 1e6 * i->step.limit,
+         i->step.mode, i->step.omega_max);
+  if (i->step.damping_ratio > 0) printf(", damping ratio %.3g", i->step.damping_ratio);
+  printf(")\n");
+}
+
+static void print_implied(const facts *f) {
+  const implied *i = &f->implied;
+  printf("On a hexagonal lattice, s = %.6g mm, t = %.6g mm, plane stress:\n", 1e3 * f->spacing,
+         1e3 * f->thickness);
+  if (i->stiff)
+    printf("  elastic constants     E = %.6g GPa along x, %.6g GPa along y; nu = %.6g, %.6g; G = "
+           "%.6g GPa\n",
+           1e-9 * i->elastic.E[0], 1e-9 * i->elastic.E[1], i->elastic.nu[0], i->elastic.nu[1],
+           1e-9 * i->elastic.G);
+  else
+    printf("  elastic constants     none: the virgin lattice has no stiffness\n");
+  print_strength(i);
+  print_bond(&i->bond);
+  print_dynamics(i, f->law->dof > 2);
+}
+
+static void print_text(const facts *f) {
+  const law *l = f->model.law;
+  printf("%s (law %s)\n", l->tree->name, law_kinds[l->tree->law]);
+  if (l->tree->doc) printf("%s\n", l->tree->doc);
+  printf("Parameters (SI):\n");
+  for (int p = 0; p < l->parameters.count; p++)
+    print_parameter(f, p);
+  print_options(l);
+  print_symbols("State and damage:", &l->fields);
+  print_symbols("Outputs:", &l->outputs);
+  if (f->model.plan) print_cost(f);
+  if (l->nonconservative) printf("Not conservative: %s\n", l->nonconservative);
+  if (f->law && f->missing)
+    printf("What it implies depends on `%s`, which has no default: give --set %s=...\n", f->missing,
+           f->missing);
+  else if (f->law)
+    print_implied(f);
+}
+
+/* --- as JSON ---------------------------------------------------------------------------------- */
+
+static void put_text(json *j, const char *name, const char *text) {
+  json_key(j, name);
+  json_text(j, text);
+}
+
+static void put_number(json *j, const char *name, double number) {
+  json_key(j, name);
+  json_number(j, number);
+}
+
+static void put_bool(json *j, const char *name, bool value) {
+  json_key(j, name);
+  json_bool(j, value);
+}
+
+static void put_pair(json *j, const char *name, const double pair[2]) {
+  json_key(j, name);
+  json_array(j);
+  json_number(j, pair[0]);
+  json_number(j, pair[1]);
+  json_array_end(j);
+}
+
+static void open_symbol(json *j, const symbol *s) {
+  char unit_text[64];
+  dim_unit(s->dim, unit_text, sizeof unit_text);
+  json_object(j);
+  put_text(j, "name", s->name);
+  put_text(j, "unit", unit_text);
+  put_text(j, "description", s->doc);
+}
+
+static void put_parameters(json *j, const facts *f) {
+  const symbol_list *list = &f->model.law->parameters;
+  json_key(j, "parameters");
+  json_array(j);
+  for (int p = 0; p < list->count; p++) {
+    char interval[128] = "";
+    if (list->items[p]->declared->in.given)
+      law_parameter_bounds(f->model.law, p, f->values, interval, sizeof interval);
+    open_symbol(j, list->items[p]);
+    put_number(j, "value", f->given[p] ? f->values[p] : NAN);
+    put_text(j, "bounds", *interval ? interval : NULL);
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
+static void put_symbols(json *j, const char *name, const symbol_list *list) {
+  json_key(j, name);
+  json_array(j);
+  for (int k = 0; k < list->count; k++) {
+    open_symbol(j, list->items[k]);
+    put_text(j, "on", placement_name(list->items[k]->place));
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
+static void put_options(json *j, const law *l) {
+  json_key(j, "options");
+  json_array(j);
+  for (int k = 0; k < l->options.count; k++) {
+    const stmt *declared = l->options.items[k]->declared;
+    json_object(j);
+    put_text(j, "name", declared->name);
+    json_key(j, "choices");
+    json_array(j);
+    for (int w = 0; w < declared->word_count; w++)
+      json_text(j, declared->words[w]);
+    json_array_end(j);
+    put_text(j, "chosen", l->chosen[k]);
+    json_object_end(j);
+  }
+  json_array_end(j);
+}
+
+static void put_cost(json *j, const facts *f) {
+  const kernel_plan *p = f->model.plan;
+  json_key(j, "cost");
+  json_object(j);
+  put_number(j, "operations", p->flops_per_bond + p->divisions_per_bond);
+  put_number(j, "divisions", p->divisions_per_bond);
+  put_number(j, "bytes", (double)bytes_per_bond(p));
+  put_number(j, "passes", 1);
+  put_number(j, "computed_once", p->uniform_count);
+  json_object_end(j);
+}
+
+/* SI units throughout; null for what is infinite, unknown or does not exist. */
+static void put_implied(json *j, const facts *f) {
+  const implied *i = &f->implied;
+  json_key(j, "implied");
+  json_object(j);
+  put_text(j, "lattice", "hexagonal");
+  put_text(j, "setting", "plane_stress");
+  put_number(j, "spacing", f->spacing);
+  put_number(j, "thickness", f->thickness);
+  if (i->stiff) {
+    put_pair(j, "E", i->elastic.E);
+    put_pair(j, "nu", i->elastic.nu);
+    put_number(j, "G", i->elastic.G);
+  }
+  put_pair(j, "peak_stress", i->strength);
+  put_pair(j, "strain_at_peak", i->strain);
+  put_number(j, "bond_peak_force", i->bond.peak_force);
+  put_number(j, "bond_stretch_at_peak", i->bond.stretch_at_peak);
+  put_bool(j, "separates", i->bond.separates);
+  put_number(j, "bond_work_of_fracture", i->bond.energy);
+  put_number(j, "work_of_fracture", i->bond.row_energy);
+  if (i->has_mass) {
+    put_pair(j, "longitudinal_speed", i->waves.longitudinal);
+    put_number(j, "transverse_speed", i->waves.transverse);
+    put_number(j, "rotation_cutoff", f->law->dof > 2 ? i->waves.rotation_cutoff : NAN);
+    put_number(j, "stable_step", i->step.limit);
+    put_text(j, "ruling_mode", i->step.mode);
+    put_number(j, "omega_max", i->step.omega_max);
+    put_number(j, "damping_ratio", i->step.damping_ratio);
+  }
+  json_object_end(j);
+}
+
+static void print_json(const facts *f) {
+  const law *l = f->model.law;
+  json j;
+  json_begin(&j, stdout);
+  json_object(&j);
+  put_text(&j, "model", l->tree->name);
+  put_text(&j, "law", law_kinds[l->tree->law]);
+  put_text(&j, "description", l->tree->doc);
+  put_parameters(&j, f);
+  put_options(&j, l);
+  put_symbols(&j, "fields", &l->fields);
+  put_symbols(&j, "outputs", &l->outputs);
+  put_text(&j, "nonconservative", l->nonconservative);
+  if (f->model.plan) put_cost(&j, f);
+  if (f->law && !f->missing) put_implied(&j, f);
+  json_object_end(&j);
+  json_end(&j);
+}
+
+/* --- all of it -------------------------------------------------------------------------------- */
+
+static bool learn(facts *f, const info_law_options *o) {
+  f->spacing = 10e-3;
+  f->thickness = 100e-3;
+  bool good = (!o->spacing || read_length(f, "--spacing", o->spacing, &f->spacing)) &&
+              (!o->thickness || read_length(f, "--thickness", o->thickness, &f->thickness)) &&
+              open_law(f, o);
+  if (!good) return false;
+  if (f->model.plan) f->law = plan_interpreted(f->model.plan, "");
+  return take_values(f) && (!f->law || f->missing || imply(f));
+}
+
+int info_law(const info_law_options *o) {
+  facts f = {.memory = arena_new()};
+  diag_begin(&f.said, &f.sources);
+  bool good = learn(&f, o);
+  diag_print(&f.said, stderr);
+  if (good && o->json)
+    print_json(&f);
+  else if (good)
+    print_text(&f);
+  if (f.law) plan_interpreted_free(f.law);
+  if (f.model.memory) model_close(&f.model);
+  diag_clear(&f.said);
+  source_clear(&f.sources);
+  arena_free(f.memory);
+  return good ? 0 : 1;
+}

@@ -1,0 +1,18 @@
+/* What a law is and what it implies on a lattice, as text or JSON: `perilat info law.plm`. */
+#ifndef PERILAT_GENERATOR_INFO_LAW_H
+#define PERILAT_GENERATOR_INFO_LAW_H
+
+#include <stdbool.h>
+
+typedef struct info_law_options {
+  const char *law;                 /* name or path */
+  const char *spacing, *thickness; /* e.g. "6.35 mm"; NULL: 10 mm, 100 mm */
+  const char *const *settings;     /* "name=value" */
+  int setting_count;
+  bool json;
+} info_law_options;
+
+/* Exit status. */
+int info_law(const info_law_options *o);
+
+#endif

@@ -1,0 +1,91 @@
+#include "generator/physics.h"
+
+#include <stdlib.h>
+#include <time.h>
+
+#include "dsl/arena.h"
+#include "generator/physics_parts.h"
+
+static double seconds_now(void) {
+  struct timespec t;
+  clock_gettime(CLOCK_MONOTONIC, &t);
+  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+/* What a more telling check has found already is not said again as net work out of a cycle. */
+static bool energy_is_wrong(const physics *p) {
+  return p->failed[DIAG_STORED_ENERGY] || p->failed[DIAG_CLOSED_PATH] ||
+         p->failed[DIAG_DAMAGE_FORCE] || p->failed[DIAG_STIFFNESS] || p->failed[DIAG_REST_FORCE] ||
+         p->failed[DIAG_FLOW] || p->failed[DIAG_EXCHANGE] || p->failed[DIAG_MIRROR];
+}
+
+static void run_checks(physics *p) {
+  const double effort = p->b.options->effort > 0 ? p->b.options->effort : 1;
+  const int rays = (int)(48 * effort), legs = (int)(12 * effort);
+  bench *b = &p->b;
+  bench_allow(b, 0.05);
+  physics_check_rest(p);
+  if (!p->failed[DIAG_REST_FORCE]) physics_check_stiffness(p);
+  bench_allow(b, 0.15);
+  physics_scan(p, rays, true);
+  bench_allow(b, 0.1);
+  physics_histories(p, legs);
+  bench_allow(b, 0.1);
+  physics_scan(p, rays, false);
+  bench_allow(b, 0.1);
+  physics_histories(p, legs);
+  bench_allow(b, 0.1);
+  physics_check_energy_and_force(p);
+  physics_check_tangent(p, 0);
+  bench_allow(b, 0.1);
+  if (!p->failed[DIAG_STIFFNESS]) physics_check_stored_energy(p);
+  if (!p->failed[DIAG_STIFFNESS] && !p->failed[DIAG_STORED_ENERGY]) physics_check_damage_force(p);
+  bench_allow(b, 0.15);
+  physics_check_closed_path(p);
+  bench_allow(b, 0.25);
+  if (!energy_is_wrong(p)) physics_check_dissipation(p);
+}
+
+/* Guards of one line count once, however often its function is called. */
+static void count_guards(const bench *b, physics_report *report) {
+  const lowered_text *t = &b->law_step.text;
+  for (int k = 0; k < t->line_count; k++) {
+    unsigned char seen = 0;
+    bool first = b->varies[k];
+    for (int q = 0; q < t->line_count; q++)
+      if (b->varies[q] && t->lines[q].cases == t->lines[k].cases &&
+          t->lines[q].line == t->lines[k].line) {
+        seen |= b->seen[q];
+        first = first && q >= k;
+      }
+    report->guards += first;
+    report->guards_reached += first && seen == 3;
+  }
+  for (int k = t->line_count; k < b->guards.count; k++) {
+    report->guards += b->varies[k];
+    report->guards_reached += b->varies[k] && b->seen[k] == 3;
+  }
+}
+
+bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report) {
+  static const physics_options usual = {0};
+  double begun = seconds_now();
+  int errors = d->errors;
+  physics_report unwanted;
+  report = report ? report : &unwanted;
+  *report = (physics_report){0};
+  if (l->tree->law == LAW_STATE) return true;
+  physics *p = must_calloc(1, sizeof *p);
+  p->said = d;
+  if (bench_open(&p->b, l, o ? o : &usual, d)) {
+    p->pool = must_alloc((size_t)POOL_MOST * (size_t)p->b.width * sizeof *p->pool);
+    run_checks(p);
+    count_guards(&p->b, report);
+    report->states = p->b.evaluated;
+    free(p->pool);
+    bench_close(&p->b);
+  }
+  free(p);
+  report->seconds = seconds_now() - begun;
+  return d->errors == errors;
+}

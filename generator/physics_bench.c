@@ -1,0 +1,323 @@
+#include "generator/physics_bench.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/comparison.h"
+#include "generator/random_values.h"
+
+/* --- probes ----------------------------------------------------------------------------------- */
+
+probe probe_new(bench *b, const ir_node *roots, int count) {
+  probe p = {.count = count};
+  if (!count) return p;
+  ir_node *nodes = must_alloc((size_t)count * sizeof *nodes);
+  for (int k = 0; k < count; k++)
+    nodes[k] = roots[k] == IR_NONE ? ir_constant(b->graph, 0) : roots[k];
+  p.program = interpreter_new(b->graph, nodes, count);
+  p.out = planes_new(count, BENCH_LANES);
+  free(nodes);
+  return p;
+}
+
+void probe_free(probe *p) {
+  if (!p->count) return;
+  interpreter_free(p->program);
+  planes_free(p->out, p->count);
+  p->count = 0;
+}
+
+void probe_run(bench *b, probe *p, double *const *states, int count) {
+  if (!p->count || !count) return;
+  const double *const *planes = (const double *const *)states;
+  interpreter_inputs in = {
+      .values = {[IR_FROM_PARAMETER] = planes,
+                 [IR_FROM_QUANTITY] = planes + b->parameter_count,
+                 [IR_FROM_FIELD] = planes + b->parameter_count + QUANTITY_COUNT},
+      .stride = {[IR_FROM_PARAMETER] = b->strides,
+                 [IR_FROM_QUANTITY] = b->strides,
+                 [IR_FROM_FIELD] = b->strides}};
+  interpreter_run(p->program, &in, count, p->out);
+  b->evaluated += count;
+}
+
+static const double MOST_OPERATIONS = 3e8; /* about 50 ms */
+
+void bench_allow(bench *b, double share) {
+  double effort = b->options->effort > 0 ? b->options->effort : 1;
+  b->allowed = b->evaluated + share * effort * MOST_OPERATIONS / b->operations;
+}
+
+bool bench_tired(const bench *b) {
+  return b->evaluated > b->allowed;
+}
+
+/* --- opening ---------------------------------------------------------------------------------- */
+
+static void open_guards(bench *b) {
+  const lowered_text *t = &b->law_step.text;
+  int count = t->line_count + t->flow_count;
+  b->varies = arena_alloc(b->memory, (size_t)count + 1);
+  b->seen = arena_alloc(b->memory, (size_t)count + 1);
+  ir_node *guards = must_alloc(((size_t)count + 1) * sizeof *guards);
+  for (int k = 0; k < t->line_count; k++)
+    guards[k] = t->lines[k].guard;
+  for (int k = 0; k < t->flow_count; k++) {
+    ir_node when = t->flows[k].when;
+    guards[t->line_count + k] = when == IR_NONE ? ir_constant(b->graph, 1) : when;
+  }
+  for (int k = 0; k < count; k++)
+    b->varies[k] = ir_place(b->graph, guards[k]) > ON_BODY;
+  b->guards = probe_new(b, guards, count);
+  free(guards);
+}
+
+static void open_probes(bench *b) {
+  const lowered_law *s = &b->law_step, *f = &b->law_frozen;
+  int n = b->field_count;
+  ir_node *roots = must_alloc((size_t)(FORCE_COUNT + 2 * n + 1) * sizeof *roots);
+  ir_node results[FORCE_COUNT] = {s->N, s->M_i, s->M_j}, held[FORCE_COUNT] = {f->N, f->M_i, f->M_j};
+  memcpy(roots, results, sizeof results);
+  for (int k = 0; k < n; k++) {
+    roots[FORCE_COUNT + k] = s->fields[k];
+    roots[FORCE_COUNT + n + k] = s->text.rules[k];
+  }
+  b->step = probe_new(b, roots, FORCE_COUNT + 2 * n);
+  unsigned char *marks = must_calloc((size_t)ir_count(b->graph), 1);
+  ir_mark(b->graph, roots, FORCE_COUNT + 2 * n, marks);
+  for (ir_node k = 0; k < ir_count(b->graph); k++)
+    b->operations += marks[k];
+  free(marks);
+  b->operations = b->operations ? b->operations : 1;
+  b->frozen = probe_new(b, held, FORCE_COUNT);
+  free(roots);
+  open_guards(b);
+}
+
+bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d) {
+  *b = (bench){.law = l,
+               .graph = ir_new(),
+               .memory = arena_new(),
+               .options = o,
+               .seed = o->seed ? o->seed : 20260101};
+  b->parameter_count = l->parameters.count;
+  b->field_count = l->fields.count;
+  b->width = b->parameter_count + QUANTITY_COUNT + b->field_count;
+  b->micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  b->strides = arena_alloc(b->memory, (size_t)b->width); /* as long as any of the three parts */
+  memset(b->strides, 1, (size_t)b->width);
+  if (!lower_law(l, b->graph, LOWER_STEP, b->memory, &b->law_step, d) ||
+      !lower_law(l, b->graph, LOWER_FROZEN, b->memory, &b->law_frozen, d)) {
+    bench_close(b);
+    return false;
+  }
+  open_probes(b);
+  return true;
+}
+
+void bench_close(bench *b) {
+  probe_free(&b->step);
+  probe_free(&b->frozen);
+  probe_free(&b->guards);
+  ir_free(b->graph);
+  arena_free(b->memory);
+}
+
+/* --- states ----------------------------------------------------------------------------------- */
+
+double **bench_states(const bench *b) {
+  return planes_new(b->width, BENCH_LANES);
+}
+
+void bench_states_free(const bench *b, double **states) {
+  planes_free(states, b->width);
+}
+
+double *bench_quantity(const bench *b, double *const *states, builtin_quantity q) {
+  return states[b->parameter_count + (int)q];
+}
+
+double *bench_field(const bench *b, double *const *states, int k) {
+  return states[b->parameter_count + QUANTITY_COUNT + k];
+}
+
+void bench_get(const bench *b, double *const *states, int lane, double *column) {
+  for (int k = 0; k < b->width; k++)
+    column[k] = states[k][lane];
+}
+
+void bench_put(const bench *b, double *const *states, int lane, const double *column) {
+  for (int k = 0; k < b->width; k++)
+    states[k][lane] = column[k];
+}
+
+static const builtin_quantity axis_quantities[AXIS_COUNT] = {
+    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J};
+
+void bench_move(const bench *b, double *const *states, int lane, motion m) {
+  for (int k = 0; k < AXIS_COUNT; k++)
+    bench_quantity(b, states, axis_quantities[k])[lane] =
+        k >= AXIS_THETA_I && !b->micropolar ? 0 : m.at[k];
+  double s = bench_quantity(b, states, QUANTITY_S)[lane];
+  bench_quantity(b, states, QUANTITY_LENGTH)[lane] = s * (1 + m.at[AXIS_STRETCH]);
+}
+
+motion bench_motion(const bench *b, double *const *states, int lane) {
+  motion m;
+  for (int k = 0; k < AXIS_COUNT; k++)
+    m.at[k] = bench_quantity(b, states, axis_quantities[k])[lane];
+  return m;
+}
+
+void bench_virgin(const bench *b, double *const *states, int lane) {
+  for (int k = 0; k < b->field_count; k++)
+    bench_field(b, states, k)[lane] = b->law->fields.items[k]->initial;
+  bench_move(b, states, lane, (motion){{0}});
+}
+
+void bench_accept(const bench *b, double *const *states, int count) {
+  for (int k = 0; k < b->field_count; k++)
+    memcpy(bench_field(b, states, k), b->step.out[FORCE_COUNT + k], (size_t)count * sizeof(double));
+}
+
+/* --- parameters ------------------------------------------------------------------------------- */
+
+/* Something in the middle of the bounds for a parameter that has no default. */
+static double middle(const symbol *p, double low, double high) {
+  double usual = 1;
+  dimension stress = {{-12, 12, -24, 0}}, density = {{-36, 12, 0, 0}};
+  if (dim_equal(p->dim, stress)) usual = 1e9;
+  if (dim_equal(p->dim, density)) usual = 2000;
+  if (isfinite(low) && isfinite(high)) return 0.5 * (low + high);
+  if (isfinite(low) && usual <= low) return low + (fabs(low) > 0 ? fabs(low) : 1);
+  if (isfinite(high) && usual >= high) return high - (fabs(high) > 0 ? fabs(high) : 1);
+  return usual;
+}
+
+static void limits(const law *l, int p, const double *values, double *low, double *high) {
+  const bounds *in = &l->parameters.items[p]->declared->in;
+  *low = in->given && in->lower ? law_constant_value(in->lower, values) : -INFINITY;
+  *high = in->given && in->upper ? law_constant_value(in->upper, values) : INFINITY;
+}
+
+static void start_values(const law *l, double *values) {
+  for (int p = 0; p < l->parameters.count; p++) {
+    const symbol *s = l->parameters.items[p];
+    values[p] = s->initial;
+  }
+  for (int p = 0; p < l->parameters.count; p++) {
+    double low, high;
+    limits(l, p, values, &low, &high);
+    if (!l->parameters.items[p]->has_default) values[p] = middle(l->parameters.items[p], low, high);
+  }
+}
+
+static double vary(bench *b, double value, double low, double high) {
+  double drawn = value * exp2(draw_uniform(&b->seed, -1, 1));
+  bool off = draw_bits(&b->seed) % 2;
+  if (value == 0 && !off)
+    return 0; /* what is switched off by default is switched on in half of the draws */
+  if (value == 0 && isfinite(high))
+    drawn = draw_uniform(&b->seed, isfinite(low) ? low : -high, high);
+  else if (value == 0)
+    drawn = pow(10, draw_uniform(&b->seed, -3, 0));
+  return fmin(fmax(drawn, low), high);
+}
+
+static bool all_within(const law *l, const double *values) {
+  char text[64];
+  for (int p = 0; p < l->parameters.count; p++)
+    if (!law_parameter_within(l, p, values, text, sizeof text)) return false;
+  return true;
+}
+
+static void draw_values(bench *b, double *values) {
+  const law *l = b->law;
+  int n = l->parameters.count;
+  double *start = must_calloc((size_t)n + 1, sizeof *start);
+  memcpy(start, values, (size_t)n * sizeof *start);
+  for (int p = 0; p < n; p++) {
+    double low, high;
+    limits(l, p, values, &low, &high);
+    values[p] = vary(b, start[p], low, high);
+  }
+  /* Open ends and relations between parameters: back toward the defaults until all hold. */
+  for (int back = 0; back < 40 && !all_within(l, values); back++)
+    for (int p = 0; p < n; p++)
+      values[p] = start[p] + (back < 39 ? 0.7 * (values[p] - start[p]) : 0);
+  free(start);
+}
+
+static void put_class(const bench *b, double *const *states, int lane, const pl_bond_class *c) {
+  const struct {
+    builtin_quantity q;
+    double value;
+  } values[] = {{QUANTITY_S, c->s},
+                {QUANTITY_SPACING, c->spacing},
+                {QUANTITY_T, c->t},
+                {QUANTITY_V, c->V},
+                {QUANTITY_M_END_I, c->mass_i},
+                {QUANTITY_M_END_J, c->mass_j},
+                {QUANTITY_M_BOND, fmin(c->mass_i, c->mass_j)},
+                {QUANTITY_AREA, c->area},
+                {QUANTITY_SHELL, c->shell},
+                {QUANTITY_N_FAMILY, c->n}};
+  for (size_t k = 0; k < sizeof values / sizeof *values; k++)
+    bench_quantity(b, states, values[k].q)[lane] = values[k].value;
+}
+
+static pl_bond_class draw_class(bench *b, int lane, double density) {
+  double s = 0.01, t = 0.1, uneven = 1;
+  if (lane > 0) {
+    s *= exp2(draw_uniform(&b->seed, -2, 2));
+    t *= exp2(draw_uniform(&b->seed, -2, 2));
+    uneven = exp2(draw_uniform(&b->seed, -1, 1));
+  }
+  double volume = sqrt(3) / 2 * s * s * t, mass = density * volume;
+  return (pl_bond_class){.s = s,
+                         .spacing = s,
+                         .t = t,
+                         .V = volume,
+                         .mass_i = mass,
+                         .mass_j = mass * uneven,
+                         .area = s * t,
+                         .shell = 1,
+                         .n = 6};
+}
+
+void bench_draw(bench *b, double *const *states, int lane) {
+  const law *l = b->law;
+  int n = l->parameters.count;
+  double *values = must_calloc((size_t)n + 1, sizeof *values);
+  if (b->options->parameters)
+    memcpy(values, b->options->parameters, (size_t)n * sizeof *values);
+  else
+    start_values(l, values);
+  if (!b->options->parameters && lane > 0) draw_values(b, values);
+  for (int p = 0; p < n; p++)
+    states[p][lane] = values[p];
+  pl_bond_class c = b->options->bonds ? *b->options->bonds
+                                      : draw_class(b, lane, l->rho ? values[l->rho->index] : 2000);
+  put_class(b, states, lane, &c);
+  free(values);
+}
+
+/* --- sizes and guards ------------------------------------------------------------------------- */
+
+double bench_length(const bench *b, double *const *states, int lane) {
+  return bench_quantity(b, states, QUANTITY_S)[lane];
+}
+
+double bench_size(const bench *b, double *const *states, const probe *p, int lane) {
+  double moments = fabs(p->out[FORCE_M_I][lane]) + fabs(p->out[FORCE_M_J][lane]);
+  return fabs(p->out[FORCE_N][lane]) + moments / bench_length(b, states, lane);
+}
+
+void bench_watch(bench *b, double *const *states, int count) {
+  probe_run(b, &b->guards, states, count);
+  for (int k = 0; k < b->guards.count; k++)
+    for (int lane = 0; lane < count; lane++)
+      b->seen[k] |= b->guards.out[k][lane] != 0 ? 2 : 1;
+}

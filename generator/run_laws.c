@@ -1,0 +1,243 @@
+/* Laws of a deck: found, checked, options chosen, compiled; parameters read. */
+#define _GNU_SOURCE /* strcasestr */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "generator/physics.h"
+#include "generator/run_parts.h"
+
+/* --- options of a law ------------------------------------------------------------------------- */
+
+static const symbol *find_option(const law *l, const char *name) {
+  for (int k = 0; k < l->options.count; k++)
+    if (strcasecmp(l->options.items[k]->name, name) == 0)
+      return l->options.items[k];
+  return NULL;
+}
+
+/* The choice as the law writes it, or NULL with a diagnostic at the deck's line. */
+static const char *find_choice(const symbol *option, const deck_assignment *a, diagnostics *said) {
+  const stmt *declared = option->declared;
+  for (int w = 0; a->word && w < declared->word_count; w++)
+    if (strcmp(declared->words[w], a->word) == 0)
+      return declared->words[w];
+  char words[256] = "";
+  for (int w = 0; w < declared->word_count; w++) {
+    size_t used = strlen(words);
+    snprintf(words + used, sizeof words - used, "%s'%s'", w ? ", " : "", declared->words[w]);
+  }
+  if (a->word)
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` has no choice `%s`", option->name, a->word);
+  else
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` takes a word", option->name);
+  diag_hint(said, "the choices are %s", words);
+  return NULL;
+}
+
+/* A material's assignment that names an option of the law is a choice, not a parameter value. The choices' texts are
+   copies: they outlive the law. */
+static bool take_choices(deck_material *m, const law *l, law_choice *choices, int *count, diagnostics *said) {
+  int kept = 0;
+  bool good = true;
+  *count = 0;
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_assignment *a = &m->assignments[k];
+    const symbol *option = find_option(l, a->name);
+    if (!option) {
+      m->assignments[kept++] = *a;
+      continue;
+    }
+    const char *choice = find_choice(option, a, said);
+    good = good && choice;
+    if (choice)
+      choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
+  }
+  m->assignment_count = kept;
+  return good;
+}
+
+/* Opens the law a second time when the deck chooses among its options. */
+static bool apply_choices(deck_material *m, const char *path, model *out, diagnostics *said) {
+  law_choice *choices = must_calloc((size_t)m->assignment_count + 1, sizeof *choices);
+  int count;
+  bool good = take_choices(m, out->law, choices, &count, said);
+  if (good && count) {
+    model_close(out);
+    good = model_open(out, path, choices, count);
+  }
+  for (int k = 0; k < count; k++) {
+    free((void *)(uintptr_t)choices[k].option);
+    free((void *)(uintptr_t)choices[k].choice);
+  }
+  free(choices);
+  return good;
+}
+
+/* The parameter of a &field in the law, or -1 after a message. */
+static int find_varying(const deck_material *m, int field, const law *l, diagnostics *said) {
+  const char *wanted = m->varying[field];
+  const char **names = must_calloc((size_t)l->parameters.count + 1, sizeof *names);
+  int found = -1;
+  for (int p = 0; p < l->parameters.count; p++) {
+    names[p] = l->parameters.items[p]->name;
+    if (strcasecmp(names[p], wanted) == 0)
+      found = p;
+  }
+  if (found < 0) {
+    diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field], "the law `%s` has no parameter `%s`", l->tree->name,
+                wanted);
+    diag_suggest(said, wanted, names, l->parameters.count);
+  } else if (strcmp(names[found], "rho") == 0) {
+    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[field],
+                "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
+    found = -1;
+  }
+  free(names);
+  return found;
+}
+
+/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's does. */
+static bool plan_material(const deck_material *m, model *out, diagnostics *said) {
+  int *varying = must_calloc((size_t)m->varying_count + 1, sizeof *varying), count = 0;
+  bool good = true;
+  for (int k = 0; k < m->varying_count; k++) {
+    int found = find_varying(m, k, out->law, said);
+    good = good && found >= 0;
+    int at = count++;
+    for (; at > 0 && varying[at - 1] > found; at--)
+      varying[at] = varying[at - 1];
+    varying[at] = found;
+  }
+  good = good && model_plan_varying(out, varying, count);
+  free(varying);
+  return good;
+}
+
+bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said) {
+  char *path = model_find(m->model, deck_path);
+  if (!path) {
+    diag_report(said, DIAG_FILE, deck_where(&m->item, "model"), "there is no model `%s`", m->model);
+    diag_hint(said, "give a path ending in .plm, or put the file beside the deck or in a folder "
+                    "`models`; PERILAT_MODELS may name another folder");
+    return false;
+  }
+  bool good = model_open(out, path, NULL, 0);
+  if (good && out->law->options.count > 0)
+    good = apply_choices(m, path, out, said);
+  good = good && plan_material(m, out, said);
+  free(path);
+  return good;
+}
+
+/* --- laws ------------------------------------------------------------------------------------- */
+
+static const built_in_law *find_built_in(const run_options *o, const char *model_name) {
+  for (int k = 0; k < o->law_count; k++)
+    if (strcmp(o->laws[k].model, model_name) == 0)
+      return &o->laws[k];
+  return NULL;
+}
+
+/* Options were decided when the solver was built; the deck may repeat them, not change them. */
+static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *b) {
+  int kept = 0;
+  bool good = true;
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_assignment *a = &m->assignments[k];
+    char pair[256];
+    snprintf(pair, sizeof pair, ";%s=", a->name);
+    const char *at = strcasestr(b->choices, pair);
+    if (!at || !a->word) {
+      m->assignments[kept++] = *a;
+      continue;
+    }
+    size_t n = strcspn(at + strlen(pair), ";");
+    if (strlen(a->word) != n || strncmp(at + strlen(pair), a->word, n) != 0) {
+      diag_report(&r->said, DIAG_OPTION, a->value_where,
+                  "this solver was built with `%s` = '%.*s'", a->name, (int)n, at + strlen(pair));
+      diag_hint(&r->said, "build another solver with `perilat build`, or use `perilat run`");
+      good = false;
+    }
+  }
+  m->assignment_count = kept;
+  return good;
+}
+
+static deck_material *material_of(run *r, int lattice) {
+  for (int k = 0; k < r->deck->material_count; k++)
+    if (strcmp(r->deck->materials[k].lattice, r->deck->lattices[lattice].name) == 0)
+      return &r->deck->materials[k];
+  return NULL;
+}
+
+/* Kernels are compiled for plane stress only. */
+static bool setting_is_supported(run *r, const deck_lattice *l) {
+  if (strcmp(l->setting, "plane_stress") == 0)
+    return true;
+  diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&l->item, "setting"),
+              "laws cannot be compiled for plane strain yet");
+  diag_hint(&r->said, "write setting = 'plane_stress', or leave it out");
+  return false;
+}
+
+/* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
+static bool obeys_mechanics(run *r, int lattice, model *opened) {
+  const deck_lattice *d = &r->deck->lattices[lattice];
+  const double *parameters = r->laws[lattice].parameters;
+  const symbol *rho = opened->law->rho;
+  double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
+  double mass = rho ? parameters[rho->index] * volume : 1;
+  const pl_bond_class bonds = {.s = d->spacing, .spacing = d->spacing, .t = d->stiffness_thickness, .V = volume,
+                               .mass_i = mass, .mass_j = mass, .shell = 1, .n = 6};
+  diagnostics found;
+  diag_begin(&found, &opened->sources);
+  bool good = physics_check(opened->law, &(physics_options){.parameters = parameters, .bonds = &bonds, .effort = 0.5}, &found, NULL);
+  tell(r, &found);
+  diag_clear(&found);
+  return good;
+}
+
+/* 0, or an exit status. */
+int load_law(run *r, int lattice) {
+  deck_material *m = material_of(r, lattice);
+  if (!setting_is_supported(r, &r->deck->lattices[lattice]))
+    return INPUT_WRONG;
+  const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;
+  if (r->options->laws) {
+    if (!b) {
+      diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
+                  "this solver was built without the model `%s`", m->model);
+      return INPUT_WRONG;
+    }
+    if (!drop_built_in_choices(r, m, b))
+      return INPUT_WRONG;
+    r->laws[lattice].law = b->law;
+    r->built_in[lattice] = b;
+  } else {
+    model *opened = &r->models[r->open_models];
+    bool good = run_open_material(m, r->options->deck_path, opened, &r->said);
+    if (opened->memory)
+      tell(r, &opened->said);
+    r->open_models += opened->memory != NULL;
+    if (!good)
+      return INPUT_WRONG;
+    char error[4 * ERROR_LENGTH];
+    const char *note;
+    r->laws[lattice].law =
+        model_kernel(opened, r->options->interpret || r->options->check_only, &note, error, sizeof error);
+    if (note)
+      fprintf(stderr, "perilat: warning: %s\n", note);
+    if (!r->laws[lattice].law) {
+      fprintf(stderr, "perilat: error: %s\n", error);
+      return RUN_FAILED;
+    }
+  }
+  const pl_law *kernel = r->laws[lattice].law;
+  r->laws[lattice].parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof(double));
+  if (!material_parameters(m, kernel, r->laws[lattice].parameters, &r->said))
+    return INPUT_WRONG;
+  bool checked = r->options->laws || r->options->no_physics; /* a solver's law was checked when it was built */
+  return checked || obeys_mechanics(r, lattice, &r->models[r->open_models - 1]) ? 0 : INPUT_WRONG;
+}

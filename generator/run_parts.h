@@ -1,0 +1,64 @@
+/* The parts of a run, inside: run.c leads; run_laws.c finds and compiles the laws of a deck, run_result.c writes, run_report.c
+   says what is going on. */
+#ifndef PERILAT_GENERATOR_RUN_PARTS_H
+#define PERILAT_GENERATOR_RUN_PARTS_H
+
+#include "generator/run.h"
+#include "runtime/result.h"
+#include "runtime/simulation.h"
+
+enum { INPUT_WRONG = 1, RUN_FAILED = 2, ERROR_LENGTH = 1024 };
+
+/* Everything a run holds, so that one function can let go of it. */
+typedef struct run {
+  const run_options *options;
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  deck *deck;
+  model *models;           /* [material_count] */
+  int open_models;
+  simulation_law *laws;    /* [lattice_count] */
+  const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
+  simulation *simulation;
+  result *result;
+  char *result_path, *checkpoint_path;
+  char fingerprint[40], started[32];
+  double *frame_buffer;
+} run;
+
+/* Prints diagnostics, or adds them to the report that the caller has asked for. */
+void tell(const run *r, const diagnostics *d);
+
+/* --- run_laws.c --- */
+
+/* Opens, checks and compiles the law of a lattice and reads its parameters. 0, or an exit status. */
+int load_law(run *r, int lattice);
+
+/* --- run_result.c --- */
+
+void choose_paths(run *r);
+/* Errors at the deck's line: a result that cannot be written, or that would replace the deck or a law. */
+bool result_can_be_written(run *r);
+bool result_spares_inputs(run *r);
+/* What a checkpoint belongs to. */
+void fingerprint(run *r);
+bool open_result(run *r, long resume_frames);
+bool write_frame(run *r);
+bool write_checkpoint(run *r);
+bool finish_result(run *r, bool keep_working);
+
+/* --- run_report.c --- */
+
+/* What is about to be done. */
+void announce(const run *r);
+/* "t = 25 ms, load 3100 N (peak 11020), cmod 0.12 mm": the first monitors at the last sample. */
+void describe_monitors(const run *r, char *text, size_t size);
+/* Why and where a run went bad; leaves a path that drives the bond at fault. */
+void report_bad(const run *r);
+/* What came out. */
+void conclude(const run *r, double seconds, long steps);
+/* Which &stop ended the run early. */
+void print_stop(const run *r);
+
+#endif

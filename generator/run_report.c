@@ -1,0 +1,182 @@
+/* What a run says: before, during, after. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/bad_bond.h"
+#include "generator/explain_bad.h"
+#include "generator/run_parts.h"
+#include "runtime/implied.h"
+#include "runtime/random_field.h"
+
+/* --- before the run --------------------------------------------------------------------------- */
+
+static void print_quantity(const char *text, double value, const char *unit_name) {
+  static const struct {
+    double factor;
+    const char *prefix;
+  } scales[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
+  size_t k = 0;
+  while (k < 6 && fabs(value) < scales[k].factor)
+    k++;
+  printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
+}
+
+static void announce_law(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const pl_law *kernel = r->laws[lattice].law;
+  implied_elasticity e;
+  printf("  law        %s", kernel->name);
+  if (r->open_models > lattice && r->models[lattice].path)
+    printf(" (%s)", r->models[lattice].path);
+  if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
+    print_quantity(": on this lattice E = ", e.E[0], "Pa");
+    printf(", nu = %.4f", e.nu[0]);
+    double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
+    if (isfinite(strength))
+      print_quantity(", largest stress ", strength, "Pa under uniform strain along x, sides held");
+  }
+  putchar('\n');
+}
+
+/* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
+static void announce_fields(const run *r) {
+  const random_fields *f = simulation_fields(r->simulation);
+  const pl_law *kernel = r->laws[0].law;
+  for (int k = 0; f && k < f->count; k++) {
+    const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
+    const char *in = p->unit && strcmp(p->unit, "1") != 0 ? p->unit : "";
+    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution %.5g\n", p->name,
+           f->smallest[k], f->largest[k], *in ? " " : "", in, r->laws[0].parameters[kernel->varying[k]]);
+  }
+}
+
+static void announce_lattice(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  printf("  lattice    %s: %s, spacing %.6g mm, %ld particles, %ld bonds, %.5g x %.5g mm between outermost sites\n",
+         k->name, k->kind, 1e3 * w->spacing, w->particle_count, w->bond_count, 1e3 * w->width,
+         1e3 * w->height);
+}
+
+void announce(const run *r) {
+  const deck_simulation *s = &r->deck->simulation;
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  printf("%s\n", s->title ? s->title : r->options->deck_path);
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    announce_lattice(r, k);
+    announce_law(r, k);
+  }
+  announce_fields(r);
+  printf("  time       %.6g ms in %ld steps of %.4g us: %.3g of the stable step %.4g us (%s mode rules)\n",
+         1e3 * s->end_time, simulation_step_count(r->simulation), 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+  printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
+         simulation_threads(r->simulation) == 1 ? "" : "s",
+         simulation_memory(r->simulation) / 1048576.0);
+  printf("  result     %s\n", r->result_path);
+  fflush(stdout);
+}
+
+/* --- during and after ------------------------------------------------------------------------- */
+
+/* "load 3100 N (peak 11020 N), cmod 1.2e-5 m": monitors at the last sample. */
+void describe_monitors(const run *r, char *text, size_t size) {
+  const double *time;
+  long samples = simulation_history(r->simulation, &time);
+  int n = snprintf(text, size, "t = %.4g ms", 1e3 * simulation_time(r->simulation));
+  for (int k = 0; samples > 0 && k < r->deck->monitor_count && k < 2 && n > 0 && (size_t)n < size; k++) {
+    const char *unit_name;
+    const double *values;
+    const char *name = simulation_series(r->simulation, k, &unit_name, &values);
+    const double last = values[samples - 1] + 0.0; /* no minus before zeros */
+    const bool pure = strcmp(unit_name, "1") == 0;
+    n += snprintf(text + n, size - (size_t)n, ", %s %.4g%s%s", name, last, pure ? "" : " ", pure ? "" : unit_name);
+    if (k == 0 && (size_t)n < size)
+      n += snprintf(text + n, size - (size_t)n, " (peak %.4g)",
+                    simulation_monitor_peak(r->simulation, k, NULL));
+  }
+}
+
+/* The bond at fault, for `perilat drive`. */
+static void write_bad_bond(const run *r, const bad_state *b) {
+  char path[4200], error[ERROR_LENGTH + 4200];
+  bad_bond_path(r->result_path, path, sizeof path);
+  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL, &r->laws[0],
+                     simulation_rows(r->simulation, 0), b, error, sizeof error))
+    fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
+  else
+    fprintf(stderr, "  %s\n", error);
+}
+
+void report_bad(const run *r) {
+  bad_state b = simulation_bad(r->simulation);
+  fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld (%.6g, %.6g mm)\n",
+          b.what, b.step, 1e3 * b.time, b.particle, 1e3 * b.x, 1e3 * b.y);
+  if (b.bond_particle >= 0) {
+    fprintf(stderr,
+            "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and %.6g\n",
+            b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
+    if (r->open_models > 0)
+      explain_bad(r->models[0].plan, b.parameters, simulation_rows(r->simulation, 0), &b, stderr);
+    write_bad_bond(r, &b);
+  }
+  fprintf(stderr, "  what was computed until then is in the result; a smaller `step_safety` or a law that "
+                  "stays finite there mends it\n");
+}
+
+static double last_value(const run *r, const char *name) {
+  const double *time;
+  long samples = simulation_history(r->simulation, &time);
+  for (int k = 0; k < simulation_series_count(r->simulation); k++) {
+    const char *unit_name;
+    const double *values;
+    if (strcmp(simulation_series(r->simulation, k, &unit_name, &values), name) == 0 && samples > 0)
+      return values[samples - 1];
+  }
+  return NAN;
+}
+
+static void conclude_energy(const run *r) {
+  double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
+  if (!isfinite(external))
+    return;
+  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, by damping %.3g; "
+         "imbalance %.2g J",
+         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
+         last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"), imbalance);
+  if (fabs(external) > 0)
+    printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+  putchar('\n');
+}
+
+void conclude(const run *r, double seconds, long steps) {
+  const rows *w = simulation_rows(r->simulation, 0);
+  double rate = (double)steps / fmax(seconds, 1e-9);
+  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
+         1e-6 * rate * (double)w->bond_count);
+  for (int k = 0; k < r->deck->monitor_count; k++) {
+    const char *unit_name;
+    const double *values;
+    const char *name = simulation_series(r->simulation, k, &unit_name, &values);
+    double when = 0, peak = simulation_monitor_peak(r->simulation, k, &when);
+    bool pure = strcmp(unit_name, "1") == 0;
+    printf("  %-10s largest %.6g%s%s at t = %.5g ms\n", name, peak, pure ? "" : " ", pure ? "" : unit_name, 1e3 * when);
+  }
+  conclude_energy(r);
+  long frames = result_frame_count(r->result);
+  printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames, frames == 1 ? "" : "s");
+}
+
+/* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
+void print_stop(const run *r) {
+  const deck_stop *s = simulation_stopped_by(r->simulation);
+  if (!s)
+    return;
+  printf("  ended early at t = %.5g ms: %s was %s ", 1e3 * simulation_time(r->simulation), s->monitor,
+         s->below ? "below" : "above");
+  if (s->of_peak)
+    printf("%.4g %% of its peak\n", 100 * s->level);
+  else
+    printf("%.6g\n", s->level);
+}

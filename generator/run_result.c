@@ -1,0 +1,221 @@
+/* What a run writes: paths, result, frames, checkpoints. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "generator/model.h"
+#include "generator/run_parts.h"
+#include "generator/version.h"
+
+/* --- paths and fingerprint -------------------------------------------------------------------- */
+
+/* The result stands in the working folder, named by the deck or after it. */
+void choose_paths(run *r) {
+  const char *given = r->deck->output.result;
+  char path[4096];
+  if (given) {
+    snprintf(path, sizeof path, "%s", given);
+  } else {
+    const char *slash = strrchr(r->options->deck_path, '/');
+    const char *name = slash ? slash + 1 : r->options->deck_path;
+    const char *dot = strrchr(name, '.');
+    snprintf(path, sizeof path, "%.*s.h5", dot ? (int)(dot - name) : (int)strlen(name), name);
+  }
+  char *target = realpath(path, NULL); /* through links, so that the data lie where the user has put them */
+  const char *chosen = target ? target : path;
+  struct stat about;
+  if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode))
+    chosen = path;
+  r->result_path = arena_text(r->memory, chosen, strlen(chosen));
+  free(target);
+  r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", path);
+}
+
+/* Hours of computing must not end in a path that cannot be written. */
+bool result_can_be_written(run *r) {
+  const span where = deck_where(&r->deck->output.item, "result");
+  struct stat about;
+  char folder[4096];
+  const char *slash = strrchr(r->result_path, '/');
+  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->result_path) + 1 : 1, slash ? r->result_path : ".");
+  bool exists = stat(r->result_path, &about) == 0;
+  if (exists && !S_ISREG(about.st_mode))
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is %s", r->result_path,
+                S_ISDIR(about.st_mode) ? "a folder" : "not an ordinary file");
+  else if (exists && !(about.st_mode & 0222))
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is protected against writing", r->result_path);
+  else if (access(folder, W_OK | X_OK) != 0)
+    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%s`: %s", folder, strerror(errno));
+  else
+    return true;
+  diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
+  return false;
+}
+
+static bool result_spares(run *r, const char *input) {
+  if (!same_file(r->result_path, input))
+    return true;
+  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"), "the result would overwrite `%s`", input);
+  diag_hint(&r->said, "give `result` another name in &output");
+  return false;
+}
+
+bool result_spares_inputs(run *r) {
+  bool good = r->options->deck_text || result_spares(r, r->options->deck_path);
+  for (int k = 0; k < r->open_models; k++)
+    for (int f = 0; f < r->models[k].sources.count; f++)
+      good = good && result_spares(r, r->models[k].sources.items[f].name);
+  return good;
+}
+
+static uint64_t fnv(uint64_t hash, const char *text) {
+  for (; *text; text++)
+    hash = (hash ^ (unsigned char)*text) * UINT64_C(0x100000001b3);
+  return (hash ^ 0xff) * UINT64_C(0x100000001b3);
+}
+
+/* What a checkpoint belongs to: the program, the deck as overridden, and the kernels. */
+void fingerprint(run *r) {
+  uint64_t hash = fnv(UINT64_C(0xcbf29ce484222325), perilat_version);
+  hash = fnv(hash, r->deck->identity);
+  for (int k = 0; k < r->deck->lattice_count; k++)
+    hash = fnv(hash, r->laws[k].law->key);
+  snprintf(r->fingerprint, sizeof r->fingerprint, "%016llx", (unsigned long long)hash);
+}
+
+/* --- result ----------------------------------------------------------------------------------- */
+
+static result_text *collect_texts(run *r, bool c_text, int *count) {
+  *count = r->deck->lattice_count;
+  result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
+  int opened = 0;
+  for (int k = 0; k < *count; k++) {
+    const built_in_law *b = r->built_in[k];
+    const model *m = b ? NULL : &r->models[opened++];
+    texts[k].name = r->laws[k].law->name;
+    if (b)
+      texts[k].text = c_text ? b->c_text : b->law_text;
+    else
+      texts[k].text = c_text ? m->c_text : m->sources.items[0].text;
+  }
+  return texts;
+}
+
+static void particle_table(run *r, const rows *w, result_header *h) {
+  size_t n = (size_t)w->particle_count;
+  double *reference = arena_alloc(r->memory, 2 * n * sizeof *reference);
+  double *volume = arena_alloc(r->memory, n * sizeof *volume);
+  int32_t *body = arena_alloc(r->memory, n * sizeof *body);
+  for (size_t p = 0; p < n; p++) {
+    reference[2 * p] = w->x[w->particle_site[p]];
+    reference[2 * p + 1] = w->y[w->particle_site[p]];
+    volume[p] = w->volume;
+  }
+  rows_bodies(w, r->deck, 0, body);
+  h->particle_count = w->particle_count;
+  h->reference = reference;
+  h->volume = volume;
+  h->body = body;
+  rows_bond *bonds = rows_bonds(w);
+  int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
+  for (long m = 0; m < w->bond_count; m++) {
+    pairs[2 * m] = bonds[m].i;
+    pairs[2 * m + 1] = bonds[m].j;
+  }
+  free(bonds);
+  h->bond_count = w->bond_count;
+  h->bonds = pairs;
+}
+
+/* Fields of the frames, as the simulation offers them. */
+static void frame_table(run *r, result_header *h, const char *interaction) {
+  const frame_field *offered;
+  h->field_count = simulation_frame_fields(r->simulation, &offered);
+  result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
+  for (int k = 0; k < h->field_count; k++)
+    fields[k] = (result_field){offered[k].name, offered[k].unit,
+                               offered[k].on_bonds ? interaction : NULL, offered[k].components,
+                               offered[k].on_bonds ? h->bond_count : h->particle_count,
+                               offered[k].kind};
+  h->fields = fields;
+}
+
+static char *list_overrides(run *r) {
+  char *text = arena_text(r->memory, "", 0);
+  for (int k = 0; k < r->options->override_count; k++)
+    text = arena_printf(r->memory, "%s%s\n", text, r->options->overrides[k].text);
+  return text;
+}
+
+bool open_result(run *r, long resume_frames) {
+  result_header h = {.path = r->result_path,
+                     .title = r->deck->simulation.title ? r->deck->simulation.title : "",
+                     .started = r->started,
+                     .version = perilat_version,
+                     .kernel_key = r->laws[0].law->key,
+                     .deck_text = r->sources.items[0].text,
+                     .overrides = list_overrides(r),
+                     .interaction = r->deck->lattices[0].name};
+  h.models = collect_texts(r, false, &h.model_count);
+  h.kernels = collect_texts(r, true, &h.kernel_count);
+  particle_table(r, simulation_rows(r->simulation, 0), &h);
+  frame_table(r, &h, h.interaction);
+  char error[ERROR_LENGTH];
+  r->result = result_open(&h, resume_frames, error, sizeof error);
+  if (!r->result)
+    fprintf(stderr, "perilat: error: %s\n", error);
+  size_t total = 0;
+  for (int k = 0; k < h.field_count; k++)
+    total += (size_t)(h.fields[k].count * h.fields[k].components);
+  r->frame_buffer = must_alloc((total + 1) * sizeof(double));
+  return r->result != NULL;
+}
+
+bool write_frame(run *r) {
+  const frame_field *fields;
+  int count = simulation_frame_fields(r->simulation, &fields);
+  const rows *w = simulation_rows(r->simulation, 0);
+  const double **values = must_alloc((size_t)(count + 1) * sizeof *values);
+  double *at = r->frame_buffer;
+  for (int k = 0; k < count; k++) {
+    values[k] = at;
+    simulation_frame_values(r->simulation, k, at);
+    at += (fields[k].on_bonds ? w->bond_count : w->particle_count) * fields[k].components;
+  }
+  char error[ERROR_LENGTH];
+  bool good = result_frame(r->result, simulation_time(r->simulation), values, error, sizeof error);
+  free(values);
+  if (good)
+    simulation_frame_taken(r->simulation);
+  else /* a resumed run takes it again */
+    fprintf(stderr, "perilat: error: %s\n", error);
+  return good;
+}
+
+bool write_checkpoint(run *r) {
+  char error[ERROR_LENGTH];
+  bool good = result_sync(r->result, error, sizeof error) &&
+              simulation_save(r->simulation, r->checkpoint_path, r->fingerprint,
+                              result_frame_count(r->result), error, sizeof error);
+  if (!good)
+    fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
+  return good;
+}
+
+bool finish_result(run *r, bool keep_working) {
+  int count = simulation_series_count(r->simulation);
+  result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
+  for (int k = 0; k < count; k++)
+    series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
+  const double *time;
+  long samples = simulation_history(r->simulation, &time);
+  char error[ERROR_LENGTH];
+  bool good = result_finish(r->result, simulation_step_limit(r->simulation)->step,
+                            simulation_step_done(r->simulation), time, samples, series, count,
+                            keep_working, error, sizeof error);
+  if (!good)
+    fprintf(stderr, "perilat: error: %s\n", error);
+  return good;
+}

@@ -1,0 +1,9 @@
+/* The files in templates/, built into the program. NAME in them stands for the law's name. */
+#ifndef PERILAT_GENERATOR_TEMPLATES_H
+#define PERILAT_GENERATOR_TEMPLATES_H
+
+extern const char template_central[], template_micropolar[]; /* laws */
+extern const char template_drive[];                          /* a path of both */
+extern const char template_deck[];                           /* a small specimen of both */
+
+#endif

@@ -1,0 +1,435 @@
+/* perilat drive and perilat info: the drive files of the shipped laws, paths against closed forms
+   of their own, refusals, and the file that a failing run leaves. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "generator/drive.h"
+#include "runtime/result.h"
+
+enum { TEXT = 65536 };
+
+/* Runs the program in the test's folder; its output, both channels, into `text`. Returns the exit
+ * status. */
+static int perilat(const char *arguments, char *text) {
+  char command[2048];
+  snprintf(command, sizeof command, "PERILAT_MODELS='%s/models' '%s' %s 2>&1", SOURCE_DIR,
+           PERILAT_PROGRAM, arguments);
+  FILE *in = popen(command, "r");
+  assert_non_null(in);
+  size_t n = fread(text, 1, TEXT - 1, in);
+  text[n] = 0;
+  int status = pclose(in);
+  assert_true(WIFEXITED(status));
+  return WEXITSTATUS(status);
+}
+
+static void write_file(const char *path, const char *text) {
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fputs(text, out);
+  assert_int_equal(fclose(out), 0);
+}
+
+static void expect(const char *arguments, int status, const char *part) {
+  char text[TEXT];
+  int got = perilat(arguments, text);
+  if (got != status || !strstr(text, part))
+    fail_msg("perilat %s\nstatus %d, not %d, or no `%s` in\n%s", arguments, got, status, part,
+             text);
+}
+
+static void drive(const char *path_text, const char *options, int status, const char *part) {
+  char arguments[256];
+  write_file("drive_test.nml", path_text);
+  snprintf(arguments, sizeof arguments, "drive drive_test.nml %s", options);
+  expect(arguments, status, part);
+}
+
+static void near(double value, double expected, double allowed) {
+  if (!(fabs(value - expected) <= allowed)) fail_msg("%.17g is not %.17g", value, expected);
+}
+
+/* --- shipped laws ----------------------------------------------------------------------------- */
+
+static int ends_in(const char *name, const char *tail) {
+  size_t n = strlen(name), m = strlen(tail);
+  return n > m && strcmp(name + n - m, tail) == 0;
+}
+
+static void shipped_drive_files_hold(void **state) {
+  (void)state;
+  char arguments[512], text[TEXT];
+  int files = 0;
+  DIR *folder = opendir(SOURCE_DIR "/models/drives");
+  assert_non_null(folder);
+  for (struct dirent *e; (e = readdir(folder));) {
+    if (!ends_in(e->d_name, ".nml")) continue;
+    for (int compiled = 0; compiled < 2; compiled++) {
+      snprintf(arguments, sizeof arguments, "drive %s/models/drives/%s%s", SOURCE_DIR, e->d_name,
+               compiled ? " --compiled" : "");
+      if (perilat(arguments, text) != 0) fail_msg("%s\n%s", arguments, text);
+      if (!strstr(text, "PASS")) fail_msg("%s expects nothing", e->d_name);
+    }
+    files++;
+  }
+  closedir(folder);
+  assert_true(files >= 9);
+}
+
+/* A law without a drive file that names it is not checked by anything here. */
+static void every_shipped_law_is_driven(void **state) {
+  (void)state;
+  char path[512];
+  DIR *folder = opendir(SOURCE_DIR "/models");
+  assert_non_null(folder);
+  for (struct dirent *e; (e = readdir(folder));) {
+    if (!ends_in(e->d_name, ".plm")) continue;
+    snprintf(path, sizeof path, "%s/models/drives/%.*s.nml", SOURCE_DIR, (int)strlen(e->d_name) - 4,
+             e->d_name);
+    if (access(path, R_OK) != 0) fail_msg("there is no %s", path);
+  }
+  closedir(folder);
+}
+
+/* --- expectations ----------------------------------------------------------------------------- */
+
+#define ELASTIC  "&material model = 'elastic_central' /\n&bond spacing = '10 mm' /\n"
+#define TO_MICRO "&path quantity = 'stretch' value = 1e-4 rise = '1 s' /\n"
+
+/* EA = sqrt(3)/2 * 30 GPa * 10 mm * 100 mm = 25.98 MN, so 2598.08 N at 1e-4. */
+static void a_failed_expectation_is_status_2(void **state) {
+  (void)state;
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2598.0762 N' /\n", "", 0,
+        "1 of 1 expectations hold");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2.5980762 kN' /\n", "", 0, "PASS");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2600 N' /\n", "", 2,
+        "FAIL  drive_test.nml:4: N = 2598.07621 N, expected 2600");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2600 N' absolute = '2 N' /\n", "", 0,
+        "PASS");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2600 N' tolerance = 1e-3 /\n", "", 0,
+        "PASS");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA*2e-4' /\n", "", 2,
+        "0 of 1 expectations hold");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA*1e-4' /\n", "--set E='15 GPa'", 0,
+        "N = 1299.03811 N");
+  drive(ELASTIC TO_MICRO "&expect quantity = 'N' value = '2598.0762 N' /\n", "--set E='15 GPa'", 2,
+        "FAIL");
+}
+
+static void closed_forms_see_the_row(void **state) {
+  (void)state;
+  drive(ELASTIC TO_MICRO
+        "&expect quantity = 'stored' at_time = '0.25 s' formula = 'EA*s*stretch**2/2' tolerance = "
+        "1e-13 /\n"
+        "&expect quantity = 'N' at_stretch = 3.3e-5 formula = 'EA*3.3e-5' tolerance = 1e-12 /\n"
+        "&expect quantity = 'lowest N' value = 0 /\n"
+        "&expect quantity = 'time at peak N' value = '1 s' /\n",
+        "", 0, "4 of 4");
+}
+
+/* --- refusals --------------------------------------------------------------------------------- */
+
+static void bad_paths_are_explained(void **state) {
+  (void)state;
+  static const struct {
+    const char *text, *part;
+  } bad[] = {
+      {"", "no `&path`"},
+      {ELASTIC, "no `&path`: nothing happens"},
+      {TO_MICRO, "no law is named"},
+      {"&pth /", "a path has no group `&pth`"},
+      {ELASTIC "&path quantity = 'strech' value = 1 /", "did you mean `stretch`?"},
+      {ELASTIC "&path quantity = 'stretch' valu = 1 /", "did you mean `value`?"},
+      {ELASTIC "&path quantity = 'stretch' value = '1 mm' /",
+       "`value` is a pure number; `1 mm` is a length"},
+      {ELASTIC "&path quantity = 'stretch' /", "`&path` needs `value`"},
+      {ELASTIC "&path quantity = 'stretch' value = 1 period = '1 s' rise = 2 /",
+       "does not go with a path of cycles"},
+      {ELASTIC "&path quantity = 'stretch' period = '1 s' /", "needs `value`, their amplitude"},
+      {ELASTIC "&path quantity = 'stretch' value = 1 period = '1 s' cycles = 1.5 /",
+       "whole number from 1"},
+      {ELASTIC "&path quantity = 'stretch' value = 1 period = 0 /",
+       "`period` must be greater than 0"},
+      {ELASTIC "&path quantity = 'stretch' times = 0, 1 values = 0 /", "must be equally many"},
+      {ELASTIC "&path quantity = 'stretch' times = 1, 0 values = 0, 1 /",
+       "later than the one before"},
+      {ELASTIC "&path quantity = 'stretch' file = 'missing.csv' /", "cannot read `missing.csv`"},
+      {ELASTIC "&path quantity = 'stretch' file = 'drive_test.nml' /", "is not a time and a value"},
+      {ELASTIC "&path quantity = 'stretch' value = -1.5 rise = 1 /", "the bond has no length left"},
+      {ELASTIC "&bond spacing = '5 mm' /\n" TO_MICRO, "a path has one `&bond`"},
+      {ELASTIC "&simulation steps = 0 /\n" TO_MICRO, "`steps` must be at least 1"},
+      {ELASTIC "&initial omega = 0.5 /\n" TO_MICRO, "has no state or damage `omega`"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' /", "needs `value` or `formula`"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' value = 1 formula = '1' /", "not both"},
+      {ELASTIC TO_MICRO "&expect quantity = 'Nn' value = 1 /", "no column `Nn`"},
+      {ELASTIC TO_MICRO "&expect quantity = 'peak of N' value = 1 /",
+       "is not a quantity of the table"},
+      {ELASTIC TO_MICRO "&expect quantity = 'peak N' at_time = 0 value = 1 /", "says itself when"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' at_time = 2 value = 1 /", "the path ends at 1 s"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' at_stretch = 1 value = 1 /",
+       "the stretch never is 1"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' at_stretch = 0 at_time = 0 value = 1 /",
+       "exclude each other"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' value = '1 mm' /", "`1 mm` is a length"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA*E' /",
+       "`N` is a force (N), but this is"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EAA*1e-4' /", "did you mean `EA`?"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA*(1e-4' /", "drive_test.nml:4:"},
+      {ELASTIC TO_MICRO "&expect quantity = 'N' formula = 'EA)\nend model' /", "DECK"},
+      {"&material model = 'elastic_central' EE = 1 /\n" TO_MICRO, "has no parameter `EE`"},
+      {"&material model = 'elastic_central' E = -1 /\n" TO_MICRO, "is not in (0, inf)"},
+      {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
+      {"&material model = 'cohesive_central' softening = 'liner' /\n" TO_MICRO,
+       "has no choice `liner`"},
+      {"&material model = 'mplm_bilinear' /\n&initial omega = 2 /\n" TO_MICRO,
+       "is between 0 and 1"},
+      {"&material model = 'mplm_bilinear' /\n&initial omega = '1 mm' /\n" TO_MICRO,
+       "`omega` is a pure number"},
+  };
+  for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+    char text[TEXT];
+    write_file("drive_test.nml", bad[k].text);
+    int status = perilat("drive drive_test.nml", text);
+    bool refused = strcmp(bad[k].part, "DECK") == 0 ? strstr(text, "error:") != NULL
+                                                    : strstr(text, bad[k].part) != NULL;
+    if (status != 1 || !refused)
+      fail_msg("%s\nstatus %d, no `%s` in\n%s", bad[k].text, status, bad[k].part, text);
+  }
+  expect("drive", 1, "needs a path");
+  expect("drive elastic_central", 1, "needs a path");
+  expect("drive drive_test.nml --compild", 1, "did you mean `--compiled`?");
+  expect("drive drive_test.nml drive_test.nml", 1, "is a second one");
+  drive(ELASTIC TO_MICRO, "--set E", 1, "takes a name and its value");
+  drive(ELASTIC TO_MICRO, "--csv drive_test.nml", 1, "would overwrite `drive_test.nml`");
+  drive(ELASTIC TO_MICRO, "--csv no_such_folder/a.csv", 2, "cannot write `no_such_folder/a.csv`");
+}
+
+/* --- paths ------------------------------------------------------------------------------------ */
+
+typedef struct path {
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  drive_input *in;
+} path;
+
+static void open_path(path *p, const char *text) {
+  *p = (path){.memory = arena_new()};
+  diag_begin(&p->said, &p->sources);
+  int file = source_add(&p->sources, "path.nml", text, strlen(text));
+  p->in = drive_read(p->memory, &p->sources, file, &p->said);
+  if (!p->in) diag_print(&p->said, stderr);
+  assert_non_null(p->in);
+}
+
+static void close_path(path *p) {
+  diag_clear(&p->said);
+  source_clear(&p->sources);
+  arena_free(p->memory);
+}
+
+static void pieces_add_up(void **state) {
+  (void)state;
+  path p;
+  open_path(&p, "&path quantity = 'stretch' value = 3 rise = '2 s' /\n"
+                "&path quantity = 'stretch' value = 1 period = '4 s' cycles = 2 start = '2 s' wave "
+                "= 'sine' /\n"
+                "&path quantity = 'theta_i' value = 2 period = '4 s' /\n"
+                "&path quantity = 'theta_j' value = 2 period = '4 s' wave = 'pulse' /\n");
+  const double t = 2.7;
+  near(drive_at(p.in, DRIVE_STRETCH, 1), 1.5, 1e-15);
+  near(drive_at(p.in, DRIVE_STRETCH, t), 3 + sin(2 * M_PI * (t - 2) / 4), 1e-14);
+  near(drive_slope(p.in, DRIVE_STRETCH, t), 2 * M_PI / 4 * cos(2 * M_PI * (t - 2) / 4), 1e-14);
+  near(drive_at(p.in, DRIVE_THETA_I, 0.5), 1, 1e-15);
+  near(drive_at(p.in, DRIVE_THETA_I, 2.5), -1, 1e-15);
+  near(drive_slope(p.in, DRIVE_THETA_I, 2.5), -2, 1e-15);
+  near(drive_at(p.in, DRIVE_THETA_J, 3), 1, 1e-15);
+  near(drive_slope(p.in, DRIVE_THETA_J, 3), -1, 1e-15);
+  near(drive_end(p.in), 10, 1e-15);
+  close_path(&p);
+}
+
+static void times_meet_corners(void **state) {
+  (void)state;
+  path p;
+  long count;
+  open_path(&p, "&simulation steps = 4 /\n&path quantity = 'stretch' times = 0, 0.3, 1 values = 0, "
+                "1e-3, 0 /\n"
+                "&expect quantity = 'N' at_stretch = 5e-4 after = 0.5 value = 0 /\n");
+  double *t = drive_times(p.in, &count);
+  const double wanted[] = {0, 0.25, 0.3, 0.5, 0.65, 0.75, 1};
+  assert_int_equal(count, 7);
+  for (int k = 0; k < 7; k++)
+    near(t[k], wanted[k], 1e-12);
+  free(t);
+  close_path(&p);
+}
+
+static void a_table_comes_from_a_file(void **state) {
+  (void)state;
+  write_file("drive_table.csv", "time [s], stretch\n0, 0\n0.5; 1e-4\n2 5e-5\n");
+  drive(ELASTIC "&path quantity = 'stretch' file = 'drive_table.csv' value = 2 /\n"
+                "&expect quantity = 'N' at_time = 0.5 formula = 'EA*2e-4' /\n&expect quantity = "
+                "'N' formula = 'EA*1e-4' /\n",
+        "", 0, "2 of 2");
+}
+
+/* A rate of 10 1/s = rate_0 gives half of zeta, whatever the path does. */
+static void a_rate_may_be_given(void **state) {
+  (void)state;
+  drive("&material model = 'mplm_bilinear' /\n" TO_MICRO
+        "&path quantity = 'stretch_rate' value = '10 1/s' /\n"
+        "&expect quantity = 'N' formula = '(1 + zeta/2)*EA*1e-4' tolerance = 1e-12 /\n",
+        "", 0, "1 of 1");
+}
+
+static void damage_may_be_there_at_the_start(void **state) {
+  (void)state;
+  drive("&material model = 'mplm_bilinear' zeta = 0 /\n&initial omega = 0.25 /\n" TO_MICRO
+        "&expect quantity = 'N' formula = '0.75*EA*1e-4' tolerance = 1e-12 /\n",
+        "", 0, "1 of 1");
+}
+
+/* --- files ------------------------------------------------------------------------------------ */
+
+static void results_can_be_read(void **state) {
+  (void)state;
+  char error[512], unit_text[32], text[TEXT];
+  long count;
+  drive(ELASTIC "&output csv = 'drive.csv' hdf5 = 'drive.h5' picture = 'drive.svg' /\n" TO_MICRO,
+        "", 0, "written drive.svg");
+  result_file *f = result_read("drive.h5", error, sizeof error);
+  assert_non_null(f);
+  double *N = result_read_series(f, "N", &count, unit_text, sizeof unit_text, error, sizeof error);
+  assert_non_null(N);
+  assert_int_equal(count, 1001);
+  assert_string_equal(unit_text, "N");
+  near(N[1000], sqrt(3) / 2 * 30e9 * 0.01 * 0.1 * 1e-4, 1e-9);
+  free(N);
+  result_read_close(f);
+  assert_int_equal(perilat("plot drive.h5 --x stretch --y N -o drive.png", text), 0);
+}
+
+/* A law that cannot answer is named with its line; a run that meets such a state leaves the bond as
+ * a path. */
+static const char breaking_law[] =
+    "model breaking\n  law central bond\n"
+    "  parameter E = 30 [GPa] in (0, inf) \"modulus\"\n"
+    "  parameter rho = 2000 [kg/m^3] in (0, inf) \"density\"\n"
+    "  parameter S = 1e-4 in (0, 1) \"stretch beyond which there is no root\"\n"
+    "  rest = sqrt(S - stretch)/sqrt(S)\n"
+    "  force N = E*s*t*stretch*rest\n"
+    "end model\n";
+
+static void what_is_no_number_is_named(void **state) {
+  (void)state;
+  write_file("breaking.plm", breaking_law);
+  drive(
+      "&material model = 'breaking.plm' /\n&path quantity = 'stretch' value = 2.1e-4 rise = 1 /\n",
+      "", 2, "breaking.plm:6: the law's `rest`");
+}
+
+static void a_failing_run_leaves_its_bond(void **state) {
+  (void)state;
+  write_file("breaking.plm", breaking_law);
+  write_file("breaking_run.nml",
+             "&simulation end_time = '0.2 ms' /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = '5 mm' thickness = '100 mm' /\n"
+             "&material lattice = 'c' model = 'breaking.plm' E = '20 GPa' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '20 mm', '10 mm' /\n"
+             "&region name = 'left' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '4 mm', "
+             "'12 mm' /\n"
+             "&region name = 'right' shape = 'rectangle' corner = '17 mm', '-1 mm' size = '6 mm', "
+             "'12 mm' /\n"
+             "&support region = 'left' fix = 'xy' /\n"
+             "&drive region = 'right' component = 'x' velocity = '200 mm/s' /\n"
+             "&output result = 'breaking_run.h5' frames = 2 /\n");
+  unlink("breaking_run_bad_bond.nml");
+  expect("run breaking_run.nml", 2, "perilat drive breaking_run_bad_bond.nml");
+  expect("drive breaking_run_bad_bond.nml", 2, "breaking.plm:6: the law's `rest`");
+}
+
+/* The README's tables are what the program says of itself. */
+static void the_reference_is_true(void **state) {
+  (void)state;
+  char *text = NULL, error[256];
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  assert_non_null(out);
+  drive_reference(out);
+  fclose(out);
+  char *page =
+      read_text_file(SOURCE_DIR "/models/drives/README.md", 1 << 20, &length, error, sizeof error);
+  assert_non_null(page);
+  if (!strstr(page, text)) fail_msg("models/drives/README.md should hold\n%s", text);
+  free(page);
+  free(text);
+}
+
+/* --- info ---------------------------------------------------------------------------------------
+ */
+
+static void info_says_what_a_law_implies(void **state) {
+  (void)state;
+  const char *const lines[] = {
+      "E = 30 GPa along x, 30 GPa along y; nu = 0.2, 0.2; G = 12.5 GPa",
+      "largest force 2472.36 N at a stretch of 0.000118",
+      "81.5872 N/m across the rows",                      /* 36.91 EA S_t^2 s/((sqrt(3)/2) s t) */
+      "longitudinal 3667.76 m/s, transverse 2319.69 m/s", /* sqrt(E/(rho (1 - nu^2))), sqrt(G/rho)
+                                                           */
+      "rotation mode rules, 1.6337e+06 rad/s",            /* sqrt(20 (1 - 3 nu)/(1 - nu^2)) c/s */
+  };
+  for (size_t k = 0; k < sizeof lines / sizeof *lines; k++)
+    expect("info mplm_bilinear --spacing '6.35 mm' --thickness '152.4 mm'", 0, lines[k]);
+  expect("info mplm_bilinear --spacing=12.7e-3 --set S_t=8.0e-5", 0, "75.0011 N/m across the rows");
+  expect("info mplm_bilinear --spacing='3.175 mm' --set S_t=1.5e-4", 0,
+         "65.919 N/m across the rows");
+  expect("info elastic_central --json", 0, "\"separates\": false");
+  expect("info cohesive_central --set softening=exponential --json", 0,
+         "\"chosen\": \"exponential\"");
+  expect("info elastic_central", 0, "none: a bond never separates");
+}
+
+static void info_refuses(void **state) {
+  (void)state;
+  expect("info mplm_bilinear --spacing 5kg", 1, "`spacing` is a length; `5kg` is a mass");
+  expect("info mplm_bilinear --spacing -5", 1, "must be greater than 0");
+  expect("info mplm_bilinear --set nu=0.4", 1, "is not in [0, 0.33333333]");
+  expect("info mplm_bilinear --set mu=0.4", 1, "did you mean `nu`?");
+  expect("info mplm_bilinear --lattice cubic", 1, "can only be hexagonal");
+  expect("info mplm_bilinear --spacin 5", 1, "did you mean `--spacing`?");
+  expect("info no_such_law --set E=1", 1, "there is no model `no_such_law`");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(shipped_drive_files_hold),
+      cmocka_unit_test(every_shipped_law_is_driven),
+      cmocka_unit_test(a_failed_expectation_is_status_2),
+      cmocka_unit_test(closed_forms_see_the_row),
+      cmocka_unit_test(bad_paths_are_explained),
+      cmocka_unit_test(pieces_add_up),
+      cmocka_unit_test(times_meet_corners),
+      cmocka_unit_test(a_table_comes_from_a_file),
+      cmocka_unit_test(a_rate_may_be_given),
+      cmocka_unit_test(damage_may_be_there_at_the_start),
+      cmocka_unit_test(results_can_be_read),
+      cmocka_unit_test(what_is_no_number_is_named),
+      cmocka_unit_test(a_failing_run_leaves_its_bond),
+      cmocka_unit_test(the_reference_is_true),
+      cmocka_unit_test(info_says_what_a_law_implies),
+      cmocka_unit_test(info_refuses),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
