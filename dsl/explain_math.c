@@ -111,7 +111,9 @@ static bool has_twin(const law *l, const char *name) {
   return false;
 }
 
-char *math_letters(const law *l, const char *name) {
+/* The letters of a name: `omega` is \omega, `eps_mp` is \varepsilon_{\mathrm{mp}}. Names of a law
+   that would look the same are written out instead. malloc'ed. */
+static char *math_letters(const law *l, const char *name) {
   if (!is_plain(name) || !has_twin(l, name)) return plain_letters(name);
   char *text = must_calloc(2 * strlen(name) + 16, 1), *to = text;
   to += sprintf(to, "\\mathrm{");

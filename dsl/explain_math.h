@@ -9,9 +9,6 @@
 /* Step a state or damage is taken at. */
 typedef enum step_index { NO_STEP, STEP_OLD, STEP_NEW } step_index;
 
-/* The letters of a name: `omega` is \omega, `eps_mp` is \varepsilon_{\mathrm{mp}}. Names of a law
-   that would look the same are written out instead. malloc'ed. */
-char *math_letters(const law *l, const char *name);
 /* A symbol with step and, when `indexed`, neighbour: \omega^{(n-1)}, x_{j}. */
 void math_symbol(const law *l, const char *name, step_index step, bool indexed, bool primed,
                  FILE *out);

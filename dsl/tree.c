@@ -11,7 +11,7 @@ const char *stmt_kind_name(stmt_kind kind) {
   return names[kind];
 }
 
-const char *binary_op_text(binary_op op) {
+static const char *binary_op_text(binary_op op) {
 #define X(code, text, precedence) text,
   static const char *const texts[OP_BINARY_COUNT] = {TREE_BINARY_OPERATORS(X)};
 #undef X

@@ -155,7 +155,6 @@ typedef struct tree {
 } tree;
 
 const char *stmt_kind_name(stmt_kind kind);
-const char *binary_op_text(binary_op op);
 const char *placement_name(placement p);
 
 /* Prints the tree as indented text, one node a line, without spans: the form of the golden tests. */

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/hash.h"
 
 #define LONGEST_NAME 60 /* characters kept of a model's name */
 
@@ -92,10 +93,7 @@ static bool is_taken(const char *name) {
 }
 
 static size_t find_slot(char **slots, size_t capacity, const char *name) {
-  uint64_t hash = UINT64_C(14695981039346656037);
-  for (const char *c = name; *c; c++)
-    hash = (hash ^ (unsigned char)*c) * UINT64_C(1099511628211);
-  size_t k = (size_t)hash & (capacity - 1);
+  size_t k = (size_t)hash_more(HASH_START, name, strlen(name)) & (capacity - 1);
   while (slots[k] && strcmp(slots[k], name) != 0)
     k = (k + 1) & (capacity - 1);
   return k;

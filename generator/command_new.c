@@ -81,8 +81,8 @@ static bool write_all(new_file *files) {
   return good;
 }
 
-static int make_new(const char *name, const char *law) {
-  new_file files[FILE_COUNT] = {{.text = fill_in(law, name)},
+static int make_new(const char *name, const char *law_text) {
+  new_file files[FILE_COUNT] = {{.text = fill_in(law_text, name)},
                                 {.text = fill_in(template_drive, name)},
                                 {.text = fill_in(template_deck, name)}};
   static const char *const endings[FILE_COUNT] = {".plm", "_drive.nml", ".nml"};
@@ -109,11 +109,11 @@ static const char *law_of_kind(const char *kind) {
 }
 
 int command_new(int argc, char **argv) {
-  const char *name = NULL, *law = template_central, *value;
+  const char *name = NULL, *law_text = template_central, *value;
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     if ((value = option_value(argc, argv, &at, "--kind", &bad)))
-      bad = bad || !(law = law_of_kind(value));
+      bad = bad || !(law_text = law_of_kind(value));
     else if (argv[at][0] == '-')
       bad = option_unknown("new", argv[at]);
     else if (name) {
@@ -126,5 +126,5 @@ int command_new(int argc, char **argv) {
     fputs("perilat: error: `perilat new` needs a name\n  perilat new my_law\n", stderr);
     bad = 1;
   }
-  return bad || !is_name(name) ? INPUT_WRONG : make_new(name, law);
+  return bad || !is_name(name) ? INPUT_WRONG : make_new(name, law_text);
 }

@@ -162,7 +162,7 @@ int command_explain(int argc, char **argv) {
 /* --- help ------------------------------------------------------------------------------------- */
 
 static void show_command(int k) {
-  printf("%s (a command)\n\n", commands[k].name);
+  printf("%s (a command)\n\n", command_table[k].name);
   command_print(k, stdout);
 }
 
@@ -198,7 +198,7 @@ static int show_topic(const char *topic) {
     show_group(group);
   }
   for (int k = 0; k < command_count; k++)
-    if (strcmp(commands[k].name, topic) == 0) {
+    if (strcmp(command_table[k].name, topic) == 0) {
       if (shown++)
         putchar('\n');
       show_command(k);
@@ -212,7 +212,7 @@ static int unknown_topic(const char *topic) {
   help_topics(names);
   int count = written + deck_group_names(names + written);
   for (int k = 0; k < command_count; k++)
-    names[count++] = commands[k].name;
+    names[count++] = command_table[k].name;
   const char *near = nearest_name(topic, names, count);
   fprintf(stderr, "perilat: error: there is no help on `%s`", topic);
   if (near)

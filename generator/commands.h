@@ -3,22 +3,26 @@
 #ifndef PERILAT_GENERATOR_COMMANDS_H
 #define PERILAT_GENERATOR_COMMANDS_H
 
+#include <stdbool.h>
 #include <stdio.h>
 
-/* X(name, files, endings, what it does): `endings` are those of the files that shells offer, blanks between. */
+#define COMMAND_STATUS "0 done, 1 the input is wrong, 2 the run failed"
+#define DRIVE_STATUS                                                                                                    \
+  "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no number"
+/* X(name, files, endings, what it does, exit status): `endings` are those of the files that shells offer, blanks between. */
 #define COMMANDS(X)                                                                                                    \
-  X(new, "NAME", "", "a commented law to start from, its drive path and the deck of a small specimen")                 \
-  X(check, "law.plm | deck.nml", "plm nml", "report all errors, run nothing")                                          \
-  X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver")                 \
-  X(run, "deck.nml", "nml", "run a deck")                                                                              \
-  X(drive, "law.plm path.nml", "plm nml", "one bond along a path: table, picture, expectations")                       \
-  X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF")                    \
-  X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most")                                                  \
-  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values")                                  \
-  X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5", "what a law implies, what a file holds")                \
-  X(explain, "law.plm", "plm", "a law as equations with a table of its symbols")                                       \
-  X(format, "law.plm ...", "plm", "lay out laws")                                                                      \
-  X(help, "TOPIC", "", "what a message's code, a word of the language, a deck group or a command means")
+  X(new, "NAME", "", "a commented law to start from, its drive path and the deck of a small specimen", COMMAND_STATUS) \
+  X(check, "law.plm | deck.nml", "plm nml", "report all errors, run nothing", COMMAND_STATUS)                          \
+  X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS) \
+  X(run, "deck.nml", "nml", "run a deck", COMMAND_STATUS)                                                              \
+  X(drive, "law.plm path.nml", "plm nml", "one bond along a path: table, picture, expectations", DRIVE_STATUS) \
+  X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)    \
+  X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most", "0 the same, 1 an input is wrong, 2 different")  \
+  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values", COMMAND_STATUS)                  \
+  X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5", "what a law implies, what a file holds", COMMAND_STATUS) \
+  X(explain, "law.plm", "plm", "a law as equations with a table of its symbols", COMMAND_STATUS)                       \
+  X(format, "law.plm ...", "plm", "lay out laws", "0 done, 1 the input is wrong; with --check also when a file would change") \
+  X(help, "TOPIC", "", "what a message's code, a word of the language, a deck group or a command means", COMMAND_STATUS)
 
 /* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells offer files, a|b|c for one
    of these words, else what it stands for. Texts of --help, suggestions, manual and completion. */
@@ -75,16 +79,16 @@
   OPTIONS_OF_SOLVERS(X, solver)
 
 typedef struct command_entry {
-  const char *name, *files, *endings, *purpose;
+  const char *name, *files, *endings, *purpose, *status;
 } command_entry;
 typedef struct option_entry {
   const char *command, *name, *value, *meaning;
 } option_entry;
-extern const command_entry commands[];
-extern const option_entry options[];
+extern const command_entry command_table[];
+extern const option_entry option_table[];
 extern const int command_count, option_count;
 
-#define X(name, files, endings, purpose) int command_##name(int argc, char **argv);
+#define X(name, files, endings, purpose, status) int command_##name(int argc, char **argv);
 COMMANDS(X)
 #undef X
 
@@ -97,9 +101,10 @@ int option_unknown_in(const char *program, const char *command, const char *give
 /* The same of `perilat command`. */
 int option_unknown(const char *command, const char *given);
 
+bool command_has_options(const char *command);
 /* The options of a command, a line each; nothing where it has none. */
 void options_print(const char *command, FILE *out);
-/* Usage, purpose and options of commands[k]. */
+/* Usage, purpose and options of command_table[k]. */
 void command_print(int k, FILE *out);
 
 #endif

@@ -5,6 +5,7 @@
 
 #include "dsl/arena.h"
 #include "generator/c_text.h"
+#include "generator/law_inputs.h"
 #include "generator/prelude.h"
 
 #define LONGEST_INLINE                                                                             \
@@ -59,53 +60,20 @@ static bool is_constant(const emitter *e, ir_node n) {
 
 /* --- names of inputs -------------------------------------------------------------------------- */
 
-/* X(ends input, strip member, component, index) */
-#define ENDS_ARRAYS(X)                                                                             \
-  X(U_IX, displacement_i, 0, NEAR)                                                                 \
-  X(U_IY, displacement_i, 1, NEAR)                                                                 \
-  X(PHI_I, displacement_i, 2, NEAR)                                                                \
-  X(U_JX, displacement_j, 0, FAR)                                                                  \
-  X(U_JY, displacement_j, 1, FAR)                                                                  \
-  X(PHI_J, displacement_j, 2, FAR)                                                                 \
-  X(V_IX, velocity_i, 0, NEAR)                                                                     \
-  X(V_IY, velocity_i, 1, NEAR) X(OMEGA_I, velocity_i, 2, NEAR) X(V_JX, velocity_j, 0, FAR)         \
-      X(V_JY, velocity_j, 1, FAR) X(OMEGA_J, velocity_j, 2, FAR) X(CHORD_X, chord, 0, BOND)        \
-          X(CHORD_Y, chord, 1, BOND)
-
-typedef enum array_index { NEAR, FAR, BOND } array_index; /* particle i, particle j, the bond */
-
-typedef struct ends_array {
-  const char *member;
-  int component;
-  array_index index;
-} ends_array;
-
-static const ends_array ends_arrays[ENDS_COUNT] = {
-#define X(code, member, component, index) [ENDS_##code] = {#member, component, index},
-    ENDS_ARRAYS(X)
+/* Values of a bond class, as C. */
+static const char *const class_values[QUANTITY_COUNT] = {
+#define X(code, value) [QUANTITY_##code] = #value,
+    CLASS_QUANTITIES(X)
 #undef X
 };
 
-/* Members of pl_bond_class behind the quantities of a lattice. */
-static const char *const class_members[QUANTITY_COUNT] = {
-    [QUANTITY_S] = "bonds->s",
-    [QUANTITY_SPACING] = "bonds->spacing",
-    [QUANTITY_T] = "bonds->t",
-    [QUANTITY_V] = "bonds->V",
-    [QUANTITY_M_BOND] = "pl_min(bonds->mass_i, bonds->mass_j)",
-    [QUANTITY_M_END_I] = "bonds->mass_i",
-    [QUANTITY_M_END_J] = "bonds->mass_j",
-    [QUANTITY_AREA] = "bonds->area",
-    [QUANTITY_SHELL] = "bonds->shell",
-    [QUANTITY_N_FAMILY] = "bonds->n",
-};
-
-/* Place of the kinematic quantities among the planes of `states`. */
-static const int states_plane[QUANTITY_COUNT] = {
-    [QUANTITY_STRETCH] = 0, [QUANTITY_STRETCH_RATE] = 1, [QUANTITY_THETA_I] = 2,
-    [QUANTITY_THETA_J] = 3, [QUANTITY_LENGTH] = 4,
-};
-#define STATES_FIELDS 5
+/* Place of a quantity of motion among the planes of `states`. */
+static int states_plane(int quantity) {
+  int plane = 0;
+  while (law_motion[plane] != (builtin_quantity)quantity)
+    plane++;
+  return plane;
+}
 
 /* --- a function's nodes ----------------------------------------------------------------------- */
 
@@ -386,23 +354,26 @@ static void write_line_end(emitter *e, ir_node n) {
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
-static const ends_array *ends_array_of(const emitter *e, ir_node n) {
-  return &ends_arrays[ir_input_index(e->graph, n)];
+static const ends_origin *origin_of(const emitter *e, ir_node n) {
+  return &ends_origins[ir_input_index(e->graph, n)];
 }
 
 /* `const double *restrict at_u_ix = strip->displacement_i[0];` */
 static void write_array(emitter *e, ir_node n) {
-  int index = ir_input_index(e->graph, n);
+  static const char *const arrays[] = {
+      [FROM_DISPLACEMENT] = "displacement", [FROM_VELOCITY] = "velocity", [FROM_CHORD] = "chord"};
+  static const char *const ends[] = {[OF_I] = "_i", [OF_J] = "_j", [OF_BOND] = ""};
+  const int index = ir_input_index(e->graph, n);
+  const ir_source from = ir_input_source(e->graph, n);
   c_text_add(e->out, "  const double *restrict at_%s = ", e->name[n]);
-  if (ir_input_source(e->graph, n) == IR_FROM_ENDS)
-    c_text_add(e->out, "strip->%s[%d];\n", ends_array_of(e, n)->member,
-               ends_array_of(e, n)->component);
-  else if (ir_input_source(e->graph, n) == IR_FROM_BOND_PARAMETER)
+  if (from == IR_FROM_ENDS) {
+    const ends_origin *o = origin_of(e, n);
+    c_text_add(e->out, "strip->%s%s[%d];\n", arrays[o->array], ends[o->owner], o->component);
+  } else if (from == IR_FROM_BOND_PARAMETER)
     c_text_add(e->out, "strip->parameter[%d];\n", index);
-  else if (ir_input_source(e->graph, n) == IR_FROM_FIELD)
-    c_text_add(e->out, "in[%d];\n", STATES_FIELDS + index);
   else
-    c_text_add(e->out, "in[%d];\n", states_plane[index]);
+    c_text_add(e->out, "in[%d];\n",
+               from == IR_FROM_FIELD ? PL_STATE_INPUTS + index : states_plane(index));
 }
 
 /* What stands before the loop: values that are the same for all bonds, and the arrays of the
@@ -431,8 +402,8 @@ static void write_loop_input(emitter *e, ir_node n) {
   else if (ir_input_source(e->graph, n) == IR_FROM_BOND_PARAMETER)
     c_text_add(e->out, "at_%s[q]", e->name[n]);
   else {
-    bool gathered = e->scope == IN_LIST && ends_array_of(e, n)->index != BOND;
-    const char *index = !gathered ? "q" : ends_array_of(e, n)->index == NEAR ? "i[q]" : "j[q]";
+    const ends_owner owner = e->scope == IN_LIST ? origin_of(e, n)->owner : OF_BOND;
+    const char *index = owner == OF_I ? "i[q]" : owner == OF_J ? "j[q]" : "q";
     c_text_add(e->out, "at_%s[%s]", e->name[n], index);
   }
 }
@@ -442,9 +413,9 @@ static void write_body_input(emitter *e, ir_node n) {
   if (ir_input_source(e->graph, n) == IR_FROM_PARAMETER)
     c_text_add(e->out, "parameters[%d]", index);
   else if (ir_input_source(e->graph, n) == IR_FROM_ENDS)
-    c_text_add(e->out, "bonds->chord[%d]", index == ENDS_CLASS_CHORD_X ? 0 : 1);
+    c_text_add(e->out, "bonds->chord[%d]", origin_of(e, n)->component);
   else
-    c_text_add(e->out, "%s", class_members[index]);
+    c_text_add(e->out, "%s", class_values[index]);
 }
 
 /* --- lines ------------------------------------------------------------------------------------ */
@@ -741,17 +712,9 @@ static void write_descriptor(emitter *e, const char *key) {
   c_text_add(e->out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
 }
 
-/* X(pass, function and member of pl_law, scope) */
-#define STRIP_PASSES(X)                                                                            \
-  X(PASS_ROWS, rows, IN_ROWS)                                                                      \
-  X(PASS_ROWS_LEDGER, rows_ledger, IN_ROWS)                                                        \
-  X(PASS_ROWS_OBSERVE, rows_observe, IN_ROWS)                                                      \
-  X(PASS_LIST, list, IN_LIST)                                                                      \
-  X(PASS_LIST_LEDGER, list_ledger, IN_LIST) X(PASS_LIST_OBSERVE, list_observe, IN_LIST)
-
 static void write_entry(emitter *e, const char *key) {
   write_descriptor(e, key);
-#define X(pass, name, scope) c_text_add(e->out, "    .%s = %s,\n", #name, #name);
+#define X(pass, member, topology, task) c_text_add(e->out, "    .%s = %s,\n", #member, #member);
   STRIP_PASSES(X)
 #undef X
   c_text_add(e->out, "    .states = states,\n    .tangent = tangent,\n};\n\n"
@@ -797,11 +760,12 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
   write_fields(&e, &p->law->outputs, "law_outputs");
   write_prepare(&e);
   write_bounds(&e);
-#define X(pass, name, scope) write_strip_pass(&e, scope, &p->passes[pass], #name);
+#define X(pass, member, topology, task)                                                            \
+  write_strip_pass(&e, (topology) == STRIP_LIST ? IN_LIST : IN_ROWS, &p->passes[pass], #member);
   STRIP_PASSES(X)
 #undef X
-  write_states_pass(&e, &p->passes[PASS_STATES], "states", 3 + p->law->fields.count);
-  write_states_pass(&e, &p->passes[PASS_TANGENT], "tangent", 12);
+  write_states_pass(&e, &p->passes[PASS_STATES], "states", PL_STATE_RESULTS + p->law->fields.count);
+  write_states_pass(&e, &p->passes[PASS_TANGENT], "tangent", PL_TANGENTS);
   write_entry(&e, key);
   free(e.uniform_of);
   return out.text;

@@ -35,7 +35,7 @@ static int largest_result(const kernel_plan *p, const ir_node *named, int count,
   const pass *states = &p->passes[PASS_STATES];
   int largest = -1;
   for (int k = 0; k < count; k++)
-    for (int r = 0; r < states->root_count && r < LAW_RESULTS; r++)
+    for (int r = 0; r < states->root_count && r < PL_STATE_RESULTS; r++)
       if (states->roots[r].node == named[k] && fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0]))) largest = k;
   return largest;
 }
@@ -62,18 +62,18 @@ static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out
 void explain_bad(const kernel_plan *p, const double *parameters, const rows *w, const bad_state *b,
                  FILE *out) {
   const symbol_list *fields = &p->law->fields;
-  const double kinematics[LAW_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
+  const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
                                          w->spacing * (1 + b->stretch)};
-  double **in = planes_new(LAW_INPUTS + fields->count, 1);
-  for (int k = 0; k < LAW_INPUTS; k++)
+  double **in = planes_new(PL_STATE_INPUTS + fields->count, 1);
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
     in[k][0] = kinematics[k];
   for (int f = 0; f < fields->count; f++)
-    in[LAW_INPUTS + f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
+    in[PL_STATE_INPUTS + f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
   pl_bond_class bonds = rows_bond_class(w, 0);
   law_inputs inputs;
   law_inputs_open(&inputs, p->law, parameters, &bonds);
   interpreter_inputs at = law_inputs_at(&inputs, (const double *const *)in);
   report(p, &at, out);
   law_inputs_close(&inputs);
-  planes_free(in, LAW_INPUTS + fields->count);
+  planes_free(in, PL_STATE_INPUTS + fields->count);
 }

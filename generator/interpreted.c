@@ -9,51 +9,14 @@
 
 #include "dsl/arena.h"
 #include "generator/interpret.h"
+#include "generator/law_inputs.h"
 #include "generator/passes.h"
 
 enum {
   LANES = INTERPRET_LANES,
-  STATES_INPUTS = 5,
   RUN_PREPARE = PASS_COUNT,
   RUN_COUNT,
   MOST_WORKERS = 64
-};
-
-/* Which array of a strip an input of the ends comes from. */
-typedef enum ends_array { DISPLACEMENT, VELOCITY, CHORD, OTHER } ends_array;
-typedef enum ends_side { AT_I, AT_J, AT_BOND } ends_side;
-
-/* X(input, array, side, component) */
-#define ENDS_ARRAYS(X)                                                                             \
-  X(U_IX, DISPLACEMENT, AT_I, 0)                                                                   \
-  X(U_IY, DISPLACEMENT, AT_I, 1)                                                                   \
-  X(PHI_I, DISPLACEMENT, AT_I, 2)                                                                  \
-  X(U_JX, DISPLACEMENT, AT_J, 0)                                                                   \
-  X(U_JY, DISPLACEMENT, AT_J, 1)                                                                   \
-  X(PHI_J, DISPLACEMENT, AT_J, 2)                                                                  \
-  X(V_IX, VELOCITY, AT_I, 0)                                                                       \
-  X(V_IY, VELOCITY, AT_I, 1)                                                                       \
-  X(OMEGA_I, VELOCITY, AT_I, 2)                                                                    \
-  X(V_JX, VELOCITY, AT_J, 0)                                                                       \
-  X(V_JY, VELOCITY, AT_J, 1)                                                                       \
-  X(OMEGA_J, VELOCITY, AT_J, 2)                                                                    \
-  X(CHORD_X, CHORD, AT_BOND, 0)                                                                    \
-  X(CHORD_Y, CHORD, AT_BOND, 1)                                                                    \
-  X(CLASS_CHORD_X, OTHER, AT_BOND, 0)                                                              \
-  X(CLASS_CHORD_Y, OTHER, AT_BOND, 1)                                                              \
-  X(PROTECTED, OTHER, AT_BOND, 0)                                                                  \
-  X(TIME_STEP, OTHER, AT_BOND, 0)
-
-typedef struct ends_origin {
-  ends_array array;
-  ends_side side;
-  int component;
-} ends_origin;
-
-static const ends_origin ends_origins[ENDS_COUNT] = {
-#define X(code, array, side, component) [ENDS_##code] = {array, side, component},
-    ENDS_ARRAYS(X)
-#undef X
 };
 
 /* One caller's working space. */
@@ -65,8 +28,10 @@ typedef struct worker {
   unsigned char *field_stride;
   const double **bond_parameters; /* [varying] */
   unsigned char *bond_parameter_stride;
+  double of_class[QUANTITY_COUNT];
   const double *quantities[QUANTITY_COUNT];
   const double *ends[ENDS_COUNT];
+  unsigned char quantity_stride[QUANTITY_COUNT];
   double gathered[ENDS_COUNT][LANES];
   double *results; /* [most roots][LANES] */
   double **result; /* [most roots] */
@@ -118,22 +83,19 @@ static void set_up_worker(interpreted *p, worker *w) {
   size_t most = (size_t)p->most_roots;
   w->results = arena_alloc(p->memory, (most + 1) * LANES * sizeof *w->results);
   w->result = arena_alloc(p->memory, (most + 1) * sizeof *w->result);
+  for (int k = 0; k < QUANTITY_COUNT; k++)
+    w->quantities[k] = &w->of_class[k];
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
+    w->quantity_stride[law_motion[k]] = 1;
   for (size_t k = 0; k < most; k++)
     w->result[k] = w->results + k * LANES;
 }
 
 /* Values of the ends vary from bond to bond, except those of the whole strip. */
 static const unsigned char ends_stride[ENDS_COUNT] = {
-#define X(code, name)                                                                              \
-  [ENDS_##code] = ENDS_##code != ENDS_TIME_STEP && ENDS_##code != ENDS_CLASS_CHORD_X &&            \
-                  ENDS_##code != ENDS_CLASS_CHORD_Y,
+#define X(code, name, array, owner, component) [ENDS_##code] = (owner) != OF_STRIP,
     ENDS_INPUTS(X)
 #undef X
-};
-
-static const unsigned char states_stride[QUANTITY_COUNT] = {
-    [QUANTITY_STRETCH] = 1, [QUANTITY_STRETCH_RATE] = 1, [QUANTITY_THETA_I] = 1,
-    [QUANTITY_THETA_J] = 1, [QUANTITY_LENGTH] = 1,
 };
 
 static interpreter_inputs inputs_of(const worker *w) {
@@ -143,7 +105,7 @@ static interpreter_inputs inputs_of(const worker *w) {
                  [IR_FROM_FIELD] = w->fields,
                  [IR_FROM_BOND_PARAMETER] = w->bond_parameters,
                  [IR_FROM_ENDS] = w->ends},
-      .stride = {[IR_FROM_QUANTITY] = states_stride,
+      .stride = {[IR_FROM_QUANTITY] = w->quantity_stride,
                  [IR_FROM_FIELD] = w->field_stride,
                  [IR_FROM_BOND_PARAMETER] = w->bond_parameter_stride,
                  [IR_FROM_ENDS] = ends_stride},
@@ -161,11 +123,11 @@ static void point_at_uniforms(const interpreted *p, worker *w, const double *uni
 
 static const double *strip_array(const pl_strip *s, const ends_origin *o) {
   switch (o->array) {
-  case DISPLACEMENT:
-    return o->side == AT_I ? s->displacement_i[o->component] : s->displacement_j[o->component];
-  case VELOCITY:
-    return o->side == AT_I ? s->velocity_i[o->component] : s->velocity_j[o->component];
-  case CHORD:
+  case FROM_DISPLACEMENT:
+    return o->owner == OF_I ? s->displacement_i[o->component] : s->displacement_j[o->component];
+  case FROM_VELOCITY:
+    return o->owner == OF_I ? s->velocity_i[o->component] : s->velocity_j[o->component];
+  case FROM_CHORD:
     return s->chord[o->component];
   default:
     return NULL;
@@ -177,9 +139,9 @@ static void point_at_ends(worker *w, const pl_strip *s, bool list, long first, i
   for (int k = 0; k < ENDS_COUNT; k++) {
     const ends_origin *o = &ends_origins[k];
     const double *array = strip_array(s, o);
-    bool gather = list && array && o->side != AT_BOND;
+    bool gather = list && array && (o->owner == OF_I || o->owner == OF_J);
     w->ends[k] = gather ? w->gathered[k] : array ? array + first : NULL;
-    const int32_t *index = o->side == AT_I ? s->i : s->j;
+    const int32_t *index = o->owner == OF_I ? s->i : s->j;
     for (int lane = 0; gather && lane < count; lane++)
       w->gathered[k][lane] = array[index[first + lane]];
   }
@@ -216,10 +178,9 @@ static void store(const pass_root *r, const pl_strip *s, long first, int count,
 }
 
 static void run_strip(const pl_law *kernel, const double *uniforms, const pl_strip *s,
-                      pass_kind kind) {
+                      pass_kind kind, bool list) {
   const interpreted *p = kernel->context;
   const pass *a = &p->plan->passes[kind];
-  bool list = kind == PASS_LIST || kind == PASS_LIST_LEDGER || kind == PASS_LIST_OBSERVE;
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
   for (long first = 0; first < s->count; first += LANES) {
@@ -237,18 +198,9 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
   give_back(w);
 }
 
-/* X(member of pl_law, pass) */
-#define STRIP_PASSES(X)                                                                            \
-  X(rows, PASS_ROWS)                                                                               \
-  X(rows_ledger, PASS_ROWS_LEDGER)                                                                 \
-  X(rows_observe, PASS_ROWS_OBSERVE)                                                               \
-  X(list, PASS_LIST)                                                                               \
-  X(list_ledger, PASS_LIST_LEDGER)                                                                 \
-  X(list_observe, PASS_LIST_OBSERVE)
-
-#define X(member, pass)                                                                            \
+#define X(pass, member, topology, task)                                                            \
   static void run_##member(const pl_law *kernel, const double *uniforms, const pl_strip *s) {      \
-    run_strip(kernel, uniforms, s, pass);                                                          \
+    run_strip(kernel, uniforms, s, pass, (topology) == STRIP_LIST);                                \
   }
 STRIP_PASSES(X)
 #undef X
@@ -257,18 +209,16 @@ STRIP_PASSES(X)
 
 static void run_law(const pl_law *kernel, const double *uniforms, long count,
                     const double *const *in, double *const *out, pass_kind kind) {
-  static const builtin_quantity order[STATES_INPUTS] = {
-      QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
   const interpreted *p = kernel->context;
   const pass *a = &p->plan->passes[kind];
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
   for (long first = 0; first < count; first += LANES) {
     int now = count - first < LANES ? (int)(count - first) : LANES;
-    for (int k = 0; k < STATES_INPUTS; k++)
-      w->quantities[order[k]] = in[k] + first;
+    for (int k = 0; k < PL_STATE_INPUTS; k++)
+      w->quantities[law_motion[k]] = in[k] + first;
     for (int k = 0; k < p->plan->law->fields.count; k++)
-      w->fields[k] = in[STATES_INPUTS + k] + first;
+      w->fields[k] = in[PL_STATE_INPUTS + k] + first;
     interpreter_inputs inputs = inputs_of(w);
     interpreter_run(w->run[kind], &inputs, now, w->result);
     for (int k = 0; k < a->root_count; k++)
@@ -293,20 +243,7 @@ static void run_prepare(const pl_law *kernel, const double *parameters, const pl
                         double *uniforms) {
   const interpreted *p = kernel->context;
   worker *w = borrow(kernel);
-  const double lighter = bonds->mass_j < bonds->mass_i ? bonds->mass_j : bonds->mass_i;
-  const double *class_values[QUANTITY_COUNT] = {
-      [QUANTITY_S] = &bonds->s,
-      [QUANTITY_SPACING] = &bonds->spacing,
-      [QUANTITY_T] = &bonds->t,
-      [QUANTITY_V] = &bonds->V,
-      [QUANTITY_M_BOND] = &lighter,
-      [QUANTITY_M_END_I] = &bonds->mass_i,
-      [QUANTITY_M_END_J] = &bonds->mass_j,
-      [QUANTITY_AREA] = &bonds->area,
-      [QUANTITY_SHELL] = &bonds->shell,
-      [QUANTITY_N_FAMILY] = &bonds->n,
-  };
-  memcpy(w->quantities, class_values, sizeof class_values);
+  law_class_values(bonds, w->of_class);
   w->ends[ENDS_CLASS_CHORD_X] = &bonds->chord[0];
   w->ends[ENDS_CLASS_CHORD_Y] = &bonds->chord[1];
   for (int k = 0; k < p->plan->law->parameters.count; k++)
@@ -393,7 +330,7 @@ static void describe(interpreted *p, const char *key) {
       .divisions_per_bond = plan->divisions_per_bond,
       .prepare = run_prepare,
       .bounds = run_bounds,
-#define X(member, pass) .member = run_##member,
+#define X(pass, member, topology, task) .member = run_##member,
       STRIP_PASSES(X)
 #undef X
           .states = run_states,

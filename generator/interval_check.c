@@ -499,17 +499,20 @@ static range value_of(analysis *a, context *c, ir_node n) {
 
 /* --- the law ---------------------------------------------------------------------------------- */
 
-static void find_bounds(analysis *a) {
+/* False when a bound cannot be compiled (said). */
+static bool find_bounds(analysis *a) {
   const law *l = a->law;
   size_t bytes = ((size_t)l->parameters.count + 1) * sizeof(ir_node);
   a->lower = arena_alloc(a->memory, bytes);
   a->upper = arena_alloc(a->memory, bytes);
   for (int k = 0; k < l->parameters.count; k++) {
     const bounds *in = &l->parameters.items[k]->declared->in;
-    a->lower[k] = lower_bound(a->graph, l, in->given ? in->lower : NULL, -INFINITY);
-    a->upper[k] = lower_bound(a->graph, l, in->given ? in->upper : NULL, INFINITY);
+    a->lower[k] = lower_bound(a->graph, l, in->given ? in->lower : NULL, -INFINITY, a->said);
+    a->upper[k] = lower_bound(a->graph, l, in->given ? in->upper : NULL, INFINITY, a->said);
+    if (a->lower[k] == IR_NONE || a->upper[k] == IR_NONE) return false;
     lower_parameter(a->graph, l, k);
   }
+  return true;
 }
 
 /* Bounds that are made of other parameters. */
@@ -529,25 +532,30 @@ static void look_at(analysis *a, context *c, ir_node n) {
   if (n != IR_NONE) value_of(a, c, n);
 }
 
+static void look_at_law(analysis *a) {
+  const bench *b = a->bench;
+  const law *l = a->law;
+  a->nodes = ir_count(b->graph);
+  a->most_contexts = (int)fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a->nodes)));
+  a->warned = arena_alloc(a->memory, (size_t)a->nodes);
+  context *whole = new_context(a, NULL, IR_NONE, false);
+  relate_parameters(a, whole);
+  const lowered_law *s = &b->law_step;
+  for (int k = 0; k < l->fields.count; k++)
+    look_at(a, whole, s->fields[k]);
+  const ir_node results[] = {s->N, s->M_i, s->M_j, s->W};
+  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
+    look_at(a, whole, results[k]);
+  for (int k = 0; k < l->outputs.count; k++)
+    look_at(a, whole, s->outputs[k]);
+}
+
 void interval_check(const law *l, diagnostics *d) {
   static const physics_options usual = {0};
   bench b;
   if (l->tree->law == LAW_STATE || !bench_open(&b, l, &usual, d)) return;
   analysis a = {.bench = &b, .graph = b.graph, .law = l, .said = d, .memory = arena_new()};
-  find_bounds(&a);
-  a.nodes = ir_count(b.graph);
-  a.most_contexts = (int)fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a.nodes)));
-  a.warned = arena_alloc(a.memory, (size_t)a.nodes);
-  context *whole = new_context(&a, NULL, IR_NONE, false);
-  relate_parameters(&a, whole);
-  const lowered_law *s = &b.law_step;
-  for (int k = 0; k < l->fields.count; k++)
-    look_at(&a, whole, s->fields[k]);
-  const ir_node results[] = {s->N, s->M_i, s->M_j, s->W};
-  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
-    look_at(&a, whole, results[k]);
-  for (int k = 0; k < l->outputs.count; k++)
-    look_at(&a, whole, s->outputs[k]);
+  if (find_bounds(&a)) look_at_law(&a);
   arena_free(a.memory);
   bench_close(&b);
 }

@@ -15,16 +15,16 @@ enum { BATCH = 1024, STATES_PER_BOND = 4 };
 typedef struct state_arrays {
   int inputs, results;
   double **in;                   /* [inputs][BATCH] */
-  double **out[2], **tangent[2]; /* [results], [LAW_TANGENTS]; of either reader */
+  double **out[2], **tangent[2]; /* [results], [PL_TANGENTS]; of either reader */
 } state_arrays;
 
 static state_arrays arrays_new(const pl_law *kernel) {
-  state_arrays a = {.inputs = LAW_INPUTS + kernel->field_count,
-                    .results = LAW_RESULTS + kernel->field_count};
+  state_arrays a = {.inputs = PL_STATE_INPUTS + kernel->field_count,
+                    .results = PL_STATE_RESULTS + kernel->field_count};
   a.in = planes_new(a.inputs, BATCH);
   for (int side = 0; side < 2; side++) {
     a.out[side] = planes_new(a.results, BATCH);
-    a.tangent[side] = planes_new(LAW_TANGENTS, BATCH);
+    a.tangent[side] = planes_new(PL_TANGENTS, BATCH);
   }
   return a;
 }
@@ -33,7 +33,7 @@ static void arrays_free(state_arrays *a) {
   planes_free(a->in, a->inputs);
   for (int side = 0; side < 2; side++) {
     planes_free(a->out[side], a->results);
-    planes_free(a->tangent[side], LAW_TANGENTS);
+    planes_free(a->tangent[side], PL_TANGENTS);
   }
 }
 
@@ -46,25 +46,25 @@ static void draw_states(const law_readers *l, double **in, uint64_t *seed, int c
     in[3][q] = draw_size(seed, -9, 0.5);
     in[4][q] = l->bonds->s * (1 + in[0][q]);
     for (int f = 0; f < kernel->field_count; f++)
-      in[LAW_INPUTS + f][q] = draw_field(seed, &kernel->fields[f]);
+      in[PL_STATE_INPUTS + f][q] = draw_field(seed, &kernel->fields[f]);
   }
 }
 
 static void compare_states(const law_readers *l, const state_arrays *a, int count, comparison *c) {
-  static const char *const names[LAW_RESULTS] = {"N", "M_i", "M_j"};
+  static const char *const names[PL_STATE_RESULTS] = {"N", "M_i", "M_j"};
   const double *const *in = (const double *const *)a->in;
   for (int side = 0; side < 2; side++) {
     const pl_law *reader = l->law[side];
     planes_poison(a->out[side], a->results, count);
-    planes_poison(a->tangent[side], LAW_TANGENTS, count);
+    planes_poison(a->tangent[side], PL_TANGENTS, count);
     reader->states(reader, l->uniforms[side], count, in, a->out[side]);
     reader->tangent(reader, l->uniforms[side], count, in, a->tangent[side]);
   }
   for (int k = 0; k < a->results; k++)
     comparison_add(c, "states",
-                   k < LAW_RESULTS ? names[k] : l->law[0]->fields[k - LAW_RESULTS].name, -1,
+                   k < PL_STATE_RESULTS ? names[k] : l->law[0]->fields[k - PL_STATE_RESULTS].name, -1,
                    a->out[0][k], a->out[1][k], count);
-  for (int k = 0; k < LAW_TANGENTS; k++)
+  for (int k = 0; k < PL_TANGENTS; k++)
     comparison_add(c, "tangent", "derivative", k, a->tangent[0][k], a->tangent[1][k], count);
 }
 

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/passes.h"
 #include "generator/random_values.h"
 
 enum {
@@ -32,17 +33,17 @@ typedef struct strip_arrays {
   int32_t *i, *j;
 } strip_arrays;
 
-static strip_arrays arrays_new(const pl_law *law) {
-  strip_arrays a = {.law = law,
-                    .kept_planes = law->field_count + 2,
+static strip_arrays arrays_new(const pl_law *kernel) {
+  strip_arrays a = {.law = kernel,
+                    .kept_planes = kernel->field_count + 2,
                     .motion = planes_new(MOTIONS, SITES + 1),
                     .chord = planes_new(2, SITES)};
-  a.parameter = planes_new(law->varying_count, SITES);
+  a.parameter = planes_new(kernel->varying_count, SITES);
   a.before = planes_new(a.kept_planes, SITES);
   for (int side = 0; side < 2; side++) {
     a.kept[side] = planes_new(a.kept_planes, SITES);
-    a.force[side] = planes_new(law->force_planes, SITES);
-    a.observed[side] = planes_new(1 + law->output_count, SITES);
+    a.force[side] = planes_new(kernel->force_planes, SITES);
+    a.observed[side] = planes_new(1 + kernel->output_count, SITES);
   }
   a.flags = must_calloc(SITES, sizeof *a.flags);
   a.i = must_calloc(SITES, sizeof *a.i);
@@ -122,12 +123,15 @@ typedef struct strip_pass {
 } strip_pass;
 
 static const strip_pass passes[] = {
-    {"rows", offsetof(pl_law, rows), .forces = true},
-    {"rows_ledger", offsetof(pl_law, rows_ledger), .forces = true, .ledger = true},
-    {"rows_observe", offsetof(pl_law, rows_observe), .observes = true},
-    {"list", offsetof(pl_law, list), .list = true, .forces = true},
-    {"list_ledger", offsetof(pl_law, list_ledger), .list = true, .forces = true, .ledger = true},
-    {"list_observe", offsetof(pl_law, list_observe), .list = true, .observes = true},
+#define X(pass, member, topology, task)                                                            \
+  {#member,                                                                                        \
+   offsetof(pl_law, member),                                                                       \
+   .list = (topology) == STRIP_LIST,                                                               \
+   .forces = (task) != STRIP_OBSERVE,                                                              \
+   .ledger = (task) == STRIP_LEDGER,                                                               \
+   .observes = (task) == STRIP_OBSERVE},
+    STRIP_PASSES(X)
+#undef X
 };
 
 static pl_strip strip_of(const strip_arrays *a, const strip_pass *p, int side) {
@@ -171,17 +175,17 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
 /* --- what they wrote -------------------------------------------------------------------------- */
 
 static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison *c) {
-  const pl_law *law = a->law;
+  const pl_law *kernel = a->law;
   const long count = p->list ? LISTED : SITES;
   const char *energies[2] = {"dissipated_state", "dissipated_rate"};
-  for (int k = 0; p->forces && k < law->force_planes; k++)
+  for (int k = 0; p->forces && k < kernel->force_planes; k++)
     comparison_add(c, p->name, "force", k, a->force[0][k], a->force[1][k], count);
-  for (int k = 0; p->observes && k <= law->output_count; k++)
-    comparison_add(c, p->name, k ? law->outputs[k - 1].name : "stored energy", -1,
+  for (int k = 0; p->observes && k <= kernel->output_count; k++)
+    comparison_add(c, p->name, k ? kernel->outputs[k - 1].name : "stored energy", -1,
                    a->observed[0][k], a->observed[1][k], count);
   for (int k = 0; k < a->kept_planes; k++) {
-    const int energy = k - law->field_count;
-    comparison_add(c, p->name, energy < 0 ? law->fields[k].name : energies[energy], -1,
+    const int energy = k - kernel->field_count;
+    comparison_add(c, p->name, energy < 0 ? kernel->fields[k].name : energies[energy], -1,
                    a->kept[0][k], a->kept[1][k], SITES);
   }
 }

@@ -2,19 +2,15 @@
 
 #include "dsl/builtins.h"
 
-static const char *const input_names[ENDS_COUNT] = {
-#define X(code, name) [ENDS_##code] = name,
+const ends_origin ends_origins[ENDS_COUNT] = {
+#define X(code, name, array, owner, component) [ENDS_##code] = {name, array, owner, component},
     ENDS_INPUTS(X)
 #undef X
 };
 
-const char *kinematics_input_name(ends_input which) {
-  return input_names[which];
-}
-
 ir_node kinematics_input(ir *g, ends_input which) {
-  bool of_class = which == ENDS_CLASS_CHORD_X || which == ENDS_CLASS_CHORD_Y;
-  return ir_input(g, IR_FROM_ENDS, (int)which, input_names[which], of_class ? ON_BODY : ON_BOND);
+  const ends_origin *o = &ends_origins[which];
+  return ir_input(g, IR_FROM_ENDS, (int)which, o->name, o->array == FROM_CLASS ? ON_BODY : ON_BOND);
 }
 
 /* Names are for readers of dumps and of generated C; these values have no line in a model. */

@@ -11,37 +11,56 @@
    a whole strip (rows; pl_bond_class). PROTECTED: 1 where the damage of the bond stays as it is,
    else 0 (a number; the graph asks 0 < protected). TIME_STEP: s, of the strip; ON_BOND because
    `prepare` does not know it. */
+/* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
-  X(U_IX, "u_ix")                                                                                  \
-  X(U_IY, "u_iy")                                                                                  \
-  X(PHI_I, "phi_i")                                                                                \
-  X(U_JX, "u_jx")                                                                                  \
-  X(U_JY, "u_jy")                                                                                  \
-  X(PHI_J, "phi_j")                                                                                \
-  X(V_IX, "v_ix")                                                                                  \
-  X(V_IY, "v_iy")                                                                                  \
-  X(OMEGA_I, "omega_i")                                                                            \
-  X(V_JX, "v_jx")                                                                                  \
-  X(V_JY, "v_jy")                                                                                  \
-  X(OMEGA_J, "omega_j")                                                                            \
-  X(CHORD_X, "chord_x")                                                                            \
-  X(CHORD_Y, "chord_y")                                                                            \
-  X(CLASS_CHORD_X, "class_chord_x")                                                                \
-  X(CLASS_CHORD_Y, "class_chord_y")                                                                \
-  X(PROTECTED, "protected")                                                                        \
-  X(TIME_STEP, "time_step")
+  X(U_IX, "u_ix", FROM_DISPLACEMENT, OF_I, 0)                                                      \
+  X(U_IY, "u_iy", FROM_DISPLACEMENT, OF_I, 1)                                                      \
+  X(PHI_I, "phi_i", FROM_DISPLACEMENT, OF_I, 2)                                                    \
+  X(U_JX, "u_jx", FROM_DISPLACEMENT, OF_J, 0)                                                      \
+  X(U_JY, "u_jy", FROM_DISPLACEMENT, OF_J, 1)                                                      \
+  X(PHI_J, "phi_j", FROM_DISPLACEMENT, OF_J, 2)                                                    \
+  X(V_IX, "v_ix", FROM_VELOCITY, OF_I, 0)                                                          \
+  X(V_IY, "v_iy", FROM_VELOCITY, OF_I, 1)                                                          \
+  X(OMEGA_I, "omega_i", FROM_VELOCITY, OF_I, 2)                                                    \
+  X(V_JX, "v_jx", FROM_VELOCITY, OF_J, 0)                                                          \
+  X(V_JY, "v_jy", FROM_VELOCITY, OF_J, 1)                                                          \
+  X(OMEGA_J, "omega_j", FROM_VELOCITY, OF_J, 2)                                                    \
+  X(CHORD_X, "chord_x", FROM_CHORD, OF_BOND, 0)                                                    \
+  X(CHORD_Y, "chord_y", FROM_CHORD, OF_BOND, 1)                                                    \
+  X(CLASS_CHORD_X, "class_chord_x", FROM_CLASS, OF_STRIP, 0)                                       \
+  X(CLASS_CHORD_Y, "class_chord_y", FROM_CLASS, OF_STRIP, 1)                                       \
+  X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
+  X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)
 
 typedef enum ends_input {
-#define X(code, name) ENDS_##code,
+#define X(code, name, array, owner, component) ENDS_##code,
   ENDS_INPUTS(X)
 #undef X
   ENDS_COUNT
 } ends_input;
 
+/* Members of pl_strip, of each end where there are two; pl_bond_class; a bit of the flags. */
+typedef enum ends_array {
+  FROM_DISPLACEMENT,
+  FROM_VELOCITY,
+  FROM_CHORD,
+  FROM_CLASS,
+  FROM_FLAGS,
+  FROM_TIME
+} ends_array;
+typedef enum ends_owner { OF_I, OF_J, OF_BOND, OF_STRIP } ends_owner;
+
+typedef struct ends_origin {
+  const char *name;
+  ends_array array;
+  ends_owner owner;
+  int component;
+} ends_origin;
+extern const ends_origin ends_origins[ENDS_COUNT];
+
 /* The input node. Its placement follows from what it is: CLASS_CHORD on the body, all others on the
    bond. */
 ir_node kinematics_input(ir *g, ends_input which);
-const char *kinematics_input_name(ends_input which);
 
 typedef struct bond_kinematics {
   ir_node stretch, stretch_rate, theta_i, theta_j, length;

@@ -682,17 +682,15 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
   return !c.failed;
 }
 
-ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite) {
+ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite,
+                    diagnostics *d) {
   if (!bound) return ir_constant(g, infinite);
-  diagnostics none;
-  diag_begin(&none, NULL);
   arena *memory = arena_new();
-  lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = &none};
+  lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = d};
   ir_node n = lower_expr(&c, bound);
   free(c.bound);
   arena_free(memory);
-  diag_clear(&none);
-  return n;
+  return c.failed ? IR_NONE : n;
 }
 
 /* --- energy ----------------------------------------------------------------------------------- */

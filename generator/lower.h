@@ -61,8 +61,9 @@ ir_node lower_quantity(ir *g, builtin_quantity q);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
 ir_node lower_field(ir *g, const law *l, int k);
-/* A bound of a parameter as IR over the parameters; infinite without an expression. */
-ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite);
+/* A bound of a parameter as IR over the parameters; infinite without an expression. IR_NONE with a
+   diagnostic when it cannot be compiled. */
+ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d);
 
 /* Stored energy of a bond (J) in a frozen law at zero rate, as a function of its kinematics: the
    law's `energy` if it has one; half of force times deformation where the forces are homogeneous of

@@ -6,11 +6,12 @@
 
 #include "dsl/diagnostics.h"
 #include "generator/commands.h"
+#include "generator/manual.h"
 #include "generator/version.h"
 
-/* In the order of `commands`. */
+/* In the order of `command_table`. */
 static int (*const run[])(int argc, char **argv) = {
-#define X(name, files, endings, purpose) command_##name,
+#define X(name, files, endings, purpose, status) command_##name,
     COMMANDS(X)
 #undef X
 };
@@ -21,11 +22,11 @@ static int print_help(FILE *out) {
         "usage: perilat COMMAND ...\n\n",
         out);
   for (int k = 0; k < COMMAND_COUNT; k++)
-    fprintf(out, "  %-7s  %s\n           perilat %s %s\n", commands[k].name, commands[k].purpose, commands[k].name,
-            commands[k].files);
+    fprintf(out, "  %-7s  %s\n           perilat %s %s\n", command_table[k].name, command_table[k].purpose, command_table[k].name,
+            command_table[k].files);
   fputs("\n  perilat COMMAND --help   usage and options of one command\n"
         "  perilat --version\n\n"
-        "Exit status: 0 done, 1 the input is wrong, 2 the run failed.\n",
+        "Exit status: " COMMAND_STATUS ".\n",
         out);
   return 0;
 }
@@ -33,7 +34,7 @@ static int print_help(FILE *out) {
 static int unknown_command(const char *name) {
   const char *names[COMMAND_COUNT];
   for (int k = 0; k < COMMAND_COUNT; k++)
-    names[k] = commands[k].name;
+    names[k] = command_table[k].name;
   const char *near = nearest_name(name, names, COMMAND_COUNT);
   fprintf(stderr, "perilat: error: there is no command `%s`", name);
   if (near)
@@ -53,8 +54,12 @@ static int dispatch(int argc, char **argv) {
     printf("perilat %s\n", perilat_version);
     return 0;
   }
+  if (argc == 3 && !strcmp(argv[1], "--write-manual")) /* these two are for the build */
+    return manual_write(argv[2]);
+  if (argc == 3 && !strcmp(argv[1], "--write-completion"))
+    return completion_write(argv[2]);
   for (int k = 0; k < COMMAND_COUNT; k++) {
-    if (strcmp(argv[1], commands[k].name) != 0)
+    if (strcmp(argv[1], command_table[k].name) != 0)
       continue;
     for (int a = 2; a < argc; a++)
       if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {

@@ -4,20 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "dsl/parse.h"
+#include "generator/clock.h"
 #include "generator/emit.h"
 
 #define MODEL_LIMIT ((size_t)1 << 20)
 #define PATH_LIMIT 4096
-
-static double seconds_now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
   struct stat about;
@@ -146,7 +140,7 @@ static char *try_program_tree(const char *name) {
     return NULL;
   program[n] = 0;
   folder_of(program, folder, sizeof folder);
-  static const char *const relative[] = {"../models", "../share/perilat/models", "models"};
+  static const char *const relative[] = {"../models", PERILAT_DATA_FOLDER "/models", "models"};
   for (size_t k = 0; k < sizeof relative / sizeof *relative; k++) {
     snprintf(models, sizeof models, "%s/%s", folder, relative[k]);
     char *found = try_path(models, name);
@@ -201,14 +195,14 @@ static void begin_model(model *m, const char *path) {
 }
 
 static bool check_text(model *m, const char *text, size_t length, const law_choice *choices, int choice_count) {
-  double begun = seconds_now();
+  double begun = monotonic_seconds();
   int file = source_add(&m->sources, m->path, text, length);
   parse_options options = {read_include, NULL};
   m->tree = parse_model(m->memory, &m->sources, file, &options, &m->said);
   if (!m->tree || m->said.errors)
     return false;
   m->law = law_check(m->memory, m->tree, &m->sources, choices, choice_count, &m->said);
-  m->seconds_front += seconds_now() - begun;
+  m->seconds_front += monotonic_seconds() - begun;
   return m->law && !m->said.errors;
 }
 
@@ -218,7 +212,7 @@ bool model_open_text(model *m, const char *path, const char *text, const law_cho
 }
 
 bool model_open(model *m, const char *path, const law_choice *choices, int choice_count) {
-  double begun = seconds_now();
+  double begun = monotonic_seconds();
   size_t length;
   char error[PATH_LIMIT + 128];
   begin_model(m, path);
@@ -227,7 +221,7 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
     diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
     return false;
   }
-  m->seconds_front = seconds_now() - begun;
+  m->seconds_front = monotonic_seconds() - begun;
   bool good = check_text(m, text, length, choices, choice_count);
   free(text);
   return good;
@@ -236,7 +230,7 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
 bool model_plan(model *m) { return model_plan_varying(m, NULL, 0); }
 
 bool model_plan_varying(model *m, const int *varying, int varying_count) {
-  double begun = seconds_now();
+  double begun = monotonic_seconds();
   m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
   if (!m->plan)
     return false;
@@ -244,7 +238,7 @@ bool model_plan_varying(model *m, const int *varying, int varying_count) {
   m->key = toolchain_key(unkeyed);
   free(unkeyed);
   m->c_text = emit_kernel(m->plan, m->key);
-  m->seconds_front += seconds_now() - begun;
+  m->seconds_front += monotonic_seconds() - begun;
   return true;
 }
 
@@ -257,10 +251,10 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
     m->interpreted = plan_interpreted(m->plan, m->key);
     return m->interpreted;
   }
-  double begun = seconds_now();
+  double begun = monotonic_seconds();
   if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size))
     return NULL;
-  m->seconds_kernel = seconds_now() - begun;
+  m->seconds_kernel = monotonic_seconds() - begun;
   return m->loaded.law;
 }
 

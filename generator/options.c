@@ -35,27 +35,27 @@ const char *option_value(int argc, char **argv, int *at, const char *name, int *
 
 /* --- the tables ------------------------------------------------------------------------------- */
 
-const command_entry commands[] = {
-#define X(name, files, endings, purpose) {#name, files, endings, purpose},
+const command_entry command_table[] = {
+#define X(name, files, endings, purpose, status) {#name, files, endings, purpose, status},
     COMMANDS(X)
 #undef X
 };
-const int command_count = (int)(sizeof commands / sizeof *commands);
+const int command_count = (int)(sizeof command_table / sizeof *command_table);
 
-const option_entry options[] = {
+const option_entry option_table[] = {
 #define X(command, option, value, meaning) {#command, option, value, meaning},
     COMMAND_OPTIONS(X)
 #undef X
 };
-enum { OPTION_COUNT = sizeof options / sizeof *options };
+enum { OPTION_COUNT = sizeof option_table / sizeof *option_table };
 const int option_count = OPTION_COUNT;
 
 int option_unknown_in(const char *program, const char *command, const char *given) {
   const char *names[OPTION_COUNT];
   int count = 0;
   for (int k = 0; k < OPTION_COUNT; k++)
-    if (strcmp(options[k].command, command) == 0)
-      names[count++] = options[k].name;
+    if (strcmp(option_table[k].command, command) == 0)
+      names[count++] = option_table[k].name;
   const char *near = nearest_name(given, names, count);
   fprintf(stderr, "perilat: error: `%s` has no option `%s`", program, given);
   if (near)
@@ -70,28 +70,33 @@ int option_unknown(const char *command, const char *given) {
   return option_unknown_in(program, command, given);
 }
 
+bool command_has_options(const char *command) {
+  for (int k = 0; k < OPTION_COUNT; k++)
+    if (strcmp(option_table[k].command, command) == 0)
+      return true;
+  return false;
+}
+
 void options_print(const char *command, FILE *out) {
   size_t width = 0;
   for (int k = 0; k < OPTION_COUNT; k++) {
-    size_t n = strlen(options[k].name) + 1 + strlen(options[k].value);
-    if (strcmp(options[k].command, command) == 0 && n > width)
+    size_t n = strlen(option_table[k].name) + 1 + strlen(option_table[k].value);
+    if (strcmp(option_table[k].command, command) == 0 && n > width)
       width = n;
   }
   for (int k = 0; k < OPTION_COUNT; k++) {
-    const option_entry *o = &options[k];
+    const option_entry *o = &option_table[k];
     if (strcmp(o->command, command) == 0)
       fprintf(out, "  %s %-*s  %s\n", o->name, (int)(width - strlen(o->name) - 1), o->value, o->meaning);
   }
 }
 
 void command_print(int k, FILE *out) {
-  const char *name = commands[k].name;
-  bool has_options = false;
-  for (int o = 0; o < OPTION_COUNT; o++)
-    has_options = has_options || strcmp(options[o].command, name) == 0;
-  fprintf(out, "usage: perilat %s %s%s\n  %s\n", name, has_options ? "[options] " : "", commands[k].files,
-          commands[k].purpose);
+  const command_entry *c = &command_table[k];
+  const bool has_options = command_has_options(c->name);
+  fprintf(out, "usage: perilat %s %s%s\n  %s\n", c->name, has_options ? "[options] " : "", c->files, c->purpose);
   if (has_options)
     fputs("\noptions:\n", out);
-  options_print(name, out);
+  options_print(c->name, out);
+  fprintf(out, "\nExit status: %s.\n", c->status);
 }

@@ -5,21 +5,13 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/law_inputs.h"
 #include "generator/rewrite.h"
 
-enum { KINEMATIC_COUNT = 5, RESULTS = 3, RATES_OF_TANGENT = 4 };
-
-/* stretch, stretch_rate, theta_i, theta_j, length: the order of pl_law.states. */
-static const builtin_quantity kinematic_quantities[KINEMATIC_COUNT] = {
-    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
-
 static const char *const pass_names[PASS_COUNT] = {
-    [PASS_ROWS] = "rows",
-    [PASS_ROWS_LEDGER] = "rows_ledger",
-    [PASS_ROWS_OBSERVE] = "rows_observe",
-    [PASS_LIST] = "list",
-    [PASS_LIST_LEDGER] = "list_ledger",
-    [PASS_LIST_OBSERVE] = "list_observe",
+#define X(pass, member, topology, task) [pass] = #member,
+    STRIP_PASSES(X)
+#undef X
     [PASS_STATES] = "states",
     [PASS_TANGENT] = "tangent",
     [PASS_BOUNDS] = "bounds",
@@ -50,8 +42,8 @@ static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, co
 
 static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,
                            const ir_node *to, int pairs) {
-  ir_node *results[RESULTS] = {&p->N, &p->M_i, &p->M_j};
-  for (int k = 0; k < RESULTS; k++)
+  ir_node *results[PL_STATE_RESULTS] = {&p->N, &p->M_i, &p->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
     substitute(g, results[k], 1, from, to, pairs);
   substitute(g, p->fields, l->fields.count, from, to, pairs);
 }
@@ -67,16 +59,16 @@ static ir_node *copy_nodes(arena *memory, const ir_node *nodes, int count) {
 static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
   int fields = l->fields.count;
   size_t field_bytes = (size_t)fields * sizeof(ir_node);
-  ir_node *all = must_alloc(RESULTS * sizeof *all + field_bytes);
+  ir_node *all = must_alloc(PL_STATE_RESULTS * sizeof *all + field_bytes);
   all[0] = p->N;
   all[1] = p->M_i; /* IR_NONE stays IR_NONE */
   all[2] = p->M_j;
-  memcpy(all + RESULTS, p->fields, field_bytes);
-  rewrite_reciprocals(g, all, RESULTS + fields, all);
+  memcpy(all + PL_STATE_RESULTS, p->fields, field_bytes);
+  rewrite_reciprocals(g, all, PL_STATE_RESULTS + fields, all);
   p->N = all[0];
   p->M_i = all[1];
   p->M_j = all[2];
-  memcpy(p->fields, all + RESULTS, field_bytes);
+  memcpy(p->fields, all + PL_STATE_RESULTS, field_bytes);
   free(all);
 }
 
@@ -95,12 +87,12 @@ static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
 /* Law-level inputs and the kinematics that take their place. */
 static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, ir_node *from,
                            ir_node *to) {
-  const ir_node values[KINEMATIC_COUNT] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
+  const ir_node values[PL_STATE_INPUTS] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
                                            k->length};
   int pairs = 0;
-  for (int q = 0; q < KINEMATIC_COUNT; q++) {
+  for (int q = 0; q < PL_STATE_INPUTS; q++) {
     if (values[q] == IR_NONE) continue;
-    from[pairs] = lower_quantity(g, kinematic_quantities[q]);
+    from[pairs] = lower_quantity(g, law_motion[q]);
     to[pairs++] = values[q];
   }
   if (!uniform_chord) {
@@ -115,7 +107,7 @@ static topology see_topology(planner *p, bool uniform_chord) {
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
   topology t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, uniform_chord)};
-  const size_t most = (size_t)(KINEMATIC_COUNT + 1 + p->plan->varying_count);
+  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
   int pairs = kinematic_pairs(g, &t.k, uniform_chord, from, to);
@@ -212,12 +204,12 @@ static lowered_law unprotected_step(planner *p) {
 
 static void plan_states(planner *p, const lowered_law *bare) {
   int fields = p->plan->law->fields.count;
-  pass *a = begin_pass(p, PASS_STATES, RESULTS + fields);
-  ir_node results[RESULTS] = {bare->N, bare->M_i, bare->M_j};
-  for (int k = 0; k < RESULTS; k++)
+  pass *a = begin_pass(p, PASS_STATES, PL_STATE_RESULTS + fields);
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
     write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
   for (int k = 0; k < fields; k++)
-    write_root(a, bare->fields[k], TO_OUT, RESULTS + k);
+    write_root(a, bare->fields[k], TO_OUT, PL_STATE_RESULTS + k);
 }
 
 /* d(result)/d(stretch): the present length follows the stretch, L = s (1 + stretch). */
@@ -230,25 +222,29 @@ static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
 
 static void plan_tangent(planner *p, const lowered_law *bare) {
   ir *g = p->plan->graph;
-  pass *a = begin_pass(p, PASS_TANGENT, RESULTS * RATES_OF_TANGENT);
-  ir_node results[RESULTS] = {bare->N, bare->M_i, bare->M_j};
-  for (int k = 0; k < RESULTS; k++)
-    for (int q = 0; q < RATES_OF_TANGENT; q++) {
+  pass *a = begin_pass(p, PASS_TANGENT, PL_TANGENTS);
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
+    for (int q = 0; q < PL_STATE_RATES; q++) {
       ir_node d =
-          results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], kinematic_quantities[q]);
+          results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);
       rewrite_zero(g, &d, 1, NULL, 0, &d);
-      write_root(a, d, TO_OUT, k * RATES_OF_TANGENT + q);
+      write_root(a, d, TO_OUT, k * PL_STATE_RATES + q);
     }
 }
 
-static void plan_bounds(planner *p) {
+static bool plan_bounds(planner *p, diagnostics *d) {
   const law *l = p->plan->law;
   pass *a = begin_pass(p, PASS_BOUNDS, 2 * l->parameters.count);
   for (int k = 0; k < l->parameters.count; k++) {
     const bounds *in = &l->parameters.items[k]->declared->in;
-    write_root(a, lower_bound(p->plan->graph, l, in->lower, -INFINITY), TO_LOWER, k);
-    write_root(a, lower_bound(p->plan->graph, l, in->upper, INFINITY), TO_UPPER, k);
+    ir_node lower = lower_bound(p->plan->graph, l, in->lower, -INFINITY, d);
+    ir_node upper = lower_bound(p->plan->graph, l, in->upper, INFINITY, d);
+    if (lower == IR_NONE || upper == IR_NONE) return false;
+    write_root(a, lower, TO_LOWER, k);
+    write_root(a, upper, TO_UPPER, k);
   }
+  return true;
 }
 
 /* --- what is hoisted -------------------------------------------------------------------------- */
@@ -331,17 +327,20 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
     plan_free(plan);
     return NULL;
   }
+  static void (*const plan_strip[])(planner *, const topology *, pass_kind) = {
+      [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
   topology rows = see_topology(&p, true), list = see_topology(&p, false);
-  plan_step(&p, &rows, PASS_ROWS);
-  plan_ledger(&p, &rows, PASS_ROWS_LEDGER);
-  plan_observe(&p, &rows, PASS_ROWS_OBSERVE);
-  plan_step(&p, &list, PASS_LIST);
-  plan_ledger(&p, &list, PASS_LIST_LEDGER);
-  plan_observe(&p, &list, PASS_LIST_OBSERVE);
+#define X(pass, member, topology, task)                                                            \
+  plan_strip[task](&p, (topology) == STRIP_LIST ? &list : &rows, pass);
+  STRIP_PASSES(X)
+#undef X
   lowered_law bare = unprotected_step(&p);
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);
-  plan_bounds(&p);
+  if (!plan_bounds(&p, d)) {
+    plan_free(plan);
+    return NULL;
+  }
   hoist(plan);
   ir_cost cost = cost_of(plan, &plan->passes[PASS_ROWS]);
   plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;

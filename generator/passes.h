@@ -7,13 +7,23 @@
 #include "generator/lower.h"
 #include "runtime/kernel.h"
 
+/* How bonds find their particles, and what is done over them. */
+typedef enum strip_topology { STRIP_ROWS, STRIP_LIST } strip_topology;
+typedef enum strip_task { STRIP_STEP, STRIP_LEDGER, STRIP_OBSERVE } strip_task;
+
+/* The functions over strips. X(pass, member of pl_law, topology, task) */
+#define STRIP_PASSES(X)                                                                            \
+  X(PASS_ROWS, rows, STRIP_ROWS, STRIP_STEP)                                                       \
+  X(PASS_ROWS_LEDGER, rows_ledger, STRIP_ROWS, STRIP_LEDGER)                                       \
+  X(PASS_ROWS_OBSERVE, rows_observe, STRIP_ROWS, STRIP_OBSERVE)                                    \
+  X(PASS_LIST, list, STRIP_LIST, STRIP_STEP)                                                       \
+  X(PASS_LIST_LEDGER, list_ledger, STRIP_LIST, STRIP_LEDGER)                                       \
+  X(PASS_LIST_OBSERVE, list_observe, STRIP_LIST, STRIP_OBSERVE)
+
 typedef enum pass_kind {
-  PASS_ROWS,
-  PASS_ROWS_LEDGER,
-  PASS_ROWS_OBSERVE,
-  PASS_LIST,
-  PASS_LIST_LEDGER,
-  PASS_LIST_OBSERVE,
+#define X(pass, member, topology, task) pass,
+  STRIP_PASSES(X)
+#undef X
   PASS_STATES,
   PASS_TANGENT,
   PASS_BOUNDS,
@@ -35,10 +45,10 @@ typedef enum pass_target {
 
 /* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
    (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
-   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, in[0..4].
-   IR_FROM_FIELD k: field[k], or in[5 + k]. IR_FROM_ENDS: all strips. IR_FROM_BOND_PARAMETER k: in
-   strips parameter[k], the value of parameter varying[k] in each bond; all other passes take that
-   parameter as IR_FROM_PARAMETER. */
+   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, the first
+   planes of `in`. IR_FROM_FIELD k: field[k], or in[PL_STATE_INPUTS + k]. IR_FROM_ENDS: all strips.
+   IR_FROM_BOND_PARAMETER k: in strips parameter[k], the value of parameter varying[k] in each bond;
+   all other passes take that parameter as IR_FROM_PARAMETER. */
 typedef struct pass_root {
   ir_node node;
   pass_target target;

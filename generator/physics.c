@@ -1,16 +1,10 @@
 #include "generator/physics.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 #include "dsl/arena.h"
+#include "generator/clock.h"
 #include "generator/physics_parts.h"
-
-static double seconds_now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 /* What a more telling check has found already is not said again as net work out of a cycle. */
 static bool energy_is_wrong(const physics *p) {
@@ -69,7 +63,7 @@ static void count_guards(const bench *b, physics_report *report) {
 
 bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report) {
   static const physics_options usual = {0};
-  double begun = seconds_now();
+  double begun = monotonic_seconds();
   int errors = d->errors;
   physics_report unwanted;
   report = report ? report : &unwanted;
@@ -86,6 +80,6 @@ bool physics_check(const law *l, const physics_options *o, diagnostics *d, physi
     bench_close(&p->b);
   }
   free(p);
-  report->seconds = seconds_now() - begun;
+  report->seconds = monotonic_seconds() - begun;
   return d->errors == errors;
 }

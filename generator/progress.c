@@ -1,16 +1,11 @@
 #include "generator/progress.h"
 
 #include <stdio.h>
-#include <time.h>
 #include <unistd.h>
 
-enum { BAR_WIDTH = 24 };
+#include "generator/clock.h"
 
-double monotonic_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
+enum { BAR_WIDTH = 24 };
 
 void progress_begin(progress *p, double fraction) {
   *p = (progress){.terminal = isatty(STDERR_FILENO) == 1,
@@ -19,7 +14,7 @@ void progress_begin(progress *p, double fraction) {
                   .tenths = (int)(10 * fraction)};
 }
 
-double progress_seconds(const progress *p) { return monotonic_seconds() - p->begun; }
+static double seconds_of(const progress *p) { return monotonic_seconds() - p->begun; }
 
 static void show_bar(const progress *p, double fraction, const char *detail) {
   char bar[BAR_WIDTH + 1], left[32] = "";
@@ -28,7 +23,7 @@ static void show_bar(const progress *p, double fraction, const char *detail) {
   bar[BAR_WIDTH] = 0;
   double done = fraction - p->from;
   if (done > 0.005) {
-    long s = (long)(progress_seconds(p) * (1 - fraction) / done);
+    long s = (long)(seconds_of(p) * (1 - fraction) / done);
     snprintf(left, sizeof left, "%ld:%02ld left", s / 60, s % 60);
   }
   fprintf(stderr, "\r[%s] %3.0f %%  %s  %s\033[K", bar, 100 * fraction, detail, left);
@@ -44,7 +39,7 @@ void progress_show(progress *p, double fraction, const char *detail) {
     show_bar(p, fraction, detail);
   } else if ((int)(10 * fraction) > p->tenths) {
     p->tenths = (int)(10 * fraction);
-    fprintf(stderr, "%3d %%  %s  (%.1f s)\n", 10 * p->tenths, detail, progress_seconds(p));
+    fprintf(stderr, "%3d %%  %s  (%.1f s)\n", 10 * p->tenths, detail, seconds_of(p));
   }
 }
 

@@ -16,7 +16,5 @@ void progress_begin(progress *p, double fraction);
 /* `detail`: e.g. "t = 25 ms, load 3.1 kN, peak 11.0 kN". Shown at most five times a second. */
 void progress_show(progress *p, double fraction, const char *detail);
 void progress_end(progress *p);
-double progress_seconds(const progress *p);
-double monotonic_seconds(void);
 
 #endif

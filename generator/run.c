@@ -10,6 +10,7 @@
 
 #include "generator/kernel_check.h"
 #include "generator/model.h"
+#include "generator/clock.h"
 #include "generator/progress.h"
 #include "generator/run_parts.h"
 

@@ -165,13 +165,6 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
-static deck_material *material_of(run *r, int lattice) {
-  for (int k = 0; k < r->deck->material_count; k++)
-    if (strcmp(r->deck->materials[k].lattice, r->deck->lattices[lattice].name) == 0)
-      return &r->deck->materials[k];
-  return NULL;
-}
-
 /* Kernels are compiled for plane stress only. */
 static bool setting_is_supported(run *r, const deck_lattice *l) {
   if (strcmp(l->setting, "plane_stress") == 0)
@@ -201,7 +194,8 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
 
 /* 0, or an exit status. */
 int load_law(run *r, int lattice) {
-  deck_material *m = material_of(r, lattice);
+  deck_material *m =
+      &r->deck->materials[deck_find_material(r->deck, r->deck->lattices[lattice].name)];
   if (!setting_is_supported(r, &r->deck->lattices[lattice]))
     return INPUT_WRONG;
   const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;

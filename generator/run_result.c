@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/hash.h"
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
@@ -70,18 +71,17 @@ bool result_spares_inputs(run *r) {
   return good;
 }
 
-static uint64_t fnv(uint64_t hash, const char *text) {
-  for (; *text; text++)
-    hash = (hash ^ (unsigned char)*text) * UINT64_C(0x100000001b3);
-  return (hash ^ 0xff) * UINT64_C(0x100000001b3);
+/* With its end, so that no two sequences of texts run together alike. */
+static uint64_t hash_text(uint64_t hash, const char *text) {
+  return hash_more(hash, text, strlen(text) + 1);
 }
 
 /* What a checkpoint belongs to: the program, the deck as overridden, and the kernels. */
 void fingerprint(run *r) {
-  uint64_t hash = fnv(UINT64_C(0xcbf29ce484222325), perilat_version);
-  hash = fnv(hash, r->deck->identity);
+  uint64_t hash = hash_text(HASH_START, perilat_version);
+  hash = hash_text(hash, r->deck->identity);
   for (int k = 0; k < r->deck->lattice_count; k++)
-    hash = fnv(hash, r->laws[k].law->key);
+    hash = hash_text(hash, r->laws[k].law->key);
   snprintf(r->fingerprint, sizeof r->fingerprint, "%016llx", (unsigned long long)hash);
 }
 

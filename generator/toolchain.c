@@ -414,10 +414,10 @@ bool toolchain_build(const char *c_text, const char *path, char *error, size_t s
   return build(c_text, NULL, path, error, size);
 }
 
-/* -L and the folder with this program's static libraries: where it was built, or lib/ beside bin/
-   where it is installed. */
+/* -L and the folder with this program's static libraries: where it was built, or where it is
+   installed. */
 static bool find_libraries(char *folder, size_t size) {
-  static const char *const relative[] = {"", "/../lib"};
+  static const char *const relative[] = {"", "/" PERILAT_LIBRARY_FOLDER};
   char program[LONGEST_PATH], probe[LONGEST_PATH + 64];
   ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
   program[n > 0 ? n : 0] = 0;

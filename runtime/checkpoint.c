@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
+#include "dsl/hash.h"
 
 static const char magic[8] = "PLATCKP1"; /* the digit is the version of the layout */
 
@@ -26,21 +27,11 @@ static bool fail(stream *s, const char *what) {
   return false;
 }
 
-/* FNV-1a, 64 bits. */
-static uint64_t checksum(uint64_t sum, const void *data, size_t bytes) {
-  const unsigned char *at = data;
-  for (size_t k = 0; k < bytes; k++)
-    sum = (sum ^ at[k]) * UINT64_C(0x100000001b3);
-  return sum;
-}
-
-#define CHECKSUM_START UINT64_C(0xcbf29ce484222325)
-
 /* --- writing ---------------------------------------------------------------------------------- */
 
 static bool put(stream *s, const void *data, size_t bytes) {
   if (bytes == 0) return true; /* an empty array may have no address */
-  s->sum = checksum(s->sum, data, bytes);
+  s->sum = hash_more(s->sum, data, bytes);
   if (fwrite(data, 1, bytes, s->file) == bytes) return true;
   return fail(s, strerror(errno));
 }
@@ -61,17 +52,16 @@ static bool put_all(stream *s, const char *fingerprint, const checkpoint_part *p
   return good && put(s, &sum, sizeof sum);
 }
 
-/* A rename is on the disk only when its folder is. */
-static bool sync_folder(stream *s, const char *path) {
+/* A rename is on the disk only when its folder is. The file is whole under its name by now, and some
+   file systems cannot sync folders: that this fails is no failure of the checkpoint. */
+static void sync_folder(const char *path) {
   char *copy = must_alloc(strlen(path) + 1);
   strcpy(copy, path);
   const int folder = open(dirname(copy), O_RDONLY | O_DIRECTORY);
   free(copy);
-  if (folder < 0) return fail(s, strerror(errno));
-  const bool good =
-      fsync(folder) == 0 || errno == EINVAL; /* some file systems cannot sync folders */
+  if (folder < 0) return;
+  (void)fsync(folder);
   close(folder);
-  return good || fail(s, strerror(errno));
 }
 
 static bool write_temporary(stream *s, const char *fingerprint, const checkpoint_part *parts,
@@ -89,11 +79,13 @@ bool checkpoint_write(const char *path, const char *fingerprint, const checkpoin
                       int count, char *error, size_t size) {
   char *temporary = must_alloc(strlen(path) + 5);
   sprintf(temporary, "%s.tmp", path);
-  stream s = {.path = temporary, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  stream s = {.path = temporary, .sum = HASH_START, .error = error, .error_size = size};
   bool good = write_temporary(&s, fingerprint, parts, count);
   if (good && rename(temporary, path) != 0) good = fail(&s, strerror(errno));
-  if (!good) remove(temporary);
-  if (good) good = sync_folder(&s, path);
+  if (good)
+    sync_folder(path);
+  else
+    remove(temporary);
   free(temporary);
   return good;
 }
@@ -103,7 +95,7 @@ bool checkpoint_write(const char *path, const char *fingerprint, const checkpoin
 static bool get(stream *s, void *data, size_t bytes) {
   if (bytes == 0) return true;
   if (fread(data, 1, bytes, s->file) != bytes) return fail(s, "the checkpoint is cut short");
-  s->sum = checksum(s->sum, data, bytes);
+  s->sum = hash_more(s->sum, data, bytes);
   return true;
 }
 
@@ -142,7 +134,7 @@ static bool check_whole(stream *s) {
   fseeko(s->file, 0, SEEK_END);
   off_t left = ftello(s->file) - (off_t)sizeof(uint64_t);
   rewind(s->file);
-  s->sum = CHECKSUM_START;
+  s->sum = HASH_START;
   if (left < 0) return fail(s, "the checkpoint is cut short");
   while (left > 0) {
     const size_t bytes = left > (off_t)sizeof block ? sizeof block : (size_t)left;
@@ -193,7 +185,7 @@ static bool open_checked(stream *s, const char *fingerprint) {
 
 bool checkpoint_read(const char *path, const char *fingerprint, const checkpoint_part *parts,
                      int count, char *error, size_t size) {
-  stream s = {.path = path, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  stream s = {.path = path, .sum = HASH_START, .error = error, .error_size = size};
   const bool good = open_checked(&s, fingerprint) && get_parts(&s, fingerprint, parts, count);
   if (s.file) fclose(s.file);
   return good;
@@ -210,7 +202,7 @@ static bool peek(stream *s, const char *fingerprint, void *data, size_t bytes) {
 
 bool checkpoint_peek(const char *path, const char *fingerprint, void *data, size_t bytes,
                      char *error, size_t size) {
-  stream s = {.path = path, .sum = CHECKSUM_START, .error = error, .error_size = size};
+  stream s = {.path = path, .sum = HASH_START, .error = error, .error_size = size};
   const bool good = open_checked(&s, fingerprint) && peek(&s, fingerprint, data, bytes);
   if (s.file) fclose(s.file);
   return good;

@@ -14,8 +14,9 @@ typedef struct checkpoint_part {
 } checkpoint_part;
 
 /* `fingerprint` says what the state belongs to (deck, laws, kernel); a file with another one is
-   refused. False with a sentence in `error` when it cannot be written; an older file of that name
-   then stays as it was. */
+   refused. True once the new file stands whole under its name (its folder is then forced to the
+   disk where that is possible). False with a sentence in `error` when it cannot be written; an
+   older file of that name then stays as it was. */
 bool checkpoint_write(const char *path, const char *fingerprint, const checkpoint_part *parts,
                       int count, char *error, size_t size);
 

@@ -16,15 +16,18 @@ span deck_where(const deck_item *item, const char *key) {
   return item->where;
 }
 
-#define FIND(group)                                                                                \
+#define FIND(group, member)                                                                        \
   int deck_find_##group(const deck *k, const char *name) {                                         \
     for (int i = 0; i < k->group##_count; i++)                                                     \
-      if (k->group##s[i].name && strcmp(k->group##s[i].name, name) == 0) return i;                 \
+      if (k->group##s[i].member && strcmp(k->group##s[i].member, name) == 0) return i;             \
     return -1;                                                                                     \
   }
-FIND(region)
-FIND(lattice)
-FIND(monitor)
+FIND(region, name)
+FIND(lattice, name)
+FIND(monitor, name)
+FIND(material, lattice)
+
+const char *const deck_component_names[3] = {"x", "y", "rotation"};
 
 /* --- one group -------------------------------------------------------------------------------- */
 

@@ -267,5 +267,10 @@ void deck_reference(FILE *out);
 int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
+/* Index of the first &material of a lattice, or -1. */
+int deck_find_material(const deck *k, const char *lattice);
+
+/* Names of the components 0, 1, 2 of a motion: "x", "y", "rotation". */
+extern const char *const deck_component_names[3];
 
 #endif

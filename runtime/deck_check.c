@@ -8,8 +8,6 @@
 #include "runtime/deck_load.h"
 #include "runtime/deck_value.h"
 
-static const char *const component_names[] = {"x", "y", "rotation"};
-
 /* --- names ------------------------------------------------------------------------------------ */
 
 /* Names of one kind of group, for suggestions. */
@@ -172,12 +170,6 @@ static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assign
   return true;
 }
 
-static const deck_material *material_of(const deck *k, const char *lattice) {
-  for (int i = 0; i < k->material_count; i++)
-    if (same(k->materials[i].lattice, lattice)) return &k->materials[i];
-  return NULL;
-}
-
 void deck_check_material(deck_reader *r, const namelist_group *from, deck_material *item) {
   item->assignments = arena_alloc(r->memory, (size_t)from->key_count * sizeof(*item->assignments));
   for (int i = 0; i < from->key_count; i++) {
@@ -186,11 +178,11 @@ void deck_check_material(deck_reader *r, const namelist_group *from, deck_materi
       item->assignment_count++;
   }
   if (!lattice_known(r, &item->item, item->lattice)) return;
-  const deck_material *first = material_of(r->k, item->lattice);
-  if (!first) return;
+  const int first = deck_find_material(r->k, item->lattice);
+  if (first < 0) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
               "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
-  diag_note(r->d, first->item.where, "it is given here");
+  diag_note(r->d, r->k->materials[first].item.where, "it is given here");
 }
 
 /* --- random fields ---------------------------------------------------------------------------- */
@@ -333,7 +325,7 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
     other = deck_where(&k->drives[i].item, "component");
   }
   if (!conflict) return;
-  const char *component = component_names[item->component];
+  const char *component = deck_component_names[item->component];
   diag_report(r->d, DIAG_CONFLICT, where, "`%s` of region `%s` has two motions", component,
               deck_shown(r->memory, item->region));
   diag_note(r->d, other, "the other one");
@@ -389,7 +381,7 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
   }
   if (rotates != (item->component == 2)) {
     diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
-                key->name, component_names[item->component]);
+                key->name, deck_component_names[item->component]);
     diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
     return;
   }
@@ -484,7 +476,7 @@ static void check_reaction(deck_reader *r, const deck_monitor *item) {
   if (found || !r->names_known) return;
   diag_report(r->d, DIAG_CONFLICT, item->item.where,
               "this reaction is always 0: no `&support` or `&drive` acts on `%s`",
-              component_names[item->component]);
+              deck_component_names[item->component]);
 }
 
 static void check_broken(deck_reader *r, const namelist_group *from, deck_monitor *item) {

@@ -14,9 +14,6 @@ typedef struct deck_quantity {
 
 /* Reads `12.5` or '12.5 mm'. False after a message. */
 bool deck_quantity_read(const namelist_value *v, const char *key, deck_quantity *q, diagnostics *d);
-/* False, with a message that names both dimensions, unless the quantity fits `unit`. */
-bool deck_quantity_fits(const namelist_value *v, const char *key, const deck_quantity *q,
-                        const char *unit, diagnostics *d);
 /* Both at once, and `bound`. */
 bool deck_real_read(const namelist_value *v, const char *key, const char *unit, deck_bound bound,
                     double *value, diagnostics *d);

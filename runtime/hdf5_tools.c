@@ -41,7 +41,8 @@ static hid_t text_type(size_t length) {
    text attribute has a twin that our own reader looks at first: a line "name=text" of the object's comment, which the
    checksum of the object's header covers. */
 static bool add_to_comment(hid_t object, const char *name, const char *text) {
-  if (strchr(text, '\n'))
+  const size_t most = 4096; /* a header has no room for much more than ten times that */
+  if (strchr(text, '\n') || strlen(text) > most)
     return true; /* only in the attribute */
   const ssize_t before = H5Oget_comment(object, NULL, 0);
   const size_t used = before > 0 ? (size_t)before : 0, size = used + strlen(name) + strlen(text) + 3;

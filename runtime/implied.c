@@ -1,123 +1,73 @@
 #include "runtime/implied.h"
 
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
+#include "runtime/bond_probe.h"
 #include "runtime/stability.h"
-
-enum { STATE_INPUTS = 5, STATE_RESULTS = 3, TANGENTS = 12 };
 
 /* Volume of lattice that stress is counted on: a site's area times the stiffness thickness. */
 static double site_volume(const rows *w) {
   return w->site_area * w->stiffness_thickness;
 }
 
-/* One bond's response, uncoupled to others: uniforms prepared, fields carried along. */
-typedef struct bond_probe {
-  const pl_law *law;
-  double *uniforms, *fields, *new_fields;
+/* One bond of a direction of the lattice, uncoupled to others. */
+typedef struct lattice_bond {
+  bond_probe *probe;
   double n[2], s; /* direction, length */
-} bond_probe;
+} lattice_bond;
 
-static bond_probe probe_new(const pl_law *law, const double *parameters, const rows *w,
+static lattice_bond bond_of(const pl_law *law, const double *parameters, const rows *w,
                             int direction) {
-  bond_probe p = {.law = law, .s = w->length[direction]};
-  p.uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
-  p.fields = must_calloc((size_t)law->field_count + 1, sizeof(double));
-  p.new_fields = must_calloc((size_t)law->field_count + 1, sizeof(double));
-  for (int f = 0; f < law->field_count; f++)
-    p.fields[f] = law->fields[f].initial;
-  pl_bond_class bonds = rows_bond_class(w, direction);
-  law->prepare(law, parameters, &bonds, p.uniforms);
-  p.n[0] = w->chord[direction][0] / p.s;
-  p.n[1] = w->chord[direction][1] / p.s;
-  return p;
+  const pl_bond_class bonds = rows_bond_class(w, direction);
+  const double s = bonds.s, *chord = w->chord[direction];
+  return (lattice_bond){bond_probe_new(law, parameters, &bonds), {chord[0] / s, chord[1] / s}, s};
 }
 
-static void probe_free(bond_probe *p) {
-  free(p->uniforms);
-  free(p->fields);
-  free(p->new_fields);
-}
-
-/* N, M_i, M_j (results) or the tangent of a bond at rest or in the given state. */
-static void probe_inputs(const bond_probe *p, double *values, const double **in, double stretch,
-                         double theta) {
-  values[0] = stretch;
-  values[1] = 0;
-  values[2] = values[3] = theta;
-  values[4] = p->s * (1 + stretch);
-  for (int k = 0; k < STATE_INPUTS; k++)
-    in[k] = &values[k];
-  for (int f = 0; f < p->law->field_count; f++)
-    in[STATE_INPUTS + f] = &p->fields[f];
-}
-
-static void probe_tangent(const bond_probe *p, double tangent[TANGENTS]) {
-  double values[STATE_INPUTS], *out[TANGENTS];
-  const double **in = must_calloc((size_t)(STATE_INPUTS + p->law->field_count), sizeof *in);
-  probe_inputs(p, values, in, 0, 0);
-  for (int k = 0; k < TANGENTS; k++)
-    out[k] = &tangent[k];
-  p->law->tangent(p->law, p->uniforms, 1, in, out);
-  free(in);
-}
-
-static void probe_step(bond_probe *p, double stretch, double theta, double result[STATE_RESULTS]) {
-  int fields = p->law->field_count;
-  double values[STATE_INPUTS];
-  const double **in = must_calloc((size_t)(STATE_INPUTS + fields), sizeof *in);
-  double **out = must_calloc((size_t)(STATE_RESULTS + fields), sizeof *out);
-  probe_inputs(p, values, in, stretch, theta);
-  for (int k = 0; k < STATE_RESULTS; k++)
-    out[k] = &result[k];
-  for (int f = 0; f < fields; f++)
-    out[STATE_RESULTS + f] = &p->new_fields[f];
-  p->law->states(p->law, p->uniforms, 1, in, out);
-  memcpy(p->fields, p->new_fields, (size_t)fields * sizeof(double));
-  free(in);
-  free(out);
+/* The force with the fields at hand, which then go on. */
+static void bond_step(lattice_bond *b, double stretch, double theta,
+                      double result[PL_STATE_RESULTS]) {
+  bond_probe_forces(b->probe, (bond_motion){stretch, 0, theta, theta}, result);
+  bond_probe_accept(b->probe);
 }
 
 /* Stretch and chord rotation of a bond in the uniform strain e = (xx, yy, 2 xy). */
-static double stretch_of(const bond_probe *p, const double e[3]) {
-  return p->n[0] * p->n[0] * e[0] + p->n[1] * p->n[1] * e[1] + p->n[0] * p->n[1] * e[2];
+static double stretch_of(const lattice_bond *b, const double e[3]) {
+  return b->n[0] * b->n[0] * e[0] + b->n[1] * b->n[1] * e[1] + b->n[0] * b->n[1] * e[2];
 }
-static double rotation_of(const bond_probe *p, const double e[3]) {
-  return p->n[0] * p->n[1] * (e[1] - e[0]) + 0.5 * (p->n[0] * p->n[0] - p->n[1] * p->n[1]) * e[2];
+static double rotation_of(const lattice_bond *b, const double e[3]) {
+  return b->n[0] * b->n[1] * (e[1] - e[0]) + 0.5 * (b->n[0] * b->n[0] - b->n[1] * b->n[1]) * e[2];
 }
 
 /* Adds the bond's share of the stress (xx, yy, xy, yx) * volume: force on i times chord. */
-static void add_stress(const bond_probe *p, double N, double V, double stress[4]) {
-  double fx = N * p->n[0] + V * p->n[1], fy = N * p->n[1] - V * p->n[0];
-  stress[0] += fx * p->n[0] * p->s;
-  stress[1] += fy * p->n[1] * p->s;
-  stress[2] += fx * p->n[1] * p->s;
-  stress[3] += fy * p->n[0] * p->s;
+static void add_stress(const lattice_bond *b, double N, double V, double stress[4]) {
+  double fx = N * b->n[0] + V * b->n[1], fy = N * b->n[1] - V * b->n[0];
+  stress[0] += fx * b->n[0] * b->s;
+  stress[1] += fy * b->n[1] * b->s;
+  stress[2] += fx * b->n[1] * b->s;
+  stress[3] += fy * b->n[0] * b->s;
 }
 
 /* Stress in the linear lattice under strain e; the common particle rotation balances the moments.
  */
-static void linear_stress(const bond_probe *probes, double (*tangents)[TANGENTS], int count,
+static void linear_stress(const lattice_bond *bonds, double (*tangents)[PL_TANGENTS], int count,
                           const double e[3], double stress[4]) {
   double moment = 0, stiffness = 0;
   for (int k = 0; k < count; k++) {
     const double *T = tangents[k];
     double turning = T[6] + T[7] + T[10] + T[11];
-    moment += (T[4] + T[8]) * stretch_of(&probes[k], e) - turning * rotation_of(&probes[k], e);
+    moment += (T[4] + T[8]) * stretch_of(&bonds[k], e) - turning * rotation_of(&bonds[k], e);
     stiffness += turning;
   }
   double common = stiffness != 0 ? -moment / stiffness : 0;
   memset(stress, 0, 4 * sizeof *stress);
   for (int k = 0; k < count; k++) {
     const double *T = tangents[k];
-    double stretch = stretch_of(&probes[k], e);
-    double theta = common - rotation_of(&probes[k], e);
+    double stretch = stretch_of(&bonds[k], e);
+    double theta = common - rotation_of(&bonds[k], e);
     double N = T[0] * stretch + (T[2] + T[3]) * theta;
     double M = (T[4] + T[8]) * stretch + (T[6] + T[7] + T[10] + T[11]) * theta;
-    add_stress(&probes[k], N, M / probes[k].s, stress);
+    add_stress(&bonds[k], N, M / bonds[k].s, stress);
   }
 }
 
@@ -139,22 +89,22 @@ static bool invert3(const double a[3][3], double inverse[3][3]) {
 
 bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
                      implied_elasticity *out) {
-  bond_probe probes[ROWS_MAX_DIRECTIONS];
-  double tangents[ROWS_MAX_DIRECTIONS][TANGENTS];
+  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
+  double tangents[ROWS_MAX_DIRECTIONS][PL_TANGENTS];
   for (int k = 0; k < w->directions; k++) {
-    probes[k] = probe_new(law, parameters, w, k);
-    probe_tangent(&probes[k], tangents[k]);
+    bonds[k] = bond_of(law, parameters, w, k);
+    bond_probe_tangent(bonds[k].probe, (bond_motion){0, 0, 0, 0}, tangents[k]);
   }
   *out = (implied_elasticity){.asymmetry = 0};
   for (int c = 0; c < 3; c++) {
     double e[3] = {c == 0, c == 1, c == 2}, stress[4];
-    linear_stress(probes, tangents, w->directions, e, stress);
+    linear_stress(bonds, tangents, w->directions, e, stress);
     for (int r = 0; r < 3; r++)
       out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / site_volume(w);
     out->asymmetry = fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
   }
   for (int k = 0; k < w->directions; k++)
-    probe_free(&probes[k]);
+    bond_probe_free(bonds[k].probe);
   double S[3][3];
   if (!invert3(out->D, S)) return false;
   for (int c = 0; c < 2; c++) {
@@ -169,18 +119,18 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 static double scan_strength(const pl_law *law, const double *parameters, const rows *w,
                             int component, double from, double factor, double step, int count,
                             double *where) {
-  bond_probe probes[ROWS_MAX_DIRECTIONS];
+  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
   for (int k = 0; k < w->directions; k++)
-    probes[k] = probe_new(law, parameters, w, k);
+    bonds[k] = bond_of(law, parameters, w, k);
   double largest = 0, strain = from;
   *where = 0;
   for (int q = 0; q < count; q++, strain = strain * factor + step) {
     double e[3] = {component == 0 ? strain : 0, component == 1 ? strain : 0, 0}, stress[4] = {0};
     for (int k = 0; k < w->directions; k++) {
-      double result[STATE_RESULTS];
-      double stretch = stretch_of(&probes[k], e);
-      probe_step(&probes[k], stretch, -rotation_of(&probes[k], e), result);
-      add_stress(&probes[k], result[0], (result[1] + result[2]) / (probes[k].s * (1 + stretch)),
+      double result[PL_STATE_RESULTS];
+      double stretch = stretch_of(&bonds[k], e);
+      bond_step(&bonds[k], stretch, -rotation_of(&bonds[k], e), result);
+      add_stress(&bonds[k], result[0], (result[1] + result[2]) / (bonds[k].s * (1 + stretch)),
                  stress);
     }
     if (stress[component] > largest) {
@@ -189,7 +139,7 @@ static double scan_strength(const pl_law *law, const double *parameters, const r
     }
   }
   for (int k = 0; k < w->directions; k++)
-    probe_free(&probes[k]);
+    bond_probe_free(bonds[k].probe);
   return largest / site_volume(w);
 }
 
@@ -245,18 +195,13 @@ static double curve_stretch(int k) {
   return first_stretch * pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
 }
 
-static void probe_reset(bond_probe *p) {
-  for (int f = 0; f < p->law->field_count; f++)
-    p->fields[f] = p->law->fields[f].initial;
-}
-
 /* The largest force between two stretches, approached from the virgin state in equal steps. */
-static double peak_between(bond_probe *p, double from, double to, double *at) {
+static double peak_between(lattice_bond *b, double from, double to, double *at) {
   double largest = -INFINITY;
-  probe_reset(p);
+  bond_probe_reset(b->probe);
   for (int k = 0; k <= PEAK_POINTS; k++) {
-    double result[STATE_RESULTS], stretch = from + (to - from) * k / PEAK_POINTS;
-    probe_step(p, stretch, 0, result);
+    double result[PL_STATE_RESULTS], stretch = from + (to - from) * k / PEAK_POINTS;
+    bond_step(b, stretch, 0, result);
     if (result[0] > largest) {
       largest = result[0];
       *at = stretch;
@@ -265,10 +210,10 @@ static double peak_between(bond_probe *p, double from, double to, double *at) {
   return largest;
 }
 
-static void find_peak(bond_probe *p, double from, double to, implied_bond *out) {
+static void find_peak(lattice_bond *b, double from, double to, implied_bond *out) {
   for (int round = 0; round < PEAK_ROUNDS; round++) {
     double at = from, step = (to - from) / PEAK_POINTS;
-    out->peak_force = peak_between(p, from, to, &at);
+    out->peak_force = peak_between(b, from, to, &at);
     out->stretch_at_peak = at;
     from = fmax(at - step, from);
     to = fmin(at + step, to);
@@ -276,15 +221,15 @@ static void find_peak(bond_probe *p, double from, double to, implied_bond *out) 
 }
 
 /* Trapezoids over the curve; the points are close enough for 1e-6 at a kink. */
-static bool trace_curve(bond_probe *p, double *work, double *largest, int *peak, double *last) {
+static bool trace_curve(lattice_bond *b, double *work, double *largest, int *peak, double *last) {
   double before = 0, force = 0;
   *work = *largest = *last = 0;
   *peak = 0;
   for (int k = 0; k < CURVE_POINTS; k++) {
-    double result[STATE_RESULTS], stretch = curve_stretch(k);
-    probe_step(p, stretch, 0, result);
+    double result[PL_STATE_RESULTS], stretch = curve_stretch(k);
+    bond_step(b, stretch, 0, result);
     if (!isfinite(result[0])) return false;
-    *work += 0.5 * (force + result[0]) * (stretch - before) * p->s;
+    *work += 0.5 * (force + result[0]) * (stretch - before) * b->s;
     before = stretch;
     *last = force = result[0];
     if (force > *largest) {
@@ -298,20 +243,20 @@ static bool trace_curve(bond_probe *p, double *work, double *largest, int *peak,
 void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
                         implied_bond *out) {
   const double nothing = 1e-9; /* of the peak */
-  bond_probe p = probe_new(law, parameters, w, direction);
+  lattice_bond b = bond_of(law, parameters, w, direction);
   double work, largest, last;
   int peak;
   *out = (implied_bond){
       .peak_force = INFINITY, .stretch_at_peak = NAN, .energy = INFINITY, .row_energy = INFINITY};
-  bool whole = trace_curve(&p, &work, &largest, &peak, &last);
+  bool whole = trace_curve(&b, &work, &largest, &peak, &last);
   if (peak > 0 && peak < CURVE_POINTS - 1)
-    find_peak(&p, curve_stretch(peak - 1), curve_stretch(peak + 1), out);
+    find_peak(&b, curve_stretch(peak - 1), curve_stretch(peak + 1), out);
   out->separates = whole && largest > 0 && fabs(last) <= nothing * largest;
   if (out->separates) {
     out->energy = work;
-    out->row_energy = work * p.s / site_volume(w);
+    out->row_energy = work * b.s / site_volume(w);
   }
-  probe_free(&p);
+  bond_probe_free(b.probe);
 }
 
 void implied_wave_speeds(const pl_law *law, const double *parameters, const rows *w,

@@ -13,6 +13,10 @@
 #define PL_KERNEL_ABI 2
 #define PL_MAX_DOF 6
 #define PL_MAX_PLANES 12 /* force planes a bond */
+#define PL_STATE_INPUTS 5  /* planes of `states` before the fields: stretch, stretch_rate, theta_i, theta_j, length */
+#define PL_STATE_RESULTS 3 /* N, M_i, M_j */
+#define PL_STATE_RATES 4   /* inputs that the tangent is by: the first ones */
+#define PL_TANGENTS (PL_STATE_RESULTS * PL_STATE_RATES)
 #define PL_LANES 8       /* strips on rows are multiples of this; arrays are aligned to PL_ALIGNMENT */
 #define PL_ALIGNMENT 64
 
@@ -102,11 +106,11 @@ typedef struct pl_law {
   pl_strip_function rows_observe;   /* stored energy and outputs; changes nothing */
   pl_strip_function list, list_ledger, list_observe;
 
-  /* The law alone, state by state. in: [5 + fields][count] stretch, stretch_rate, theta_i, theta_j, length (m), then fields;
-     out: [3 + fields][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */
+  /* The law alone, state by state. in: [PL_STATE_INPUTS + fields][count] stretch, stretch_rate, theta_i, theta_j,
+     length (m), then fields; out: [PL_STATE_RESULTS + fields][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */
   void (*states)(const struct pl_law *law, const double *uniforms, long count,
                  const double *const *in, double *const *out);
-  /* Symbolic tangent at such states: out[12][count] = dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
+  /* Symbolic tangent at such states: out[PL_TANGENTS][count] = dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
   void (*tangent)(const struct pl_law *law, const double *uniforms, long count,
                   const double *const *in, double *const *out);
 

@@ -101,8 +101,6 @@ static span motion_where(const deck *k, const constraint *c, const int *supports
                        : deck_where(&k->supports[supports[index]].item, "region");
 }
 
-static const char *const component_names[] = {"x", "y", "rotation"};
-
 /* Two supports may share a particle: both hold it where it is. Anything else is two motions at
  * once. */
 static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, int component,
@@ -116,7 +114,7 @@ static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, i
     const int64_t site = l->lattice->particle_site[particle];
     diag_report(m->said, DIAG_CONFLICT, deck_where(item, "region"),
                 "the particle at (%.6g, %.6g) mm has its motion in %s prescribed twice",
-                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site], component_names[component]);
+                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site], deck_component_names[component]);
     diag_note(m->said, motion_where(l->deck, first, *supports, *holder - 1),
               "first prescribed here");
     return false;
@@ -278,17 +276,17 @@ long loads_constraints_of(const loads *l, int region, int component, int32_t **i
 
 /* --- velocities at the start ------------------------------------------------------------------ */
 
-static bool is_held_at_start(const loads *l, int64_t site, int component) {
+enum { HELD = -1 };
+
+static void mark_held(const loads *l, int *set) {
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
-    if (c->site == site && c->component == component &&
-        (c->drive < 0 || l->deck->drives[c->drive].motion.start <= 0))
-      return true;
+    if (c->drive < 0 || l->deck->drives[c->drive].motion.start <= 0)
+      set[(long)c->component * l->lattice->size + c->site] = HELD;
   }
-  return false;
 }
 
-/* `set` remembers which velocities are given: [dof][size], index of the group + 1. */
+/* `set` remembers which velocities are given: [dof][size], index of the group + 1, or HELD. */
 static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnostics *d) {
   const deck_initial_velocity *v = &l->deck->initial_velocitys[index];
   const region_sites *at = region_of(l, v->region);
@@ -302,12 +300,12 @@ static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnost
   for (long p = 0; at && p < at->count; p++) {
     const int64_t site = l->lattice->particle_site[at->particles[p]];
     int *given = &set[(long)v->component * l->lattice->size + site];
-    const bool held = is_held_at_start(l, site, v->component);
-    if (held || *given) {
+    if (*given) {
+      const bool held = *given == HELD;
       diag_report(d, DIAG_CONFLICT, where, "the particle at (%.6g, %.6g) mm %s %s",
                   1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site],
                   held ? "is held from the start in" : "is given two initial velocities in",
-                  component_names[v->component]);
+                  deck_component_names[v->component]);
       if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
       return false;
     }
@@ -321,6 +319,7 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
   const motions m = {.dof = w->dof, .law = w->law->name, .said = d};
   int *set = must_calloc((size_t)w->dof * (size_t)l->lattice->size + 1, sizeof *set);
   bool good = true;
+  mark_held(l, set);
   for (int i = 0; i < l->deck->initial_velocity_count; i++) {
     const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
     good = has_component(&m, v->component, deck_where(&v->item, "component")) &&

@@ -12,20 +12,15 @@
 
 /* --- set-up: mass and step -------------------------------------------------------------------- */
 
-static const deck_material *material_of(const deck *k, const char *lattice) {
-  for (int i = 0; i < k->material_count; i++)
-    if (strcmp(k->materials[i].lattice, lattice) == 0) return &k->materials[i];
-  return NULL;
-}
-
 /* A particle is a disc of half a spacing when it turns: I = (2/5) m (s/2)^2 (Asadollahi 2014). */
 static bool set_mass(simulation *s, diagnostics *d) {
   int rho = -1;
   for (int p = 0; p < s->law->parameter_count; p++)
     if (strcasecmp(s->law->parameters[p].name, "rho") == 0) rho = p;
   if (rho < 0) {
-    const deck_material *m = material_of(s->deck, s->deck->lattices[0].name);
-    diag_report(d, DIAG_MISSING_KEY, m ? m->item.where : s->deck->lattices[0].item.where,
+    const deck_lattice *lattice = &s->deck->lattices[0];
+    const int m = deck_find_material(s->deck, lattice->name);
+    diag_report(d, DIAG_MISSING_KEY, m < 0 ? lattice->item.where : s->deck->materials[m].item.where,
                 "the law `%s` has no parameter `rho`, so its particles have no mass", s->law->name);
     diag_hint(d, "add a mass density to the law, e.g. parameter rho = 2300 [kg/m^3] in (0, inf)");
     return false;

@@ -2,12 +2,8 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "runtime/bond_probe.h"
 #include "runtime/simulation_parts.h"
-
-typedef struct bond_state {
-  double stretch, rate, theta_i, theta_j, length;
-  double force; /* largest of N and M/s, not finite when one is not */
-} bond_state;
 
 /* The row of a bad particle was not moved; others have been. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
@@ -24,7 +20,7 @@ static double wrapped(double angle) {
   return remainder(angle, 2 * acos(-1));
 }
 
-static bond_state bond_kinematics(const simulation *s, const rows_bond *b, int direction) {
+static bond_motion motion_of(const simulation *s, const rows_bond *b, int direction) {
   const double *reference = s->lattice->chord[direction], length = s->lattice->length[direction];
   double ui[3], uj[3], vi[3], vj[3];
   ends_before(s, s->lattice->particle_site[b->i], ui, vi);
@@ -32,9 +28,9 @@ static bond_state bond_kinematics(const simulation *s, const rows_bond *b, int d
   const double c[2] = {reference[0] + uj[0] - ui[0], reference[1] + uj[1] - ui[1]};
   const double turn =
       atan2(reference[0] * c[1] - reference[1] * c[0], reference[0] * c[0] + reference[1] * c[1]);
-  bond_state k = {.length = hypot(c[0], c[1])};
-  k.stretch = (k.length - length) / length;
-  k.rate = (c[0] * (vj[0] - vi[0]) + c[1] * (vj[1] - vi[1])) / (k.length * length);
+  const double now = hypot(c[0], c[1]);
+  bond_motion k = {.stretch = (now - length) / length};
+  k.rate = (c[0] * (vj[0] - vi[0]) + c[1] * (vj[1] - vi[1])) / (now * length);
   k.theta_i = s->law->dof > 2 ? wrapped(ui[2] - turn) : 0;
   k.theta_j = s->law->dof > 2 ? wrapped(uj[2] - turn) : 0;
   return k;
@@ -60,36 +56,17 @@ static double *parameters_of_bond(const simulation *s, const rows_bond *b) {
   return values;
 }
 
-static double *uniforms_of_bond(const simulation *s, const rows_bond *b, int direction) {
-  double *parameters = parameters_of_bond(s, b);
-  double *uniforms = must_calloc((size_t)s->law->uniform_count + 1, sizeof *uniforms);
+/* The largest of N and M/s. */
+static double bond_force(const simulation *s, const rows_bond *b, int direction, bond_motion k) {
   const pl_bond_class c = rows_bond_class(s->lattice, direction);
-  s->law->prepare(s->law, parameters, &c, uniforms);
+  double *parameters = parameters_of_bond(s, b), forces[PL_STATE_RESULTS];
+  bond_probe *p = bond_probe_new(s->law, parameters, &c);
+  for (int f = 0; f < s->law->field_count; f++)
+    p->fields[f] = s->state->field[f][b->slot];
+  bond_probe_forces(p, k, forces);
+  bond_probe_free(p);
   free(parameters);
-  return uniforms;
-}
-
-static void bond_forces(const simulation *s, const rows_bond *b, int direction, bond_state *k) {
-  const pl_law *law = s->law;
-  const int fields = law->field_count;
-  double *values = must_calloc(2 * (size_t)(fields + 5), sizeof *values);
-  const double **in = must_calloc((size_t)fields + 5, sizeof *in);
-  double **out = must_calloc((size_t)fields + 3, sizeof *out);
-  const double kinematics[5] = {k->stretch, k->rate, k->theta_i, k->theta_j, k->length};
-  for (int f = 0; f < fields + 5; f++) {
-    values[f] = f < 5 ? kinematics[f] : s->state->field[f - 5][b->slot];
-    in[f] = &values[f];
-  }
-  for (int f = 0; f < fields + 3; f++)
-    out[f] = &values[fields + 5 + f];
-  double *uniforms = uniforms_of_bond(s, b, direction);
-  law->states(law, uniforms, 1, in, out);
-  free(uniforms);
-  const double length = s->lattice->length[direction];
-  k->force = worse(*out[2] / length, worse(*out[1] / length, *out[0]));
-  free(values);
-  free(in);
-  free(out);
+  return worse(forces[2] / c.s, worse(forces[1] / c.s, forces[0]));
 }
 
 /* The rules have already been at work; a rule that gave no number is looked at from the beginning. */
@@ -122,10 +99,10 @@ void bad_explain(simulation *s) {
     const rows_bond *b = &s->bonds[m];
     if (b->i != particle && b->j != particle) continue;
     const int direction = (int)(b->slot / s->lattice->size);
-    bond_state k = bond_kinematics(s, b, direction);
-    bond_forces(s, b, direction, &k);
-    if (s->bad.bond_particle >= 0 && !is_worse(k.force, worst)) continue;
-    worst = k.force;
+    const bond_motion k = motion_of(s, b, direction);
+    const double force = bond_force(s, b, direction, k);
+    if (s->bad.bond_particle >= 0 && !is_worse(force, worst)) continue;
+    worst = force;
     s->bad.bond_particle = b->i == particle ? b->j : b->i;
     s->bad.stretch = k.stretch;
     s->bad.stretch_rate = k.rate;

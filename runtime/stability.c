@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
+#include "runtime/bond_probe.h"
 
 /* LAPACK: eigenvalues and vectors of a Hermitian matrix. The last two arguments are the hidden text
  * lengths. */
@@ -19,9 +19,6 @@ enum {
   GRID = 48,        /* wave vectors along either reciprocal vector; holds G, K and M */
   STARTS = 6,       /* best grid points that are refined */
   MOST_MOVES = 500, /* of one refinement; about 30 are needed */
-  PLANES_IN = 5,    /* of pl_law.states before the fields */
-  PLANES_OUT = 3,
-  PLANES_TANGENT = 12,
   LAW_VARIABLES = 3 /* stretch, theta_i, theta_j; conjugate: N s, M_i, M_j */
 };
 
@@ -56,85 +53,26 @@ typedef struct wave {
 
 /* --- one state of one bond -------------------------------------------------------------------- */
 
-/* Arguments of pl_law.states and .tangent for one state. */
-typedef struct bench {
-  const pl_law *law;
-  double *uniforms, *values, *results;
-  const double **in;
-  double **out;
-} bench;
-
-static void bench_begin(bench *b, const pl_law *law, const double *parameters,
-                        const pl_bond_class *bonds) {
-  const size_t in = PLANES_IN + (size_t)law->field_count;
-  const size_t results = PLANES_OUT + (size_t)law->field_count;
-  const size_t out = results > PLANES_TANGENT ? results : PLANES_TANGENT;
-  b->law = law;
-  b->uniforms = must_calloc((size_t)law->uniform_count + 1, sizeof(double));
-  b->values = must_calloc(in, sizeof(double));
-  b->results = must_calloc(out, sizeof(double));
-  b->in = must_calloc(in, sizeof *b->in);
-  b->out = must_calloc(out, sizeof *b->out);
-  for (size_t k = 0; k < in; k++)
-    b->in[k] = b->values + k;
-  for (size_t k = 0; k < out; k++)
-    b->out[k] = b->results + k;
-  law->prepare(law, parameters, bonds, b->uniforms);
-}
-
-static void bench_end(bench *b) {
-  free(b->uniforms);
-  free(b->values);
-  free(b->results);
-  free(b->in);
-  free(b->out);
-}
-
-typedef struct kinematic_state {
-  double stretch, rate, theta_i, theta_j;
-} kinematic_state;
-
-static void bench_set(bench *b, kinematic_state k, double s) {
-  const double kinematics[PLANES_IN] = {k.stretch, k.rate, k.theta_i, k.theta_j,
-                                        s * (1 + k.stretch)};
-  memcpy(b->values, kinematics, sizeof kinematics);
-  for (int f = 0; f < b->law->field_count; f++)
-    b->values[PLANES_IN + f] = b->law->fields[f].initial;
-}
-
-static void bench_forces(bench *b, kinematic_state k, double s, double forces[PLANES_OUT]) {
-  bench_set(b, k, s);
-  b->law->states(b->law, b->uniforms, 1, b->in, b->out);
-  memcpy(forces, b->results, PLANES_OUT * sizeof(double));
-}
-
-static bool damages(bench *b, kinematic_state k, double s) {
-  double forces[PLANES_OUT];
-  bench_forces(b, k, s, forces);
+static bool damages(bond_probe *b, bond_motion m) {
+  double forces[PL_STATE_RESULTS];
+  bond_probe_forces(b, m, forces);
   for (int f = 0; f < b->law->field_count; f++)
     if (b->law->fields[f].kind == PL_FIELD_DAMAGE &&
-        b->results[PLANES_OUT + f] > b->law->fields[f].initial)
+        b->new_fields[f] > b->law->fields[f].initial)
       return true;
   return false;
-}
-
-/* d(N, M_i, M_j) by d(stretch, rate, theta_i, theta_j) */
-static void bench_tangent(bench *b, kinematic_state k, double s, double tangent[PLANES_TANGENT]) {
-  bench_set(b, k, s);
-  b->law->tangent(b->law, b->uniforms, 1, b->in, b->out);
-  memcpy(tangent, b->results, PLANES_TANGENT * sizeof(double));
 }
 
 /* --- rate terms ------------------------------------------------------------------------------- */
 
 /* Largest multiple u <= 1 of the state without damage (from the virgin state, in one step). */
-static double harmless_part(bench *b, kinematic_state full, double s) {
+static double harmless_part(bond_probe *b, bond_motion full) {
   double low = 0, high = 1;
-  if (!damages(b, full, s)) return 1;
+  if (!damages(b, full)) return 1;
   for (int k = 0; k < 60; k++) {
     const double u = (low + high) / 2;
-    const kinematic_state part = {u * full.stretch, 0, u * full.theta_i, u * full.theta_j};
-    if (damages(b, part, s))
+    const bond_motion part = {u * full.stretch, 0, u * full.theta_i, u * full.theta_j};
+    if (damages(b, part))
       high = u;
     else
       low = u;
@@ -144,31 +82,31 @@ static double harmless_part(bench *b, kinematic_state full, double s) {
 
 typedef struct rate_scan {
   bool bounded;             /* every rate term stays below its elastic force */
-  double slope[PLANES_OUT]; /* of the state with the largest: N s, N m s, N m s */
+  double slope[PL_STATE_RESULTS]; /* of the state with the largest: N s, N m s, N m s */
   double size;              /* of that slope */
 } rate_scan;
 
-static void scan_bound(rate_scan *r, bench *b, kinematic_state k, double s) {
+static void scan_bound(rate_scan *r, bond_probe *b, bond_motion k) {
   static const double rates[] = {1, 1e3, 1e6, 1e12}; /* 1/s */
-  double still[PLANES_OUT], moving[PLANES_OUT];
+  double still[PL_STATE_RESULTS], moving[PL_STATE_RESULTS];
   k.rate = 0;
-  bench_forces(b, k, s, still);
+  bond_probe_forces(b, k, still);
   for (int n = 0; n < 8; n++) {
     k.rate = n % 2 == 0 ? rates[n / 2] : -rates[n / 2];
-    bench_forces(b, k, s, moving);
-    for (int c = 0; c < PLANES_OUT; c++)
+    bond_probe_forces(b, k, moving);
+    for (int c = 0; c < PL_STATE_RESULTS; c++)
       if (!(fabs(moving[c] - still[c]) <= fabs(still[c]) * (1 + 1e-9))) r->bounded = false;
   }
 }
 
-static void scan_slope(rate_scan *r, bench *b, kinematic_state k, double s) {
+static void scan_slope(rate_scan *r, bond_probe *b, bond_motion k) {
   static const double rates[] = {0, 1e-3, -1e-3, 1, -1, 1e3, -1e3}; /* 1/s */
   for (size_t n = 0; n < sizeof rates / sizeof rates[0]; n++) {
-    double tangent[PLANES_TANGENT];
+    double tangent[PL_TANGENTS];
     k.rate = rates[n];
-    bench_tangent(b, k, s, tangent);
-    const double slope[PLANES_OUT] = {tangent[1], tangent[5], tangent[9]};
-    const double size = s * fabs(slope[0]) + fabs(slope[1]) + fabs(slope[2]);
+    bond_probe_tangent(b, k, tangent);
+    const double slope[PL_STATE_RESULTS] = {tangent[1], tangent[5], tangent[9]};
+    const double size = b->s * fabs(slope[0]) + fabs(slope[1]) + fabs(slope[2]);
     if (size <= r->size || !isfinite(size)) continue;
     r->size = size;
     memcpy(r->slope, slope, sizeof slope);
@@ -176,25 +114,25 @@ static void scan_slope(rate_scan *r, bench *b, kinematic_state k, double s) {
 }
 
 /* Paths from rest: pure stretch either way, and bending along with it. */
-static rate_scan scan_rates(bench *b, double s) {
+static rate_scan scan_rates(bond_probe *b) {
   static const double bending[][2] = {{0, 0}, {1, 1}, {1, -1}, {0.3, -0.8}};
   const int paths = b->law->kind == PL_MICROPOLAR ? 8 : 2;
   rate_scan r = {.bounded = true};
   for (int path = 0; path < paths; path++) {
     const double sign = path % 2 == 0 ? 1 : -1;
-    const kinematic_state full = {sign * LARGEST_STRETCH, 0, LARGEST_STRETCH * bending[path / 2][0],
+    const bond_motion full = {sign * LARGEST_STRETCH, 0, LARGEST_STRETCH * bending[path / 2][0],
                                   LARGEST_STRETCH * bending[path / 2][1]};
-    const double harmless = harmless_part(b, full, s);
+    const double harmless = harmless_part(b, full);
     for (double u = 1; u > 1e-4; u /= 4) {
       const double part = u * harmless;
-      const kinematic_state k = {part * full.stretch, 0, part * full.theta_i, part * full.theta_j};
-      scan_bound(&r, b, k, s);
-      scan_slope(&r, b, k, s);
+      const bond_motion k = {part * full.stretch, 0, part * full.theta_i, part * full.theta_j};
+      scan_bound(&r, b, k);
+      scan_slope(&r, b, k);
     }
   }
-  const kinematic_state rest = {0, 0, 0, 0};
-  scan_bound(&r, b, rest, s);
-  scan_slope(&r, b, rest, s);
+  const bond_motion rest = {0, 0, 0, 0};
+  scan_bound(&r, b, rest);
+  scan_slope(&r, b, rest);
   return r;
 }
 
@@ -240,17 +178,16 @@ static void bond_setup(crystal *c, int direction, const pl_law *law, const doubl
                        const rows *w) {
   const pl_bond_class bonds = rows_bond_class(w, direction);
   bond_matrices *out = &c->bonds[direction];
-  bench b;
-  double t[PLANES_TANGENT], kinematic[LAW_VARIABLES][MOST_ORDER];
-  bench_begin(&b, law, parameters, &bonds);
-  bench_tangent(&b, (kinematic_state){0, 0, 0, 0}, bonds.s, t);
-  for (int k = 0; k < PLANES_TANGENT; k++)
+  double t[PL_TANGENTS], kinematic[LAW_VARIABLES][MOST_ORDER];
+  bond_probe *b = bond_probe_new(law, parameters, &bonds);
+  bond_probe_tangent(b, (bond_motion){0, 0, 0, 0}, t);
+  for (int k = 0; k < PL_TANGENTS; k++)
     if (!isfinite(t[k])) c->finite = false;
   double elastic[LAW_VARIABLES][LAW_VARIABLES] = {
       {t[0], t[2], t[3]}, {t[4], t[6], t[7]}, {t[8], t[10], t[11]}};
   kinematic_matrix(bonds.chord, bonds.s, c->dof, kinematic);
   congruence(kinematic, bonds.s, elastic, 2 * c->dof, out->stiffness);
-  const rate_scan rates = scan_rates(&b, bonds.s);
+  const rate_scan rates = scan_rates(b);
   if (!rates.bounded && rates.size > 0) {
     double viscous[LAW_VARIABLES][LAW_VARIABLES] = {
         {fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
@@ -258,7 +195,7 @@ static void bond_setup(crystal *c, int direction, const pl_law *law, const doubl
     c->damped = true;
   }
   memcpy(out->chord, bonds.chord, sizeof out->chord);
-  bench_end(&b);
+  bond_probe_free(b);
 }
 
 static void crystal_setup(crystal *c, const pl_law *law, const double *parameters, const rows *w) {

@@ -330,12 +330,18 @@ kick(const gathered *from, int directions, double sign, long count, double kick_
   return bad;
 }
 
-/* Absent sites have no weight: they stay where they are. */
-static void add_push(long count, double push, const double *restrict weight,
-                     double *restrict next) {
+/* What gravity adds, and the same test of what it makes. Absent sites have no weight: they stay
+   where they are. */
+static int64_t add_push(long count, double push, double limit, const double *restrict weight,
+                        double *restrict next) {
+  int64_t bad = 0;
   INDEPENDENT
-  for (long q = 0; q < count; q++)
-    next[q] += push * weight[q];
+  for (long q = 0; q < count; q++) {
+    const double after = next[q] + push * weight[q];
+    next[q] = after;
+    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
+  }
+  return bad;
 }
 
 /* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
@@ -346,8 +352,8 @@ static int64_t kick_component(const sweep *w, const gathered *s, int d, long cou
   assert(w->lattice->directions == 3);
   if (d >= 2) return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
   const int64_t bad = kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
-  if (w->weight) add_push(count, w->push[d], w->weight + (v - w->velocity[d]), next);
-  return bad;
+  if (!w->weight) return bad;
+  return add_push(count, w->push[d], w->limit[d], w->weight + (v - w->velocity[d]), next);
 }
 
 static void drift(long count, double time_step, const double *restrict next, double *restrict v,

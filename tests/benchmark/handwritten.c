@@ -37,13 +37,14 @@
 /* X(buffer of the bonds of one direction of a row). What a value is needed for last stores its
    result in the same place: fewer lines of cache. */
 #define BUFFERS(X)                                                                                 \
-  X(c_x)                                                                                           \
-  X(c_y)                  /* chord now */                                                          \
-      X(stretch)          /* L^2 - 1, then twice the stretch */                                    \
-      X(turn)             /* L times the sine of the chord's rotation, then the rotation */        \
-      X(inverse)          /* 1/L */                                                                \
-      X(pull)             /* L, then the axial force of an intact bond, damper included */         \
-      X(bend_i) X(bend_j) /* 2 theta_i + theta_j and the reverse */
+  X(c_x) /* chord now */                                                                           \
+  X(c_y)                                                                                           \
+  X(stretch) /* L^2 - 1, then twice the stretch */                                                 \
+  X(turn)    /* L times the sine of the chord's rotation, then the rotation */                     \
+  X(inverse) /* 1/L */                                                                             \
+  X(pull)    /* L, then the axial force of an intact bond, damper included */                      \
+  X(bend_i)  /* 2 theta_i + theta_j */                                                             \
+  X(bend_j)  /* and the reverse */
 
 enum { FORCE_X, FORCE_Y, MOMENT, PLANES };
 enum { SERIES = 4 };
@@ -57,8 +58,7 @@ struct handwritten {
   double chord[3][2];
   double stiffness;
   double series[SERIES]; /* of the arc sine, for rotations in their unit */
-  double
-      bend_weight; /* 4 beta/stiffness: eps_mp doubled = 2 stretch + 4 beta max|2 theta + theta| */
+  double bend_weight;    /* 4 beta/stiffness: 2 eps_mp = 2 stretch + 4 beta max|2 theta + theta| */
   double least_strain;   /* 2 S_t */
   double soft_end, soft; /* intact part on the first line: soft_end + soft/(2 eps_mp) */
   double tail_end, tail; /* and on the second */
@@ -89,13 +89,13 @@ typedef struct strip {
   const double *held;
 } strip;
 
-/* Chords and what they grew by. Nonzero when a bond that exists moved too far for the series. */
-static unsigned find_chords(handwritten *h, const strip *s) {
+/* Chords and what they grew by. True when a bond that exists moved too far for the series. */
+static bool find_chords(handwritten *h, const strip *s) {
   const double *i_x = h->u[0] + s->near, *i_y = h->u[1] + s->near, *j_x = h->u[0] + s->far,
                *j_y = h->u[1] + s->far;
   const double *intact = s->intact, *chord = h->chord[s->direction];
   const double x = chord[0], y = chord[1], stiff_x = h->stiffness * x, stiff_y = h->stiffness * y;
-  unsigned far = 0;
+  lanes_marks far = {0};
   UNROLL
   for (long q = 0, count = s->count; q < count; q += LANES) {
     const lanes d_x = lanes_load(j_x + q) - lanes_load(i_x + q),
@@ -107,7 +107,7 @@ static unsigned find_chords(handwritten *h, const strip *s) {
     lanes_store(h->turn + q, stiff_x * d_y - stiff_y * d_x);
     far |= lanes_above(square, NEAR_PART * NEAR_PART, lanes_load(intact + q));
   }
-  return far;
+  return lanes_any(far);
 }
 
 /* Where no bond is the ends may even meet; the least length keeps infinities away. */
@@ -247,7 +247,7 @@ static void second_forces(handwritten *h, const strip *s) {
 
 /* Bonds along the row complete the forces on its particles, which move at once. Nonzero when one
  * turned too far. */
-static unsigned move_particles(handwritten *h, const strip *s) {
+static bool move_particles(handwritten *h, const strip *s) {
   const double *intact = s->intact;
   double *u_x = h->u[0] + s->near, *u_y = h->u[1] + s->near, *turn = h->u[2] + s->near;
   double *v_x = h->v[0] + s->near, *v_y = h->v[1] + s->near, *spin = h->v[2] + s->near;
@@ -255,7 +255,7 @@ static unsigned move_particles(handwritten *h, const strip *s) {
                drift_turn = h->drift[2];
   const double limit = TURN_LIMIT * h->stiffness;
   forces before = {lanes_all(0), lanes_all(0), lanes_all(0), lanes_all(0)};
-  unsigned beyond = 0;
+  lanes_marks beyond = {0};
   UNROLL
   for (long q = 0, count = s->count; q < count; q += LANES) {
     const forces f = bond_forces(h, intact, q);
@@ -275,7 +275,7 @@ static unsigned move_particles(handwritten *h, const strip *s) {
     lanes_store(turn + q, turned);
     beyond |= lanes_beyond(turned, limit);
   }
-  return beyond;
+  return lanes_any(beyond);
 }
 
 /* --- a step ----------------------------------------------------------------------------------- */
@@ -305,7 +305,7 @@ static void advance_row(handwritten *h, int row) {
   find_bonds(h, &left);
   second_forces(h, &left);
   find_bonds(h, &along);
-  h->row_turned[row] = move_particles(h, &along) != 0;
+  h->row_turned[row] = move_particles(h, &along);
 }
 
 void NAMED(_advance)(handwritten *h, long steps) {

@@ -1,19 +1,25 @@
-/* Eight doubles that are computed together. With AVX-512 one register; elsewhere the compiler
- * splits them. */
+/* The doubles of one register, computed together: eight with AVX-512, four with AVX, else two. */
 #ifndef PERILAT_BENCHMARK_LANES_H
 #define PERILAT_BENCHMARK_LANES_H
 
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#if defined(__AVX__)
 #include <immintrin.h>
-#define LANES_AVX512 1
-#else
-#define LANES_AVX512 0
 #endif
 
-#define LANES          8
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#define LANES         8
+#define LANES_SHIFTED 7, 8, 9, 10, 11, 12, 13, 14
+#elif defined(__AVX__)
+#define LANES         4
+#define LANES_SHIFTED 3, 4, 5, 6
+#else
+#define LANES         2
+#define LANES_SHIFTED 1, 2
+#endif
+
 #define LANES_FUNCTION static inline __attribute__((always_inline, unused))
 
 typedef double lanes __attribute__((vector_size(LANES * sizeof(double))));
@@ -27,16 +33,25 @@ LANES_FUNCTION void lanes_store(double *p, lanes x) {
   *(lanes_anywhere *)p = x;
 }
 LANES_FUNCTION lanes lanes_all(double x) {
-  return (lanes){x, x, x, x, x, x, x, x};
+  return x - (lanes){0};
 }
 
 /* The last lane of `before`, then all but the last of `x`. */
 LANES_FUNCTION lanes lanes_shift_in(lanes before, lanes x) {
-  return __builtin_shufflevector(before, x, 7, 8, 9, 10, 11, 12, 13, 14);
+  return __builtin_shufflevector(before, x, LANES_SHIFTED);
 }
 
-#if LANES_AVX512
+/* lanes_max, lanes_min: the second where one is no number.
+   lanes_inverse_root(x): 1/sqrt(x) to an ulp or two, for normal x > 0.
+   lanes_beyond(x, limit), lanes_above(x, limit, y): marks lanes where |x| > limit, or x > limit and
+   y > 0, or x is no number. Marks are gathered with |. */
+#if LANES == 8
 
+typedef __mmask8 lanes_marks;
+
+LANES_FUNCTION bool lanes_any(lanes_marks m) {
+  return m != 0;
+}
 LANES_FUNCTION lanes lanes_abs(lanes x) {
   return (lanes)_mm512_abs_pd((__m512d)x);
 }
@@ -47,58 +62,62 @@ LANES_FUNCTION lanes lanes_min(lanes a, lanes b) {
   return (lanes)_mm512_min_pd((__m512d)a, (__m512d)b);
 }
 
-/* 1/sqrt(x) to an ulp or two, for normal x > 0, without the slow divider: the machine's 14 bits,
-   and one step of fourth order, 1/sqrt(1 - e) = 1 + e/2 + 3 e^2/8 + 5 e^3/16 + ... */
+/* Spares the slow divider: the machine's 14 bits, and one step of fourth order,
+   1/sqrt(1 - e) = 1 + e/2 + 3 e^2/8 + 5 e^3/16 + ... */
 LANES_FUNCTION lanes lanes_inverse_root(lanes x) {
   const lanes y = (lanes)_mm512_rsqrt14_pd((__m512d)x);
   const lanes e = 1 - (x * y) * y;
   return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125));
 }
 
-/* A bit for each lane with |x| > limit, or x no number. */
-LANES_FUNCTION unsigned lanes_beyond(lanes x, double limit) {
+LANES_FUNCTION lanes_marks lanes_beyond(lanes x, double limit) {
   return _mm512_cmp_pd_mask(_mm512_abs_pd((__m512d)x), _mm512_set1_pd(limit), _CMP_NLE_UQ);
 }
 
-/* A bit for each lane with x > limit, or x no number, and y > 0. */
-LANES_FUNCTION unsigned lanes_above(lanes x, double limit, lanes y) {
+LANES_FUNCTION lanes_marks lanes_above(lanes x, double limit, lanes y) {
   const __mmask8 above = _mm512_cmp_pd_mask((__m512d)x, _mm512_set1_pd(limit), _CMP_NLE_UQ);
   return _mm512_mask_cmp_pd_mask(above, (__m512d)y, _mm512_setzero_pd(), _CMP_GT_OQ);
 }
 
 #else
 
-LANES_FUNCTION lanes lanes_abs(lanes x) {
+typedef int64_t lanes_marks __attribute__((vector_size(LANES * sizeof(double))));
+
+LANES_FUNCTION bool lanes_any(lanes_marks m) {
+  int64_t any = 0;
   for (int l = 0; l < LANES; l++)
-    x[l] = __builtin_fabs(x[l]);
-  return x;
+    any |= m[l];
+  return any != 0;
+}
+
+LANES_FUNCTION lanes lanes_choose(lanes_marks m, lanes a, lanes b) {
+  return (lanes)((m & (lanes_marks)a) | (~m & (lanes_marks)b));
+}
+LANES_FUNCTION lanes lanes_abs(lanes x) {
+  return (lanes)((lanes_marks)x & INT64_MAX);
 }
 LANES_FUNCTION lanes lanes_max(lanes a, lanes b) {
-  for (int l = 0; l < LANES; l++)
-    a[l] = a[l] > b[l] ? a[l] : b[l];
-  return a;
+  return lanes_choose(a > b, a, b);
 }
 LANES_FUNCTION lanes lanes_min(lanes a, lanes b) {
-  for (int l = 0; l < LANES; l++)
-    a[l] = a[l] < b[l] ? a[l] : b[l];
-  return a;
+  return lanes_choose(a < b, a, b);
 }
+
 LANES_FUNCTION lanes lanes_inverse_root(lanes x) {
+#if LANES == 4
+  return 1 / (lanes)_mm256_sqrt_pd((__m256d)x);
+#else
   for (int l = 0; l < LANES; l++)
     x[l] = __builtin_sqrt(x[l]);
   return 1 / x;
+#endif
 }
-LANES_FUNCTION unsigned lanes_beyond(lanes x, double limit) {
-  unsigned bits = 0;
-  for (int l = 0; l < LANES; l++)
-    bits |= (unsigned)!(__builtin_fabs(x[l]) <= limit) << l;
-  return bits;
+
+LANES_FUNCTION lanes_marks lanes_beyond(lanes x, double limit) {
+  return ~(lanes_abs(x) <= limit);
 }
-LANES_FUNCTION unsigned lanes_above(lanes x, double limit, lanes y) {
-  unsigned bits = 0;
-  for (int l = 0; l < LANES; l++)
-    bits |= (unsigned)(!(x[l] <= limit) & (y[l] > 0)) << l;
-  return bits;
+LANES_FUNCTION lanes_marks lanes_above(lanes x, double limit, lanes y) {
+  return ~(x <= limit) & (y > 0);
 }
 
 #endif

@@ -1,5 +1,5 @@
-/* What emitted C may consist of, read without trusting the emitter: the law's own text may appear as plain names, numbers,
-   lines in comments and escaped texts, and as nothing else. */
+/* What emitted C may consist of, read without trusting the emitter: the law's own text may appear
+   as plain names, numbers, lines in comments and escaped texts, and as nothing else. */
 #ifndef PERILAT_TESTS_C_ALPHABET_H
 #define PERILAT_TESTS_C_ALPHABET_H
 
@@ -7,27 +7,67 @@
 #include <stdbool.h>
 #include <string.h>
 
-/* Words that mean something to C and that kernels are written with. Another word of C (asm, goto, __asm__, a name that
-   begins with _ or pl_) is a stray. */
-static const char *const c_own_words[] = {
-    "static", "const", "double", "long", "int32_t", "int64_t", "unsigned", "char", "void", "restrict", "for", "return",
-    "__builtin_inf", "__builtin_nan", "pl_law", "pl_strip", "pl_bond_class", "pl_parameter", "pl_field", "pl_output",
-    "PL_FIELD_STATE", "PL_FIELD_DAMAGE", "PL_FIELD_OUTPUT", "PL_KERNEL_ABI", "PL_LANES", "PL_PRESENT", "PL_PROTECTED",
-    "PL_RARE", "PL_INDEPENDENT", "pl_abs", "pl_sqrt", "pl_cbrt", "pl_exp", "pl_log", "pl_sin", "pl_cos", "pl_tan",
-    "pl_tanh", "pl_atan2", "pl_sign", "pl_min", "pl_max", "pl_pow", "pl_wrap_angle"};
+/* Words that mean something to C and that kernels are written with. Another word of C (asm, goto,
+   __asm__, a name that begins with _ or pl_) is a stray. */
+static const char *const c_own_words[] = {"static",
+                                          "const",
+                                          "double",
+                                          "long",
+                                          "int32_t",
+                                          "int64_t",
+                                          "unsigned",
+                                          "char",
+                                          "void",
+                                          "restrict",
+                                          "for",
+                                          "return",
+                                          "__builtin_inf",
+                                          "__builtin_nan",
+                                          "pl_law",
+                                          "pl_strip",
+                                          "pl_bond_class",
+                                          "pl_parameter",
+                                          "pl_field",
+                                          "pl_output",
+                                          "PL_FIELD_STATE",
+                                          "PL_FIELD_DAMAGE",
+                                          "PL_FIELD_OUTPUT",
+                                          "PL_KERNEL_ABI",
+                                          "PL_LANES",
+                                          "PL_PRESENT",
+                                          "PL_PROTECTED",
+                                          "PL_RARE",
+                                          "PL_INDEPENDENT",
+                                          "pl_abs",
+                                          "pl_sqrt",
+                                          "pl_cbrt",
+                                          "pl_exp",
+                                          "pl_log",
+                                          "pl_sin",
+                                          "pl_cos",
+                                          "pl_tan",
+                                          "pl_tanh",
+                                          "pl_atan2",
+                                          "pl_sign",
+                                          "pl_min",
+                                          "pl_max",
+                                          "pl_pow",
+                                          "pl_wrap_angle"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
-    "asm", "auto", "break", "case", "continue", "default", "do", "else", "enum", "extern", "float", "goto", "if",
-    "inline", "int", "register", "short", "signed", "sizeof", "struct", "switch", "typedef", "typeof", "union",
-    "volatile", "while", "linux", "unix", "NULL", "bool", "true", "false"};
+    "asm",      "auto",   "break",  "case",   "continue", "default", "do",     "else",
+    "enum",     "extern", "float",  "goto",   "if",       "inline",  "int",    "register",
+    "short",    "signed", "sizeof", "struct", "switch",   "typedef", "typeof", "union",
+    "volatile", "while",  "linux",  "unix",   "NULL",     "bool",    "true",   "false"};
 /* Functions that a kernel defines. */
-static const char *const c_own_functions[] = {"prepare", "bounds", "rows", "rows_ledger", "rows_observe", "list",
-                                              "list_ledger", "list_observe", "states", "tangent", "perilat_kernel"};
+static const char *const c_own_functions[] = {
+    "prepare",     "bounds",       "rows",   "rows_ledger", "rows_observe",  "list",
+    "list_ledger", "list_observe", "states", "tangent",     "perilat_kernel"};
 
-static inline bool c_word_in(const char *const *words, size_t count, const char *at, size_t length) {
+static inline bool c_word_in(const char *const *words, size_t count, const char *at,
+                             size_t length) {
   for (size_t k = 0; k < count; k++)
-    if (strlen(words[k]) == length && memcmp(words[k], at, length) == 0)
-      return true;
+    if (strlen(words[k]) == length && memcmp(words[k], at, length) == 0) return true;
   return false;
 }
 #define C_WORD_IN(words, at, length) c_word_in(words, sizeof(words) / sizeof *(words), at, length)
@@ -38,8 +78,7 @@ static inline size_t c_word(const char *at) {
   while ((at[n] >= 'a' && at[n] <= 'z') || (at[n] >= 'A' && at[n] <= 'Z') || at[n] == '_' ||
          (n && at[n] >= '0' && at[n] <= '9'))
     n++;
-  if (n == 0)
-    return 0;
+  if (n == 0) return 0;
   const bool own = C_WORD_IN(c_own_words, at, n);
   const bool reserved = at[0] == '_' || strncmp(at, "pl_", 3) == 0 || strncmp(at, "PL_", 3) == 0 ||
                         C_WORD_IN(c_foreign_words, at, n);
@@ -51,10 +90,10 @@ static inline size_t c_word(const char *at) {
 
 static inline size_t c_number(const char *at) {
   size_t n = strspn(at, "0123456789");
-  if (n && at[n] == '.')
-    n += 1 + strspn(at + n + 1, "0123456789");
+  if (n && at[n] == '.') n += 1 + strspn(at + n + 1, "0123456789");
   if (n && at[n] == 'e') {
-    size_t sign = at[n + 1] == '+' || at[n + 1] == '-', digits = strspn(at + n + 1 + sign, "0123456789");
+    size_t sign = at[n + 1] == '+' || at[n + 1] == '-',
+           digits = strspn(at + n + 1 + sign, "0123456789");
     n += digits ? 1 + sign + digits : 0;
   }
   return n && !isalnum((unsigned char)at[n]) && at[n] != '_' ? n : 0;
@@ -62,8 +101,7 @@ static inline size_t c_number(const char *at) {
 
 /* Letters, digits, harmless marks and octal escapes of three digits. */
 static inline size_t c_quoted(const char *at) {
-  if (*at != '"')
-    return 0;
+  if (*at != '"') return 0;
   size_t n = 1;
   while (at[n] && at[n] != '"') {
     const char c = at[n];
@@ -80,32 +118,31 @@ static inline size_t c_quoted(const char *at) {
 static inline size_t c_comment(const char *at) {
   static const char begins[] = "/* line ";
   const size_t head = sizeof begins - 1;
-  if (strncmp(at, begins, head) != 0)
-    return 0;
+  if (strncmp(at, begins, head) != 0) return 0;
   const size_t digits = strspn(at + head, "0123456789");
   return digits && strncmp(at + head + digits, " */", 3) == 0 ? head + digits + 3 : 0;
 }
 
 static inline size_t c_mark(const char *at) {
-  if (at[0] == '/' && (at[1] == '/' || at[1] == '*'))
-    return 0; /* a comment of another form */
-  if (at[0] == '?' && at[1] == '?')
-    return 0; /* a trigraph */
+  if (at[0] == '/' && (at[1] == '/' || at[1] == '*')) return 0; /* a comment of another form */
+  if (at[0] == '?' && at[1] == '?') return 0;                   /* a trigraph */
   return *at && strchr(" \n(){}[];,=+-*/<>&|?:!.", *at) ? 1 : 0;
 }
 
-/* End of the fixed text that kernels begin with: it holds nothing of the law. NULL: it is not there. */
+/* End of the fixed text that kernels begin with: it holds nothing of the law. NULL: it is not
+ * there. */
 static inline const char *c_begin(const char *text) {
-  static const char mark[] = "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n";
+  static const char mark[] =
+      "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n";
   const char *at = strstr(text, mark);
   return at ? at + sizeof mark - 1 : NULL;
 }
 
-/* First place in a kernel's own part where something stands that no kernel is written with; NULL when all is well. */
+/* First place in a kernel's own part where something stands that no kernel is written with; NULL
+ * when all is well. */
 static inline const char *c_stray(const char *text) {
   const char *at = c_begin(text);
-  if (!at)
-    return text;
+  if (!at) return text;
   long open = 0;
   while (*at) {
     size_t n = c_word(at);
@@ -114,8 +151,7 @@ static inline const char *c_stray(const char *text) {
     n = n ? n : c_comment(at);
     n = n ? n : c_mark(at);
     open += strchr("({[", *at) ? 1 : strchr(")}]", *at) ? -1 : 0;
-    if (!n || open < 0)
-      return at;
+    if (!n || open < 0) return at;
     at += n;
   }
   return open == 0 ? NULL : at;

@@ -1,5 +1,5 @@
-/* What the fuzzers share: the entry that libFuzzer and replay.c call, a place for files that no disk sees, and a
-   way to fail. */
+/* What the fuzzers share: the entry that libFuzzer and replay.c call, a place for files that no
+   disk sees, and a way to fail. */
 #ifndef PERILAT_TESTS_FUZZ_H
 #define PERILAT_TESTS_FUZZ_H
 

@@ -1,7 +1,8 @@
-/* Bytes as the checkpoint of a small run. The first byte of an input says how the file comes about: the input itself, or a
-   checkpoint that was right with some of its bytes changed; with the checksum as it falls or put right, so that what lies
-   behind it is reached, too. A file that is refused must leave the run untouched; with one that is taken it must go on to
-   its end without touching what is not its own. */
+/* Bytes as the checkpoint of a small run. The first byte of an input says how the file comes about:
+   the input itself, or a checkpoint that was right with some of its bytes changed; with the
+   checksum as it falls or put right, so that what lies behind it is reached, too. A file that is
+   refused must leave the run untouched; with one that is taken it must go on to its end without
+   touching what is not its own. */
 #include <string.h>
 
 #include "runtime/checkpoint.h"
@@ -24,7 +25,8 @@ static const char deck_text[] =
     "&damping rate = 3000 until = 1.1e-4 /\n"
     "&gravity acceleration = 500, -2000 rise = 1.5e-4 /\n"
     "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' average = 3e-5 /\n"
-    "&monitor name = 'open' kind = 'opening' between = 'left', 'right' component = 'x' zero_at = 1.2e-4 /\n"
+    "&monitor name = 'open' kind = 'opening' between = 'left', 'right' component = 'x' zero_at = "
+    "1.2e-4 /\n"
     "&stop monitor = 'load' below = 0.2 of = 'peak' /\n"
     "&output frames = 7 sample = 1e-5 /\n";
 
@@ -43,8 +45,7 @@ static void end(void) {
 static void begin(void) {
   atexit(end);
   small_open(&run, &elastic_beam, deck_text);
-  if (!run.simulation)
-    small_print(&run);
+  if (!run.simulation) small_print(&run);
   MUST(run.simulation);
   simulation_advance(run.simulation, 20, NULL);
   char path[64];
@@ -88,10 +89,8 @@ static void try_bytes(const uint8_t *bytes, size_t size) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (!right_bytes)
-    begin();
-  if (size == 0 || size > LONGEST)
-    return 0;
+  if (!right_bytes) begin();
+  if (size == 0 || size > LONGEST) return 0;
   recipe r = {data, data + size};
   const unsigned how = recipe_byte(&r);
   const size_t room = right_size > size ? right_size : size;

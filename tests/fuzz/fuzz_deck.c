@@ -1,6 +1,6 @@
-/* A deck's text through the namelist reader and the deck's checks. Lines `! --set text` at the top are overrides, as
-   in tests/runtime/bad. What can be read must have its numbers finite and its lists whole; every place lies in its
-   text. */
+/* A deck's text through the namelist reader and the deck's checks. Lines `! --set text` at the top
+   are overrides, as in tests/runtime/bad. What can be read must have its numbers finite and its
+   lists whole; every place lies in its text. */
 #include <math.h>
 #include <string.h>
 
@@ -39,9 +39,11 @@ static void check_deck(const deck *k) {
   MUST(isfinite(k->simulation.step) && k->simulation.step_safety > 0);
   MUST(k->lattice_count > 0);
   for (int m = 0; m < k->lattice_count; m++)
-    MUST(k->lattices[m].spacing > 0 && isfinite(k->lattices[m].spacing) && k->lattices[m].thickness > 0);
+    MUST(k->lattices[m].spacing > 0 && isfinite(k->lattices[m].spacing) &&
+         k->lattices[m].thickness > 0);
   for (int m = 0; m < k->region_count; m++)
-    MUST(deck_find_region(k, k->regions[m].name) >= 0 && deck_find_lattice(k, k->regions[m].lattice) >= 0);
+    MUST(deck_find_region(k, k->regions[m].name) >= 0 &&
+         deck_find_lattice(k, k->regions[m].lattice) >= 0);
   for (int m = 0; m < k->support_count; m++)
     MUST(deck_find_region(k, k->supports[m].region) >= 0 && k->supports[m].fix > 0);
   for (int m = 0; m < k->drive_count; m++) {
@@ -61,8 +63,7 @@ static int take_overrides(char *text, deck_override *overrides) {
   while (count < MOST_OVERRIDES && strncmp(text, mark, sizeof mark - 1) == 0) {
     char *end = strchr(text, '\n');
     overrides[count++].text = text + sizeof mark - 1;
-    if (!end)
-      break;
+    if (!end) break;
     *end = 0;
     text = end + 1;
   }
@@ -70,8 +71,7 @@ static int take_overrides(char *text, deck_override *overrides) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (size > LONGEST)
-    return 0;
+  if (size > LONGEST) return 0;
   source_set sources = {NULL, 0};
   diagnostics said;
   diag_begin(&said, &sources);
@@ -87,8 +87,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const int count = take_overrides(head, overrides);
   const deck *k = deck_read(memory, &sources, file, overrides, count, &said);
   MUST((k != NULL) == (said.errors == 0));
-  if (k)
-    check_deck(k);
+  if (k) check_deck(k);
   check_places(&said);
   diag_clear(&said);
   source_clear(&sources);

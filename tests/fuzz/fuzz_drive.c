@@ -15,8 +15,7 @@ static void check_path(const drive_input *in) {
       (void)drive_at(in, (drive_quantity)q, end * k / 8);
       (void)drive_slope(in, (drive_quantity)q, end * k / 8);
     }
-  if (in->simulation.steps > MOST_STEPS)
-    return; /* right, but slow */
+  if (in->simulation.steps > MOST_STEPS) return; /* right, but slow */
   long count;
   double *times = drive_times(in, &count);
   MUST(count > 0 && times[0] == 0);
@@ -26,8 +25,7 @@ static void check_path(const drive_input *in) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (size > LONGEST)
-    return 0;
+  if (size > LONGEST) return 0;
   source_set sources = {NULL, 0};
   diagnostics said;
   diag_begin(&said, &sources);
@@ -35,8 +33,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   const int file = source_add(&sources, "nowhere/path.nml", (const char *)data, size);
   const drive_input *in = drive_read(memory, &sources, file, &said);
   MUST((in != NULL) == (said.errors == 0));
-  if (in)
-    check_path(in);
+  if (in) check_path(in);
   for (int k = 0; k < said.count; k++) {
     const span where = said.items[k].where;
     MUST(where.begin <= where.end && where.end <= sources.items[where.file].length);

@@ -1,6 +1,7 @@
-/* A law's text through the whole front end: read, checked, planned, emitted, laid out, explained. Besides sanitizers these
-   watch: errors and results exclude each other, places lie in the text, the layout keeps the tree and is laid out, the
-   emitted C holds nothing but what the emitter writes. */
+/* A law's text through the whole front end: read, checked, its ranges followed, planned, emitted,
+   laid out, explained. Besides sanitizers these watch: errors and results exclude each other,
+   places lie in the text, the layout keeps the tree and is laid out, the emitted C holds nothing
+   but what the emitter writes. */
 #include <string.h>
 
 #include "dsl/diagnostics_json.h"
@@ -8,6 +9,7 @@
 #include "dsl/format.h"
 #include "dsl/parse.h"
 #include "generator/emit.h"
+#include "generator/interval.h"
 #include "generator/passes.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/fuzz/fuzz.h"
@@ -17,8 +19,7 @@ enum { LONGEST = 1 << 16 };
 /* One text can be included: itself would be endless, nothing would leave includes untried. */
 static char *read_include(void *context, const char *name, const char *from, char **found) {
   (void)context, (void)from;
-  if (strcmp(name, "x.plm") != 0)
-    return NULL;
+  if (strcmp(name, "x.plm") != 0) return NULL;
   *found = strdup("x.plm");
   return strdup("let included = 2\n");
 }
@@ -36,8 +37,7 @@ static char *tree_text(const tree *t) {
 static void check_places(const diagnostics *d) {
   for (int k = 0; k < d->count; k++) {
     const diagnostic *x = &d->items[k];
-    if (x->where.file >= d->sources->count)
-      continue; /* of a file that has no text */
+    if (x->where.file >= d->sources->count) continue; /* of a file that has no text */
     MUST(x->where.begin <= x->where.end && x->where.end <= d->sources->items[x->where.file].length);
     MUST(*x->message && !strchr(x->message, '\n'));
   }
@@ -75,12 +75,10 @@ static void go_on_to_c(const law *l, diagnostics *d) {
   int errors = d->errors;
   kernel_plan *plan = plan_kernel(l, d);
   MUST((plan != NULL) == (d->errors == errors));
-  if (!plan)
-    return;
+  if (!plan) return;
   char *c = emit_kernel(plan, "key");
   const char *stray = c_stray(c);
-  if (stray)
-    fprintf(stderr, "stray in the emitted C: %.80s\n", stray);
+  if (stray) fprintf(stderr, "stray in the emitted C: %.80s\n", stray);
   MUST(!stray);
   free(c);
   plan_free(plan);
@@ -96,11 +94,12 @@ static void check_law(const uint8_t *data, size_t size) {
   tree *t = parse_model(memory, &sources, file, &options, &said);
   MUST(t || said.errors);
   const bool read = t && !said.errors;
-  if (read)
-    check_layout(&sources, t);
+  if (read) check_layout(&sources, t);
   law *l = read ? law_check(memory, t, &sources, NULL, 0, &said) : NULL;
   MUST(!read || (l != NULL) == (said.errors == 0));
   if (l) {
+    interval_check(l, &said);
+    MUST(said.errors == 0); /* it warns */
     explain_law(l, EXPLAIN_MARKDOWN, nowhere());
     explain_law(l, EXPLAIN_LATEX, nowhere());
     go_on_to_c(l, &said);
@@ -112,7 +111,6 @@ static void check_law(const uint8_t *data, size_t size) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (size <= LONGEST)
-    check_law(data, size);
+  if (size <= LONGEST) check_law(data, size);
   return 0;
 }

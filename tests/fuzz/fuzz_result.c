@@ -1,8 +1,9 @@
-/* Bytes as a result file, through everything that reads results and, sometimes, the pictures. The first byte of an input
-   says how the file comes about: a result that was right with some of its bytes changed, or a file that HDF5 itself writes
-   from a recipe: the names of a result, but of any type, rank and size. Recipes try what perilat makes of a file that is
-   whole; of changed bytes the checksums of the format find most. Not those in the heap of texts: there HDF5 1.10 itself
-   can be led to loop or to read where nothing is (H5HG_read), which shows as a crash in the library. */
+/* Bytes as a result file, through everything that reads results and, sometimes, the pictures. The
+   first byte of an input says how the file comes about: a result that was right with some of its
+   bytes changed, or a file that HDF5 itself writes from a recipe: the names of a result, but of any
+   type, rank and size. Recipes try what perilat makes of a file that is whole; of changed bytes the
+   checksums of the format find most. Not those in the heap of texts: there HDF5 1.10 itself can be
+   led to loop or to read where nothing is (H5HG_read), which shows as a crash in the library. */
 #include <hdf5.h>
 #include <string.h>
 
@@ -11,14 +12,23 @@
 #include "runtime/result.h"
 #include "tests/fuzz/memory_file.h"
 
-enum { FROM_RECIPE = 1, PICTURES = 2, LONGEST = 1 << 14, PARTICLES = 3, BONDS = 2, SAMPLES = 5, MOST_ITEMS = 12 };
+enum {
+  FROM_RECIPE = 1,
+  PICTURES = 2,
+  LONGEST = 1 << 14,
+  PARTICLES = 3,
+  BONDS = 2,
+  SAMPLES = 5,
+  MOST_ITEMS = 12
+};
 
 static memory_file file;
 static uint8_t *right_bytes;
 static size_t right_size;
 static char error[600], unit[20];
 
-static const double reference[2 * PARTICLES] = {0, 0, 1, 0, 0.5, 0.75}, volume[PARTICLES] = {1, 2, 3};
+static const double reference[2 * PARTICLES] = {0, 0, 1, 0, 0.5, 0.75},
+                                  volume[PARTICLES] = {1, 2, 3};
 static const int32_t body[PARTICLES] = {0, 0, 1}, bonds[2 * BONDS] = {0, 1, 1, 2};
 
 /* A result as runs write it. */
@@ -26,17 +36,38 @@ static void write_right(const char *path) {
   static const result_text texts[] = {{"law", "model law"}};
   static const result_field fields[] = {
       {.name = "displacement", .unit = "m", .components = 2, .count = PARTICLES, .kind = "other"},
-      {.name = "omega", .unit = "1", .interaction = "concrete", .components = 1, .count = BONDS, .kind = "damage"}};
-  static const double u[2 * PARTICLES] = {0, 0.1, 0, 0, 0.2, 0}, omega[BONDS] = {0.5, 1}, time[SAMPLES] = {0, 1, 2, 3, 4};
+      {.name = "omega",
+       .unit = "1",
+       .interaction = "concrete",
+       .components = 1,
+       .count = BONDS,
+       .kind = "damage"}};
+  static const double u[2 * PARTICLES] = {0, 0.1, 0, 0, 0.2, 0}, omega[BONDS] = {0.5, 1},
+                            time[SAMPLES] = {0, 1, 2, 3, 4};
   static const double *const values[] = {u, omega};
   static const result_series series[] = {{"load", "N", time}, {"energy/kinetic", "J", time}};
-  const result_header h = {.path = path, .title = "t", .started = "now", .version = "0", .kernel_key = "k",
-                           .deck_text = "&simulation /", .models = texts, .model_count = 1, .kernels = texts,
-                           .kernel_count = 1, .particle_count = PARTICLES, .reference = reference, .body = body,
-                           .volume = volume, .interaction = "concrete", .bond_count = BONDS, .bonds = bonds,
-                           .fields = fields, .field_count = 2};
+  const result_header h = {.path = path,
+                           .title = "t",
+                           .started = "now",
+                           .version = "0",
+                           .kernel_key = "k",
+                           .deck_text = "&simulation /",
+                           .models = texts,
+                           .model_count = 1,
+                           .kernels = texts,
+                           .kernel_count = 1,
+                           .particle_count = PARTICLES,
+                           .reference = reference,
+                           .body = body,
+                           .volume = volume,
+                           .interaction = "concrete",
+                           .bond_count = BONDS,
+                           .bonds = bonds,
+                           .fields = fields,
+                           .field_count = 2};
   result *r = result_open(&h, -1, error, sizeof error);
-  MUST(r && result_frame(r, 0, values, error, sizeof error) && result_frame(r, 1, values, error, sizeof error));
+  MUST(r && result_frame(r, 0, values, error, sizeof error) &&
+       result_frame(r, 1, values, error, sizeof error));
   MUST(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, false, error, sizeof error));
   result_close(r);
 }
@@ -58,13 +89,31 @@ static void begin(void) {
   atexit(end);
 }
 
-/* --- recipes ------------------------------------------------------------------------------------ */
+/* --- recipes ------------------------------------------------------------------------------------
+ */
 
-static const char *const places[] = {
-    "/history/time", "/history/load", "/history/energy/kinetic", "/history", "/frames/time", "/frames/displacement",
-    "/frames/damage", "/frames/concrete/omega", "/frames/concrete/damage", "/particles/reference", "/particles",
-    "/particles/body", "/particles/volume", "/bonds/concrete", "/bonds", "/bonds/a", "/input/deck", "/input/models/law",
-    "/frames", "/frames/a, b", "/frames/concrete", "/history/energy"};
+static const char *const places[] = {"/history/time",
+                                     "/history/load",
+                                     "/history/energy/kinetic",
+                                     "/history",
+                                     "/frames/time",
+                                     "/frames/displacement",
+                                     "/frames/damage",
+                                     "/frames/concrete/omega",
+                                     "/frames/concrete/damage",
+                                     "/particles/reference",
+                                     "/particles",
+                                     "/particles/body",
+                                     "/particles/volume",
+                                     "/bonds/concrete",
+                                     "/bonds",
+                                     "/bonds/a",
+                                     "/input/deck",
+                                     "/input/models/law",
+                                     "/frames",
+                                     "/frames/a, b",
+                                     "/frames/concrete",
+                                     "/history/energy"};
 
 static hid_t type_of(recipe *r) {
   const unsigned which = recipe_byte(r);
@@ -97,7 +146,8 @@ static hid_t type_of(recipe *r) {
   }
 }
 
-/* Sizes are mostly small; with `huge` they are of 40 bits, which a chunked set may have without taking room. */
+/* Sizes are mostly small; with `huge` they are of 40 bits, which a chunked set may have without
+ * taking room. */
 static hid_t space_of(recipe *r, bool huge, hsize_t *points, int *rank) {
   const unsigned which = recipe_byte(r);
   *rank = (int)(which % 6);
@@ -114,10 +164,11 @@ static hid_t space_of(recipe *r, bool huge, hsize_t *points, int *rank) {
   return *rank == 0 ? H5Screate(H5S_SCALAR) : H5Screate_simple(*rank, size, NULL);
 }
 
-/* What HDF5 must be given: an attribute of texts of any length that was never written makes the library itself read
-   wherever its heap points to. */
+/* What HDF5 must be given: an attribute of texts of any length that was never written makes the
+   library itself read wherever its heap points to. */
 static void *texts_of(recipe *r, hsize_t points) {
-  static char text[] = "a text as other programs write it, longer than any unit is, and not ended where one would like";
+  static char text[] = "a text as other programs write it, longer than any unit is, and not ended "
+                       "where one would like";
   char **texts = malloc((size_t)points * sizeof *texts);
   MUST(texts);
   for (hsize_t k = 0; k < points; k++)
@@ -135,8 +186,7 @@ static uint8_t *bytes_of(recipe *r, size_t size) {
 
 /* Values are bytes of the recipe. */
 static void fill(recipe *r, hid_t object, bool attribute, hid_t type, hsize_t points) {
-  if (points == 0 || H5Tget_class(type) == H5T_VLEN)
-    return;
+  if (points == 0 || H5Tget_class(type) == H5T_VLEN) return;
   const bool is_text = H5Tget_class(type) == H5T_STRING && H5Tis_variable_str(type) > 0;
   void *values = is_text ? texts_of(r, points) : bytes_of(r, (size_t)points * H5Tget_size(type));
   if (attribute)
@@ -173,8 +223,7 @@ static void add_set(recipe *r, hid_t f, const char *path, unsigned how) {
   const hid_t set = H5Dcreate2(f, path, type, space, links, creation, H5P_DEFAULT);
   if (set >= 0) {
     fill(r, set, false, type, points);
-    if (units)
-      add_attribute(r, set, "units");
+    if (units) add_attribute(r, set, "units");
     if (how & 0x20)
       h5_attribute_text(set, "kind", "damage");
     else if (how & 0x10)
@@ -221,7 +270,8 @@ static uint8_t *cook(recipe *r, size_t *size) {
   return bytes;
 }
 
-/* --- reading ------------------------------------------------------------------------------------ */
+/* --- reading ------------------------------------------------------------------------------------
+ */
 
 /* All of it, so that what was not written is seen. */
 static void sum_doubles(const double *values, long count) {
@@ -231,13 +281,15 @@ static void sum_doubles(const double *values, long count) {
 }
 
 static void read_frames(result_file *f) {
-  static const char *const fields[] = {"displacement", "damage", "concrete/omega", "time", "concrete", "a, b"};
+  static const char *const fields[] = {"displacement", "damage",   "concrete/omega",
+                                       "time",         "concrete", "a, b"};
   for (size_t k = 0; k < sizeof fields / sizeof *fields; k++)
     for (long frame = -2; frame <= 1; frame++) {
       long count = 0;
       int components = 0;
       *error = 0;
-      double *v = result_read_frame(f, fields[k], frame, &count, &components, unit, sizeof unit, error, sizeof error);
+      double *v = result_read_frame(f, fields[k], frame, &count, &components, unit, sizeof unit,
+                                    error, sizeof error);
       MUST(v || *error);
       sum_doubles(v, v ? count * components : 0);
       free(v);
@@ -246,8 +298,10 @@ static void read_frames(result_file *f) {
 
 static void read_all(result_file *f) {
   static const char *const histories[] = {"time", "load", "energy/kinetic", "energy", "no/such"};
-  static const char *const groups[] = {"/history", "/frames", "/bonds", "/particles", "/input", "/none"};
-  static const char *const texts[] = {"/input/deck", "/input/models/law", "/history", "/history/time"};
+  static const char *const groups[] = {"/history",   "/frames", "/bonds",
+                                       "/particles", "/input",  "/none"};
+  static const char *const texts[] = {"/input/deck", "/input/models/law", "/history",
+                                      "/history/time"};
   for (size_t k = 0; k < sizeof groups / sizeof *groups; k++) {
     free(result_list(f, groups[k]));
     char *members = result_members(f, groups[k]);
@@ -264,8 +318,7 @@ static void read_all(result_file *f) {
   }
   for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
     char *text = result_read_text(f, texts[k]);
-    if (text)
-      MUST(strlen(text) < (size_t)1 << 30);
+    if (text) MUST(strlen(text) < (size_t)1 << 30);
     free(text);
   }
   read_frames(f);
@@ -297,7 +350,8 @@ static void draw(void) {
   char path[80];
   snprintf(path, sizeof path, "/tmp/perilat_fuzz_%d.svg", (int)getpid());
   const plot_curve_options curve = {.output = path, .x = "time", .y = "load"};
-  const plot_map_options map = {.output = path, .frame = -1, .field = "damage", .component = -1, .factor = -1};
+  const plot_map_options map = {
+      .output = path, .frame = -1, .field = "damage", .component = -1, .factor = -1};
   *error = 0;
   MUST(plot_curve(results, 1, &curve, error, sizeof error) || *error);
   *error = 0;
@@ -306,10 +360,8 @@ static void draw(void) {
 }
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-  if (!right_bytes)
-    begin();
-  if (size == 0 || size > LONGEST)
-    return 0;
+  if (!right_bytes) begin();
+  if (size == 0 || size > LONGEST) return 0;
   recipe r = {data, data + size};
   const unsigned how = recipe_byte(&r);
   size_t left = right_size;
@@ -330,8 +382,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (f) {
     read_all(f);
     result_read_close(f);
-    if (how & PICTURES)
-      draw();
+    if (how & PICTURES) draw();
   }
   MUST(H5Fget_obj_count((hid_t)H5F_OBJ_ALL, H5F_OBJ_ALL) == 0); /* nothing was left open */
   return 0;

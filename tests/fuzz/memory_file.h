@@ -51,7 +51,9 @@ typedef struct recipe {
   const uint8_t *at, *end;
 } recipe;
 
-static inline unsigned recipe_byte(recipe *r) { return r->at < r->end ? *r->at++ : 0; }
+static inline unsigned recipe_byte(recipe *r) {
+  return r->at < r->end ? *r->at++ : 0;
+}
 
 static inline uint64_t recipe_number(recipe *r, int bytes) {
   uint64_t n = 0;
@@ -60,8 +62,8 @@ static inline uint64_t recipe_number(recipe *r, int bytes) {
   return n;
 }
 
-/* Changes of a file that was right: first what is cut off its end, then places and what is written there. The number of
-   bytes left is returned. */
+/* Changes of a file that was right: first what is cut off its end, then places and what is written
+   there. The number of bytes left is returned. */
 static inline size_t recipe_damage(recipe *r, uint8_t *bytes, size_t size) {
   const size_t cut = (size_t)recipe_number(r, 2) % (size + 1);
   size_t left = size - cut;

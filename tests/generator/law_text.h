@@ -95,23 +95,23 @@ typedef struct tested_state {
   double field[MOST_FIELDS];
   double N, M_i, M_j;
   double new_field[MOST_FIELDS];
-  double tangent[12];
+  double tangent[PL_TANGENTS];
 } tested_state;
 
 static inline void evaluate_law(const tested_law *t, tested_state *x, int with_tangent) {
-  double length = tested_bond().s * (1 + x->stretch), result[3 + MOST_FIELDS];
-  const double *in[5 + MOST_FIELDS] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
-  double *out[12];
+  double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS + MOST_FIELDS];
+  const double *in[PL_STATE_INPUTS + MOST_FIELDS] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
+  double *out[PL_TANGENTS];
   for (int k = 0; k < t->kernel->field_count; k++)
-    in[5 + k] = &x->field[k];
-  for (int k = 0; k < 3 + MOST_FIELDS; k++)
+    in[PL_STATE_INPUTS + k] = &x->field[k];
+  for (int k = 0; k < PL_STATE_RESULTS + MOST_FIELDS; k++)
     out[k] = &result[k];
   t->kernel->states(t->kernel, t->uniforms, 1, in, out);
   x->N = result[0];
   x->M_i = result[1];
   x->M_j = result[2];
-  memcpy(x->new_field, result + 3, (size_t)t->kernel->field_count * sizeof(double));
-  for (int k = 0; k < 12; k++)
+  memcpy(x->new_field, result + PL_STATE_RESULTS, (size_t)t->kernel->field_count * sizeof(double));
+  for (int k = 0; k < PL_TANGENTS; k++)
     out[k] = &x->tangent[k];
   if (with_tangent) t->kernel->tangent(t->kernel, t->uniforms, 1, in, out);
 }

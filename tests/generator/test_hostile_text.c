@@ -1,5 +1,6 @@
-/* A law's text reaches the C compiler as checked names, numbers and escaped texts only, whatever it is made of: the C
-   holds nothing else, compiles, computes what the interpreter does and gives every text back as it was written. */
+/* A law's text reaches the C compiler as checked names, numbers and escaped texts only, whatever it
+   is made of: the C holds nothing else, compiles, computes what the interpreter does and gives
+   every text back as it was written. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,7 +13,8 @@
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/generator/law_text.h"
 
-/* --- what is done with every law ------------------------------------------------------------------ */
+/* --- what is done with every law
+ * ------------------------------------------------------------------ */
 
 static char *emitted(const tested_law *t, char **key) {
   char *unkeyed = emit_kernel(t->plan, "");
@@ -23,8 +25,7 @@ static char *emitted(const tested_law *t, char **key) {
 
 static void no_stray(const char *c) {
   const char *stray = c_stray(c);
-  if (stray)
-    fail_msg("the emitted C holds: %.60s", stray);
+  if (stray) fail_msg("the emitted C holds: %.60s", stray);
 }
 
 static void same_tables(const pl_law *a, const pl_law *b) {
@@ -33,21 +34,23 @@ static void same_tables(const pl_law *a, const pl_law *b) {
   for (int k = 0; k < a->parameter_count; k++) {
     assert_string_equal(a->parameters[k].name, b->parameters[k].name);
     assert_string_equal(a->parameters[k].unit, b->parameters[k].unit);
-    assert_string_equal(a->parameters[k].doc ? a->parameters[k].doc : "", b->parameters[k].doc ? b->parameters[k].doc : "");
+    assert_string_equal(a->parameters[k].doc ? a->parameters[k].doc : "",
+                        b->parameters[k].doc ? b->parameters[k].doc : "");
     assert_true(a->parameters[k].initial == b->parameters[k].initial ||
                 (isnan(a->parameters[k].initial) && isnan(b->parameters[k].initial)));
   }
   assert_int_equal(a->field_count, b->field_count);
   for (int k = 0; k < a->field_count; k++) {
     assert_string_equal(a->fields[k].name, b->fields[k].name);
-    assert_string_equal(a->fields[k].doc ? a->fields[k].doc : "", b->fields[k].doc ? b->fields[k].doc : "");
+    assert_string_equal(a->fields[k].doc ? a->fields[k].doc : "",
+                        b->fields[k].doc ? b->fields[k].doc : "");
   }
 }
 
-/* The compiled kernel answers as the interpreter: a name that means something to C would change what is computed. */
+/* The compiled kernel answers as the interpreter: a name that means something to C would change
+ * what is computed. */
 static void same_answers(const tested_law *t, const pl_law *compiled) {
-  if (t->kernel->field_count > MOST_FIELDS)
-    return; /* more than law_text.h has room for */
+  if (t->kernel->field_count > MOST_FIELDS) return; /* more than law_text.h has room for */
   tested_law as_compiled = *t;
   as_compiled.kernel = (pl_law *)(size_t)compiled;
   for (int k = -3; k <= 3; k++) {
@@ -76,45 +79,55 @@ static void through_the_compiler(const char *text) {
   close_law(t);
 }
 
-/* --- names ------------------------------------------------------------------------------------------ */
+/* --- names
+ * ------------------------------------------------------------------------------------------ */
 
 static const char *const hostile_names[] = {
     /* words of C, of its dialects, of compilers */
-    "auto", "break", "case", "char", "const", "continue", "default", "double", "do", "else", "enum", "extern", "float",
-    "goto", "if", "inline", "int", "long", "register", "restrict", "return", "short", "signed", "sizeof", "static",
-    "struct", "switch", "typedef", "typeof", "union", "unsigned", "void", "volatile", "while", "asm", "__asm__",
-    "_Generic", "_Atomic", "_Bool", "_Complex", "_Imaginary", "_Noreturn", "_Static_assert", "_Thread_local", "_Alignas",
-    "__attribute__", "__extension__", "__builtin_trap", "__builtin_inf", "_Pragma", "__real__", "__typeof__", "__int128",
-    "nullptr", "constexpr", "alignof", "bool", "true", "false", "wchar_t", "thread_local", "_BitInt", "__label__",
+    "auto", "break", "case", "char", "const", "continue", "default", "double", "do", "else", "enum",
+    "extern", "float", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
+    "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "typeof", "union",
+    "unsigned", "void", "volatile", "while", "asm", "__asm__", "_Generic", "_Atomic", "_Bool",
+    "_Complex", "_Imaginary", "_Noreturn", "_Static_assert", "_Thread_local", "_Alignas",
+    "__attribute__", "__extension__", "__builtin_trap", "__builtin_inf", "_Pragma", "__real__",
+    "__typeof__", "__int128", "nullptr", "constexpr", "alignof", "bool", "true", "false", "wchar_t",
+    "thread_local", "_BitInt", "__label__",
     /* macros */
-    "__FILE__", "__LINE__", "__DATE__", "__COUNTER__", "__func__", "__VA_ARGS__", "__STDC__", "__GNUC__", "__INT_MAX__",
-    "linux", "unix", "i386", "NULL", "NAN", "INFINITY", "HUGE_VAL", "M_PI", "EOF", "INT64_C", "UINT64_MAX", "SIZE_MAX",
-    "INT32_MIN", "WINT_MAX", "errno", "assert", "stdin", "offsetof", "defined", "include", "define", "pragma",
+    "__FILE__", "__LINE__", "__DATE__", "__COUNTER__", "__func__", "__VA_ARGS__", "__STDC__",
+    "__GNUC__", "__INT_MAX__", "linux", "unix", "i386", "NULL", "NAN", "INFINITY", "HUGE_VAL",
+    "M_PI", "EOF", "INT64_C", "UINT64_MAX", "SIZE_MAX", "INT32_MIN", "WINT_MAX", "errno", "assert",
+    "stdin", "offsetof", "defined", "include", "define", "pragma",
     /* the prelude's and the kernel's own */
-    "pl_law", "pl_strip", "pl_sqrt", "PL_RARE", "PL_INDEPENDENT", "PL_LANES", "PL_PRESENT", "PL_KERNEL_ABI", "PL_HALF_PI_HI",
-    "law", "uniforms", "strip", "count", "q", "flags", "i", "j", "in_", "out", "bonds", "present", "present_bit",
-    "protected", "protected_bit", "lower", "upper", "low_open", "high_open", "parameters", "law_parameters", "law_fields",
-    "the_law", "perilat_kernel", "prepare", "rows", "rows_ledger", "rows_observe", "list", "states", "tangent", "at_u_ix",
-    "at_force_0", "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length", "chord_x", "class_chord_x", "v1",
-    "v12", "v2_2", "old_x", "old_omega", "omega_2", "time_step", "f_x", "moment_i", "int32_t", "int64_t", "uint8_t",
+    "pl_law", "pl_strip", "pl_sqrt", "PL_RARE", "PL_INDEPENDENT", "PL_LANES", "PL_PRESENT",
+    "PL_KERNEL_ABI", "PL_HALF_PI_HI", "law", "uniforms", "strip", "count", "q", "flags", "i", "j",
+    "in_", "out", "bonds", "present", "present_bit", "protected", "protected_bit", "lower", "upper",
+    "low_open", "high_open", "parameters", "law_parameters", "law_fields", "the_law",
+    "perilat_kernel", "prepare", "rows", "rows_ledger", "rows_observe", "list", "states", "tangent",
+    "at_u_ix", "at_force_0", "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length",
+    "chord_x", "class_chord_x", "v1", "v12", "v2_2", "old_x", "old_omega", "omega_2", "time_step",
+    "f_x", "moment_i", "int32_t", "int64_t", "uint8_t",
     /* functions that compilers know by name */
-    "main", "printf", "memcpy", "malloc", "system", "exit", "fabs", "fma", "pow", "floor", "round", "isnan", "signbit",
-    "gamma", "y0", "j1", "abort", "_exit", "alloca", "cold", "vectorize", "ivdep", "optimize", "x_int", "x_", "x__2",
-    "_", "__", "_0", "Xx_xX", "a23456789012345678901234567890123456789012345678901234567890123",
+    "main", "printf", "memcpy", "malloc", "system", "exit", "fabs", "fma", "pow", "floor", "round",
+    "isnan", "signbit", "gamma", "y0", "j1", "abort", "_exit", "alloca", "cold", "vectorize",
+    "ivdep", "optimize", "x_int", "x_", "x__2", "_", "__", "_0", "Xx_xX",
+    "a23456789012345678901234567890123456789012345678901234567890123",
     "a23456789012345678901234567890123456789012345678901234567890124"};
 enum { NAMES = sizeof hostile_names / sizeof *hostile_names };
 
 /* Does the language take the name for a definition? Where it does not, it says so. */
 static bool is_taken(const char *name) {
   char text[400];
-  snprintf(text, sizeof text, "model m\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  %s = 2*stretch\n"
-                              "  force N = 1 [N]*%s\nend model\n", name, name);
+  snprintf(text, sizeof text,
+           "model m\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  %s = 2*stretch\n"
+           "  force N = 1 [N]*%s\nend model\n",
+           name, name);
   arena *memory = arena_new();
   source_set sources = {NULL, 0};
   diagnostics said;
   diag_begin(&said, &sources);
   const parse_options options = {NULL, NULL};
-  tree *parsed = parse_model(memory, &sources, source_add(&sources, "n.plm", text, strlen(text)), &options, &said);
+  tree *parsed = parse_model(memory, &sources, source_add(&sources, "n.plm", text, strlen(text)),
+                             &options, &said);
   law *l = parsed && !said.errors ? law_check(memory, parsed, &sources, NULL, 0, &said) : NULL;
   assert_true((l != NULL) == (said.errors == 0));
   diag_clear(&said);
@@ -124,11 +137,11 @@ static bool is_taken(const char *name) {
 }
 
 /* X(role, how a name is declared, what joins the force) */
-#define ROLES(X)                                                                                                           \
-  X(parameter, "  parameter %s = 0.001\n", " + %s")                                                                       \
-  X(constant, "  constant %s = 0.001*rho/(1 [kg/m^3])\n", " + %s")                                                        \
-  X(definition, "  %s = 0.001*abs(stretch)\n", " + %s")                                                                   \
-  X(state, "  state %s = 0\n", " + %s")                                                                                   \
+#define ROLES(X)                                                                                   \
+  X(parameter, "  parameter %s = 0.001\n", " + %s")                                                \
+  X(constant, "  constant %s = 0.001*rho/(1 [kg/m^3])\n", " + %s")                                 \
+  X(definition, "  %s = 0.001*abs(stretch)\n", " + %s")                                            \
+  X(state, "  state %s = 0\n", " + %s")                                                            \
   X(output, "  output %s = stretch\n", "")
 
 typedef struct role {
@@ -160,19 +173,19 @@ static void names_stay_names(void **state) {
     size_t length = 0;
     FILE *out = open_memstream(&text, &length);
     fprintf(out, "model %s\n  law central bond\n  parameter rho = 2323 [kg/m^3]\n", "linux");
-    const int step = is_state ? 5 : 1; /* every state is written by every pass: the compiler would take long */
+    const int step =
+        is_state ? 5 : 1; /* every state is written by every pass: the compiler would take long */
     for (int k = 0; k < NAMES; k += step)
-      if (is_taken(hostile_names[k]))
-        put(out, roles[r].declared, hostile_names[k]);
+      if (is_taken(hostile_names[k])) put(out, roles[r].declared, hostile_names[k]);
     for (int k = 0; is_state && k < NAMES; k += step)
       if (is_taken(hostile_names[k]))
-        fprintf(out, "  %s = max(previous(%s), 0.001*abs(stretch))\n", hostile_names[k], hostile_names[k]);
+        fprintf(out, "  %s = max(previous(%s), 0.001*abs(stretch))\n", hostile_names[k],
+                hostile_names[k]);
     fprintf(out, "  force N = 1 [N]*stretch*(1");
     for (int k = 0, written = 0; k < NAMES; k += step)
       if (is_taken(hostile_names[k]) && *roles[r].used) {
         put(out, roles[r].used, hostile_names[k]);
-        if (++written % 20 == 0)
-          fprintf(out, " &\n    ");
+        if (++written % 20 == 0) fprintf(out, " &\n    ");
       }
     fprintf(out, ")\nend model\n");
     fclose(out);
@@ -181,20 +194,45 @@ static void names_stay_names(void **state) {
   }
 }
 
-/* --- texts ------------------------------------------------------------------------------------------ */
+/* --- texts
+ * ------------------------------------------------------------------------------------------ */
 
-static const char *const hostile_texts[] = {
-    "*/ int x; /*", "/* never closed", "// to the end", "a \\", "a \\n\\x41\\101\\0 b", "what?" "?/", "a ?" "?> ?" "?= ?" "?!",
-    "#include </etc/passwd>", "#define double int", "%s%n%d%%", "`id` $(id) ${HOME}", "'; system('x'); '", "@ ~ | ^ & !",
-    "\xc3\xa9\xe2\x82\xac \xf0\x9f\x98\x80", "\xe2\x80\xae right to left", "\xe2\x80\xa8 line separator", "\xff\xfe not UTF-8",
-    "tab\tand \v \f", "_Pragma(message)", "__asm__(hlt)", "\177 delete", "{{{{ )))) ]]", "\x1b[31m escape"};
+static const char *const hostile_texts[] = {"*/ int x; /*",
+                                            "/* never closed",
+                                            "// to the end",
+                                            "a \\",
+                                            "a \\n\\x41\\101\\0 b",
+                                            "what?"
+                                            "?/",
+                                            "a ?"
+                                            "?> ?"
+                                            "?= ?"
+                                            "?!",
+                                            "#include </etc/passwd>",
+                                            "#define double int",
+                                            "%s%n%d%%",
+                                            "`id` $(id) ${HOME}",
+                                            "'; system('x'); '",
+                                            "@ ~ | ^ & !",
+                                            "\xc3\xa9\xe2\x82\xac \xf0\x9f\x98\x80",
+                                            "\xe2\x80\xae right to left",
+                                            "\xe2\x80\xa8 line separator",
+                                            "\xff\xfe not UTF-8",
+                                            "tab\tand \v \f",
+                                            "_Pragma(message)",
+                                            "__asm__(hlt)",
+                                            "\177 delete",
+                                            "{{{{ )))) ]]",
+                                            "\x1b[31m escape"};
 
-static const char frame_of_texts[] = "!> %s\nmodel m\n  law central bond\n  parameter rho = 2323 [kg/m^3] \"%s\"\n"
-                                     "  ! HOSTILE %s\n  parameter E = 30 [GPa] \"%s\"\n"
-                                     "  !> %s\n  !> HOSTILE_DOC \" %s\n  damage omega = max(previous(omega), min(1, abs(stretch)))\n"
-                                     "  force N = (1 - omega)*E*area*stretch ! HOSTILE %s\nend model\n";
+static const char frame_of_texts[] =
+    "!> %s\nmodel m\n  law central bond\n  parameter rho = 2323 [kg/m^3] \"%s\"\n"
+    "  ! HOSTILE %s\n  parameter E = 30 [GPa] \"%s\"\n"
+    "  !> %s\n  !> HOSTILE_DOC \" %s\n  damage omega = max(previous(omega), min(1, abs(stretch)))\n"
+    "  force N = (1 - omega)*E*area*stretch ! HOSTILE %s\nend model\n";
 
-/* Where the language refuses a text, it says so; otherwise it arrives whole and comments do not arrive at all. */
+/* Where the language refuses a text, it says so; otherwise it arrives whole and comments do not
+ * arrive at all. */
 static void texts_stay_texts(void **state) {
   (void)state;
   int arrived = 0;
@@ -239,13 +277,15 @@ static void long_texts_and_numbers(void **state) {
   for (int k = 0; k < 400; k++)
     fputc('0' + k % 10, out);
   fputs("\n  parameter b = 1d-300\n  parameter c = 1.7976931348623157e308\n"
-        "  force N = 1 [N]*stretch*(1 + a + b + 1/c)\nend model\n", out);
+        "  force N = 1 [N]*stretch*(1 + a + b + 1/c)\nend model\n",
+        out);
   fclose(out);
   through_the_compiler(text);
   free(text);
 }
 
-/* --- the fixed part, and the check itself ------------------------------------------------------------- */
+/* --- the fixed part, and the check itself
+ * ------------------------------------------------------------- */
 
 static char *kernel_of(const char *text) {
   tested_law *t = open_law(text);
@@ -258,9 +298,12 @@ static char *kernel_of(const char *text) {
 /* What kernels begin with is the same for all laws: nothing of the law is in it. */
 static void the_head_is_fixed(void **state) {
   (void)state;
-  char *a = kernel_of("model a\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  force N = 1 [N]*stretch\nend model\n");
-  char *b = kernel_of("!> text\nmodel other\n  law central bond\n  parameter rho = 2 [kg/m^3] \"x\"\n"
-                      "  state k = 0\n  k = max(previous(k), stretch)\n  force N = 2 [N]*(stretch + k)\nend model\n");
+  char *a = kernel_of("model a\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  force N = 1 "
+                      "[N]*stretch\nend model\n");
+  char *b =
+      kernel_of("!> text\nmodel other\n  law central bond\n  parameter rho = 2 [kg/m^3] \"x\"\n"
+                "  state k = 0\n  k = max(previous(k), stretch)\n  force N = 2 [N]*(stretch + "
+                "k)\nend model\n");
   const size_t length = (size_t)(c_begin(a) - a);
   assert_int_equal((size_t)(c_begin(b) - b), length);
   assert_memory_equal(a, b, length);
@@ -271,11 +314,44 @@ static void the_head_is_fixed(void **state) {
 /* Each of these, put into a kernel, is found. */
 static void strays_are_found(void **state) {
   (void)state;
-  static const char *const strays[] = {
-      "asm(x);", "#include <x>\n", "x = system(y);", "'a'", "\\\n", "/* note */", "// note\n", "int x;", "goto x;", "@", "`",
-      "%", "$", "\"a\\n\"", "\"a%s\"", "\"\xc3\xa9\"", "\"open", "\xc3\xa9", ("?" "?/"), "__asm__ x;", "pl_evil(x);", "{", "}", "0x1;",
-      "1.0f;", "/* line 1; */", "__builtin_trap();", "\t", "while (x)", "do x;", "/* line 12 ", "x (y)", "1e;", "~x;", "^x;"};
-  char *c = kernel_of("model a\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  force N = 1 [N]*stretch\nend model\n");
+  static const char *const strays[] = {"asm(x);",
+                                       "#include <x>\n",
+                                       "x = system(y);",
+                                       "'a'",
+                                       "\\\n",
+                                       "/* note */",
+                                       "// note\n",
+                                       "int x;",
+                                       "goto x;",
+                                       "@",
+                                       "`",
+                                       "%",
+                                       "$",
+                                       "\"a\\n\"",
+                                       "\"a%s\"",
+                                       "\"\xc3\xa9\"",
+                                       "\"open",
+                                       "\xc3\xa9",
+                                       ("?"
+                                        "?/"),
+                                       "__asm__ x;",
+                                       "pl_evil(x);",
+                                       "{",
+                                       "}",
+                                       "0x1;",
+                                       "1.0f;",
+                                       "/* line 1; */",
+                                       "__builtin_trap();",
+                                       "\t",
+                                       "while (x)",
+                                       "do x;",
+                                       "/* line 12 ",
+                                       "x (y)",
+                                       "1e;",
+                                       "~x;",
+                                       "^x;"};
+  char *c = kernel_of("model a\n  law central bond\n  parameter rho = 1 [kg/m^3]\n  force N = 1 "
+                      "[N]*stretch\nend model\n");
   assert_null(c_stray(c));
   const size_t at = (size_t)(strstr(c, "PL_RARE static") - c);
   for (size_t k = 0; k < sizeof strays / sizeof *strays; k++) {
@@ -284,8 +360,7 @@ static void strays_are_found(void **state) {
     FILE *out = open_memstream(&worse, &length);
     fprintf(out, "%.*s%s%s", (int)at, c, strays[k], c + at);
     fclose(out);
-    if (!c_stray(worse))
-      fail_msg("not found: %s", strays[k]);
+    if (!c_stray(worse)) fail_msg("not found: %s", strays[k]);
     free(worse);
   }
   free(c);
@@ -293,8 +368,9 @@ static void strays_are_found(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(names_stay_names), cmocka_unit_test(texts_stay_texts), cmocka_unit_test(long_texts_and_numbers),
-      cmocka_unit_test(the_head_is_fixed), cmocka_unit_test(strays_are_found),
+      cmocka_unit_test(names_stay_names),       cmocka_unit_test(texts_stay_texts),
+      cmocka_unit_test(long_texts_and_numbers), cmocka_unit_test(the_head_is_fixed),
+      cmocka_unit_test(strays_are_found),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

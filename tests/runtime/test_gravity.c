@@ -54,6 +54,23 @@ static void a_free_body_falls_as_a_whole(void **state) {
   small_close(&r);
 }
 
+/* Weight that takes particles further than a spacing in the first step: nothing moves. */
+static void gravity_runs_away_before_it_moves(void **state) {
+  (void)state;
+  small_run r;
+  must_open(&r, "&simulation end_time = 1e-3 /\n" BLOCK
+                "&gravity acceleration = 0, -1e13 /\n&output frames = 0 /\n");
+  const double dt = simulation_step_limit(r.simulation)->step;
+  assert_true(1e13 * dt * dt > SPACING);
+  assert_int_equal(small_go(&r), STEP_BAD);
+  assert_int_equal(simulation_bad(r.simulation).step, 0);
+  assert_string_equal(simulation_bad(r.simulation).what, "runaway velocity");
+  const sweep *w = simulation_state(r.simulation);
+  for (long q = 0; q < w->lattice->size; q++)
+    assert_true(w->displacement[1][q] == 0 && w->velocity[1][q] == 0);
+  small_close(&r);
+}
+
 /* At rest the foot carries the weight. */
 static void a_foot_carries_the_weight(void **state) {
   (void)state;
@@ -210,6 +227,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_free_body_falls_as_a_whole),
       cmocka_unit_test(a_foot_carries_the_weight),
+      cmocka_unit_test(gravity_runs_away_before_it_moves),
       cmocka_unit_test(the_ledger_counts_the_work_of_gravity),
       cmocka_unit_test(threads_do_not_change_the_fall),
       cmocka_unit_test(a_thrown_body_keeps_its_velocity),

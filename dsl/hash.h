@@ -1,0 +1,13 @@
+/* FNV-1a, 64 bits (Fowler, Noll, Vo): tables, checksums, fingerprints; no protection against malice. */
+#ifndef PERILAT_DSL_HASH_H
+#define PERILAT_DSL_HASH_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#define HASH_START UINT64_C(0xcbf29ce484222325)
+
+/* The hash of what had `hash` with `bytes` bytes more. */
+uint64_t hash_more(uint64_t hash, const void *data, size_t bytes);
+
+#endif

@@ -1,0 +1,97 @@
+#!/usr/bin/env bash
+# Installs into a folder of its own and works from there: laws by name, a run, a solver, a C program by CMake and one by pkg-config.
+# Arguments: build folder, source folder, C compiler, CMake, its generator, and the program that it builds with.
+set -euo pipefail
+build=$1 source=$2 compiler=$3 cmake=$4 generator=$5 make_program=$6
+
+work=$(mktemp -d "${TMPDIR:-/tmp}/perilat install.XXXXXX") # with a blank
+trap 'rm -rf "$work"' EXIT
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+trap 'echo "FAILED: line $LINENO" >&2' ERR
+
+"$cmake" --install "$build" --prefix "$work/first place" >"$work/log"
+mv "$work/first place" "$work/prefix" # what is installed may be moved
+prefix=$work/prefix
+perilat=$prefix/bin/perilat
+export PERILAT_CACHE=$work/cache
+unset PERILAT_MODELS
+mkdir "$work/elsewhere"
+cd "$work/elsewhere"
+
+# The installed tool does not lean on the folders it came from.
+if grep -r -l -F -e "$source/" -e "$build/" "$prefix/lib"*/cmake "$prefix/lib"*/pkgconfig "$prefix/share"; then
+  fail "these files name the source or build folder"
+fi
+
+"$perilat" --version | grep -q '^perilat [0-9]'
+for law in "$source"/models/*.plm; do
+  "$perilat" check "$(basename "$law" .plm)" | grep -q 'no errors'
+done
+"$perilat" drive "$prefix/share/perilat/models/drives/elastic_central.nml" | grep -q 'expectations hold'
+"$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
+
+sed "s/NAME/cohesive_central/g" "$source/generator/templates/deck.nml" >deck.nml
+"$perilat" run deck.nml --set "simulation.end_time=0.1 ms" --set output.result=run.h5 2>&1 | grep -q 'written'
+"$perilat" info run.h5 | grep -q elongation
+"$perilat" build deck.nml -o solver | grep -q 'written solver'
+PATH=/nonexistent ./solver --set "simulation.end_time=0.1 ms" --set output.result=solver.h5 >solver.log 2>&1
+"$perilat" compare run.h5 solver.h5 | grep -q '^same'
+"$perilat" new mine >new.log
+"$perilat" drive mine_drive.nml | grep -q '5 of 5 expectations hold'
+
+# A C program against the libraries: the law is found, checked, and driven through the runtime's reader of results.
+cat >use.c <<'END'
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "generator/model.h"
+#include "runtime/result.h"
+
+int main(int argc, char **argv) {
+  char error[1000];
+  model m;
+  char *path = argc == 3 ? model_find(argv[1], NULL) : NULL;
+  bool good = path && model_open(&m, path, NULL, 0) && model_plan(&m);
+  result_file *f = good ? result_read(argv[2], error, sizeof error) : NULL;
+  long particles = 0;
+  if (f)
+    free(result_read_reference(f, &particles));
+  printf("%s has %d parameters; %ld particles\n", good ? m.law->tree->name : "?", good ? m.law->parameters.count : 0,
+         particles);
+  return f && particles > 0 ? 0 : 1;
+}
+END
+cat >CMakeLists.txt <<'END'
+cmake_minimum_required(VERSION 3.20)
+project(use LANGUAGES C)
+set(CMAKE_C_STANDARD 11)
+find_package(perilat 0.1 REQUIRED)
+if(NOT EXISTS ${PERILAT_MODELS_DIR}/elastic_central.plm OR NOT EXISTS ${PERILAT_EXECUTABLE})
+  message(FATAL_ERROR "the package does not say where its models and command are")
+endif()
+add_executable(use use.c)
+target_link_libraries(use PRIVATE perilat::generator)
+END
+export PERILAT_MODELS=$prefix/share/perilat/models
+expected="elastic_central has 2 parameters; 264 particles"
+"$cmake" -S . -B cmake-build -G "$generator" -DCMAKE_MAKE_PROGRAM="$make_program" -DCMAKE_C_COMPILER="$compiler" \
+  -DCMAKE_PREFIX_PATH="$prefix" >cmake.log 2>&1 || { cat cmake.log; fail "configuring with the CMake package"; }
+"$cmake" --build cmake-build >cmake.log 2>&1 || { cat cmake.log; fail "building with the CMake package"; }
+[ "$(./cmake-build/use elastic_central run.h5)" = "$expected" ] || fail "the program built by CMake"
+
+pc=$(find "$prefix" -name perilat.pc -printf '%h\n')
+export PKG_CONFIG_PATH=$pc
+[ -f "$(pkg-config --variable=modelsdir perilat | sed 's/\\//g')/elastic_central.plm" ] || fail "modelsdir of pkg-config"
+eval "\"$compiler\" -std=gnu11 use.c -o use $(pkg-config --cflags --libs perilat)"
+[ "$(./use elastic_central run.h5)" = "$expected" ] || fail "the program built by pkg-config"
+
+# Manual and completion.
+for page in perilat perilat-run perilat-new; do
+  [ -s "$prefix/share/man/man1/$page.1" ] || fail "no man page $page"
+done
+bash -n "$prefix/share/bash-completion/completions/perilat"
+[ -s "$prefix/share/zsh/site-functions/_perilat" ] && [ -s "$prefix/share/fish/vendor_completions.d/perilat.fish" ]
+echo "installed, moved and used from another folder"
