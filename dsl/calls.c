@@ -296,7 +296,8 @@ static value principal(checker *ck, expr *e) {
   X(EXP, pure)                                                                                     \
   X(LOG, pure)                                                                                     \
   X(SIN, pure)                                                                                     \
-  X(COS, pure) X(TAN, pure) X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure)    \
+  X(COS, pure)                                                                                     \
+  X(TAN, pure) X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure)                 \
       X(MACAULAY, same_unit) X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous)   \
           X(DIFF, derivative) X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator)                      \
               X(VIRTUAL_WORK, virtual_work) X(FIT, fit) X(PRINCIPAL, principal)                    \
@@ -393,10 +394,10 @@ static value check_own_function(checker *ck, expr *e, entry *function) {
   X("macaulay", "write `positive_part(x)`")                                                        \
   X("sgn", "write `sign(x)`")                                                                      \
   X("atan", "write `atan2(x, 1)`")                                                                 \
-      X("if", "choose with cases: | value when guard | value otherwise")                           \
-          X("heaviside", "choose with cases: | 1 when x > 0 | 0 otherwise")                        \
-              X("old", "write `previous(x)`") X("dot", "write `a : b`")                            \
-                  X("clamp", "write `min(max(x, low), high)`")
+  X("if", "choose with cases: | value when guard | value otherwise")                               \
+  X("heaviside", "choose with cases: | 1 when x > 0 | 0 otherwise")                                \
+  X("old", "write `previous(x)`")                                                                  \
+  X("dot", "write `a : b`") X("clamp", "write `min(max(x, low), high)`")
 
 static const char *hint_for_foreign(const char *name) {
 #define X(foreign, hint)                                                                           \

@@ -20,10 +20,10 @@ typedef enum severity { SEVERITY_ERROR, SEVERITY_WARNING } severity;
 typedef struct diagnostic {
   diag_code code;
   span where;
-  char *message;   /* one sentence, no full stop, in the user's words */
-  char *note;      /* NULL, or a sentence about note_where (e.g. "first declared here") */
+  char *message; /* one sentence, no full stop, in the user's words */
+  char *note;    /* NULL, or a sentence about note_where (e.g. "first declared here") */
   span note_where;
-  char *hint;      /* NULL, or how to mend it (e.g. "did you mean `alpha2`?") */
+  char *hint; /* NULL, or how to mend it (e.g. "did you mean `alpha2`?") */
 } diagnostic;
 
 typedef struct diagnostics {

@@ -9,15 +9,16 @@
 /* X(word in a name, letter) */
 #define GREEK(X)                                                                                   \
   X("alpha", "alpha")                                                                              \
-  X("beta", "beta") X("gamma", "gamma") X("delta", "delta") X("eps", "varepsilon")                 \
-      X("epsilon", "epsilon") X("zeta", "zeta") X("eta", "eta") X("theta", "theta")                \
-          X("iota", "iota") X("kappa", "kappa") X("lambda", "lambda") X("mu", "mu") X("nu", "nu")  \
-              X("xi", "xi") X("pi", "pi") X("rho", "rho") X("sigma", "sigma") X("tau", "tau")      \
-                  X("upsilon", "upsilon") X("phi", "varphi") X("chi", "chi") X("psi", "psi")       \
-                      X("omega", "omega") X("Gamma", "Gamma") X("Delta", "Delta")                  \
-                          X("Theta", "Theta") X("Lambda", "Lambda") X("Xi", "Xi") X("Pi", "Pi")    \
-                              X("Sigma", "Sigma") X("Upsilon", "Upsilon") X("Phi", "Phi")          \
-                                  X("Psi", "Psi") X("Omega", "Omega")
+  X("beta", "beta")                                                                                \
+  X("gamma", "gamma") X("delta", "delta") X("eps", "varepsilon") X("epsilon", "epsilon")           \
+      X("zeta", "zeta") X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")  \
+          X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi")            \
+              X("rho", "rho") X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon")          \
+                  X("phi", "varphi") X("chi", "chi") X("psi", "psi") X("omega", "omega")           \
+                      X("Gamma", "Gamma") X("Delta", "Delta") X("Theta", "Theta")                  \
+                          X("Lambda", "Lambda") X("Xi", "Xi") X("Pi", "Pi") X("Sigma", "Sigma")    \
+                              X("Upsilon", "Upsilon") X("Phi", "Phi") X("Psi", "Psi")              \
+                                  X("Omega", "Omega")
 
 static const struct {
   const char *word, *letter;
@@ -430,7 +431,8 @@ static void put_cases(const law *l, const expr *e, FILE *out) {
 /* Names before bracketed arguments. X(code, name) */
 #define NAMED(X)                                                                                   \
   X(EXP, "\\exp")                                                                                  \
-  X(LOG, "\\ln") X(SIN, "\\sin") X(COS, "\\cos") X(TAN, "\\tan") X(TANH, "\\tanh")                 \
+  X(LOG, "\\ln")                                                                                   \
+  X(SIN, "\\sin") X(COS, "\\cos") X(TAN, "\\tan") X(TANH, "\\tanh")                                \
       X(ATAN2, "\\operatorname{atan2}") X(SIGN, "\\operatorname{sign}")                            \
           X(SOFT_SIGN, "\\operatorname{soft\\_sign}") X(MIN, "\\min") X(MAX, "\\max")              \
               X(MEAN, "\\operatorname{mean}_{j}") X(DEVIATOR, "\\operatorname{deviator}")          \

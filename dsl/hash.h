@@ -1,4 +1,4 @@
-/* FNV-1a, 64 bits (Fowler, Noll, Vo): tables, checksums, fingerprints; no protection against malice. */
+/* FNV-1a, 64 bits (Fowler, Noll, Vo): for tables, checksums, fingerprints; not for secrets. */
 #ifndef PERILAT_DSL_HASH_H
 #define PERILAT_DSL_HASH_H
 

@@ -8,36 +8,37 @@
 #include "dsl/tree.h"
 
 typedef enum symbol_kind {
-  SYMBOL_QUANTITY,  /* built in: stretch, s, ... */
+  SYMBOL_QUANTITY, /* built in: stretch, s, ... */
   SYMBOL_PARAMETER,
-  SYMBOL_CONSTANT,  /* does not change in time */
-  SYMBOL_DEFINED,   /* plain definition, yield, stress, strain */
+  SYMBOL_CONSTANT, /* does not change in time */
+  SYMBOL_DEFINED,  /* plain definition, yield, stress, strain */
   SYMBOL_STATE,
   SYMBOL_DAMAGE,
-  SYMBOL_RESULT,    /* force N, moment M_i, M_j, force V, energy W, force state F */
+  SYMBOL_RESULT, /* force N, moment M_i, M_j, force V, energy W, force state F */
   SYMBOL_OUTPUT,
   SYMBOL_FUNCTION,
-  SYMBOL_OPTION,    /* option onset */
-  SYMBOL_CHOICE,    /* rankine: a value of an option; also plane_stress, plane_strain, space */
-  SYMBOL_ARGUMENT   /* of a user's function */
+  SYMBOL_OPTION,  /* option onset */
+  SYMBOL_CHOICE,  /* rankine: a value of an option; also plane_stress, plane_strain, space */
+  SYMBOL_ARGUMENT /* of a user's function */
 } symbol_kind;
 
 typedef struct symbol {
   symbol_kind kind;
   const char *name;
-  span where;          /* of the name where it was declared */
-  const stmt *declared;/* NULL for built-ins */
-  const stmt *rule;    /* statement that gives its value in each step; NULL for built-ins, parameters */
-  int index;           /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
+  span where;           /* of the name where it was declared */
+  const stmt *declared; /* NULL for built-ins */
+  const stmt
+      *rule; /* statement that gives its value in each step; NULL for built-ins, parameters */
+  int index; /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
   dimension dim;
   shape shape;
   placement place;
-  const char *doc;     /* description or NULL */
-  double initial;      /* PARAMETER: default, STATE: initial value; SI */
-  bool has_default;    /* PARAMETER */
+  const char *doc;       /* description or NULL */
+  double initial;        /* PARAMETER: default, STATE: initial value; SI */
+  bool has_default;      /* PARAMETER */
   struct symbol *option; /* CHOICE: its option (NULL for settings) */
-  bool old_is_read;    /* STATE, DAMAGE: some rule reads the value of the last step */
-  bool used;           /* a force or an output depends on it */
+  bool old_is_read;      /* STATE, DAMAGE: some rule reads the value of the last step */
+  bool used;             /* a force or an output depends on it */
 } symbol;
 
 typedef struct symbol_list {
@@ -46,7 +47,14 @@ typedef struct symbol_list {
 } symbol_list;
 
 /* The result quantities of pairwise laws, by position. NULL where the law does not give one. */
-typedef enum law_result { RESULT_N, RESULT_V, RESULT_M_I, RESULT_M_J, RESULT_W, RESULT_COUNT } law_result;
+typedef enum law_result {
+  RESULT_N,
+  RESULT_V,
+  RESULT_M_I,
+  RESULT_M_J,
+  RESULT_W,
+  RESULT_COUNT
+} law_result;
 
 /* A choice for one option, as a deck or a command line makes it. */
 typedef struct law_choice {
@@ -55,16 +63,16 @@ typedef struct law_choice {
 
 typedef struct law {
   tree *tree;
-  arena *memory;            /* not owned */
+  arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;
-  symbol_list fields;       /* states and damages, in the order declared */
+  symbol_list fields; /* states and damages, in the order declared */
   symbol_list outputs;
   symbol_list options;
-  const char **chosen;      /* [options.count] the choice in force (default: the first) */
+  const char **chosen; /* [options.count] the choice in force (default: the first) */
   const symbol *results[RESULT_COUNT];
-  const symbol *rho;        /* the parameter `rho`, or NULL */
-  const stmt **rules;       /* statements to evaluate each step, in order (constants first) */
+  const symbol *rho;  /* the parameter `rho`, or NULL */
+  const stmt **rules; /* statements to evaluate each step, in order (constants first) */
   int rule_count;
   const char *nonconservative; /* reason, or NULL */
 } law;

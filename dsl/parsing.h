@@ -22,9 +22,10 @@ enum {
   X(FOR, "for")                                                                                    \
   X(PARAMETER, "parameter")                                                                        \
   X(CONSTANT, "constant")                                                                          \
-  X(OPTION, "option") X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function")                \
-      X(FORCE, "force") X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress")                \
-          X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                \
+  X(OPTION, "option")                                                                              \
+  X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force")                  \
+      X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress") X(STRAIN, "strain")              \
+          X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                                    \
               X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
 
 /* Words that are never names. */

@@ -27,7 +27,8 @@ bool dim_pow(dimension a, int numerator, int denominator, dimension *result);
 
 /* Reads a unit expression such as "kg/m^3", "N*m", "1/s", "mm", "kN/m", "m**2", "MPa*m^0.5".
    On failure returns false, and *bad / *bad_length name the offending part of `text`. */
-bool unit_parse(const char *text, size_t length, unit *result, const char **bad, size_t *bad_length);
+bool unit_parse(const char *text, size_t length, unit *result, const char **bad,
+                size_t *bad_length);
 
 /* "a stress (Pa)", "a pure number", or "a quantity in kg^2*m/s" where the field has no word for it.
    Writes at most `size` bytes including the NUL. */

@@ -16,9 +16,10 @@
 enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
 
 static bool spares_input(const char *output, const char *input) {
-  if (!same_file(output, input))
-    return true;
-  fprintf(stderr, "perilat: error: the output `%s` would overwrite `%s`; give it another name with -o\n", output, input);
+  if (!same_file(output, input)) return true;
+  fprintf(stderr,
+          "perilat: error: the output `%s` would overwrite `%s`; give it another name with -o\n",
+          output, input);
   return false;
 }
 
@@ -38,8 +39,7 @@ static int build_law(const char *path, const char *output, bool no_physics) {
     fprintf(stderr, "perilat: error: %s\n", error);
     status = BUILD_FAILED;
   }
-  if (!status)
-    printf("written %s (key %s)\n", output, m.key);
+  if (!status) printf("written %s (key %s)\n", output, m.key);
   model_close(&m);
   return status;
 }
@@ -50,14 +50,15 @@ static int build_law(const char *path, const char *output, bool no_physics) {
 typedef struct deck_law {
   model model;
   bool opened;
-  char name[512];   /* as the deck gives it */
-  char choices[512];/* ";option=choice;..." */
+  char name[512];    /* as the deck gives it */
+  char choices[512]; /* ";option=choice;..." */
 } deck_law;
 
 static void list_choices(const law *l, char *text, size_t size) {
   size_t used = (size_t)snprintf(text, size, ";");
   for (int k = 0; k < l->options.count && used < size; k++)
-    used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
+    used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name,
+                             l->chosen[k]);
 }
 
 /* The deck has been checked whole before: its warnings are not said again. */
@@ -74,8 +75,7 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
     snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);
     list_choices(out->model.law, out->choices, sizeof out->choices);
   }
-  if (!good)
-    diag_print(&said, stderr);
+  if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   source_clear(&sources);
   arena_free(memory);
@@ -115,7 +115,8 @@ static char *solver_text(const deck_law *l, const char *deck_name, const char *d
 static int link_solver(const char *path, const char *deck_text, const char *output) {
   char error[ERROR_LENGTH];
   deck_law l = {.opened = false};
-  int status = open_deck_law(path, deck_text, &l) && spares_input(output, l.model.path) ? 0 : INPUT_WRONG;
+  int status =
+      open_deck_law(path, deck_text, &l) && spares_input(output, l.model.path) ? 0 : INPUT_WRONG;
   if (!status) {
     char *text = solver_text(&l, path, deck_text);
     if (!toolchain_build_program(text, output, error, sizeof error)) {
@@ -124,10 +125,8 @@ static int link_solver(const char *path, const char *deck_text, const char *outp
     }
     free(text);
   }
-  if (!status)
-    printf("written %s: runs the deck %s without a compiler\n", output, path);
-  if (l.opened)
-    model_close(&l.model);
+  if (!status) printf("written %s: runs the deck %s without a compiler\n", output, path);
+  if (l.opened) model_close(&l.model);
   return status;
 }
 
@@ -144,9 +143,9 @@ static int build_solver(const char *path, const char *output, bool no_physics) {
   if (!output)
     fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
   else if (spares_input(output, path))
-    status = run_deck(&(run_options){.deck_path = path, .check_only = true, .no_physics = no_physics});
-  if (!status)
-    status = link_solver(path, deck_text, output);
+    status =
+        run_deck(&(run_options){.deck_path = path, .check_only = true, .no_physics = no_physics});
+  if (!status) status = link_solver(path, deck_text, output);
   free(deck_text);
   return status;
 }
@@ -163,24 +162,24 @@ int command_build(int argc, char **argv) {
     else if (argv[at][0] == '-')
       bad = option_unknown("build", argv[at]);
     else if (path) {
-      fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n", argv[at]);
+      fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n",
+              argv[at]);
       bad = 1;
     } else
       path = argv[at++];
   }
-  if (bad)
-    return 1;
+  if (bad) return 1;
   if (!path) {
     fputs("perilat: error: `perilat build` needs a law or a deck\n", stderr);
     return 1;
   }
   file_kind kind = kind_of_file(path);
   if (kind == FILE_RESULT) {
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat build` needs a law or a deck\n", path);
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat build` needs a law or a deck\n",
+            path);
     return 1;
   }
-  if (kind == FILE_DECK)
-    return build_solver(path, output, no_physics);
+  if (kind == FILE_DECK) return build_solver(path, output, no_physics);
   char *found = model_find(path, NULL);
   int status = build_law(found ? found : path, output, no_physics);
   free(found);

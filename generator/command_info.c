@@ -13,18 +13,22 @@
 /* --- --builtins ------------------------------------------------------------------------------- */
 
 static int info_builtins(void) {
-  static const char *const kinds[] = {"", "central", "micropolar", "pairwise", "state", "central and state",
-                                      "micropolar and state", "all"};
-  printf("Quantities that a law may read:\n  %-13s %-7s %-9s %-11s %s\n", "name", "unit", "lives", "laws", "meaning");
+  static const char *const kinds[] = {
+      "",      "central",           "micropolar",           "pairwise",
+      "state", "central and state", "micropolar and state", "all"};
+  printf("Quantities that a law may read:\n  %-13s %-7s %-9s %-11s %s\n", "name", "unit", "lives",
+         "laws", "meaning");
   for (int q = 0; q < QUANTITY_COUNT; q++) {
     const builtin_quantity_info *b = &builtin_quantities[q];
-    printf("  %-13s %-7s %-9s %-11s %s\n", b->name, b->unit, placement_name(b->place), kinds[b->kinds & 7], b->meaning);
+    printf("  %-13s %-7s %-9s %-11s %s\n", b->name, b->unit, placement_name(b->place),
+           kinds[b->kinds & 7], b->meaning);
   }
   printf("\nFunctions:\n");
   for (int f = 0; f < FUNCTION_COUNT; f++) {
     const builtin_function_info *b = &builtin_functions[f];
     if (b->least == b->most)
-      printf("  %-13s %d argument%s  %s\n", b->name, b->least, b->least == 1 ? " " : "s", b->meaning);
+      printf("  %-13s %d argument%s  %s\n", b->name, b->least, b->least == 1 ? " " : "s",
+             b->meaning);
     else
       printf("  %-13s %d to %-7d %s\n", b->name, b->least, b->most, b->meaning);
   }
@@ -52,13 +56,13 @@ static void print_history(result_file *f, const char *name) {
 }
 
 /* Each name of a comma-separated list through `show`. */
-static void for_each_name(result_file *f, char *names, const char *prefix, void (*show)(result_file *, const char *)) {
+static void for_each_name(result_file *f, char *names, const char *prefix,
+                          void (*show)(result_file *, const char *)) {
   char *rest = names;
   for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
     char full[256];
     snprintf(full, sizeof full, "%s%s", prefix, name);
-    if (strcmp(name, "energy") != 0)
-      show(f, full);
+    if (strcmp(name, "energy") != 0) show(f, full);
   }
 }
 
@@ -75,15 +79,12 @@ static int info_result(const char *path) {
   free(result_read_frame_times(f, &frames));
   printf("%s: %ld particles, %ld bonds, %ld frames\n", path, particles, bonds, frames);
   char *overrides = result_read_text(f, "/input/set");
-  if (overrides)
-    printf("Set on the command line:\n%s", overrides);
+  if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);
   puts("Histories:");
   char *names = result_list(f, "/history"), *energies = result_list(f, "/history/energy");
-  if (names)
-    for_each_name(f, names, "", print_history);
-  if (energies)
-    for_each_name(f, energies, "energy/", print_history);
+  if (names) for_each_name(f, names, "", print_history);
+  if (energies) for_each_name(f, energies, "energy/", print_history);
   char *fields = result_members(f, "/frames");
   printf("Frames hold: %s\n", fields);
   free(names);
@@ -100,9 +101,9 @@ typedef struct info_options {
 } info_options;
 
 static bool reads_lattice(const char *kind) {
-  if (strcmp(kind, "hexagonal") == 0)
-    return true;
-  fprintf(stderr, "perilat: error: there is no lattice `%s`\n  --lattice can only be hexagonal\n", kind);
+  if (strcmp(kind, "hexagonal") == 0) return true;
+  fprintf(stderr, "perilat: error: there is no lattice `%s`\n  --lattice can only be hexagonal\n",
+          kind);
   return false;
 }
 
@@ -141,14 +142,14 @@ static int info_file(const info_options *o) {
   file_kind kind = kind_of_file(o->file);
   bool asks_law = o->law.spacing || o->law.thickness || o->law.setting_count || o->law.json;
   if (asks_law && (kind == FILE_RESULT || kind == FILE_DECK)) {
-    fprintf(stderr, "perilat: error: `%s` is a %s; --spacing, --thickness, --set and --json ask about a law\n", o->file,
-            kind == FILE_DECK ? "deck" : "result");
+    fprintf(
+        stderr,
+        "perilat: error: `%s` is a %s; --spacing, --thickness, --set and --json ask about a law\n",
+        o->file, kind == FILE_DECK ? "deck" : "result");
     return 1;
   }
-  if (kind == FILE_RESULT)
-    return info_result(o->file);
-  if (kind == FILE_DECK)
-    return run_deck(&(run_options){.deck_path = o->file, .check_only = true});
+  if (kind == FILE_RESULT) return info_result(o->file);
+  if (kind == FILE_DECK) return run_deck(&(run_options){.deck_path = o->file, .check_only = true});
   info_law_options law_options = o->law;
   law_options.law = o->file;
   return info_law(&law_options);
@@ -158,8 +159,7 @@ int command_info(int argc, char **argv) {
   const char **settings = must_calloc((size_t)argc + 1, sizeof *settings);
   info_options o = {.file = NULL};
   int status = 1;
-  if (read_options(argc, argv, settings, &o))
-    status = o.builtins ? info_builtins() : info_file(&o);
+  if (read_options(argc, argv, settings, &o)) status = o.builtins ? info_builtins() : info_file(&o);
   free(settings);
   return status;
 }

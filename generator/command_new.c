@@ -10,7 +10,13 @@
 #include "generator/model.h"
 #include "generator/templates.h"
 
-enum { INPUT_WRONG = 1, NEW_FAILED = 2, FILE_COUNT = 3, LONGEST_NAME = 63, PATH_SIZE = LONGEST_NAME + 16 };
+enum {
+  INPUT_WRONG = 1,
+  NEW_FAILED = 2,
+  FILE_COUNT = 3,
+  LONGEST_NAME = 63,
+  PATH_SIZE = LONGEST_NAME + 16
+};
 
 typedef struct new_file {
   char path[PATH_SIZE];
@@ -24,7 +30,8 @@ static char *fill_in(const char *template, const char *name) {
   c_text out = {NULL, 0, 0};
   for (const char *at = template, *next; at; at = next) {
     next = strstr(at, mark);
-    c_text_add(&out, "%.*s%s", (int)(next ? (size_t)(next - at) : strlen(at)), at, next ? name : "");
+    c_text_add(&out, "%.*s%s", (int)(next ? (size_t)(next - at) : strlen(at)), at,
+               next ? name : "");
     next = next ? next + strlen(mark) : NULL;
   }
   return out.text;
@@ -33,11 +40,13 @@ static char *fill_in(const char *template, const char *name) {
 static bool is_name(const char *name) {
   static const char letters[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ";
   static const char further[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_";
-  if (*name && strchr(letters, *name) && strspn(name, further) == strlen(name) && strlen(name) <= LONGEST_NAME)
+  if (*name && strchr(letters, *name) && strspn(name, further) == strlen(name) &&
+      strlen(name) <= LONGEST_NAME)
     return true;
   fprintf(stderr,
           "perilat: error: `%s` cannot be the name of a law\n"
-          "  a name is made of letters, digits and _, begins with a letter and has at most %d characters; no path, no ending\n",
+          "  a name is made of letters, digits and _, begins with a letter and has at most %d "
+          "characters; no path, no ending\n",
           name, LONGEST_NAME);
   return false;
 }
@@ -46,8 +55,7 @@ static bool is_name(const char *name) {
 static bool is_law(const new_file *f) {
   model m;
   bool good = model_open_text(&m, f->path, f->text, NULL, 0);
-  if (!good)
-    diag_print(&m.said, stderr);
+  if (!good) diag_print(&m.said, stderr);
   model_close(&m);
   return good;
 }
@@ -55,7 +63,9 @@ static bool is_law(const new_file *f) {
 static bool spares_all(const new_file *files) {
   for (int k = 0; k < FILE_COUNT; k++)
     if (access(files[k].path, F_OK) == 0) {
-      fprintf(stderr, "perilat: error: there is already a `%s`; nothing was written\n  take another name, or move it away\n",
+      fprintf(stderr,
+              "perilat: error: there is already a `%s`; nothing was written\n  take another name, "
+              "or move it away\n",
               files[k].path);
       return false;
     }
@@ -70,14 +80,11 @@ static bool write_all(new_file *files) {
     FILE *out = fopen(f->path, "wbx"); /* never over what another program has just made */
     f->written = out != NULL;
     good = out && fputs(f->text, out) >= 0;
-    if (out)
-      good = fclose(out) == 0 && good;
-    if (!good)
-      fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", f->path, strerror(errno));
+    if (out) good = fclose(out) == 0 && good;
+    if (!good) fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", f->path, strerror(errno));
   }
   for (int k = 0; k < FILE_COUNT && !good; k++)
-    if (files[k].written)
-      unlink(files[k].path);
+    if (files[k].written) unlink(files[k].path);
   return good;
 }
 
@@ -89,21 +96,19 @@ static int make_new(const char *name, const char *law_text) {
   for (int k = 0; k < FILE_COUNT; k++)
     snprintf(files[k].path, sizeof files[k].path, "%s%s", name, endings[k]);
   int status = is_law(&files[0]) && spares_all(files) ? 0 : INPUT_WRONG;
-  if (!status && !write_all(files))
-    status = NEW_FAILED;
+  if (!status && !write_all(files)) status = NEW_FAILED;
   if (!status)
-    printf("written %s, %s, %s\n  perilat check %s\n  perilat drive %s\n  perilat run %s\n", files[0].path,
-           files[1].path, files[2].path, files[0].path, files[1].path, files[2].path);
+    printf("written %s, %s, %s\n  perilat check %s\n  perilat drive %s\n  perilat run %s\n",
+           files[0].path, files[1].path, files[2].path, files[0].path, files[1].path,
+           files[2].path);
   for (int k = 0; k < FILE_COUNT; k++)
     free(files[k].text);
   return status;
 }
 
 static const char *law_of_kind(const char *kind) {
-  if (!strcmp(kind, "central"))
-    return template_central;
-  if (!strcmp(kind, "micropolar"))
-    return template_micropolar;
+  if (!strcmp(kind, "central")) return template_central;
+  if (!strcmp(kind, "micropolar")) return template_micropolar;
   fprintf(stderr, "perilat: error: --kind takes central or micropolar, not `%s`\n", kind);
   return NULL;
 }
@@ -117,7 +122,8 @@ int command_new(int argc, char **argv) {
     else if (argv[at][0] == '-')
       bad = option_unknown("new", argv[at]);
     else if (name) {
-      fprintf(stderr, "perilat: error: `perilat new` takes one name; `%s` is a second one\n", argv[at]);
+      fprintf(stderr, "perilat: error: `perilat new` takes one name; `%s` is a second one\n",
+              argv[at]);
       bad = 1;
     } else
       name = argv[at++];

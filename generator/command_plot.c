@@ -23,8 +23,7 @@ typedef struct plot_request {
 static bool read_number(const char *name, const char *text, double *value) {
   char *end;
   *value = strtod(text, &end);
-  if (!*end && end != text && isfinite(*value))
-    return true;
+  if (!*end && end != text && isfinite(*value)) return true;
   fprintf(stderr, "perilat: error: %s needs a number, not `%s`\n", name, text);
   return false;
 }
@@ -33,23 +32,25 @@ static bool read_whole(const char *name, const char *text, long *value) {
   char *end;
   errno = 0;
   *value = strtol(text, &end, 10);
-  if (!*end && end != text && !errno && labs(*value) < INT_MAX)
-    return true;
+  if (!*end && end != text && !errno && labs(*value) < INT_MAX) return true;
   fprintf(stderr, "perilat: error: %s needs a whole number, not `%s`\n", name, text);
   return false;
 }
 
 /* Takes an option that only curves, or only maps, know. */
-static const char *special_value(int argc, char **argv, int *at, const char *name, const char **seen, int *bad) {
+static const char *special_value(int argc, char **argv, int *at, const char *name,
+                                 const char **seen, int *bad) {
   const char *v = option_value(argc, argv, at, name, bad);
-  if (v)
-    *seen = name;
+  if (v) *seen = name;
   return v;
 }
 
 static bool set_once(const char **x, const char *given) {
   if (*x)
-    fprintf(stderr, "perilat: error: --x is given twice, `%s` and `%s`; all curves of a picture have one x\n", *x, given);
+    fprintf(
+        stderr,
+        "perilat: error: --x is given twice, `%s` and `%s`; all curves of a picture have one x\n",
+        *x, given);
   const bool first = !*x;
   *x = given;
   return first;
@@ -112,10 +113,11 @@ static bool draw(plot_request *q) {
 static bool are_results(const plot_request *q) {
   for (int k = 0; k < q->result_count; k++) {
     file_kind kind = kind_of_file(q->results[k]);
-    if (kind != FILE_LAW && kind != FILE_DECK)
-      continue;
-    fprintf(stderr, "perilat: error: `%s` is a %s; `perilat plot` needs a result, which `perilat run` makes\n",
-            q->results[k], kind == FILE_LAW ? "law" : "deck");
+    if (kind != FILE_LAW && kind != FILE_DECK) continue;
+    fprintf(
+        stderr,
+        "perilat: error: `%s` is a %s; `perilat plot` needs a result, which `perilat run` makes\n",
+        q->results[k], kind == FILE_LAW ? "law" : "deck");
     return false;
   }
   return true;
@@ -123,18 +125,24 @@ static bool are_results(const plot_request *q) {
 
 static bool complete(const plot_request *q) {
   if (q->result_count == 0)
-    fputs("perilat: error: `perilat plot` needs a result file\n  perilat plot result.h5 -o curve.png\n", stderr);
+    fputs("perilat: error: `perilat plot` needs a result file\n  perilat plot result.h5 -o "
+          "curve.png\n",
+          stderr);
   else if (q->is_map && q->result_count > 1)
     fputs("perilat: error: a map shows one result; give one file\n", stderr);
   else if (q->label_count && q->label_count != q->result_count)
-    fprintf(stderr, "perilat: error: %d labels for %d results; give one --label a result\n", q->label_count,
-            q->result_count);
+    fprintf(stderr, "perilat: error: %d labels for %d results; give one --label a result\n",
+            q->label_count, q->result_count);
   else if (q->is_map && q->of_curves)
-    fprintf(stderr, "perilat: error: %s belongs to curves, --map draws a map; leave one of them out\n", q->of_curves);
+    fprintf(stderr,
+            "perilat: error: %s belongs to curves, --map draws a map; leave one of them out\n",
+            q->of_curves);
   else if (!q->is_map && q->of_maps)
-    fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n", q->of_maps);
+    fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n",
+            q->of_maps);
   else if (q->map.component < -1)
-    fprintf(stderr, "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");
+    fprintf(stderr,
+            "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");
   else
     return are_results(q);
   return false;
@@ -144,14 +152,17 @@ static bool complete(const plot_request *q) {
 static bool spares_results(const plot_request *q) {
   for (int k = 0; k < q->result_count; k++)
     if (same_file(q->curve.output, q->results[k])) {
-      fprintf(stderr, "perilat: error: the picture would overwrite `%s`; give it another name with -o\n", q->results[k]);
+      fprintf(stderr,
+              "perilat: error: the picture would overwrite `%s`; give it another name with -o\n",
+              q->results[k]);
       return false;
     }
   return true;
 }
 
 int command_plot(int argc, char **argv) {
-  plot_request q = {.curve = {.output = NULL}, .map = {.frame = -1, .component = -1, .factor = -1, .field = "damage"}};
+  plot_request q = {.curve = {.output = NULL},
+                    .map = {.frame = -1, .component = -1, .factor = -1, .field = "damage"}};
   q.results = must_calloc((size_t)argc + 1, sizeof *q.results);
   q.labels = must_calloc((size_t)argc + 1, sizeof *q.labels);
   q.ys = must_calloc((size_t)argc + 1, sizeof *q.ys);
@@ -159,8 +170,7 @@ int command_plot(int argc, char **argv) {
   for (int at = 0; at < argc && good;)
     good = read_one(argc, argv, &at, &q);
   good = good && complete(&q);
-  if (good && !q.curve.output)
-    q.curve.output = q.map.output = q.is_map ? "map.png" : "curve.png";
+  if (good && !q.curve.output) q.curve.output = q.map.output = q.is_map ? "map.png" : "curve.png";
   good = good && spares_results(&q) && draw(&q);
   free(q.results);
   free(q.labels);

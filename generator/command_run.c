@@ -23,15 +23,15 @@ static bool read_threads(const char *text, int *threads) {
   char *end;
   long value = strtol(text, &end, 10);
   *threads = (int)value;
-  if (!*end && end != text && value >= 1 && value <= 1024)
-    return true;
-  fprintf(stderr, "perilat: error: --threads needs a whole number from 1 to 1024, not `%s`\n", text);
+  if (!*end && end != text && value >= 1 && value <= 1024) return true;
+  fprintf(stderr, "perilat: error: --threads needs a whole number from 1 to 1024, not `%s`\n",
+          text);
   return false;
 }
 
 /* False after a message. */
-static bool read_run_options(option_reader reader, const char *program, int argc, char **argv, run_options *o,
-                             check_options *check) {
+static bool read_run_options(option_reader reader, const char *program, int argc, char **argv,
+                             run_options *o, check_options *check) {
   static const char *const names[] = {"run", "check", "solver"};
   o->overrides = must_calloc((size_t)argc + 1, sizeof *o->overrides);
   int bad = 0;
@@ -56,10 +56,13 @@ static bool read_run_options(option_reader reader, const char *program, int argc
     else if (argv[at][0] == '-')
       bad = option_unknown_in(program, names[reader], argv[at]);
     else if (reader == SOLVER) {
-      fprintf(stderr, "perilat: error: `%s` runs the deck that it was built from; it takes no file\n", program);
+      fprintf(stderr,
+              "perilat: error: `%s` runs the deck that it was built from; it takes no file\n",
+              program);
       bad = 1;
     } else if (o->deck_path) {
-      fprintf(stderr, "perilat: error: `%s` takes one file; `%s` is a second one\n", program, argv[at]);
+      fprintf(stderr, "perilat: error: `%s` takes one file; `%s` is a second one\n", program,
+              argv[at]);
       bad = 1;
     } else
       o->deck_path = argv[at++];
@@ -75,7 +78,8 @@ int command_run(int argc, char **argv) {
   if (good && !o.deck_path)
     fputs("perilat: error: `perilat run` needs a deck\n  perilat run deck.nml\n", stderr);
   else if (good && kind == FILE_LAW)
-    fprintf(stderr, "perilat: error: `%s` is a law; `perilat run` needs a deck that uses it\n", o.deck_path);
+    fprintf(stderr, "perilat: error: `%s` is a law; `perilat run` needs a deck that uses it\n",
+            o.deck_path);
   else if (good && kind == FILE_RESULT)
     fprintf(stderr, "perilat: error: `%s` is a result; `perilat run` needs a deck\n", o.deck_path);
   else if (good)
@@ -94,8 +98,7 @@ static int dump_stage(model *m, const char *stage) {
     fprintf(stderr, "perilat: error: --dump takes tree, ir, passes or c, not `%s`\n", stage);
     return 1;
   }
-  if (!model_plan(m))
-    return 1;
+  if (!model_plan(m)) return 1;
   if (!strcmp(stage, "passes"))
     plan_dump(m->plan, stdout);
   else if (!strcmp(stage, "c"))
@@ -140,8 +143,7 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
     printf("%s: %s, no errors, %d warning%s (%.1f ms)%s\n", path, m.law->tree->name, m.said.count,
            m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front,
            pairwise ? "" : "; state laws can be checked but not yet compiled");
-  if (!status && !dump && !report && found.states > 0)
-    print_physics(&found);
+  if (!status && !dump && !report && found.states > 0) print_physics(&found);
   model_close(&m);
   return status;
 }
@@ -149,11 +151,11 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
 static int check_file(const run_options *o, const char *dump) {
   char *found = NULL;
   file_kind kind = kind_of_file(o->deck_path);
-  if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL)))
-    kind = FILE_LAW;
+  if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL))) kind = FILE_LAW;
   int status = 1;
   if (kind == FILE_RESULT)
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat check` needs a law or a deck\n", o->deck_path);
+    fprintf(stderr, "perilat: error: `%s` is a result; `perilat check` needs a law or a deck\n",
+            o->deck_path);
   else if (kind == FILE_LAW && o->override_count)
     fputs("perilat: error: --set changes a deck; a law has nothing to set\n", stderr);
   else if (kind == FILE_LAW)
@@ -177,12 +179,14 @@ static int check_to_json(run_options *o) {
 }
 
 static int check_as_asked(run_options *o, const check_options *asked) {
-  if (!asked->diagnostics || !strcmp(asked->diagnostics, "text"))
-    return check_file(o, asked->dump);
+  if (!asked->diagnostics || !strcmp(asked->diagnostics, "text")) return check_file(o, asked->dump);
   if (strcmp(asked->diagnostics, "json") != 0)
-    fprintf(stderr, "perilat: error: --diagnostics takes text or json, not `%s`\n", asked->diagnostics);
+    fprintf(stderr, "perilat: error: --diagnostics takes text or json, not `%s`\n",
+            asked->diagnostics);
   else if (asked->dump)
-    fputs("perilat: error: --dump and --diagnostics=json both write to the standard output; give one\n", stderr);
+    fputs("perilat: error: --dump and --diagnostics=json both write to the standard output; give "
+          "one\n",
+          stderr);
   else
     return check_to_json(o);
   return 1;
@@ -194,7 +198,8 @@ int command_check(int argc, char **argv) {
   bool good = read_run_options(CHECK, "perilat check", argc, argv, &o, &asked);
   int status = 1;
   if (good && !o.deck_path)
-    fputs("perilat: error: `perilat check` needs a law or a deck\n  perilat check law.plm\n", stderr);
+    fputs("perilat: error: `perilat check` needs a law or a deck\n  perilat check law.plm\n",
+          stderr);
   else if (good)
     status = check_as_asked(&o, &asked);
   free(o.overrides);
@@ -203,11 +208,13 @@ int command_check(int argc, char **argv) {
 
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
                         const built_in_law *laws, int law_count) {
-  run_options o = {.deck_path = deck_name, .deck_text = deck_text, .laws = laws, .law_count = law_count};
+  run_options o = {
+      .deck_path = deck_name, .deck_text = deck_text, .laws = laws, .law_count = law_count};
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
-      printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n", argv[0], deck_name);
+      printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
+             argv[0], deck_name);
       options_print("solver", stdout);
       return 0;
     }

@@ -28,13 +28,11 @@ static bool write_in_place(const char *given, const char *text, char *error, siz
   FILE *out = file >= 0 ? fdopen(file, "wb") : NULL;
   bool good = out && fputs(text, out) >= 0 && fflush(out) == 0 && fsync(file) == 0 &&
               fchmod(file, about.st_mode & 07777) == 0;
-  if (out)
-    good = fclose(out) == 0 && good;
+  if (out) good = fclose(out) == 0 && good;
   good = good && rename(beside, path) == 0;
   if (!good) {
     snprintf(error, size, "cannot write `%s`: %s", given, strerror(errno));
-    if (file >= 0)
-      unlink(beside);
+    if (file >= 0) unlink(beside);
   }
   free(beside);
   free(path);
@@ -44,17 +42,15 @@ static bool write_in_place(const char *given, const char *text, char *error, siz
 typedef enum format_mode { FORMAT_PRINT, FORMAT_CHECK, FORMAT_IN_PLACE } format_mode;
 
 /* 0, or an exit status. */
-static int put_formatted(const char *path, const char *before, const char *after, format_mode mode) {
+static int put_formatted(const char *path, const char *before, const char *after,
+                         format_mode mode) {
   char error[ERROR_LENGTH];
   bool same = strcmp(before, after) == 0;
-  if (mode == FORMAT_PRINT)
-    fputs(after, stdout);
+  if (mode == FORMAT_PRINT) fputs(after, stdout);
   if (mode == FORMAT_CHECK && !same)
     fprintf(stderr, "%s: not laid out as `perilat format` does\n", path);
-  if (mode != FORMAT_IN_PLACE)
-    return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
-  if (same || write_in_place(path, after, error, sizeof error))
-    return 0;
+  if (mode != FORMAT_IN_PLACE) return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
+  if (same || write_in_place(path, after, error, sizeof error)) return 0;
   fprintf(stderr, "perilat: error: %s\n", error);
   return INPUT_WRONG;
 }
@@ -99,8 +95,7 @@ int command_format(int argc, char **argv) {
     return INPUT_WRONG;
   }
   for (int k = 0; k < files; k++)
-    if (format_file(argv[k], mode) != 0)
-      status = INPUT_WRONG;
+    if (format_file(argv[k], mode) != 0) status = INPUT_WRONG;
   return status;
 }
 
@@ -110,8 +105,7 @@ static int explain_file(const char *path, explain_form form, const law_choice *c
   model m;
   bool good = model_open(&m, path, choices, count);
   diag_print(&m.said, stderr);
-  if (good)
-    explain_law(m.law, form, stdout);
+  if (good) explain_law(m.law, form, stdout);
   model_close(&m);
   return good ? 0 : INPUT_WRONG;
 }
@@ -120,7 +114,8 @@ static int explain_file(const char *path, explain_form form, const law_choice *c
 static bool read_choice(char *given, law_choice *choice) {
   char *equals = strchr(given, '=');
   if (!equals || equals == given || !equals[1]) {
-    fprintf(stderr, "perilat: error: --set chooses an option of the law, option=choice, not `%s`\n", given);
+    fprintf(stderr, "perilat: error: --set chooses an option of the law, option=choice, not `%s`\n",
+            given);
     return false;
   }
   *equals = 0;
@@ -143,7 +138,8 @@ int command_explain(int argc, char **argv) {
     else if (argv[at][0] == '-')
       bad = option_unknown("explain", argv[at]);
     else if (path) {
-      fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n", argv[at]);
+      fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n",
+              argv[at]);
       bad = 1;
     } else
       path = argv[at++];
@@ -167,14 +163,14 @@ static void show_command(int k) {
 }
 
 static void show_key(const deck_key_info *key) {
-  static const char *const limits[] = {"", ", greater than 0", ", not negative", ", greater than 0 and at most 1"};
+  static const char *const limits[] = {"", ", greater than 0", ", not negative",
+                                       ", greater than 0 and at most 1"};
   printf("  %-20s %s", key->name, key->doc ? key->doc : "");
   if (key->unit && strcmp(key->unit, "1") != 0)
     printf(" (%s%s)", key->unit, limits[key->bound]);
   else if (key->bound)
     printf(" (%s)", limits[key->bound] + 2);
-  if (key->choices)
-    printf("; one of %s", key->choices);
+  if (key->choices) printf("; one of %s", key->choices);
   if (key->required)
     fputs("; required", stdout);
   else if (key->fallback)
@@ -193,14 +189,12 @@ static int show_topic(const char *topic) {
   int shown = help_show(topic[0] == '&' ? "" : topic, stdout);
   int group = deck_group_find(topic[0] == '&' ? topic + 1 : topic);
   if (group >= 0) {
-    if (shown++)
-      putchar('\n');
+    if (shown++) putchar('\n');
     show_group(group);
   }
   for (int k = 0; k < command_count; k++)
     if (strcmp(command_table[k].name, topic) == 0) {
-      if (shown++)
-        putchar('\n');
+      if (shown++) putchar('\n');
       show_command(k);
     }
   return shown;
@@ -208,23 +202,24 @@ static int show_topic(const char *topic) {
 
 static int unknown_topic(const char *topic) {
   int written = help_topic_count();
-  const char **names = must_calloc((size_t)(written + DECK_GROUP_COUNT + command_count), sizeof *names);
+  const char **names =
+      must_calloc((size_t)(written + DECK_GROUP_COUNT + command_count), sizeof *names);
   help_topics(names);
   int count = written + deck_group_names(names + written);
   for (int k = 0; k < command_count; k++)
     names[count++] = command_table[k].name;
   const char *near = nearest_name(topic, names, count);
   fprintf(stderr, "perilat: error: there is no help on `%s`", topic);
-  if (near)
-    fprintf(stderr, "; did you mean `%s`?", near);
-  fputs("\n  topics are commands, codes of messages, words and names of the language, groups of decks, units\n", stderr);
+  if (near) fprintf(stderr, "; did you mean `%s`?", near);
+  fputs("\n  topics are commands, codes of messages, words and names of the language, groups of "
+        "decks, units\n",
+        stderr);
   free(names);
   return INPUT_WRONG;
 }
 
 int command_help(int argc, char **argv) {
-  if (argc == 1)
-    return show_topic(argv[0]) ? 0 : unknown_topic(argv[0]);
+  if (argc == 1) return show_topic(argv[0]) ? 0 : unknown_topic(argv[0]);
   fputs("perilat: error: `perilat help` takes one topic, e.g. `perilat help damage`\n", stderr);
   return INPUT_WRONG;
 }

@@ -9,10 +9,14 @@
 
 enum { WRITE_FAILED = 2 };
 
-static bool is_file_value(const char *value) { return strcmp(value, "FILE") == 0; }
+static bool is_file_value(const char *value) {
+  return strcmp(value, "FILE") == 0;
+}
 
 /* What stands for something else is in capitals (N, TEXT) or an assignment; words to choose from are in small letters. */
-static bool is_choice(const char *value) { return *value >= 'a' && *value <= 'z' && !strchr(value, '='); }
+static bool is_choice(const char *value) {
+  return *value >= 'a' && *value <= 'z' && !strchr(value, '=');
+}
 
 /* `a|b` as `a b`. */
 static void put_words(FILE *out, const char *words) {
@@ -30,7 +34,9 @@ static void put_quoted(FILE *out, const char *text, const char *special) {
   }
 }
 
-static bool is_of(const option_entry *o, int command) { return strcmp(o->command, command_table[command].name) == 0; }
+static bool is_of(const option_entry *o, int command) {
+  return strcmp(o->command, command_table[command].name) == 0;
+}
 
 static void put_command_names(FILE *out) {
   for (int k = 0; k < command_count; k++)
@@ -48,19 +54,22 @@ static const char bash_begin[] =
     "  for ending; do COMPREPLY+=($(compgen -f -X \"!*.$ending\" -- \"$cur\")); done\n"
     "}\n\n"
     "_perilat() {\n"
-    "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} command=${COMP_WORDS[1]}\n"
+    "  local cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} "
+    "command=${COMP_WORDS[1]}\n"
     "  COMPREPLY=()\n"
-    "  if [ \"$cur\" = = ]; then cur=; elif [ \"$prev\" = = ]; then prev=${COMP_WORDS[COMP_CWORD-2]}; fi\n";
+    "  if [ \"$cur\" = = ]; then cur=; elif [ \"$prev\" = = ]; then "
+    "prev=${COMP_WORDS[COMP_CWORD-2]}; fi\n";
 
 static void bash_values(FILE *out) {
   fputs("  case \"$command $prev\" in\n", out);
   for (int o = 0; o < option_count; o++) {
     const option_entry *e = &option_table[o];
-    if (!*e->value || strcmp(e->command, "solver") == 0)
-      continue;
+    if (!*e->value || strcmp(e->command, "solver") == 0) continue;
     fprintf(out, "    \"%s %s\")", e->command, e->name);
     if (is_file_value(e->value))
-      fputs(" local IFS=$'\\n'; compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- \"$cur\"));", out);
+      fputs(" local IFS=$'\\n'; compopt -o filenames 2>/dev/null; COMPREPLY=($(compgen -f -- "
+            "\"$cur\"));",
+            out);
     else if (is_choice(e->value)) {
       fputs(" COMPREPLY=($(compgen -W \"", out);
       put_words(out, e->value);
@@ -81,13 +90,13 @@ static void write_bash(FILE *out) {
   for (int k = 0; k < command_count; k++) {
     fprintf(out, "    \"%s -\"*) COMPREPLY=($(compgen -W \"", command_table[k].name);
     for (int o = 0; o < option_count; o++)
-      if (is_of(&option_table[o], k))
-        fprintf(out, "%s ", option_table[o].name);
+      if (is_of(&option_table[o], k)) fprintf(out, "%s ", option_table[o].name);
     fputs("--help\" -- \"$cur\")) ;;\n", out);
   }
   for (int k = 0; k < command_count; k++)
     if (*command_table[k].endings)
-      fprintf(out, "    \"%s \"*) _perilat_files %s ;;\n", command_table[k].name, command_table[k].endings);
+      fprintf(out, "    \"%s \"*) _perilat_files %s ;;\n", command_table[k].name,
+              command_table[k].endings);
   fputs("    \"help \"*) COMPREPLY=($(compgen -W \"", out);
   put_command_names(out);
   fputs("\" -- \"$cur\")) ;;\n  esac\n}\ncomplete -F _perilat perilat\n", out);
@@ -119,8 +128,7 @@ static void zsh_command(FILE *out, int k) {
   const command_entry *c = &command_table[k];
   fprintf(out, "    %s)\n      _arguments '--help[usage and options]'", c->name);
   for (int o = 0; o < option_count; o++)
-    if (is_of(&option_table[o], k))
-      zsh_option(out, &option_table[o]);
+    if (is_of(&option_table[o], k)) zsh_option(out, &option_table[o]);
   if (*c->endings) {
     fputs(" \\\n        '*:file:_files -g \"*.(", out);
     for (const char *at = c->endings; *at; at++)
@@ -164,8 +172,8 @@ static void fish_text(FILE *out, const char *text) {
 
 static void fish_option(FILE *out, const option_entry *e) {
   bool is_long = e->name[1] == '-';
-  fprintf(out, "complete -c perilat -n '__fish_seen_subcommand_from %s' -%c %s", e->command, is_long ? 'l' : 's',
-          e->name + (is_long ? 2 : 1));
+  fprintf(out, "complete -c perilat -n '__fish_seen_subcommand_from %s' -%c %s", e->command,
+          is_long ? 'l' : 's', e->name + (is_long ? 2 : 1));
   if (is_file_value(e->value))
     fputs(" -r -F", out);
   else if (*e->value)
@@ -184,12 +192,15 @@ static void fish_files(FILE *out, const command_entry *c) {
   char endings[64], *rest = endings;
   snprintf(endings, sizeof endings, "%s", c->endings);
   for (char *ending = strtok_r(endings, " ", &rest); ending; ending = strtok_r(NULL, " ", &rest))
-    fprintf(out, "complete -c perilat -n '__fish_seen_subcommand_from %s' -a '(__fish_complete_suffix .%s)'\n", c->name,
-            ending);
+    fprintf(out,
+            "complete -c perilat -n '__fish_seen_subcommand_from %s' -a '(__fish_complete_suffix "
+            ".%s)'\n",
+            c->name, ending);
 }
 
 static void write_fish(FILE *out) {
-  fputs("# fish completion for perilat, made from its table of commands\ncomplete -c perilat -f\n", out);
+  fputs("# fish completion for perilat, made from its table of commands\ncomplete -c perilat -f\n",
+        out);
   for (int k = 0; k < command_count; k++) {
     fprintf(out, "complete -c perilat -n __fish_use_subcommand -a %s -d ", command_table[k].name);
     fish_text(out, command_table[k].purpose);
@@ -197,8 +208,7 @@ static void write_fish(FILE *out) {
     fish_files(out, &command_table[k]);
   }
   for (int o = 0; o < option_count; o++)
-    if (strcmp(option_table[o].command, "solver") != 0)
-      fish_option(out, &option_table[o]);
+    if (strcmp(option_table[o].command, "solver") != 0) fish_option(out, &option_table[o]);
   fputs("complete -c perilat -n '__fish_seen_subcommand_from help' -a '", out);
   put_command_names(out);
   fputs("'\n", out);
@@ -213,11 +223,9 @@ int completion_write(const char *folder) {
     char path[4096];
     snprintf(path, sizeof path, "%s/%s", folder, files[k].name);
     FILE *out = fopen(path, "w");
-    if (out)
-      files[k].write(out);
+    if (out) files[k].write(out);
     bool good = out && !ferror(out);
-    if (out)
-      good = fclose(out) == 0 && good;
+    if (out) good = fclose(out) == 0 && good;
     if (!good) {
       fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
       return WRITE_FAILED;

@@ -107,14 +107,16 @@ double drive_time_of_stretch(const drive_input *in, double stretch, double after
 /* The columns before and after those of the law: X(code, name, unit) */
 #define DRIVE_FIRST_COLUMNS(X)                                                                     \
   X(TIME, "time", "s")                                                                             \
-  X(STRETCH, "stretch", "1") X(STRETCH_RATE, "stretch_rate", "1/s") X(THETA_I, "theta_i", "1")     \
-      X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
+  X(STRETCH, "stretch", "1")                                                                       \
+  X(STRETCH_RATE, "stretch_rate", "1/s") X(THETA_I, "theta_i", "1") X(THETA_J, "theta_j", "1")     \
+      X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
 /* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
    row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \
   X(STORED, "stored")                                                                              \
-  X(DISSIPATED_DAMAGE, "dissipated_damage") X(DISSIPATED_DAMPING, "dissipated_damping")            \
-      X(DISSIPATED, "dissipated") X(EXTERNAL, "external") X(IMBALANCE, "imbalance")
+  X(DISSIPATED_DAMAGE, "dissipated_damage")                                                        \
+  X(DISSIPATED_DAMPING, "dissipated_damping") X(DISSIPATED, "dissipated") X(EXTERNAL, "external")  \
+      X(IMBALANCE, "imbalance")
 
 enum {
 #define X(code, name, unit) DRIVE_COLUMN_##code,

@@ -1,5 +1,6 @@
 #include "generator/emit.h"
 
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -66,14 +67,6 @@ static const char *const class_values[QUANTITY_COUNT] = {
     CLASS_QUANTITIES(X)
 #undef X
 };
-
-/* Place of a quantity of motion among the planes of `states`. */
-static int states_plane(int quantity) {
-  int plane = 0;
-  while (law_motion[plane] != (builtin_quantity)quantity)
-    plane++;
-  return plane;
-}
 
 /* --- a function's nodes ----------------------------------------------------------------------- */
 
@@ -354,6 +347,13 @@ static void write_line_end(emitter *e, ir_node n) {
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
+/* What differs from bond to bond and is no class's is of its motion. */
+static int motion_plane(int quantity) {
+  const int plane = law_motion_place((builtin_quantity)quantity);
+  assert(plane >= 0);
+  return plane;
+}
+
 static const ends_origin *origin_of(const emitter *e, ir_node n) {
   return &ends_origins[ir_input_index(e->graph, n)];
 }
@@ -373,7 +373,7 @@ static void write_array(emitter *e, ir_node n) {
     c_text_add(e->out, "strip->parameter[%d];\n", index);
   else
     c_text_add(e->out, "in[%d];\n",
-               from == IR_FROM_FIELD ? PL_STATE_INPUTS + index : states_plane(index));
+               from == IR_FROM_FIELD ? PL_STATE_INPUTS + index : motion_plane(index));
 }
 
 /* What stands before the loop: values that are the same for all bonds, and the arrays of the
@@ -701,8 +701,7 @@ static void write_descriptor(emitter *e, const char *key) {
   c_text_add(e->out, ",\n");
   write_table(e, "parameter", "law_parameters", p->law->parameters.count);
   if (p->varying_count)
-    c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n",
-               p->varying_count);
+    c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
   write_table(e, "field", "law_fields", p->law->fields.count);
   write_table(e, "output", "law_outputs", p->law->outputs.count);
   c_text_add(e->out, "    .uniform_count = %d,\n    .flops_per_bond = ", p->uniform_count);

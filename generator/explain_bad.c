@@ -18,7 +18,8 @@ static ir_node *named_values(const kernel_plan *p, int *count) {
   ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
   *count = 0;
   for (ir_node n = 0; n < ir_count(g); n++)
-    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0) named[(*count)++] = n;
+    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
+      named[(*count)++] = n;
   free(marks);
   return named;
 }
@@ -26,17 +27,20 @@ static ir_node *named_values(const kernel_plan *p, int *count) {
 static void say(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
   span where = ir_where(p->graph, n);
   place at = source_place(p->law->sources, where.file, where.begin);
-  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name, at.line,
-          ir_name(p->graph, n), what);
+  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name,
+          at.line, ir_name(p->graph, n), what);
 }
 
 /* The largest of the law's results, or -1 when all are zero. */
-static int largest_result(const kernel_plan *p, const ir_node *named, int count, double *const *values) {
+static int largest_result(const kernel_plan *p, const ir_node *named, int count,
+                          double *const *values) {
   const pass *states = &p->passes[PASS_STATES];
   int largest = -1;
   for (int k = 0; k < count; k++)
     for (int r = 0; r < states->root_count && r < PL_STATE_RESULTS; r++)
-      if (states->roots[r].node == named[k] && fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0]))) largest = k;
+      if (states->roots[r].node == named[k] &&
+          fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0])))
+        largest = k;
   return largest;
 }
 
@@ -63,7 +67,7 @@ void explain_bad(const kernel_plan *p, const double *parameters, const rows *w, 
                  FILE *out) {
   const symbol_list *fields = &p->law->fields;
   const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
-                                         w->spacing * (1 + b->stretch)};
+                                              w->spacing * (1 + b->stretch)};
   double **in = planes_new(PL_STATE_INPUTS + fields->count, 1);
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     in[k][0] = kinematics[k];

@@ -27,7 +27,8 @@ typedef struct interpreter_inputs {
 } interpreter_inputs;
 
 /* outputs[k][0..count) receives root k. Any count; no allocation. */
-void interpreter_run(interpreter *p, const interpreter_inputs *in, int count, double *const *outputs);
+void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
+                     double *const *outputs);
 
 /* After interpreter_run with count = 1: the first node, in evaluation order, that is not finite, or IR_NONE.
    interpreter_value is what node `n`, needed by the roots, had. */

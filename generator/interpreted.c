@@ -12,12 +12,7 @@
 #include "generator/law_inputs.h"
 #include "generator/passes.h"
 
-enum {
-  LANES = INTERPRET_LANES,
-  RUN_PREPARE = PASS_COUNT,
-  RUN_COUNT,
-  MOST_WORKERS = 64
-};
+enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKERS = 64 };
 
 /* One caller's working space. */
 typedef struct worker {

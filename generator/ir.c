@@ -508,10 +508,8 @@ ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placeme
 /* --- printing --------------------------------------------------------------------------------- */
 
 static const char *const source_names[IR_SOURCE_COUNT] = {
-    [IR_FROM_PARAMETER] = "parameter",
-    [IR_FROM_QUANTITY] = "quantity",
-    [IR_FROM_FIELD] = "field",
-    [IR_FROM_BOND_PARAMETER] = "bond parameter",
+    [IR_FROM_PARAMETER] = "parameter", [IR_FROM_QUANTITY] = "quantity",
+    [IR_FROM_FIELD] = "field",         [IR_FROM_BOND_PARAMETER] = "bond parameter",
     [IR_FROM_ENDS] = "ends",
 };
 

@@ -62,8 +62,8 @@ static void compare_states(const law_readers *l, const state_arrays *a, int coun
   }
   for (int k = 0; k < a->results; k++)
     comparison_add(c, "states",
-                   k < PL_STATE_RESULTS ? names[k] : l->law[0]->fields[k - PL_STATE_RESULTS].name, -1,
-                   a->out[0][k], a->out[1][k], count);
+                   k < PL_STATE_RESULTS ? names[k] : l->law[0]->fields[k - PL_STATE_RESULTS].name,
+                   -1, a->out[0][k], a->out[1][k], count);
   for (int k = 0; k < PL_TANGENTS; k++)
     comparison_add(c, "tangent", "derivative", k, a->tangent[0][k], a->tangent[1][k], count);
 }
@@ -135,7 +135,8 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
   kernel_check c = {.states = 0};
   pl_law *interpreted = plan_interpreted(p, "");
   double **uniforms = planes_new(2, kernel->uniform_count);
-  law_readers l = {.law = {kernel, interpreted}, .uniforms = {uniforms[0], uniforms[1]}, .bonds = bonds};
+  law_readers l = {
+      .law = {kernel, interpreted}, .uniforms = {uniforms[0], uniforms[1]}, .bonds = bonds};
   guard_watch *guards = guard_watch_new(p, BATCH);
   for (int k = 0; k < sets; k++)
     check_set(&c, p->law, &l, parameters[k], states / sets, guards, &seed);

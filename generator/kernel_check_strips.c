@@ -22,12 +22,12 @@ enum {
 /* What a strip reads, and twice, for either reader, what it writes. */
 typedef struct strip_arrays {
   const pl_law *law;
-  int kept_planes;  /* the fields, then the two dissipated energies: updated in place */
-  double **motion;  /* [MOTIONS][SITES + 1]: far ends stand one further than near ends */
-  double **chord;   /* [2][SITES] */
+  int kept_planes;    /* the fields, then the two dissipated energies: updated in place */
+  double **motion;    /* [MOTIONS][SITES + 1]: far ends stand one further than near ends */
+  double **chord;     /* [2][SITES] */
   double **parameter; /* [varying][SITES] */
-  double **before;  /* [kept_planes][SITES] */
-  double **kept[2]; /* [kept_planes][SITES] */
+  double **before;    /* [kept_planes][SITES] */
+  double **kept[2];   /* [kept_planes][SITES] */
   double **force[2], **observed[2];
   int64_t *flags;
   int32_t *i, *j;

@@ -9,6 +9,12 @@
 const builtin_quantity law_motion[PL_STATE_INPUTS] = {
     QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
 
+int law_motion_place(builtin_quantity q) {
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
+    if (law_motion[k] == q) return k;
+  return -1;
+}
+
 void law_class_values(const pl_bond_class *bonds, double values[QUANTITY_COUNT]) {
 #define X(code, value) values[QUANTITY_##code] = value;
   CLASS_QUANTITIES(X)

@@ -9,8 +9,10 @@
 /* Quantities of a bond's motion, in the order of the planes of pl_law's `states`; the tangent is by
    the first PL_STATE_RATES of them. */
 extern const builtin_quantity law_motion[PL_STATE_INPUTS];
+/* Place of a quantity among them, or -1. */
+int law_motion_place(builtin_quantity q);
 
-/* Quantities that a bond class knows. X(quantity, its value as C, of `const pl_bond_class *bonds`) */
+/* Quantities that a bond class knows. X(quantity, its value as C, of a class `bonds`) */
 #define CLASS_QUANTITIES(X)                                                                        \
   X(S, bonds->s)                                                                                   \
   X(SPACING, bonds->spacing)                                                                       \

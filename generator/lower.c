@@ -6,6 +6,7 @@
 
 #include "dsl/arena.h"
 #include "generator/kinematics.h"
+#include "generator/law_inputs.h"
 #include "generator/rewrite.h"
 
 /* Expanding functions can grow a law without bound; these limits are far beyond any real one. */
@@ -97,15 +98,10 @@ static void note_line(lowering *c, const expr *cases, int line, ir_node guard) {
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
-static bool is_kinematic(builtin_quantity q) {
-  return q == QUANTITY_STRETCH || q == QUANTITY_STRETCH_RATE || q == QUANTITY_THETA_I ||
-         q == QUANTITY_THETA_J || q == QUANTITY_LENGTH;
-}
-
 ir_node lower_quantity(ir *g, builtin_quantity q) {
   /* Of the number of bonds, too, a kernel knows the value of its bond class only (a full family).
    */
-  placement on = is_kinematic(q) ? ON_BOND : ON_BODY;
+  placement on = law_motion_place(q) >= 0 ? ON_BOND : ON_BODY;
   return ir_input(g, IR_FROM_QUANTITY, (int)q, builtin_quantities[q].name, on);
 }
 
@@ -286,10 +282,11 @@ static ir_node lower_unary(lowering *c, const expr *e) {
    be NaN, the cases give that NaN instead. */
 static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   ir *g = c->graph;
-  if (ir_is_logical(g, guard) && ir_operation(g, guard) != IR_LT && ir_operation(g, guard) != IR_LE &&
-      ir_operation(g, guard) != IR_EQ) {
+  if (ir_is_logical(g, guard) && ir_operation(g, guard) != IR_LT &&
+      ir_operation(g, guard) != IR_LE && ir_operation(g, guard) != IR_EQ) {
     for (int k = 0; k < ir_arity(ir_operation(g, guard)); k++)
-      if (ir_is_logical(g, ir_operand(g, guard, k))) value = keep_nan(c, ir_operand(g, guard, k), value);
+      if (ir_is_logical(g, ir_operand(g, guard, k)))
+        value = keep_nan(c, ir_operand(g, guard, k), value);
     return value;
   }
   for (int k = 0; k < ir_arity(ir_operation(g, guard)) && ir_is_logical(g, guard); k++) {
@@ -589,20 +586,27 @@ static void resolve_text(lowering *c, const ir_node *from, const ir_node *to) {
   ir *g = c->graph;
   lowered_text *t = &c->text;
   if (c->mode != LOWER_STEP) return;
-  int fields = c->law->fields.count, count = fields + t->line_count + t->place_count + 2 * t->flow_count;
+  int fields = c->law->fields.count,
+      count = fields + t->line_count + t->place_count + 2 * t->flow_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all), *at = all;
-  for (int k = 0; k < fields; k++) *at++ = t->rules[k];
-  for (int k = 0; k < t->line_count; k++) *at++ = t->lines[k].guard;
-  for (int k = 0; k < t->place_count; k++) *at++ = t->places[k].node;
+  for (int k = 0; k < fields; k++)
+    *at++ = t->rules[k];
+  for (int k = 0; k < t->line_count; k++)
+    *at++ = t->lines[k].guard;
+  for (int k = 0; k < t->place_count; k++)
+    *at++ = t->places[k].node;
   for (int k = 0; k < t->flow_count; k++) {
     *at++ = t->flows[k].when;
     *at++ = t->flows[k].overstress;
   }
   ir_substitute(g, all, count, from, to, c->rule_count, all);
   at = all;
-  for (int k = 0; k < fields; k++) t->rules[k] = *at++;
-  for (int k = 0; k < t->line_count; k++) t->lines[k].guard = *at++;
-  for (int k = 0; k < t->place_count; k++) t->places[k].node = *at++;
+  for (int k = 0; k < fields; k++)
+    t->rules[k] = *at++;
+  for (int k = 0; k < t->line_count; k++)
+    t->lines[k].guard = *at++;
+  for (int k = 0; k < t->place_count; k++)
+    t->places[k].node = *at++;
   for (int k = 0; k < t->flow_count; k++) {
     t->flows[k].when = *at++;
     t->flows[k].overstress = *at++;
@@ -682,8 +686,7 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
   return !c.failed;
 }
 
-ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite,
-                    diagnostics *d) {
+ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d) {
   if (!bound) return ir_constant(g, infinite);
   arena *memory = arena_new();
   lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = d};

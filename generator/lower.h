@@ -10,7 +10,7 @@
 typedef enum lower_mode {
   LOWER_STEP,        /* fields read below their rule have their new value */
   LOWER_PROTECTABLE, /* the same, but a damage stays old where the input ENDS_PROTECTED is not 0 */
-  LOWER_FROZEN       /* fields keep the value at hand everywhere: the elastic law of a given state */
+  LOWER_FROZEN /* fields keep the value at hand everywhere: the elastic law of a given state */
 } lower_mode;
 
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
@@ -39,9 +39,9 @@ typedef struct lowered_text {
 
 typedef struct lowered_law {
   ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
-  ir_node W;        /* the law's own `energy`, or IR_NONE */
-  ir_node *fields;  /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
-  ir_node *outputs; /* [law->outputs.count] */
+  ir_node W;           /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;     /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs;    /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
 

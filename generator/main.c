@@ -22,8 +22,8 @@ static int print_help(FILE *out) {
         "usage: perilat COMMAND ...\n\n",
         out);
   for (int k = 0; k < COMMAND_COUNT; k++)
-    fprintf(out, "  %-7s  %s\n           perilat %s %s\n", command_table[k].name, command_table[k].purpose, command_table[k].name,
-            command_table[k].files);
+    fprintf(out, "  %-7s  %s\n           perilat %s %s\n", command_table[k].name,
+            command_table[k].purpose, command_table[k].name, command_table[k].files);
   fputs("\n  perilat COMMAND --help   usage and options of one command\n"
         "  perilat --version\n\n"
         "Exit status: " COMMAND_STATUS ".\n",
@@ -37,8 +37,7 @@ static int unknown_command(const char *name) {
     names[k] = command_table[k].name;
   const char *near = nearest_name(name, names, COMMAND_COUNT);
   fprintf(stderr, "perilat: error: there is no command `%s`", name);
-  if (near)
-    fprintf(stderr, "; did you mean `%s`?", near);
+  if (near) fprintf(stderr, "; did you mean `%s`?", near);
   fputs("\n  perilat --help lists the commands\n", stderr);
   return 1;
 }
@@ -48,7 +47,8 @@ static int dispatch(int argc, char **argv) {
     print_help(stderr);
     return 1;
   }
-  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") || (argc == 2 && !strcmp(argv[1], "help")))
+  if (!strcmp(argv[1], "--help") || !strcmp(argv[1], "-h") ||
+      (argc == 2 && !strcmp(argv[1], "help")))
     return print_help(stdout);
   if (!strcmp(argv[1], "--version")) {
     printf("perilat %s\n", perilat_version);
@@ -56,11 +56,9 @@ static int dispatch(int argc, char **argv) {
   }
   if (argc == 3 && !strcmp(argv[1], "--write-manual")) /* these two are for the build */
     return manual_write(argv[2]);
-  if (argc == 3 && !strcmp(argv[1], "--write-completion"))
-    return completion_write(argv[2]);
+  if (argc == 3 && !strcmp(argv[1], "--write-completion")) return completion_write(argv[2]);
   for (int k = 0; k < COMMAND_COUNT; k++) {
-    if (strcmp(argv[1], command_table[k].name) != 0)
-      continue;
+    if (strcmp(argv[1], command_table[k].name) != 0) continue;
     for (int a = 2; a < argc; a++)
       if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
         command_print(k, stdout);
@@ -72,10 +70,10 @@ static int dispatch(int argc, char **argv) {
 }
 
 int main(int argc, char **argv) {
-  signal(SIGXFSZ, SIG_IGN); /* a limit on file sizes then is an error of the write, like a full disk */
+  signal(SIGXFSZ,
+         SIG_IGN); /* a limit on file sizes then is an error of the write, like a full disk */
   int status = dispatch(argc, argv);
-  if (fflush(stdout) == 0 && !ferror(stdout))
-    return status;
+  if (fflush(stdout) == 0 && !ferror(stdout)) return status;
   fprintf(stderr, "perilat: error: cannot write to the standard output: %s\n", strerror(errno));
   return status ? status : 2;
 }

@@ -11,15 +11,17 @@
 enum { WRITE_FAILED = 2 };
 
 /* X(variable, meaning) */
-#define VARIABLES(X)                                                                                                   \
-  X("PERILAT_MODELS", "a folder in which laws are looked for by name, before those that were installed")               \
-  X("PERILAT_CC", "the C compiler of kernels, with options if needed; otherwise CC, or the first of cc, gcc, clang")   \
-  X("PERILAT_CACHE", "the folder of compiled kernels; otherwise perilat in XDG_CACHE_HOME or in ~/.cache")
+#define VARIABLES(X)                                                                               \
+  X("PERILAT_MODELS",                                                                              \
+    "a folder in which laws are looked for by name, before those that were installed")             \
+  X("PERILAT_CC", "the C compiler of kernels, with options if needed; otherwise CC, or the first " \
+                  "of cc, gcc, clang")                                                             \
+  X("PERILAT_CACHE",                                                                               \
+    "the folder of compiled kernels; otherwise perilat in XDG_CACHE_HOME or in ~/.cache")
 
 /* Text as it is meant to be read: no character of it is taken for a request or a typographer's dash or quote. */
 static void put_text(FILE *out, const char *text) {
-  if (*text == '.' || *text == '\'')
-    fputs("\\&", out);
+  if (*text == '.' || *text == '\'') fputs("\\&", out);
   for (; *text; text++) {
     static const char marks[] = "\\-'`";
     static const char *const written[] = {"\\e", "\\-", "\\(aq", "\\(ga"};
@@ -57,11 +59,14 @@ static void put_head(FILE *out, const char *title, const char *name, const char 
 static void write_main_page(FILE *out) {
   put_head(out, "PERILAT", "perilat", "compiler and simulator for particle-lattice material laws");
   fputs(".B perilat\n.I COMMAND\n[options] files\n.SH DESCRIPTION\n", out);
-  put_text(out, "A law, in a text file .plm, gives the force in the bond between two particles of a lattice. A deck, in a "
-                "namelist file .nml, gives lattice, loads and outputs. perilat checks both, compiles the law to a C "
+  put_text(out, "A law, in a text file .plm, gives the force in the bond between two particles of "
+                "a lattice. A deck, in a "
+                "namelist file .nml, gives lattice, loads and outputs. perilat checks both, "
+                "compiles the law to a C "
                 "kernel and runs the deck; results are HDF5 files.");
   fputs("\n.PP\n", out);
-  put_text(out, "perilat new NAME writes a law, a path of one bond and a deck to start from. perilat help TOPIC explains "
+  put_text(out, "perilat new NAME writes a law, a path of one bond and a deck to start from. "
+                "perilat help TOPIC explains "
                 "words, messages and groups.");
   fputs("\n.SH COMMANDS\n", out);
   for (int k = 0; k < command_count; k++)
@@ -74,7 +79,8 @@ static void write_main_page(FILE *out) {
   put_text(out, COMMAND_STATUS);
   fputs(".\n.SH SEE ALSO\n", out);
   for (int k = 0; k < command_count; k++)
-    fprintf(out, ".BR perilat\\-%s (1)%s\n", command_table[k].name, k + 1 < command_count ? "," : "");
+    fprintf(out, ".BR perilat\\-%s (1)%s\n", command_table[k].name,
+            k + 1 < command_count ? "," : "");
 }
 
 static void write_command_page(FILE *out, int k) {
@@ -85,8 +91,7 @@ static void write_command_page(FILE *out, int k) {
   fprintf(out, ".B perilat %s\n%s", c->name, command_has_options(c->name) ? "[options]\n" : "");
   put_text(out, c->files);
   fputc('\n', out);
-  if (command_has_options(c->name))
-    fputs(".SH OPTIONS\n", out);
+  if (command_has_options(c->name)) fputs(".SH OPTIONS\n", out);
   for (int o = 0; o < option_count; o++)
     if (strcmp(option_table[o].command, c->name) == 0)
       put_entry(out, option_table[o].name, option_table[o].value, option_table[o].meaning);
@@ -98,10 +103,8 @@ static void write_command_page(FILE *out, int k) {
 /* 0, or an exit status after a message. */
 static int end_file(FILE *out, const char *path) {
   bool good = out && !ferror(out);
-  if (out)
-    good = fclose(out) == 0 && good;
-  if (!good)
-    fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
+  if (out) good = fclose(out) == 0 && good;
+  if (!good) fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
   return good ? 0 : WRITE_FAILED;
 }
 
@@ -109,14 +112,12 @@ int manual_write(const char *folder) {
   char path[4096];
   snprintf(path, sizeof path, "%s/perilat.1", folder);
   FILE *out = fopen(path, "w");
-  if (out)
-    write_main_page(out);
+  if (out) write_main_page(out);
   int status = end_file(out, path);
   for (int k = 0; k < command_count && !status; k++) {
     snprintf(path, sizeof path, "%s/perilat-%s.1", folder, command_table[k].name);
     out = fopen(path, "w");
-    if (out)
-      write_command_page(out, k);
+    if (out) write_command_page(out, k);
     status = end_file(out, path);
   }
   return status;

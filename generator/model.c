@@ -11,7 +11,7 @@
 #include "generator/emit.h"
 
 #define MODEL_LIMIT ((size_t)1 << 20)
-#define PATH_LIMIT 4096
+#define PATH_LIMIT  4096
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
   struct stat about;
@@ -20,7 +20,8 @@ char *read_text_file(const char *path, size_t limit, size_t *length, char *error
     return NULL;
   }
   if (!S_ISREG(about.st_mode)) {
-    snprintf(error, size, "cannot read `%s`: it is %s", path, S_ISDIR(about.st_mode) ? "a folder" : "not a file");
+    snprintf(error, size, "cannot read `%s`: it is %s", path,
+             S_ISDIR(about.st_mode) ? "a folder" : "not a file");
     return NULL;
   }
   if ((size_t)about.st_size > limit) {
@@ -56,8 +57,7 @@ static bool ends_in(const char *text, const char *tail) {
 static file_kind kind_of_text(const char *text) {
   for (; *text; text += strcspn(text, "\n")) {
     text += strspn(text, " \t\r\n");
-    if (*text != '!')
-      break;
+    if (*text != '!') break;
   }
   return *text == '&' ? FILE_DECK : *text ? FILE_LAW : FILE_UNKNOWN;
 }
@@ -67,13 +67,11 @@ static file_kind kind_by_content(const char *path) {
   char head[65536];
   struct stat about;
   FILE *in = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
-  if (!in)
-    return FILE_UNKNOWN;
+  if (!in) return FILE_UNKNOWN;
   size_t n = fread(head, 1, sizeof head - 1, in);
   fclose(in);
   head[n] = 0;
-  if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0)
-    return FILE_RESULT;
+  if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0) return FILE_RESULT;
   return kind_of_text(head);
 }
 
@@ -81,10 +79,10 @@ file_kind kind_of_file(const char *path) {
   static const struct {
     const char *ending;
     file_kind kind;
-  } endings[] = {{".plm", FILE_LAW}, {".nml", FILE_DECK}, {".h5", FILE_RESULT}, {".hdf5", FILE_RESULT}};
+  } endings[] = {
+      {".plm", FILE_LAW}, {".nml", FILE_DECK}, {".h5", FILE_RESULT}, {".hdf5", FILE_RESULT}};
   for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-    if (ends_in(path, endings[k].ending))
-      return endings[k].kind;
+    if (ends_in(path, endings[k].ending)) return endings[k].kind;
   return kind_by_content(path);
 }
 
@@ -122,8 +120,7 @@ static char *try_parents(const char *from, const char *name) {
   snprintf(folder, sizeof folder, "%s/models", from);
   for (int up = 0; up < 6; up++) {
     char *found = try_path(folder, name);
-    if (found)
-      return found;
+    if (found) return found;
     char next[PATH_LIMIT];
     size_t stem = strlen(folder) - strlen("models");
     if ((size_t)snprintf(next, sizeof next, "%.*s../models", (int)stem, folder) >= sizeof next)
@@ -136,36 +133,30 @@ static char *try_parents(const char *from, const char *name) {
 static char *try_program_tree(const char *name) {
   char program[PATH_LIMIT], folder[PATH_LIMIT], models[PATH_LIMIT + 32];
   ssize_t n = readlink("/proc/self/exe", program, sizeof program - 1);
-  if (n <= 0)
-    return NULL;
+  if (n <= 0) return NULL;
   program[n] = 0;
   folder_of(program, folder, sizeof folder);
   static const char *const relative[] = {"../models", PERILAT_DATA_FOLDER "/models", "models"};
   for (size_t k = 0; k < sizeof relative / sizeof *relative; k++) {
     snprintf(models, sizeof models, "%s/%s", folder, relative[k]);
     char *found = try_path(models, name);
-    if (found)
-      return found;
+    if (found) return found;
   }
   return NULL;
 }
 
 char *model_find(const char *name, const char *beside) {
   char *found = NULL;
-  if (name[0] == '/')
-    found = is_file(name) ? strdup(name) : NULL;
+  if (name[0] == '/') found = is_file(name) ? strdup(name) : NULL;
   if (!found && beside) {
     char folder[PATH_LIMIT];
     folder_of(beside, folder, sizeof folder);
     found = try_path(folder, name);
     found = found ? found : try_parents(folder, name);
   }
-  if (!found && getenv("PERILAT_MODELS"))
-    found = try_path(getenv("PERILAT_MODELS"), name);
-  if (!found)
-    found = try_path("", name);
-  if (!found)
-    found = try_parents(".", name);
+  if (!found && getenv("PERILAT_MODELS")) found = try_path(getenv("PERILAT_MODELS"), name);
+  if (!found) found = try_path("", name);
+  if (!found) found = try_parents(".", name);
   return found ? found : try_program_tree(name);
 }
 
@@ -175,8 +166,7 @@ char *model_find(const char *name, const char *beside) {
 static char *read_include(void *context, const char *name, const char *from, char **found) {
   (void)context;
   char *path = model_find(name, from);
-  if (!path)
-    return NULL;
+  if (!path) return NULL;
   size_t length;
   char error[PATH_LIMIT + 128];
   char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
@@ -194,19 +184,20 @@ static void begin_model(model *m, const char *path) {
   diag_begin(&m->said, &m->sources);
 }
 
-static bool check_text(model *m, const char *text, size_t length, const law_choice *choices, int choice_count) {
+static bool check_text(model *m, const char *text, size_t length, const law_choice *choices,
+                       int choice_count) {
   double begun = monotonic_seconds();
   int file = source_add(&m->sources, m->path, text, length);
   parse_options options = {read_include, NULL};
   m->tree = parse_model(m->memory, &m->sources, file, &options, &m->said);
-  if (!m->tree || m->said.errors)
-    return false;
+  if (!m->tree || m->said.errors) return false;
   m->law = law_check(m->memory, m->tree, &m->sources, choices, choice_count, &m->said);
   m->seconds_front += monotonic_seconds() - begun;
   return m->law && !m->said.errors;
 }
 
-bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices, int choice_count) {
+bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices,
+                     int choice_count) {
   begin_model(m, path);
   return check_text(m, text, strlen(text), choices, choice_count);
 }
@@ -218,7 +209,8 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
   begin_model(m, path);
   char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
   if (!text) {
-    diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
+    diag_report(&m->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s",
+                error); /* has no line to show */
     return false;
   }
   m->seconds_front = monotonic_seconds() - begun;
@@ -227,13 +219,14 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
   return good;
 }
 
-bool model_plan(model *m) { return model_plan_varying(m, NULL, 0); }
+bool model_plan(model *m) {
+  return model_plan_varying(m, NULL, 0);
+}
 
 bool model_plan_varying(model *m, const int *varying, int varying_count) {
   double begun = monotonic_seconds();
   m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
-  if (!m->plan)
-    return false;
+  if (!m->plan) return false;
   char *unkeyed = emit_kernel(m->plan, "");
   m->key = toolchain_key(unkeyed);
   free(unkeyed);
@@ -252,19 +245,15 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
     return m->interpreted;
   }
   double begun = monotonic_seconds();
-  if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size))
-    return NULL;
+  if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size)) return NULL;
   m->seconds_kernel = monotonic_seconds() - begun;
   return m->loaded.law;
 }
 
 void model_close(model *m) {
-  if (m->interpreted)
-    plan_interpreted_free(m->interpreted);
-  if (m->loaded.law)
-    toolchain_unload(&m->loaded);
-  if (m->plan)
-    plan_free(m->plan);
+  if (m->interpreted) plan_interpreted_free(m->interpreted);
+  if (m->loaded.law) toolchain_unload(&m->loaded);
+  if (m->plan) plan_free(m->plan);
   free(m->c_text);
   free(m->key);
   free(m->path);

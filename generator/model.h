@@ -10,15 +10,15 @@
 typedef struct model {
   arena *memory;
   source_set sources;
-  diagnostics said;       /* all diagnostics so far; the caller prints them */
-  char *path;             /* of the model file; NULL when it was not found */
+  diagnostics said; /* all diagnostics so far; the caller prints them */
+  char *path;       /* of the model file; NULL when it was not found */
   tree *tree;
   law *law;
   kernel_plan *plan;
-  char *c_text;           /* emitted C */
+  char *c_text; /* emitted C */
   char *key;
-  pl_law *interpreted;    /* the plan on the interpreter */
-  loaded_kernel loaded;   /* the compiled kernel, when there is one */
+  pl_law *interpreted;                  /* the plan on the interpreter */
+  loaded_kernel loaded;                 /* the compiled kernel, when there is one */
   double seconds_front, seconds_kernel; /* text to plan; plan to loaded kernel */
 } model;
 
@@ -36,7 +36,8 @@ char *model_find(const char *name, const char *beside);
 /* Reads, parses, checks. False on errors; they are in m->said. The model must be closed in any case. */
 bool model_open(model *m, const char *path, const law_choice *choices, int choice_count);
 /* The same of a text at hand, which is named `path` in messages and found there by what it includes. */
-bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices, int choice_count);
+bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices,
+                     int choice_count);
 /* Plans the kernel and emits its C (m->said on errors). */
 bool model_plan(model *m);
 /* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */

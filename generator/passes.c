@@ -12,7 +12,7 @@ static const char *const pass_names[PASS_COUNT] = {
 #define X(pass, member, topology, task) [pass] = #member,
     STRIP_PASSES(X)
 #undef X
-    [PASS_STATES] = "states",
+        [PASS_STATES] = "states",
     [PASS_TANGENT] = "tangent",
     [PASS_BOUNDS] = "bounds",
 };
@@ -226,8 +226,7 @@ static void plan_tangent(planner *p, const lowered_law *bare) {
   ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     for (int q = 0; q < PL_STATE_RATES; q++) {
-      ir_node d =
-          results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);
+      ir_node d = results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);
       rewrite_zero(g, &d, 1, NULL, 0, &d);
       write_root(a, d, TO_OUT, k * PL_STATE_RATES + q);
     }

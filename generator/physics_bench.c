@@ -6,6 +6,7 @@
 
 #include "dsl/arena.h"
 #include "generator/comparison.h"
+#include "generator/law_inputs.h"
 #include "generator/random_values.h"
 
 /* --- probes ----------------------------------------------------------------------------------- */
@@ -153,12 +154,9 @@ void bench_put(const bench *b, double *const *states, int lane, const double *co
     states[k][lane] = column[k];
 }
 
-static const builtin_quantity axis_quantities[AXIS_COUNT] = {
-    QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J};
-
 void bench_move(const bench *b, double *const *states, int lane, motion m) {
   for (int k = 0; k < AXIS_COUNT; k++)
-    bench_quantity(b, states, axis_quantities[k])[lane] =
+    bench_quantity(b, states, law_motion[k])[lane] =
         k >= AXIS_THETA_I && !b->micropolar ? 0 : m.at[k];
   double s = bench_quantity(b, states, QUANTITY_S)[lane];
   bench_quantity(b, states, QUANTITY_LENGTH)[lane] = s * (1 + m.at[AXIS_STRETCH]);
@@ -167,7 +165,7 @@ void bench_move(const bench *b, double *const *states, int lane, motion m) {
 motion bench_motion(const bench *b, double *const *states, int lane) {
   motion m;
   for (int k = 0; k < AXIS_COUNT; k++)
-    m.at[k] = bench_quantity(b, states, axis_quantities[k])[lane];
+    m.at[k] = bench_quantity(b, states, law_motion[k])[lane];
   return m;
 }
 

@@ -10,7 +10,7 @@
 
 enum { BENCH_LANES = INTERPRET_LANES };
 
-/* What moves a bond. */
+/* What moves a bond: in the order of law_motion. */
 typedef enum bench_axis {
   AXIS_STRETCH,
   AXIS_RATE,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/law_inputs.h"
 #include "generator/physics_parts.h"
 
 /* --- the state as text ------------------------------------------------------------------------ */
@@ -33,13 +34,12 @@ static void add_value(FILE *out, const char **separator, const char *name, doubl
 }
 
 static void add_motion(const bench *b, const double *column, FILE *out, const char **separator) {
-  static const builtin_quantity shown[] = {QUANTITY_STRETCH, QUANTITY_STRETCH_RATE,
-                                           QUANTITY_THETA_I, QUANTITY_THETA_J};
   unsigned char *read = inputs_read(b, IR_FROM_QUANTITY, QUANTITY_COUNT);
-  for (size_t k = 0; k < sizeof shown / sizeof *shown; k++)
-    if (read[shown[k]] || (k == 0 && read[QUANTITY_LENGTH]))
-      add_value(out, separator, builtin_quantities[shown[k]].name,
-                column[b->parameter_count + (int)shown[k]], builtin_quantities[shown[k]].unit);
+  for (int k = 0; k < AXIS_COUNT; k++)
+    if (read[law_motion[k]] || (k == 0 && read[QUANTITY_LENGTH]))
+      add_value(out, separator, builtin_quantities[law_motion[k]].name,
+                column[b->parameter_count + (int)law_motion[k]],
+                builtin_quantities[law_motion[k]].unit);
   for (int k = 0; k < b->field_count; k++) {
     char si[64];
     dim_unit(b->law->fields.items[k]->dim, si, sizeof si);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/law_inputs.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 #include "generator/rewrite.h"
@@ -114,11 +115,9 @@ enum { RESULTS_AND_AXES = FORCE_COUNT * AXIS_COUNT };
 
 /* d(force)/d(axis): the present length follows the stretch. */
 static ir_node slope(bench *b, ir_node force, bench_axis axis) {
-  static const builtin_quantity by[AXIS_COUNT] = {QUANTITY_STRETCH, QUANTITY_STRETCH_RATE,
-                                                  QUANTITY_THETA_I, QUANTITY_THETA_J};
   ir *g = b->graph;
   if (force == IR_NONE) return ir_constant(g, 0);
-  ir_node d = ir_derivative(g, force, lower_quantity(g, by[axis]));
+  ir_node d = ir_derivative(g, force, lower_quantity(g, law_motion[axis]));
   if (axis == AXIS_STRETCH)
     d = ir_add(g, d,
                ir_mul(g, lower_quantity(g, QUANTITY_S),

@@ -14,7 +14,9 @@ void progress_begin(progress *p, double fraction) {
                   .tenths = (int)(10 * fraction)};
 }
 
-static double seconds_of(const progress *p) { return monotonic_seconds() - p->begun; }
+static double seconds_of(const progress *p) {
+  return monotonic_seconds() - p->begun;
+}
 
 static void show_bar(const progress *p, double fraction, const char *detail) {
   char bar[BAR_WIDTH + 1], left[32] = "";
@@ -33,8 +35,7 @@ static void show_bar(const progress *p, double fraction, const char *detail) {
 void progress_show(progress *p, double fraction, const char *detail) {
   double now = monotonic_seconds();
   if (p->terminal) {
-    if (now - p->last_shown < 0.2)
-      return;
+    if (now - p->last_shown < 0.2) return;
     p->last_shown = now;
     show_bar(p, fraction, detail);
   } else if ((int)(10 * fraction) > p->tenths) {

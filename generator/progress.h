@@ -6,10 +6,10 @@
 
 typedef struct progress {
   bool terminal;
-  double begun;       /* s, monotonic */
-  double from;        /* fraction at the start (a resumed run) */
-  double last_shown;  /* s */
-  int tenths;         /* lines printed so far */
+  double begun;      /* s, monotonic */
+  double from;       /* fraction at the start (a resumed run) */
+  double last_shown; /* s */
+  int tenths;        /* lines printed so far */
 } progress;
 
 void progress_begin(progress *p, double fraction);

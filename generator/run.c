@@ -8,9 +8,9 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "generator/clock.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
-#include "generator/clock.h"
 #include "generator/progress.h"
 #include "generator/run_parts.h"
 
@@ -60,11 +60,13 @@ static bool load_deck(run *r) {
   const run_options *o = r->options;
   char error[ERROR_LENGTH];
   size_t length = o->deck_text ? strlen(o->deck_text) : 0;
-  char *text = o->deck_text ? strdup(o->deck_text)
-                            : read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
+  char *text = o->deck_text
+                   ? strdup(o->deck_text)
+                   : read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
   if (!text) {
     if (o->report)
-      diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error); /* has no line to show */
+      diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s",
+                  error); /* has no line to show */
     else
       fprintf(stderr, "perilat: error: %s\n", error);
     return false;
@@ -75,11 +77,9 @@ static bool load_deck(run *r) {
   return r->deck != NULL;
 }
 
-
 /* What the language of decks allows and a run cannot do yet. */
 static bool is_supported(run *r) {
-  if (r->deck->lattice_count < 2)
-    return true;
+  if (r->deck->lattice_count < 2) return true;
   diag_report(&r->said, DIAG_NOT_SUPPORTED, r->deck->lattices[1].item.where,
               "a run can have one lattice, this is the second");
   return false;
@@ -87,11 +87,9 @@ static bool is_supported(run *r) {
 
 /* Deck, laws, simulation. All errors of the deck's materials are reported before it gives up. */
 static int set_up(run *r) {
-  if (!load_deck(r) || !is_supported(r))
-    return INPUT_WRONG;
+  if (!load_deck(r) || !is_supported(r)) return INPUT_WRONG;
   choose_paths(r);
-  if (!r->options->check_only && !result_can_be_written(r))
-    return INPUT_WRONG;
+  if (!r->options->check_only && !result_can_be_written(r)) return INPUT_WRONG;
   size_t lattices = (size_t)r->deck->lattice_count;
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
   r->laws = must_calloc(lattices, sizeof *r->laws);
@@ -101,22 +99,17 @@ static int set_up(run *r) {
     int s = load_law(r, k);
     status = s ? s : status;
   }
-  if (status)
-    return status;
-  if (r->options->threads > 0)
-    r->deck->simulation.threads = r->options->threads;
-  if (!result_spares_inputs(r))
-    return INPUT_WRONG;
+  if (status) return status;
+  if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
+  if (!result_spares_inputs(r)) return INPUT_WRONG;
   fingerprint(r);
   r->simulation = simulation_new(r->deck, r->laws, &r->said);
   return r->simulation ? 0 : INPUT_WRONG;
 }
 
 static void let_go(run *r) {
-  if (r->result)
-    result_close(r->result);
-  if (r->simulation)
-    simulation_free(r->simulation);
+  if (r->result) result_close(r->result);
+  if (r->simulation) simulation_free(r->simulation);
   for (int k = 0; r->laws && k < r->deck->lattice_count; k++)
     free(r->laws[k].parameters);
   for (int k = 0; k < r->open_models; k++)
@@ -132,11 +125,9 @@ static void let_go(run *r) {
 
 /* --- the time loop ---------------------------------------------------------------------------- */
 
-
 /* Steps between two looks at the clock: as many as take a few tenths of a second. */
 static long next_stride(long stride, double seconds) {
-  if (seconds < 0.1 && stride < 1L << 20)
-    return 2 * stride;
+  if (seconds < 0.1 && stride < 1L << 20) return 2 * stride;
   return seconds > 0.4 && stride > 1 ? stride / 2 : stride;
 }
 
@@ -151,8 +142,7 @@ static step_status march(run *r, bool *written) {
   step_status status = STEP_OK;
   *written = true;
   while (status == STEP_OK && !interrupted) {
-    if (simulation_frame_due(r->simulation) && !(*written = write_frame(r)))
-      break;
+    if (simulation_frame_due(r->simulation) && !(*written = write_frame(r))) break;
     double entered = monotonic_seconds();
     status = simulation_advance(r->simulation, stride, &interrupted);
     stride = next_stride(stride, monotonic_seconds() - entered);
@@ -160,8 +150,7 @@ static step_status march(run *r, bool *written) {
     describe_monitors(r, detail, sizeof detail);
     progress_show(&bar, (double)simulation_step_done(r->simulation) / (double)total, detail);
     double interval = r->deck->checkpoint.interval;
-    if (first_checkpoint && interval > EARLY_CHECKPOINT)
-      interval = EARLY_CHECKPOINT;
+    if (first_checkpoint && interval > EARLY_CHECKPOINT) interval = EARLY_CHECKPOINT;
     if (interval > 0 && status == STEP_OK && monotonic_seconds() - last_checkpoint > interval) {
       first_checkpoint = false;
       write_checkpoint(r);
@@ -185,8 +174,7 @@ static void give_up_writing(run *r, step_status status) {
 }
 
 static int execute(run *r, long resume_frames) {
-  if (!open_result(r, resume_frames))
-    return resume_frames >= 0 ? INPUT_WRONG : RUN_FAILED;
+  if (!open_result(r, resume_frames)) return resume_frames >= 0 ? INPUT_WRONG : RUN_FAILED;
   struct sigaction before[STOPPING_SIGNALS];
   catch_signals(before);
   long first = simulation_step_done(r->simulation);
@@ -195,21 +183,17 @@ static int execute(run *r, long resume_frames) {
   step_status status = march(r, &written);
   double seconds = monotonic_seconds() - begun;
   bool stopped_by_user = interrupted && status == STEP_OK;
-  if (stopped_by_user && written)
-    write_checkpoint(r);
-  if (status == STEP_BAD)
-    report_bad(r);
+  if (stopped_by_user && written) write_checkpoint(r);
+  if (status == STEP_BAD) report_bad(r);
   written = written && finish_result(r, stopped_by_user);
-  if (!written)
-    give_up_writing(r, status);
+  if (!written) give_up_writing(r, status);
   release_signals(before);
-  if (!written)
-    return RUN_FAILED;
+  if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
-  if (status == STEP_STOPPED)
-    print_stop(r);
+  if (status == STEP_STOPPED) print_stop(r);
   if (stopped_by_user)
-    printf("stopped at t = %.5g ms as asked; `--resume` goes on from here\n", 1e3 * simulation_time(r->simulation));
+    printf("stopped at t = %.5g ms as asked; `--resume` goes on from here\n",
+           1e3 * simulation_time(r->simulation));
   else
     unlink(r->checkpoint_path);
   return status == STEP_BAD ? RUN_FAILED : 0;
@@ -217,15 +201,18 @@ static int execute(run *r, long resume_frames) {
 
 static bool resume(run *r, long *frames) {
   char error[ERROR_LENGTH];
-  if (simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, frames, error, sizeof error)) {
+  if (simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, frames, error,
+                         sizeof error)) {
     printf("resumed at t = %.5g ms (step %ld)\n", 1e3 * simulation_time(r->simulation),
            simulation_step_done(r->simulation));
     fflush(stdout);
     return true;
   }
   if (access(r->checkpoint_path, F_OK) != 0)
-    fprintf(stderr, "perilat: error: cannot resume: there is no checkpoint `%s`\n"
-                    "  a run leaves one when it is stopped or killed; run without --resume\n", r->checkpoint_path);
+    fprintf(stderr,
+            "perilat: error: cannot resume: there is no checkpoint `%s`\n"
+            "  a run leaves one when it is stopped or killed; run without --resume\n",
+            r->checkpoint_path);
   else
     fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
   return false;
@@ -233,7 +220,9 @@ static bool resume(run *r, long *frames) {
 
 static void warn_of_checkpoint(const run *r) {
   if (access(r->checkpoint_path, F_OK) == 0)
-    fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up (--resume goes on from it)\n",
+    fprintf(stderr,
+            "perilat: warning: this run starts anew; `%s` of an earlier one is given up (--resume "
+            "goes on from it)\n",
             r->checkpoint_path);
 }
 
@@ -245,7 +234,8 @@ static bool check_kernels(const run *r) {
     const simulation_law *l = &r->laws[k];
     if (k >= r->open_models || l->law->context) {
       printf("kernel check: nothing to compare %s with: %s\n", l->law->name,
-             l->law->context ? "it runs on the interpreter" : "a stand-alone solver has no interpreter");
+             l->law->context ? "it runs on the interpreter"
+                             : "a stand-alone solver has no interpreter");
       continue;
     }
     pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, k), 0);
@@ -260,12 +250,9 @@ static bool check_kernels(const run *r) {
 
 static int start(run *r) {
   long frames = -1;
-  if (r->options->check_kernel && !check_kernels(r))
-    return RUN_FAILED;
-  if (r->options->resume && !resume(r, &frames))
-    return INPUT_WRONG;
-  if (!r->options->resume)
-    warn_of_checkpoint(r);
+  if (r->options->check_kernel && !check_kernels(r)) return RUN_FAILED;
+  if (r->options->resume && !resume(r, &frames)) return INPUT_WRONG;
+  if (!r->options->resume) warn_of_checkpoint(r);
   return execute(r, frames);
 }
 
@@ -278,8 +265,7 @@ int run_deck(const run_options *o) {
   int status = set_up(&r);
   tell(&r, &r.said);
   if (!status) {
-    if (!o->report)
-      announce(&r);
+    if (!o->report) announce(&r);
     status = o->check_only ? 0 : start(&r);
   }
   let_go(&r);

@@ -10,27 +10,27 @@
 
 /* A law that is already compiled into the program (stand-alone solvers). */
 typedef struct built_in_law {
-  const char *model;         /* as the deck names it */
+  const char *model; /* as the deck names it */
   const pl_law *law;
   const char *law_text, *c_text;
-  const char *choices;       /* "onset=rankine;..." decided when it was built */
+  const char *choices; /* "onset=rankine;..." decided when it was built */
 } built_in_law;
 
 typedef struct run_options {
-  const char *deck_path;     /* file, or the name of the built-in deck */
-  const char *deck_text;     /* built-in deck, or NULL: read the file */
-  const built_in_law *laws;  /* NULL: compile the deck's models */
+  const char *deck_path;    /* file, or the name of the built-in deck */
+  const char *deck_text;    /* built-in deck, or NULL: read the file */
+  const built_in_law *laws; /* NULL: compile the deck's models */
   int law_count;
   deck_override *overrides;
   int override_count;
-  int threads;               /* 0: as the deck or the machine says */
+  int threads; /* 0: as the deck or the machine says */
   bool resume;
-  bool interpret;            /* no compiler: run on the interpreter */
-  bool check_kernel;         /* compare kernel and interpreter on random states first */
-  bool check_only;           /* `perilat check deck.nml`: everything but the run */
+  bool interpret;    /* no compiler: run on the interpreter */
+  bool check_kernel; /* compare kernel and interpreter on random states first */
+  bool check_only;   /* `perilat check deck.nml`: everything but the run */
   bool profile;
-  bool no_physics;           /* leave out the physics checks of the deck's laws */
-  diag_json *report;         /* diagnostics go here; NULL: to stderr as text */
+  bool no_physics;   /* leave out the physics checks of the deck's laws */
+  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
 } run_options;
 
 /* Exit status: 0 done (also when stopped by Ctrl-C: what there is has been written), 1 the input is wrong, 2 the run failed. */

@@ -12,8 +12,7 @@
 
 static const symbol *find_option(const law *l, const char *name) {
   for (int k = 0; k < l->options.count; k++)
-    if (strcasecmp(l->options.items[k]->name, name) == 0)
-      return l->options.items[k];
+    if (strcasecmp(l->options.items[k]->name, name) == 0) return l->options.items[k];
   return NULL;
 }
 
@@ -21,15 +20,15 @@ static const symbol *find_option(const law *l, const char *name) {
 static const char *find_choice(const symbol *option, const deck_assignment *a, diagnostics *said) {
   const stmt *declared = option->declared;
   for (int w = 0; a->word && w < declared->word_count; w++)
-    if (strcmp(declared->words[w], a->word) == 0)
-      return declared->words[w];
+    if (strcmp(declared->words[w], a->word) == 0) return declared->words[w];
   char words[256] = "";
   for (int w = 0; w < declared->word_count; w++) {
     size_t used = strlen(words);
     snprintf(words + used, sizeof words - used, "%s'%s'", w ? ", " : "", declared->words[w]);
   }
   if (a->word)
-    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` has no choice `%s`", option->name, a->word);
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` has no choice `%s`",
+                option->name, a->word);
   else
     diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` takes a word", option->name);
   diag_hint(said, "the choices are %s", words);
@@ -38,7 +37,8 @@ static const char *find_choice(const symbol *option, const deck_assignment *a, d
 
 /* A material's assignment that names an option of the law is a choice, not a parameter value. The choices' texts are
    copies: they outlive the law. */
-static bool take_choices(deck_material *m, const law *l, law_choice *choices, int *count, diagnostics *said) {
+static bool take_choices(deck_material *m, const law *l, law_choice *choices, int *count,
+                         diagnostics *said) {
   int kept = 0;
   bool good = true;
   *count = 0;
@@ -51,8 +51,7 @@ static bool take_choices(deck_material *m, const law *l, law_choice *choices, in
     }
     const char *choice = find_choice(option, a, said);
     good = good && choice;
-    if (choice)
-      choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
+    if (choice) choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
   }
   m->assignment_count = kept;
   return good;
@@ -82,16 +81,16 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
   int found = -1;
   for (int p = 0; p < l->parameters.count; p++) {
     names[p] = l->parameters.items[p]->name;
-    if (strcasecmp(names[p], wanted) == 0)
-      found = p;
+    if (strcasecmp(names[p], wanted) == 0) found = p;
   }
   if (found < 0) {
-    diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field], "the law `%s` has no parameter `%s`", l->tree->name,
-                wanted);
+    diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field],
+                "the law `%s` has no parameter `%s`", l->tree->name, wanted);
     diag_suggest(said, wanted, names, l->parameters.count);
   } else if (strcmp(names[found], "rho") == 0) {
-    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[field],
-                "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
+    diag_report(
+        said, DIAG_NOT_SUPPORTED, m->varying_where[field],
+        "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
     found = -1;
   }
   free(names);
@@ -124,8 +123,7 @@ bool run_open_material(deck_material *m, const char *deck_path, model *out, diag
     return false;
   }
   bool good = model_open(out, path, NULL, 0);
-  if (good && out->law->options.count > 0)
-    good = apply_choices(m, path, out, said);
+  if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
   good = good && plan_material(m, out, said);
   free(path);
   return good;
@@ -135,8 +133,7 @@ bool run_open_material(deck_material *m, const char *deck_path, model *out, diag
 
 static const built_in_law *find_built_in(const run_options *o, const char *model_name) {
   for (int k = 0; k < o->law_count; k++)
-    if (strcmp(o->laws[k].model, model_name) == 0)
-      return &o->laws[k];
+    if (strcmp(o->laws[k].model, model_name) == 0) return &o->laws[k];
   return NULL;
 }
 
@@ -155,8 +152,8 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
     }
     size_t n = strcspn(at + strlen(pair), ";");
     if (strlen(a->word) != n || strncmp(at + strlen(pair), a->word, n) != 0) {
-      diag_report(&r->said, DIAG_OPTION, a->value_where,
-                  "this solver was built with `%s` = '%.*s'", a->name, (int)n, at + strlen(pair));
+      diag_report(&r->said, DIAG_OPTION, a->value_where, "this solver was built with `%s` = '%.*s'",
+                  a->name, (int)n, at + strlen(pair));
       diag_hint(&r->said, "build another solver with `perilat build`, or use `perilat run`");
       good = false;
     }
@@ -167,8 +164,7 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
 
 /* Kernels are compiled for plane stress only. */
 static bool setting_is_supported(run *r, const deck_lattice *l) {
-  if (strcmp(l->setting, "plane_stress") == 0)
-    return true;
+  if (strcmp(l->setting, "plane_stress") == 0) return true;
   diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&l->item, "setting"),
               "laws cannot be compiled for plane strain yet");
   diag_hint(&r->said, "write setting = 'plane_stress', or leave it out");
@@ -182,11 +178,19 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
   const symbol *rho = opened->law->rho;
   double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
   double mass = rho ? parameters[rho->index] * volume : 1;
-  const pl_bond_class bonds = {.s = d->spacing, .spacing = d->spacing, .t = d->stiffness_thickness, .V = volume,
-                               .mass_i = mass, .mass_j = mass, .shell = 1, .n = 6};
+  const pl_bond_class bonds = {.s = d->spacing,
+                               .spacing = d->spacing,
+                               .t = d->stiffness_thickness,
+                               .V = volume,
+                               .mass_i = mass,
+                               .mass_j = mass,
+                               .shell = 1,
+                               .n = 6};
   diagnostics found;
   diag_begin(&found, &opened->sources);
-  bool good = physics_check(opened->law, &(physics_options){.parameters = parameters, .bonds = &bonds, .effort = 0.5}, &found, NULL);
+  bool good = physics_check(
+      opened->law, &(physics_options){.parameters = parameters, .bonds = &bonds, .effort = 0.5},
+      &found, NULL);
   tell(r, &found);
   diag_clear(&found);
   return good;
@@ -196,8 +200,7 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
 int load_law(run *r, int lattice) {
   deck_material *m =
       &r->deck->materials[deck_find_material(r->deck, r->deck->lattices[lattice].name)];
-  if (!setting_is_supported(r, &r->deck->lattices[lattice]))
-    return INPUT_WRONG;
+  if (!setting_is_supported(r, &r->deck->lattices[lattice])) return INPUT_WRONG;
   const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;
   if (r->options->laws) {
     if (!b) {
@@ -205,24 +208,20 @@ int load_law(run *r, int lattice) {
                   "this solver was built without the model `%s`", m->model);
       return INPUT_WRONG;
     }
-    if (!drop_built_in_choices(r, m, b))
-      return INPUT_WRONG;
+    if (!drop_built_in_choices(r, m, b)) return INPUT_WRONG;
     r->laws[lattice].law = b->law;
     r->built_in[lattice] = b;
   } else {
     model *opened = &r->models[r->open_models];
     bool good = run_open_material(m, r->options->deck_path, opened, &r->said);
-    if (opened->memory)
-      tell(r, &opened->said);
+    if (opened->memory) tell(r, &opened->said);
     r->open_models += opened->memory != NULL;
-    if (!good)
-      return INPUT_WRONG;
+    if (!good) return INPUT_WRONG;
     char error[4 * ERROR_LENGTH];
     const char *note;
-    r->laws[lattice].law =
-        model_kernel(opened, r->options->interpret || r->options->check_only, &note, error, sizeof error);
-    if (note)
-      fprintf(stderr, "perilat: warning: %s\n", note);
+    r->laws[lattice].law = model_kernel(opened, r->options->interpret || r->options->check_only,
+                                        &note, error, sizeof error);
+    if (note) fprintf(stderr, "perilat: warning: %s\n", note);
     if (!r->laws[lattice].law) {
       fprintf(stderr, "perilat: error: %s\n", error);
       return RUN_FAILED;
@@ -230,8 +229,8 @@ int load_law(run *r, int lattice) {
   }
   const pl_law *kernel = r->laws[lattice].law;
   r->laws[lattice].parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof(double));
-  if (!material_parameters(m, kernel, r->laws[lattice].parameters, &r->said))
-    return INPUT_WRONG;
-  bool checked = r->options->laws || r->options->no_physics; /* a solver's law was checked when it was built */
+  if (!material_parameters(m, kernel, r->laws[lattice].parameters, &r->said)) return INPUT_WRONG;
+  bool checked =
+      r->options->laws || r->options->no_physics; /* a solver's law was checked when it was built */
   return checked || obeys_mechanics(r, lattice, &r->models[r->open_models - 1]) ? 0 : INPUT_WRONG;
 }

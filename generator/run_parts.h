@@ -16,9 +16,9 @@ typedef struct run {
   source_set sources;
   diagnostics said;
   deck *deck;
-  model *models;           /* [material_count] */
+  model *models; /* [material_count] */
   int open_models;
-  simulation_law *laws;    /* [lattice_count] */
+  simulation_law *laws;          /* [lattice_count] */
   const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
   simulation *simulation;
   result *result;

@@ -27,8 +27,7 @@ static void announce_law(const run *r, int lattice) {
   const pl_law *kernel = r->laws[lattice].law;
   implied_elasticity e;
   printf("  law        %s", kernel->name);
-  if (r->open_models > lattice && r->models[lattice].path)
-    printf(" (%s)", r->models[lattice].path);
+  if (r->open_models > lattice && r->models[lattice].path) printf(" (%s)", r->models[lattice].path);
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
     printf(", nu = %.4f", e.nu[0]);
@@ -46,15 +45,18 @@ static void announce_fields(const run *r) {
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
     const char *in = p->unit && strcmp(p->unit, "1") != 0 ? p->unit : "";
-    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution %.5g\n", p->name,
-           f->smallest[k], f->largest[k], *in ? " " : "", in, r->laws[0].parameters[kernel->varying[k]]);
+    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
+           "%.5g\n",
+           p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
+           r->laws[0].parameters[kernel->varying[k]]);
   }
 }
 
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
-  printf("  lattice    %s: %s, spacing %.6g mm, %ld particles, %ld bonds, %.5g x %.5g mm between outermost sites\n",
+  printf("  lattice    %s: %s, spacing %.6g mm, %ld particles, %ld bonds, %.5g x %.5g mm between "
+         "outermost sites\n",
          k->name, k->kind, 1e3 * w->spacing, w->particle_count, w->bond_count, 1e3 * w->width,
          1e3 * w->height);
 }
@@ -68,7 +70,8 @@ void announce(const run *r) {
     announce_law(r, k);
   }
   announce_fields(r);
-  printf("  time       %.6g ms in %ld steps of %.4g us: %.3g of the stable step %.4g us (%s mode rules)\n",
+  printf("  time       %.6g ms in %ld steps of %.4g us: %.3g of the stable step %.4g us (%s mode "
+         "rules)\n",
          1e3 * s->end_time, simulation_step_count(r->simulation), 1e6 * limit->step,
          limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
@@ -85,13 +88,15 @@ void describe_monitors(const run *r, char *text, size_t size) {
   const double *time;
   long samples = simulation_history(r->simulation, &time);
   int n = snprintf(text, size, "t = %.4g ms", 1e3 * simulation_time(r->simulation));
-  for (int k = 0; samples > 0 && k < r->deck->monitor_count && k < 2 && n > 0 && (size_t)n < size; k++) {
+  for (int k = 0; samples > 0 && k < r->deck->monitor_count && k < 2 && n > 0 && (size_t)n < size;
+       k++) {
     const char *unit_name;
     const double *values;
     const char *name = simulation_series(r->simulation, k, &unit_name, &values);
     const double last = values[samples - 1] + 0.0; /* no minus before zeros */
     const bool pure = strcmp(unit_name, "1") == 0;
-    n += snprintf(text + n, size - (size_t)n, ", %s %.4g%s%s", name, last, pure ? "" : " ", pure ? "" : unit_name);
+    n += snprintf(text + n, size - (size_t)n, ", %s %.4g%s%s", name, last, pure ? "" : " ",
+                  pure ? "" : unit_name);
     if (k == 0 && (size_t)n < size)
       n += snprintf(text + n, size - (size_t)n, " (peak %.4g)",
                     simulation_monitor_peak(r->simulation, k, NULL));
@@ -102,8 +107,8 @@ void describe_monitors(const run *r, char *text, size_t size) {
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
   bad_bond_path(r->result_path, path, sizeof path);
-  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL, &r->laws[0],
-                     simulation_rows(r->simulation, 0), b, error, sizeof error))
+  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL,
+                     &r->laws[0], simulation_rows(r->simulation, 0), b, error, sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
@@ -115,14 +120,16 @@ void report_bad(const run *r) {
           b.what, b.step, 1e3 * b.time, b.particle, 1e3 * b.x, 1e3 * b.y);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
-            "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and %.6g\n",
+            "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
+            "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
     if (r->open_models > 0)
       explain_bad(r->models[0].plan, b.parameters, simulation_rows(r->simulation, 0), &b, stderr);
     write_bad_bond(r, &b);
   }
-  fprintf(stderr, "  what was computed until then is in the result; a smaller `step_safety` or a law that "
-                  "stays finite there mends it\n");
+  fprintf(stderr,
+          "  what was computed until then is in the result; a smaller `step_safety` or a law that "
+          "stays finite there mends it\n");
 }
 
 static double last_value(const run *r, const char *name) {
@@ -139,14 +146,14 @@ static double last_value(const run *r, const char *name) {
 
 static void conclude_energy(const run *r) {
   double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
-  if (!isfinite(external))
-    return;
-  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, by damping %.3g; "
+  if (!isfinite(external)) return;
+  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, "
+         "by damping %.3g; "
          "imbalance %.2g J",
          external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
-         last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"), imbalance);
-  if (fabs(external) > 0)
-    printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+         last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"),
+         imbalance);
+  if (fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
   putchar('\n');
 }
 
@@ -161,20 +168,21 @@ void conclude(const run *r, double seconds, long steps) {
     const char *name = simulation_series(r->simulation, k, &unit_name, &values);
     double when = 0, peak = simulation_monitor_peak(r->simulation, k, &when);
     bool pure = strcmp(unit_name, "1") == 0;
-    printf("  %-10s largest %.6g%s%s at t = %.5g ms\n", name, peak, pure ? "" : " ", pure ? "" : unit_name, 1e3 * when);
+    printf("  %-10s largest %.6g%s%s at t = %.5g ms\n", name, peak, pure ? "" : " ",
+           pure ? "" : unit_name, 1e3 * when);
   }
   conclude_energy(r);
   long frames = result_frame_count(r->result);
-  printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames, frames == 1 ? "" : "s");
+  printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
+         frames == 1 ? "" : "s");
 }
 
 /* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
 void print_stop(const run *r) {
   const deck_stop *s = simulation_stopped_by(r->simulation);
-  if (!s)
-    return;
-  printf("  ended early at t = %.5g ms: %s was %s ", 1e3 * simulation_time(r->simulation), s->monitor,
-         s->below ? "below" : "above");
+  if (!s) return;
+  printf("  ended early at t = %.5g ms: %s was %s ", 1e3 * simulation_time(r->simulation),
+         s->monitor, s->below ? "below" : "above");
   if (s->of_peak)
     printf("%.4g %% of its peak\n", 100 * s->level);
   else

@@ -24,11 +24,11 @@ void choose_paths(run *r) {
     const char *dot = strrchr(name, '.');
     snprintf(path, sizeof path, "%.*s.h5", dot ? (int)(dot - name) : (int)strlen(name), name);
   }
-  char *target = realpath(path, NULL); /* through links, so that the data lie where the user has put them */
+  char *target =
+      realpath(path, NULL); /* through links, so that the data lie where the user has put them */
   const char *chosen = target ? target : path;
   struct stat about;
-  if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode))
-    chosen = path;
+  if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode)) chosen = path;
   r->result_path = arena_text(r->memory, chosen, strlen(chosen));
   free(target);
   r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", path);
@@ -40,15 +40,18 @@ bool result_can_be_written(run *r) {
   struct stat about;
   char folder[4096];
   const char *slash = strrchr(r->result_path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->result_path) + 1 : 1, slash ? r->result_path : ".");
+  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->result_path) + 1 : 1,
+           slash ? r->result_path : ".");
   bool exists = stat(r->result_path, &about) == 0;
   if (exists && !S_ISREG(about.st_mode))
     diag_report(&r->said, DIAG_FILE, where, "the result `%s` is %s", r->result_path,
                 S_ISDIR(about.st_mode) ? "a folder" : "not an ordinary file");
   else if (exists && !(about.st_mode & 0222))
-    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is protected against writing", r->result_path);
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is protected against writing",
+                r->result_path);
   else if (access(folder, W_OK | X_OK) != 0)
-    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%s`: %s", folder, strerror(errno));
+    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%s`: %s",
+                folder, strerror(errno));
   else
     return true;
   diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
@@ -56,9 +59,9 @@ bool result_can_be_written(run *r) {
 }
 
 static bool result_spares(run *r, const char *input) {
-  if (!same_file(r->result_path, input))
-    return true;
-  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"), "the result would overwrite `%s`", input);
+  if (!same_file(r->result_path, input)) return true;
+  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"),
+              "the result would overwrite `%s`", input);
   diag_hint(&r->said, "give `result` another name in &output");
   return false;
 }
@@ -135,8 +138,10 @@ static void frame_table(run *r, result_header *h, const char *interaction) {
   h->field_count = simulation_frame_fields(r->simulation, &offered);
   result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
   for (int k = 0; k < h->field_count; k++)
-    fields[k] = (result_field){offered[k].name, offered[k].unit,
-                               offered[k].on_bonds ? interaction : NULL, offered[k].components,
+    fields[k] = (result_field){offered[k].name,
+                               offered[k].unit,
+                               offered[k].on_bonds ? interaction : NULL,
+                               offered[k].components,
                                offered[k].on_bonds ? h->bond_count : h->particle_count,
                                offered[k].kind};
   h->fields = fields;
@@ -164,8 +169,7 @@ bool open_result(run *r, long resume_frames) {
   frame_table(r, &h, h.interaction);
   char error[ERROR_LENGTH];
   r->result = result_open(&h, resume_frames, error, sizeof error);
-  if (!r->result)
-    fprintf(stderr, "perilat: error: %s\n", error);
+  if (!r->result) fprintf(stderr, "perilat: error: %s\n", error);
   size_t total = 0;
   for (int k = 0; k < h.field_count; k++)
     total += (size_t)(h.fields[k].count * h.fields[k].components);
@@ -199,8 +203,7 @@ bool write_checkpoint(run *r) {
   bool good = result_sync(r->result, error, sizeof error) &&
               simulation_save(r->simulation, r->checkpoint_path, r->fingerprint,
                               result_frame_count(r->result), error, sizeof error);
-  if (!good)
-    fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
+  if (!good) fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
   return good;
 }
 
@@ -215,7 +218,6 @@ bool finish_result(run *r, bool keep_working) {
   bool good = result_finish(r->result, simulation_step_limit(r->simulation)->step,
                             simulation_step_done(r->simulation), time, samples, series, count,
                             keep_working, error, sizeof error);
-  if (!good)
-    fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
   return good;
 }

@@ -9,8 +9,8 @@
 
 typedef struct loaded_kernel {
   const pl_law *law;
-  void *handle;      /* dlopen */
-  char *path;        /* of the shared object */
+  void *handle; /* dlopen */
+  char *path;   /* of the shared object */
   bool from_cache;
 } loaded_kernel;
 
@@ -28,13 +28,15 @@ char *toolchain_key(const char *text);
 
 /* Compiles `c_text` (unless the cache has it), loads it and checks ABI and key. On failure false and a message
    in `error`: a compile failure is an internal error and names the kept source. */
-bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, char *error, size_t size);
+bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, char *error,
+                    size_t size);
 /* Writes the shared object to `path` instead of the cache. */
 bool toolchain_build(const char *c_text, const char *path, char *error, size_t size);
 /* A program from a C text with a main(), linked with perilat's own libraries: a stand-alone solver. */
 bool toolchain_build_program(const char *c_text, const char *path, char *error, size_t size);
 /* Loads an existing shared kernel. */
-bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error, size_t size);
+bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error,
+                    size_t size);
 void toolchain_unload(loaded_kernel *k);
 
 #endif

@@ -16,13 +16,13 @@ static bool ends_in(const char *text, const char *tail) {
 /* Cairo's own file output takes a full disk for success; this does not. */
 static cairo_status_t write_bytes(void *data, const unsigned char *bytes, unsigned int count) {
   canvas *c = data;
-  if (fwrite(bytes, 1, count, c->file) == count)
-    return CAIRO_STATUS_SUCCESS;
+  if (fwrite(bytes, 1, count, c->file) == count) return CAIRO_STATUS_SUCCESS;
   c->reason = c->reason ? c->reason : errno;
   return CAIRO_STATUS_WRITE_ERROR;
 }
 
-bool canvas_open(canvas *c, const char *path, double width, double height, char *error, size_t size) {
+bool canvas_open(canvas *c, const char *path, double width, double height, char *error,
+                 size_t size) {
   *c = (canvas){.path = path, .width = width, .height = height, .is_png = ends_in(path, ".png")};
   const bool is_svg = ends_in(path, ".svg");
   if (strlen(path) > 4096) {
@@ -65,20 +65,21 @@ bool canvas_close(canvas *c, char *error, size_t size) {
     status = cairo_surface_write_to_png_stream(c->surface, write_bytes, c);
   cairo_destroy(c->cr);
   cairo_surface_finish(c->surface);
-  if (status == CAIRO_STATUS_SUCCESS)
-    status = cairo_surface_status(c->surface);
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_status(c->surface);
   cairo_surface_destroy(c->surface);
   errno = 0;
   bool written = fclose(c->file) == 0 && status == CAIRO_STATUS_SUCCESS && !c->reason;
-  if (written && rename(c->temporary, c->path) == 0)
-    return true;
+  if (written && rename(c->temporary, c->path) == 0) return true;
   int reason = c->reason ? c->reason : errno;
-  snprintf(error, size, "cannot write `%s`: %s", c->path, reason ? strerror(reason) : cairo_status_to_string(status));
+  snprintf(error, size, "cannot write `%s`: %s", c->path,
+           reason ? strerror(reason) : cairo_status_to_string(status));
   unlink(c->temporary);
   return false;
 }
 
-void canvas_colour(canvas *c, colour k) { cairo_set_source_rgb(c->cr, k.r, k.g, k.b); }
+void canvas_colour(canvas *c, colour k) {
+  cairo_set_source_rgb(c->cr, k.r, k.g, k.b);
+}
 
 double canvas_text_width(canvas *c, double size, const char *text) {
   cairo_text_extents_t e;
@@ -93,7 +94,8 @@ void canvas_text(canvas *c, double x, double y, double size, anchor a, const cha
   cairo_show_text(c->cr, text);
 }
 
-void canvas_text_within(canvas *c, double x, double y, double size, double width, const char *text) {
+void canvas_text_within(canvas *c, double x, double y, double size, double width,
+                        const char *text) {
   char shown[512];
   snprintf(shown, sizeof shown, "%s", text);
   double least = 0.7 * size;
@@ -131,12 +133,12 @@ const char *readable_unit(const char *si_unit, double largest, double *factor) {
   static const struct {
     const char *si, *shown;
     double factor, from; /* used for largest values of at least `from` (SI) */
-  } table[] = {{"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4},   {"m", "um", 1e6, 0},
-               {"N", "MN", 1e-6, 1e6},   {"N", "kN", 1e-3, 1e3},   {"N", "N", 1, 0},
-               {"J", "MJ", 1e-6, 1e6},   {"J", "kJ", 1e-3, 1e3},   {"J", "J", 1, 0.5},
-               {"J", "mJ", 1e3, 5e-4},   {"J", "uJ", 1e6, 0},
-               {"s", "s", 1, 0.5},       {"s", "ms", 1e3, 5e-4},   {"s", "us", 1e6, 0},
-               {"Pa", "GPa", 1e-9, 1e9}, {"Pa", "MPa", 1e-6, 1e5}, {"Pa", "Pa", 1, 0}};
+  } table[] = {{"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4}, {"m", "um", 1e6, 0},
+               {"N", "MN", 1e-6, 1e6},   {"N", "kN", 1e-3, 1e3}, {"N", "N", 1, 0},
+               {"J", "MJ", 1e-6, 1e6},   {"J", "kJ", 1e-3, 1e3}, {"J", "J", 1, 0.5},
+               {"J", "mJ", 1e3, 5e-4},   {"J", "uJ", 1e6, 0},    {"s", "s", 1, 0.5},
+               {"s", "ms", 1e3, 5e-4},   {"s", "us", 1e6, 0},    {"Pa", "GPa", 1e-9, 1e9},
+               {"Pa", "MPa", 1e-6, 1e5}, {"Pa", "Pa", 1, 0}};
   for (size_t k = 0; k < sizeof table / sizeof *table; k++)
     if (strcmp(table[k].si, si_unit) == 0 && largest >= table[k].from) {
       *factor = table[k].factor;

@@ -7,22 +7,25 @@
 #include <stddef.h>
 #include <stdio.h>
 
-typedef struct colour { double r, g, b; } colour;
+typedef struct colour {
+  double r, g, b;
+} colour;
 
 typedef struct canvas {
   cairo_t *cr;
   cairo_surface_t *surface;
-  double width, height;     /* in points (pixels of a PNG) */
+  double width, height; /* in points (pixels of a PNG) */
   const char *path;
   char temporary[4200];
-  FILE *file;               /* of the temporary */
-  int reason;               /* errno of the first write that failed */
+  FILE *file; /* of the temporary */
+  int reason; /* errno of the first write that failed */
   bool is_png;
 } canvas;
 
 /* False with a sentence in `error` when the ending is none of .png, .svg, .pdf or the file cannot be made. White
    background. The canvas must stay where it is until it is closed or discarded. */
-bool canvas_open(canvas *c, const char *path, double width, double height, char *error, size_t size);
+bool canvas_open(canvas *c, const char *path, double width, double height, char *error,
+                 size_t size);
 /* Writes under a temporary name and renames; frees. */
 bool canvas_close(canvas *c, char *error, size_t size);
 void canvas_discard(canvas *c);
@@ -33,7 +36,8 @@ void canvas_colour(canvas *c, colour k);
 void canvas_text(canvas *c, double x, double y, double size, anchor a, const char *text);
 /* Left at x; smaller, and then cut, where it would be wider than `width`. */
 void canvas_text_within(canvas *c, double x, double y, double size, double width, const char *text);
-void canvas_text_upward(canvas *c, double x, double y, double size, const char *text); /* centred, turned by 90 degrees */
+void canvas_text_upward(canvas *c, double x, double y, double size,
+                        const char *text); /* centred, turned by 90 degrees */
 void canvas_line(canvas *c, double x1, double y1, double x2, double y2, double width);
 double canvas_text_width(canvas *c, double size, const char *text);
 

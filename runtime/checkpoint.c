@@ -52,8 +52,8 @@ static bool put_all(stream *s, const char *fingerprint, const checkpoint_part *p
   return good && put(s, &sum, sizeof sum);
 }
 
-/* A rename is on the disk only when its folder is. The file is whole under its name by now, and some
-   file systems cannot sync folders: that this fails is no failure of the checkpoint. */
+/* A rename is on the disk only when its folder is. The file is whole under its name by now, and
+   some file systems cannot sync folders: that this fails is no failure of the checkpoint. */
 static void sync_folder(const char *path) {
   char *copy = must_alloc(strlen(path) + 1);
   strcpy(copy, path);

@@ -239,7 +239,8 @@ typedef struct deck {
   X(material)                                                                                      \
   X(field)                                                                                         \
   X(body)                                                                                          \
-  X(notch) X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity)   \
+  X(notch)                                                                                         \
+  X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity)            \
       X(initial_velocity) X(stop) X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \

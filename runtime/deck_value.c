@@ -171,7 +171,7 @@ bool deck_quantity_read(const namelist_value *v, const char *key, deck_quantity 
 
 /* False, with a message that names both dimensions, unless the quantity fits `unit`. */
 static bool quantity_fits(const namelist_value *v, const char *key, const deck_quantity *q,
-                        const char *unit_text, diagnostics *d) {
+                          const char *unit_text, diagnostics *d) {
   dimension wanted = dimension_of(unit_text);
   char wanted_words[128], words[128];
   describe(wanted, wanted_words, sizeof(wanted_words));
@@ -208,8 +208,7 @@ static bool within(const namelist_value *v, const char *key, double value, deck_
 bool deck_real_read(const namelist_value *v, const char *key, const char *unit_text,
                     deck_bound bound, double *value, diagnostics *d) {
   deck_quantity q;
-  if (!deck_quantity_read(v, key, &q, d) || !quantity_fits(v, key, &q, unit_text, d))
-    return false;
+  if (!deck_quantity_read(v, key, &q, d) || !quantity_fits(v, key, &q, unit_text, d)) return false;
   *value = q.value;
   return within(v, key, q.value, bound, d);
 }

@@ -12,16 +12,18 @@ void h5_quiet(void); /* before anything else */
    an error instead of a crash of the reader. */
 hid_t h5_create(const char *path);
 bool h5_make_group(hid_t file, const char *name); /* true when it is there already */
-bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank, const hsize_t *shape,
-                      const char *unit_text);
-bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank, const hsize_t *shape);
+bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank,
+                      const hsize_t *shape, const char *unit_text);
+bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank,
+                       const hsize_t *shape);
 /* Texts are UTF-8 of variable length, which readers take for text, not for bytes. */
 bool h5_write_text(hid_t file, const char *name, const char *text);
 bool h5_attribute_text(hid_t object, const char *name, const char *text);
 bool h5_attribute_double(hid_t object, const char *name, double value);
 bool h5_attribute_integer(hid_t object, const char *name, int64_t value);
 /* Chunked (one frame a chunk), shuffled, compressed data set. */
-hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape, const char *unit_text, int level);
+hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,
+                     const char *unit_text, int level);
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values);
 /* Text attribute of fixed or variable length, cut to size; false (and "") when there is none. */
 bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size);

@@ -114,7 +114,8 @@ static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, i
     const int64_t site = l->lattice->particle_site[particle];
     diag_report(m->said, DIAG_CONFLICT, deck_where(item, "region"),
                 "the particle at (%.6g, %.6g) mm has its motion in %s prescribed twice",
-                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site], deck_component_names[component]);
+                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site],
+                deck_component_names[component]);
     diag_note(m->said, motion_where(l->deck, first, *supports, *holder - 1),
               "first prescribed here");
     return false;

@@ -100,7 +100,8 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
 static void take_damages(monitors *m, const sweep *state) {
   m->damages = must_calloc((size_t)state->law->field_count + 1, sizeof *m->damages);
   for (int f = 0; f < state->law->field_count; f++)
-    if (state->law->fields[f].kind == PL_FIELD_DAMAGE) m->damages[m->damage_count++] = state->field[f];
+    if (state->law->fields[f].kind == PL_FIELD_DAMAGE)
+      m->damages[m->damage_count++] = state->field[f];
 }
 
 monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,

@@ -37,9 +37,10 @@ typedef struct monitors {
   const sweep *state;
   const loads *loads;
   const rows_bond *bonds; /* [lattice->bond_count], not owned */
-  const double **damages; /* [damage_count] the law's fields of that kind, [directions * size] each */
+  const double *
+      *damages; /* [damage_count] the law's fields of that kind, [directions * size] each */
   int damage_count;
-  double *ring_memory;    /* all rings in one */
+  double *ring_memory; /* all rings in one */
   long ring_size;
 } monitors;
 

@@ -637,7 +637,8 @@ static void print_value(FILE *out, const namelist_value *v) {
   }
 }
 
-char *namelist_text(arena *a, const namelist *n, bool (*leave_out)(const char *group, const char *key)) {
+char *namelist_text(arena *a, const namelist *n,
+                    bool (*leave_out)(const char *group, const char *key)) {
   char *text = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&text, &length);

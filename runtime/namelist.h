@@ -68,7 +68,8 @@ namelist_group *namelist_add_group(arena *a, namelist *n, const char *name);
 
 /* The groups as text: one spelling for one meaning (names in lower case, no comments, numbers to the last bit). Groups and
    keys for which `leave_out` is true are left out (key NULL: the whole group). */
-char *namelist_text(arena *a, const namelist *n, bool (*leave_out)(const char *group, const char *key));
+char *namelist_text(arena *a, const namelist *n,
+                    bool (*leave_out)(const char *group, const char *key));
 
 /* Length of the number at the start of `text` (Fortran: 1, -.5, 1.5d-3), 0 when there is none.
  *value may be infinite when the number is too large. */

@@ -6,29 +6,31 @@
 #include <stddef.h>
 
 typedef struct plot_curve_options {
-  const char *output;            /* path */
-  const char *x, *y;             /* histories: "cmod", "load", "time", "energy/kinetic" */
-  const char *const *ys;         /* several histories of one unit, a curve each, instead of y */
-  int y_count;                   /* of ys; 0: y alone */
-  const char *x_unit, *y_unit;   /* shown unit, e.g. "mm", "kN"; NULL: a readable one is chosen */
-  const char *title;             /* NULL: the result's title */
-  const char *const *labels;     /* legend, one a result; NULL: file names */
+  const char *output;          /* path */
+  const char *x, *y;           /* histories: "cmod", "load", "time", "energy/kinetic" */
+  const char *const *ys;       /* several histories of one unit, a curve each, instead of y */
+  int y_count;                 /* of ys; 0: y alone */
+  const char *x_unit, *y_unit; /* shown unit, e.g. "mm", "kN"; NULL: a readable one is chosen */
+  const char *title;           /* NULL: the result's title */
+  const char *const *labels;   /* legend, one a result; NULL: file names */
 } plot_curve_options;
 
 typedef struct plot_map_options {
   const char *output;
-  long frame;                    /* from 0; negative: from the end (-1 the last) */
-  const char *field;             /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
-  int component;                 /* of a vector field; -1: magnitude */
-  double factor;                 /* displacements are drawn times this; negative: chosen so that they can be seen */
+  long frame; /* from 0; negative: from the end (-1 the last) */
+  const char *
+      field; /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
+  int component; /* of a vector field; -1: magnitude */
+  double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
   const char *title;
 } plot_map_options;
 
 /* One curve a result file and history in one picture. */
-bool plot_curve(const char *const *results, int result_count, const plot_curve_options *o, char *error, size_t size);
+bool plot_curve(const char *const *results, int result_count, const plot_curve_options *o,
+                char *error, size_t size);
 /* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI units. */
-bool plot_values(const double *x, const double *y, long count, const char *x_unit, const char *y_unit,
-                 const plot_curve_options *o, char *error, size_t size);
+bool plot_values(const double *x, const double *y, long count, const char *x_unit,
+                 const char *y_unit, const plot_curve_options *o, char *error, size_t size);
 /* Particles and bonds of one frame, deformed, with a legend and a scale bar in mm. */
 bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
 

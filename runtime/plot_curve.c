@@ -10,7 +10,15 @@
 #include "runtime/plot.h"
 #include "runtime/result.h"
 
-enum { WIDTH = 1200, HEIGHT = 800, LEFT = 120, RIGHT = 40, TOP = 70, BOTTOM = 95, MOST_CURVES = 64 };
+enum {
+  WIDTH = 1200,
+  HEIGHT = 800,
+  LEFT = 120,
+  RIGHT = 40,
+  TOP = 70,
+  BOTTOM = 95,
+  MOST_CURVES = 64
+};
 
 typedef struct curve {
   double *x, *y;
@@ -24,8 +32,9 @@ typedef struct axis {
   double low, high, step, factor; /* shown values; shown = SI * factor */
 } axis;
 
-static const colour palette[] = {{0.00, 0.27, 0.55}, {0.80, 0.25, 0.05}, {0.10, 0.50, 0.20}, {0.55, 0.20, 0.60},
-                                 {0.85, 0.55, 0.00}, {0.05, 0.55, 0.60}, {0.45, 0.30, 0.15}, {0.40, 0.40, 0.40}};
+static const colour palette[] = {{0.00, 0.27, 0.55}, {0.80, 0.25, 0.05}, {0.10, 0.50, 0.20},
+                                 {0.55, 0.20, 0.60}, {0.85, 0.55, 0.00}, {0.05, 0.55, 0.60},
+                                 {0.45, 0.30, 0.15}, {0.40, 0.40, 0.40}};
 enum { PALETTE = sizeof palette / sizeof *palette };
 
 static void label_of(const char *path, char *label, size_t size) {
@@ -35,18 +44,18 @@ static void label_of(const char *path, char *label, size_t size) {
   snprintf(label, size, "%.*s", (int)(dot ? dot - name : (long)strlen(name)), name);
 }
 
-static bool read_curve(result_file *f, const char *x, const char *y, curve *c, char *x_unit, char *y_unit, char *error,
-                       size_t size) {
+static bool read_curve(result_file *f, const char *x, const char *y, curve *c, char *x_unit,
+                       char *y_unit, char *error, size_t size) {
   long count_y = 0;
   c->x = result_read_series(f, x, &c->count, x_unit, 64, error, size);
   c->y = c->x ? result_read_series(f, y, &count_y, y_unit, 64, error, size) : NULL;
-  if (c->x && c->y && count_y < c->count)
-    c->count = count_y;
+  if (c->x && c->y && count_y < c->count) c->count = count_y;
   return c->x && c->y;
 }
 
 /* Shown unit and the factor from SI; the user's unit must fit the history's. */
-static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double largest, char *error, size_t size) {
+static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double largest,
+                        char *error, size_t size) {
   if (!wanted) {
     snprintf(a->unit_text, sizeof a->unit_text, "%s", readable_unit(si_unit, largest, &a->factor));
     return true;
@@ -55,7 +64,8 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
   const char *bad;
   size_t bad_length;
   if (!unit_parse(wanted, strlen(wanted), &shown, &bad, &bad_length) ||
-      !unit_parse(si_unit, strlen(si_unit), &si, &bad, &bad_length) || !dim_equal(shown.dim, si.dim)) {
+      !unit_parse(si_unit, strlen(si_unit), &si, &bad, &bad_length) ||
+      !dim_equal(shown.dim, si.dim)) {
     snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name, si_unit, wanted);
     return false;
   }
@@ -67,13 +77,13 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
 /* A power of ten in front of the unit where numbers would have many digits. */
 static void shorten_numbers(axis *a, double largest) {
   double shown = largest * a->factor;
-  if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2))
-    return;
+  if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2)) return;
   int power = 3 * (int)floor(log10(shown) / 3);
   char symbol[sizeof a->unit_text];
   memcpy(symbol, a->unit_text, sizeof symbol);
   bool pure = strcmp(symbol, "1") == 0;
-  snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ", pure ? "" : symbol);
+  snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
+           pure ? "" : symbol);
   a->factor /= pow(10, power);
 }
 
@@ -91,24 +101,23 @@ static void range_of(const curve *curves, int count, bool of_x, double *low, dou
 }
 
 /* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for it. */
-static double without_noise(double end, double range) { return fabs(end) < 2e-3 * range ? 0 : end; }
+static double without_noise(double end, double range) {
+  return fabs(end) < 2e-3 * range ? 0 : end;
+}
 
-static bool set_axis(axis *a, const char *name, const char *si_unit, const char *wanted, double low, double high,
-                     char *error, size_t size) {
+static bool set_axis(axis *a, const char *name, const char *si_unit, const char *wanted, double low,
+                     double high, char *error, size_t size) {
   a->name = name;
   if (!(low <= high)) {
     snprintf(error, size, "`%s` holds no finite value to draw", name);
     return false;
   }
-  if (!choose_unit(a, si_unit, wanted, fmax(fabs(low), fabs(high)), error, size))
-    return false;
-  if (!wanted)
-    shorten_numbers(a, fmax(fabs(low), fabs(high)));
+  if (!choose_unit(a, si_unit, wanted, fmax(fabs(low), fabs(high)), error, size)) return false;
+  if (!wanted) shorten_numbers(a, fmax(fabs(low), fabs(high)));
   const double range = high - low;
   low = without_noise(low, range) * a->factor;
   high = without_noise(high, range) * a->factor;
-  if (low > 0 && low < 0.3 * high)
-    low = 0;
+  if (low > 0 && low < 0.3 * high) low = 0;
   if (!(high - low > 1e-12 * fmax(fabs(high), 1e-300))) {
     high = low + (fabs(low) > 0 ? fabs(low) : 1);
   }
@@ -149,11 +158,14 @@ static void draw_axes(canvas *c, const axis *x, const axis *y) {
   canvas_line(c, LEFT, TOP, LEFT, HEIGHT - BOTTOM, 1.5);
 }
 
-static bool is_pure(const char *unit_text) { return strcmp(unit_text, "1") == 0; }
+static bool is_pure(const char *unit_text) {
+  return strcmp(unit_text, "1") == 0;
+}
 
 static void name_axis(const axis *a, char *text, size_t size) {
   const bool pure = is_pure(a->unit_text);
-  snprintf(text, size, "%.400s%s%s%s", a->name, pure ? "" : " [", pure ? "" : a->unit_text, pure ? "" : "]");
+  snprintf(text, size, "%.400s%s%s%s", a->name, pure ? "" : " [", pure ? "" : a->unit_text,
+           pure ? "" : "]");
 }
 
 static void draw_names(canvas *c, const axis *x, const axis *y, const char *title) {
@@ -186,12 +198,13 @@ static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, 
 }
 
 /* Samples of all curves in a rectangle of the picture. */
-static long samples_in(const curve *curves, int count, const axis *x, const axis *y, double left, double top, double width,
-                       double height) {
+static long samples_in(const curve *curves, int count, const axis *x, const axis *y, double left,
+                       double top, double width, double height) {
   long inside = 0;
   for (int c = 0; c < count; c++)
     for (long k = 0; k < curves[c].count; k++) {
-      double px = along_x(x, curves[c].x[k] * x->factor), py = along_y(y, curves[c].y[k] * y->factor);
+      double px = along_x(x, curves[c].x[k] * x->factor),
+             py = along_y(y, curves[c].y[k] * y->factor);
       inside += px > left && px < left + width && py > top && py < top + height;
     }
   return inside;
@@ -204,13 +217,14 @@ static void draw_legend(canvas *c, const curve *curves, int count, const axis *x
   for (int k = 0; k < count; k++)
     widest = fmax(widest, canvas_text_width(c, 19, curves[k].label));
   const double width = fmin(widest, 500) + 70, height = LINE * count + 10;
-  const double lefts[] = {WIDTH - RIGHT - width - 10, LEFT + 14}, tops[] = {TOP + 8, HEIGHT - BOTTOM - height - 10};
+  const double lefts[] = {WIDTH - RIGHT - width - 10, LEFT + 14},
+               tops[] = {TOP + 8, HEIGHT - BOTTOM - height - 10};
   double left = lefts[0], top = tops[0];
   long least = samples_in(curves, count, x, y, left, top, width, height);
   for (int corner = 1; corner < 4; corner++) {
-    long inside = samples_in(curves, count, x, y, lefts[corner % 2], tops[corner / 2], width, height);
-    if (inside >= least)
-      continue;
+    long inside =
+        samples_in(curves, count, x, y, lefts[corner % 2], tops[corner / 2], width, height);
+    if (inside >= least) continue;
     least = inside;
     left = lefts[corner % 2];
     top = tops[corner / 2];
@@ -227,19 +241,17 @@ static void draw_legend(canvas *c, const curve *curves, int count, const axis *x
   }
 }
 
-static bool draw_all(const curve *curves, int count, const plot_curve_options *o, const char *x_unit, const char *y_unit,
-                     const char *title, char *error, size_t size) {
+static bool draw_all(const curve *curves, int count, const plot_curve_options *o,
+                     const char *x_unit, const char *y_unit, const char *title, char *error,
+                     size_t size) {
   axis x = {.name = NULL}, y = {.name = NULL};
   double low, high;
   range_of(curves, count, true, &low, &high);
-  if (!set_axis(&x, o->x, x_unit, o->x_unit, low, high, error, size))
-    return false;
+  if (!set_axis(&x, o->x, x_unit, o->x_unit, low, high, error, size)) return false;
   range_of(curves, count, false, &low, &high);
-  if (!set_axis(&y, o->y, y_unit, o->y_unit, low, high, error, size))
-    return false;
+  if (!set_axis(&y, o->y, y_unit, o->y_unit, low, high, error, size)) return false;
   canvas c;
-  if (!canvas_open(&c, o->output, WIDTH, HEIGHT, error, size))
-    return false;
+  if (!canvas_open(&c, o->output, WIDTH, HEIGHT, error, size)) return false;
   draw_axes(&c, &x, &y);
   draw_names(&c, &x, &y, title);
   cairo_save(c.cr);
@@ -248,8 +260,7 @@ static bool draw_all(const curve *curves, int count, const plot_curve_options *o
   for (int k = 0; k < count; k++)
     draw_curve(&c, &curves[k], &x, &y, palette[k % PALETTE]);
   cairo_restore(c.cr);
-  if (count > 1 || o->labels)
-    draw_legend(&c, curves, count, &x, &y);
+  if (count > 1 || o->labels) draw_legend(&c, curves, count, &x, &y);
   return canvas_close(&c, error, size);
 }
 
@@ -269,23 +280,26 @@ static void label_curve(const curve_set *s, int from, int y, curve *c) {
   else
     label_of(s->results[from], name, sizeof name);
   const bool several = s->o->y_count > 1;
-  snprintf(c->label, sizeof c->label, "%s%s%.120s", name, several ? ": " : "", several ? s->o->ys[y] : "");
+  snprintf(c->label, sizeof c->label, "%s%s%.120s", name, several ? ": " : "",
+           several ? s->o->ys[y] : "");
 }
 
-static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit, const char *y_unit, char *error,
-                      size_t size) {
+static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit, const char *y_unit,
+                      char *error, size_t size) {
   if (s->count == 1) {
     snprintf(s->x_unit, sizeof s->x_unit, "%s", x_unit);
     snprintf(s->y_unit, sizeof s->y_unit, "%s", y_unit);
     return true;
   }
   if (strcmp(s->x_unit, x_unit) != 0)
-    snprintf(error, size, "`%s` holds `%s` in another unit (%s) than `%s` (%s)", s->results[from], s->o->x, x_unit,
-             s->results[0], s->x_unit);
+    snprintf(error, size, "`%s` holds `%s` in another unit (%s) than `%s` (%s)", s->results[from],
+             s->o->x, x_unit, s->results[0], s->x_unit);
   else if (strcmp(s->y_unit, y_unit) != 0)
-    snprintf(error, size, "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit", y,
-             s->results[from], is_pure(y_unit) ? "" : "in ", is_pure(y_unit) ? "a pure number" : y_unit, s->o->ys[0],
-             s->results[0], is_pure(s->y_unit) ? "" : "in ", is_pure(s->y_unit) ? "a pure number" : s->y_unit);
+    snprintf(error, size,
+             "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit",
+             y, s->results[from], is_pure(y_unit) ? "" : "in ",
+             is_pure(y_unit) ? "a pure number" : y_unit, s->o->ys[0], s->results[0],
+             is_pure(s->y_unit) ? "" : "in ", is_pure(s->y_unit) ? "a pure number" : s->y_unit);
   else
     return true;
   return false;
@@ -294,8 +308,7 @@ static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit,
 /* The curves of one result. */
 static bool add_curves(curve_set *s, int from, char *error, size_t size) {
   result_file *f = result_read(s->results[from], error, size);
-  if (!f)
-    return false;
+  if (!f) return false;
   char *title = result_read_title(f);
   snprintf(s->title, sizeof s->title, "%s", title);
   free(title);
@@ -319,7 +332,8 @@ static void join_names(const plot_curve_options *o, char *text, size_t size) {
     used += (size_t)snprintf(text + used, size - used, "%s%s", y ? ", " : "", o->ys[y]);
 }
 
-bool plot_curve(const char *const *results, int result_count, const plot_curve_options *given, char *error, size_t size) {
+bool plot_curve(const char *const *results, int result_count, const plot_curve_options *given,
+                char *error, size_t size) {
   plot_curve_options o = *given;
   o.x = o.x ? o.x : "time";
   o.y = o.y ? o.y : "load";
@@ -328,8 +342,9 @@ bool plot_curve(const char *const *results, int result_count, const plot_curve_o
     o.y_count = 1;
   }
   if (result_count > MOST_CURVES / o.y_count) {
-    snprintf(error, size, "%d results with %d histories are more than the %d curves that one picture shows", result_count,
-             o.y_count, MOST_CURVES);
+    snprintf(error, size,
+             "%d results with %d histories are more than the %d curves that one picture shows",
+             result_count, o.y_count, MOST_CURVES);
     return false;
   }
   char names[400], several[1100];
@@ -349,8 +364,8 @@ bool plot_curve(const char *const *results, int result_count, const plot_curve_o
   return good;
 }
 
-bool plot_values(const double *x, const double *y, long count, const char *x_unit, const char *y_unit,
-                 const plot_curve_options *o, char *error, size_t size) {
+bool plot_values(const double *x, const double *y, long count, const char *x_unit,
+                 const char *y_unit, const plot_curve_options *o, char *error, size_t size) {
   size_t bytes = (size_t)count * sizeof(double);
   curve c = {.x = must_alloc(bytes + 1), .y = must_alloc(bytes + 1), .count = count};
   memcpy(c.x, x, bytes);

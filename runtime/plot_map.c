@@ -17,9 +17,9 @@ static const struct {
   double up_to;
   colour ink;
   const char *text;
-} classes[] = {{0.0, {0.80, 0.82, 0.85}, "sound"},        {0.3, {0.95, 0.80, 0.10}, "0 - 0.3"},
-               {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6"},     {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8"},
-               {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},       {INFINITY, {0, 0, 0}, "separated"}};
+} classes[] = {{0.0, {0.80, 0.82, 0.85}, "sound"},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3"},
+               {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6"}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8"},
+               {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},   {INFINITY, {0, 0, 0}, "separated"}};
 enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
 
 typedef struct map {
@@ -50,7 +50,8 @@ static double bond_length(const map *m, long b) {
 
 /* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of the body. */
 static void move_particles(map *m, const double *displacement, double wanted) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, mean[2] = {0, 0}, largest = 0;
+  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY}, mean[2] = {0, 0},
+         largest = 0;
   for (long p = 0; p < m->particles; p++)
     for (int c = 0; c < 2; c++) {
       low[c] = fmin(low[c], m->reference[2 * p + c]);
@@ -69,63 +70,68 @@ static void move_particles(map *m, const double *displacement, double wanted) {
     m->moved[p] = m->reference[p] + m->factor * displacement[p];
 }
 
-static bool read_values(result_file *f, map *m, const plot_map_options *o, char *error, size_t size) {
+static bool read_values(result_file *f, map *m, const plot_map_options *o, char *error,
+                        size_t size) {
   char name[512];
   result_find_field(f, o->field, name, sizeof name);
-  m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text, sizeof m->unit_text,
-                                error, size);
-  if (!m->values)
-    return false;
+  m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
+                                sizeof m->unit_text, error, size);
+  if (!m->values) return false;
   m->of_bonds = strchr(name, '/') != NULL;
   if (m->value_count != (m->of_bonds ? m->bonds : m->particles)) {
-    snprintf(error, size, "`%s` does not have a value for each %s", name, m->of_bonds ? "bond" : "particle");
+    snprintf(error, size, "`%s` does not have a value for each %s", name,
+             m->of_bonds ? "bond" : "particle");
     return false;
   }
   if (o->component >= m->components) {
-    snprintf(error, size, "`%s` has %d component%s, numbered from 0; there is no component %d", o->field, m->components,
-             m->components == 1 ? "" : "s", o->component);
+    snprintf(error, size, "`%s` has %d component%s, numbered from 0; there is no component %d",
+             o->field, m->components, m->components == 1 ? "" : "s", o->component);
     return false;
   }
   return true;
 }
 
 /* Maps of other fields show separated bonds, too, where the result knows them. */
-static bool read_damage(result_file *f, map *m, const char *path, const plot_map_options *o, char *error, size_t size) {
+static bool read_damage(result_file *f, map *m, const char *path, const plot_map_options *o,
+                        char *error, size_t size) {
   long count = 0;
   m->damage = result_read_damage(f, o->frame, &count, error, size);
-  if (m->damage && count == m->bonds)
-    return true;
+  if (m->damage && count == m->bonds) return true;
   free(m->damage);
   m->damage = NULL;
-  if (strcmp(o->field, "damage") != 0)
-    return true;
+  if (strcmp(o->field, "damage") != 0) return true;
   if (!error[0])
     snprintf(error, size,
-             "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output and run again "
-             "(a law without a damage has none to store)", path);
+             "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
+             "and run again "
+             "(a law without a damage has none to store)",
+             path);
   return false;
 }
 
 /* NULL with a sentence that says how to store them when they are not there. */
-static double *read_displacements(result_file *f, const map *m, const char *path, long frame, char *error, size_t size) {
+static double *read_displacements(result_file *f, const map *m, const char *path, long frame,
+                                  char *error, size_t size) {
   char unit_text[64], name[64];
   long count = 0;
   int components = 0;
   if (!result_find_field(f, "displacement", name, sizeof name)) {
     snprintf(error, size,
-             "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in &output and run again", path);
+             "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in "
+             "&output and run again",
+             path);
     return NULL;
   }
-  double *u = result_read_frame(f, "displacement", frame, &count, &components, unit_text, sizeof unit_text, error, size);
-  if (u && count == m->particles && components == 2)
-    return u;
-  if (u)
-    snprintf(error, size, "the displacements in `%s` are not those of its particles", path);
+  double *u = result_read_frame(f, "displacement", frame, &count, &components, unit_text,
+                                sizeof unit_text, error, size);
+  if (u && count == m->particles && components == 2) return u;
+  if (u) snprintf(error, size, "the displacements in `%s` are not those of its particles", path);
   free(u);
   return NULL;
 }
 
-static bool read_map(result_file *f, const char *path, map *m, const plot_map_options *o, char *error, size_t size) {
+static bool read_map(result_file *f, const char *path, map *m, const plot_map_options *o,
+                     char *error, size_t size) {
   m->reference = result_read_reference(f, &m->particles);
   m->pairs = result_read_bonds(f, NULL, &m->bonds);
   if (!m->reference || !m->pairs || m->particles == 0) {
@@ -133,8 +139,7 @@ static bool read_map(result_file *f, const char *path, map *m, const plot_map_op
     return false;
   }
   double *u = read_displacements(f, m, path, o->frame, error, size);
-  if (!u)
-    return false;
+  if (!u) return false;
   move_particles(m, u, o->factor);
   free(u);
   long frames = 0;
@@ -164,19 +169,23 @@ static bool fit_picture(map *m, char *error, size_t size) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
-  m->scale = fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]), (MOST_HEIGHT - HEAD - FOOT) / (high[1] - low[1]));
+  m->scale = fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]),
+                  (MOST_HEIGHT - HEAD - FOOT) / (high[1] - low[1]));
   m->left = low[0] - ((WIDTH - 2 * MARGIN) / m->scale - (high[0] - low[0])) / 2;
   m->height = fmax(LEAST_HEIGHT, HEAD + FOOT + (high[1] - low[1]) * m->scale);
   m->bottom = low[1];
   return true;
 }
 
-static double at_x(const map *m, double x) { return MARGIN + (x - m->left) * m->scale; }
-static double at_y(const map *m, double y) { return m->height - FOOT - (y - m->bottom) * m->scale; }
+static double at_x(const map *m, double x) {
+  return MARGIN + (x - m->left) * m->scale;
+}
+static double at_y(const map *m, double y) {
+  return m->height - FOOT - (y - m->bottom) * m->scale;
+}
 
 static int class_of(double damage) {
-  if (damage >= 1)
-    return SEPARATED;
+  if (damage >= 1) return SEPARATED;
   int k = 0;
   while (k < SEPARATED - 1 && damage > classes[k].up_to)
     k++;
@@ -201,14 +210,12 @@ static void stroke_crack(canvas *c, const map *m, long b) {
 static void draw_bonds(canvas *c, const map *m, bool coloured) {
   double thin = fmax(0.4, 0.12 * m->spacing * m->scale);
   for (int k = 0; k < CLASSES; k++) { /* the worse above the better */
-    if (!coloured && k != SEPARATED)
-      continue;
+    if (!coloured && k != SEPARATED) continue;
     canvas_colour(c, classes[k].ink);
     cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
     cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
     for (long b = 0; b < m->bonds; b++) {
-      if ((m->damage ? class_of(m->damage[b]) : 0) != k)
-        continue;
+      if ((m->damage ? class_of(m->damage[b]) : 0) != k) continue;
       if (k == SEPARATED)
         stroke_crack(c, m, b);
       else
@@ -220,18 +227,22 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
 
 /* Dark blue - green - yellow; equal steps look equal, also in grey. */
 static colour shade(double v) {
-  static const colour stops[] = {{0.27, 0.00, 0.33}, {0.23, 0.32, 0.55}, {0.13, 0.57, 0.55}, {0.37, 0.79, 0.38}, {0.99, 0.91, 0.14}};
+  static const colour stops[] = {{0.27, 0.00, 0.33},
+                                 {0.23, 0.32, 0.55},
+                                 {0.13, 0.57, 0.55},
+                                 {0.37, 0.79, 0.38},
+                                 {0.99, 0.91, 0.14}};
   double at = fmin(fmax(v, 0), 1) * 4;
   int k = at >= 4 ? 3 : (int)at;
   double w = at - k;
-  return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r), stops[k].g + w * (stops[k + 1].g - stops[k].g),
+  return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r),
+                  stops[k].g + w * (stops[k + 1].g - stops[k].g),
                   stops[k].b + w * (stops[k + 1].b - stops[k].b)};
 }
 
 static double value_of(const map *m, long k, int component) {
   const double *v = &m->values[k * m->components];
-  if (component >= 0 || m->components == 1)
-    return v[component >= 0 ? component : 0];
+  if (component >= 0 || m->components == 1) return v[component >= 0 ? component : 0];
   double sum = 0;
   for (int c = 0; c < m->components; c++)
     sum += v[c] * v[c];
@@ -247,13 +258,16 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
   const bool coloured = m->values && !m->of_bonds;
   double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->spacing * m->scale);
   for (long p = 0; p < m->particles; p++) {
-    canvas_colour(c, coloured ? shade(place_of(value_of(m, p, component), low, high)) : (colour){0.45, 0.48, 0.52});
+    canvas_colour(c, coloured ? shade(place_of(value_of(m, p, component), low, high))
+                              : (colour){0.45, 0.48, 0.52});
     cairo_arc(c->cr, at_x(m, m->moved[2 * p]), at_y(m, m->moved[2 * p + 1]), radius, 0, 2 * M_PI);
     cairo_fill(c->cr);
   }
 }
 
-static bool is_separated(const map *m, long b) { return m->damage && m->damage[b] >= 1; }
+static bool is_separated(const map *m, long b) {
+  return m->damage && m->damage[b] >= 1;
+}
 
 enum { SHADES = 64 };
 static int shade_of(double value, double low, double high) {
@@ -269,7 +283,8 @@ static void draw_bond_values(canvas *c, const map *m, int component, double low,
     canvas_colour(c, shade((k % SHADES + 0.5) / SHADES));
     cairo_set_line_width(c->cr, separated ? 0.3 * wide : wide);
     for (long b = 0; b < m->bonds; b++)
-      if (is_separated(m, b) == separated && shade_of(value_of(m, b, component), low, high) == k % SHADES)
+      if (is_separated(m, b) == separated &&
+          shade_of(value_of(m, b, component), low, high) == k % SHADES)
         stroke_bond(c, m, b);
     cairo_stroke(c->cr);
   }
@@ -308,7 +323,8 @@ static void draw_damage_legend(canvas *c, const map *m) {
   canvas_text(c, x, y, 18, ANCHOR_RIGHT, "damage of bonds:");
 }
 
-static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o, double low, double high) {
+static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o, double low,
+                              double high) {
   double width = 360, x = WIDTH - MARGIN - width, y = m->height - 50, factor;
   for (int k = 0; k < 180; k++) {
     canvas_colour(c, shade(k / 179.0));
@@ -322,9 +338,13 @@ static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o
   canvas_text(c, x, y + 34, 18, ANCHOR_LEFT, text);
   snprintf(text, sizeof text, "%.4g", high * factor);
   canvas_text(c, x + width, y + 34, 18, ANCHOR_RIGHT, text);
-  const char *part = m->components == 1 ? "" : o->component == 0 ? " x" : o->component == 1 ? " y" : " (size)";
+  const char *part = m->components == 1  ? ""
+                     : o->component == 0 ? " x"
+                     : o->component == 1 ? " y"
+                                         : " (size)";
   const bool pure = strcmp(shown, "1") == 0;
-  snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown, pure ? "" : "]");
+  snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown,
+           pure ? "" : "]");
   canvas_text(c, x - 14, y + 13, 18, ANCHOR_RIGHT, text);
 }
 
@@ -334,8 +354,7 @@ static bool range_of(const map *m, int component, double *low, double *high) {
   *high = -INFINITY;
   for (long k = 0; k < m->value_count; k++) {
     const double v = value_of(m, k, component);
-    if (!isfinite(v))
-      continue;
+    if (!isfinite(v)) continue;
     *low = fmin(*low, v);
     *high = fmax(*high, v);
   }
@@ -347,34 +366,30 @@ static void draw_crack_legend(canvas *c, const map *m) {
   bool any = false;
   for (long b = 0; b < m->bonds; b++)
     any = any || is_separated(m, b);
-  if (!any)
-    return;
+  if (!any) return;
   canvas_colour(c, classes[SEPARATED].ink);
   canvas_line(c, x, y, x + 28, y, 5);
   canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, classes[SEPARATED].text);
 }
 
-static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low, double high) {
-  if (m->of_bonds)
-    draw_bond_values(c, m, o->component, low, high);
+static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low,
+                       double high) {
+  if (m->of_bonds) draw_bond_values(c, m, o->component, low, high);
   draw_particles(c, m, o->component, low, high);
-  if (m->damage)
-    draw_bonds(c, m, false);
+  if (m->damage) draw_bonds(c, m, false);
   draw_crack_legend(c, m);
   draw_value_legend(c, m, o, low, high);
 }
 
 static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size) {
   double low = 0, high = 0;
-  if (!fit_picture(m, error, size))
-    return false;
+  if (!fit_picture(m, error, size)) return false;
   if (m->values && !range_of(m, o->component, &low, &high)) {
     snprintf(error, size, "`%s` holds no finite value to draw", o->field);
     return false;
   }
   canvas c;
-  if (!canvas_open(&c, o->output, WIDTH, m->height, error, size))
-    return false;
+  if (!canvas_open(&c, o->output, WIDTH, m->height, error, size)) return false;
   draw_head(&c, m);
   draw_scale_bar(&c, m);
   if (m->values) {
@@ -389,8 +404,7 @@ static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size
 
 bool plot_map(const char *path, const plot_map_options *o, char *error, size_t size) {
   result_file *f = result_read(path, error, size);
-  if (!f)
-    return false;
+  if (!f) return false;
   map m = {.particles = 0};
   bool good = read_map(f, path, &m, o, error, size);
   result_read_close(f);

@@ -17,9 +17,9 @@ enum { MAGIC_LENGTH = sizeof FRAMES_MAGIC - 1, COMPRESSION_LEVEL = 4, PATH_LENGT
 struct result {
   result_header header;
   char path[PATH_LENGTH], working[PATH_LENGTH];
-  int file;         /* working file: magic, record length, then records of time and all fields */
+  int file; /* working file: magic, record length, then records of time and all fields */
   long frames;
-  size_t record;    /* bytes of one frame */
+  size_t record; /* bytes of one frame */
 };
 
 static off_t frame_offset(const result *r, long frame) {
@@ -30,10 +30,8 @@ static bool write_all(int file, const void *data, size_t size) {
   const char *at = data;
   while (size > 0) {
     ssize_t n = write(file, at, size);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      return false;
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
     at += n;
     size -= (size_t)n;
   }
@@ -44,10 +42,8 @@ static bool read_all(int file, void *data, size_t size, off_t offset) {
   char *at = data;
   while (size > 0) {
     ssize_t n = pread(file, at, size, offset);
-    if (n < 0 && errno == EINTR)
-      continue;
-    if (n <= 0)
-      return false;
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return false;
     at += n;
     offset += n;
     size -= (size_t)n;
@@ -70,26 +66,28 @@ static bool keep_working_frames(result *r, long frames, char *error, size_t size
   char magic[MAGIC_LENGTH];
   uint64_t record = 0;
   off_t end = frame_offset(r, frames);
-  if (!read_all(r->file, magic, MAGIC_LENGTH, 0) || memcmp(magic, FRAMES_MAGIC, MAGIC_LENGTH) != 0 ||
+  if (!read_all(r->file, magic, MAGIC_LENGTH, 0) ||
+      memcmp(magic, FRAMES_MAGIC, MAGIC_LENGTH) != 0 ||
       !read_all(r->file, &record, sizeof record, MAGIC_LENGTH) || record != r->record) {
     snprintf(error, size, "`%s` does not hold the frames of the run to be resumed", r->working);
     return false;
   }
   if (lseek(r->file, 0, SEEK_END) < end) {
-    snprintf(error, size, "`%s` holds fewer than the %ld frames that the checkpoint counts on", r->working, frames);
+    snprintf(error, size, "`%s` holds fewer than the %ld frames that the checkpoint counts on",
+             r->working, frames);
     return false;
   }
   r->frames = frames;
-  if (ftruncate(r->file, end) == 0 && lseek(r->file, end, SEEK_SET) == end)
-    return true;
+  if (ftruncate(r->file, end) == 0 && lseek(r->file, end, SEEK_SET) == end) return true;
   snprintf(error, size, "cannot write `%s`: %s", r->working, strerror(errno));
   return false;
 }
 
 static bool lock_working(result *r, char *error, size_t size) {
-  if (flock(r->file, LOCK_EX | LOCK_NB) == 0)
-    return true;
-  snprintf(error, size, "another run is writing `%s`; wait for it, or give `result` another name in &output", r->path);
+  if (flock(r->file, LOCK_EX | LOCK_NB) == 0) return true;
+  snprintf(error, size,
+           "another run is writing `%s`; wait for it, or give `result` another name in &output",
+           r->path);
   return false;
 }
 
@@ -105,19 +103,20 @@ result *result_open(const result_header *header, long resume_frames, char *error
   r->header.path = r->path;
   r->record = sizeof(double);
   for (int k = 0; k < header->field_count; k++)
-    r->record += sizeof(double) * (size_t)header->fields[k].count * (size_t)header->fields[k].components;
+    r->record +=
+        sizeof(double) * (size_t)header->fields[k].count * (size_t)header->fields[k].components;
   r->file = open(r->working, resume_frames >= 0 ? O_RDWR : O_RDWR | O_CREAT, 0666);
   if (r->file < 0) {
-    snprintf(error, size, "cannot %s: `%s`: %s", resume_frames >= 0 ? "resume" : "write the result", r->working,
-             strerror(errno));
+    snprintf(error, size, "cannot %s: `%s`: %s", resume_frames >= 0 ? "resume" : "write the result",
+             r->working, strerror(errno));
     free(r);
     return NULL;
   }
   bool locked = lock_working(r, error, size);
-  if (locked && (resume_frames >= 0 ? keep_working_frames(r, resume_frames, error, size) : start_working(r, error, size)))
+  if (locked && (resume_frames >= 0 ? keep_working_frames(r, resume_frames, error, size)
+                                    : start_working(r, error, size)))
     return r;
-  if (locked && resume_frames < 0)
-    unlink(r->working);
+  if (locked && resume_frames < 0) unlink(r->working);
   close(r->file);
   free(r);
   return NULL;
@@ -139,16 +138,19 @@ bool result_frame(result *r, double time, const double *const *values, char *err
   return false;
 }
 
-long result_frame_count(const result *r) { return r->frames; }
+long result_frame_count(const result *r) {
+  return r->frames;
+}
 
 bool result_sync(result *r, char *error, size_t size) {
-  if (fsync(r->file) == 0)
-    return true;
+  if (fsync(r->file) == 0) return true;
   snprintf(error, size, "cannot write `%s` to the disk: %s", r->working, strerror(errno));
   return false;
 }
 
-void result_discard(result *r) { unlink(r->working); }
+void result_discard(result *r) {
+  unlink(r->working);
+}
 
 void result_close(result *r) {
   close(r->file);
@@ -186,7 +188,8 @@ static bool write_input(hid_t file, const result_header *h) {
          write_texts(file, "/input/kernels", h->kernels, h->kernel_count);
 }
 
-static bool write_history(hid_t file, const double *time, long count, const result_series *series, int series_count) {
+static bool write_history(hid_t file, const double *time, long count, const result_series *series,
+                          int series_count) {
   hsize_t n[1] = {(hsize_t)count};
   bool good = h5_make_group(file, "/history") && h5_make_group(file, "/history/energy") &&
               h5_write_doubles(file, "/history/time", time, 1, n, "s");
@@ -199,7 +202,8 @@ static bool write_history(hid_t file, const double *time, long count, const resu
 }
 
 /* One field of all frames, a frame at a time, out of the working file. `skip` bytes of a record stand before it. */
-static bool write_field(hid_t file, const result *r, const result_field *f, size_t skip, double *buffer) {
+static bool write_field(hid_t file, const result *r, const result_field *f, size_t skip,
+                        double *buffer) {
   char name[512];
   if (f->interaction)
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);
@@ -212,8 +216,7 @@ static bool write_field(hid_t file, const result *r, const result_field *f, size
   for (long frame = 0; good && frame < r->frames; frame++)
     good = read_all(r->file, buffer, bytes, frame_offset(r, frame) + (off_t)skip) &&
            h5_write_frame(set, frame, f->interaction ? 2 : 3, shape, buffer);
-  if (set >= 0)
-    good = H5Dclose(set) >= 0 && good;
+  if (set >= 0) good = H5Dclose(set) >= 0 && good;
   return good;
 }
 
@@ -229,7 +232,8 @@ static bool write_frames(hid_t file, const result *r) {
   size_t skip = sizeof(double);
   for (int k = 0; good && k < h->field_count; k++) {
     char group[512];
-    snprintf(group, sizeof group, "/frames/%s", h->fields[k].interaction ? h->fields[k].interaction : "");
+    snprintf(group, sizeof group, "/frames/%s",
+             h->fields[k].interaction ? h->fields[k].interaction : "");
     good = (!h->fields[k].interaction || h5_make_group(file, group)) &&
            write_field(file, r, &h->fields[k], skip, buffer);
     skip += sizeof(double) * (size_t)h->fields[k].count * (size_t)h->fields[k].components;
@@ -240,8 +244,10 @@ static bool write_frames(hid_t file, const result *r) {
 }
 
 static bool write_attributes(hid_t file, const result_header *h, double dt, long steps) {
-  return h5_attribute_text(file, "perilat_version", h->version) && h5_attribute_text(file, "started", h->started) &&
-         h5_attribute_text(file, "title", h->title) && h5_attribute_text(file, "kernel_key", h->kernel_key) &&
+  return h5_attribute_text(file, "perilat_version", h->version) &&
+         h5_attribute_text(file, "started", h->started) &&
+         h5_attribute_text(file, "title", h->title) &&
+         h5_attribute_text(file, "kernel_key", h->kernel_key) &&
          h5_attribute_double(file, "dt", dt) && h5_attribute_integer(file, "steps", steps);
 }
 
@@ -254,24 +260,23 @@ static bool fail(const char *temporary, const char *path, char *error, size_t si
 }
 
 bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, bool keep_working, char *error, size_t size) {
+                   const result_series *series, int series_count, bool keep_working, char *error,
+                   size_t size) {
   char temporary[PATH_LENGTH + 16];
   snprintf(temporary, sizeof temporary, "%s.part", r->path);
   h5_quiet();
   errno = 0;
   hid_t file = h5_create(temporary);
-  if (file < 0)
-    return fail(temporary, r->path, error, size);
+  if (file < 0) return fail(temporary, r->path, error, size);
   bool good = write_attributes(file, &r->header, dt, steps) && write_input(file, &r->header) &&
-              write_particles(file, &r->header) && write_history(file, time, history_count, series, series_count) &&
+              write_particles(file, &r->header) &&
+              write_history(file, time, history_count, series, series_count) &&
               write_frames(file, r) && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
   good = H5Fclose(file) >= 0 && good;
   good = good && sync_file(temporary) && rename(temporary, r->path) == 0;
-  if (!good)
-    return fail(temporary, r->path, error, size);
+  if (!good) return fail(temporary, r->path, error, size);
   if (!xdmf_write(&r->header, r->file, r->frames, r->record, frame_offset(r, 0), error, size))
     return false;
-  if (!keep_working)
-    unlink(r->working);
+  if (!keep_working) unlink(r->working);
   return true;
 }

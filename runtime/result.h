@@ -16,37 +16,39 @@
 #include <stdint.h>
 #include <stdio.h>
 
-typedef struct result_text { const char *name, *text; } result_text;
+typedef struct result_text {
+  const char *name, *text;
+} result_text;
 
-typedef struct result_field {      /* of a frame */
+typedef struct result_field { /* of a frame */
   const char *name;
-  const char *unit;                /* "m", "1" */
-  const char *interaction;         /* NULL: per particle; else bond field of that interaction */
-  int components;                  /* 1, 2, ... */
-  long count;                      /* particles or bonds */
-  const char *kind;                /* "state", "damage", "output" of the law; else "other" */
+  const char *unit;        /* "m", "1" */
+  const char *interaction; /* NULL: per particle; else bond field of that interaction */
+  int components;          /* 1, 2, ... */
+  long count;              /* particles or bonds */
+  const char *kind;        /* "state", "damage", "output" of the law; else "other" */
 } result_field;
 
-typedef struct result_series {     /* of the history */
-  const char *name;                /* "load"; "energy/kinetic" */
+typedef struct result_series { /* of the history */
+  const char *name;            /* "load"; "energy/kinetic" */
   const char *unit;
-  const double *values;            /* [history_count] */
+  const double *values; /* [history_count] */
 } result_series;
 
 typedef struct result_header {
-  const char *path;                /* of the final file */
+  const char *path; /* of the final file */
   const char *title, *started, *version, *kernel_key;
   const char *deck_text;
-  const char *overrides;           /* of --set, one a line; NULL or "" without */
+  const char *overrides; /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
   int model_count, kernel_count;
   long particle_count;
-  const double *reference;         /* [N][2] */
-  const int32_t *body;             /* [N] number of the body in the deck, from 0 */
-  const double *volume;            /* [N] */
-  const char *interaction;         /* name of the bonds: the lattice's name */
+  const double *reference; /* [N][2] */
+  const int32_t *body;     /* [N] number of the body in the deck, from 0 */
+  const double *volume;    /* [N] */
+  const char *interaction; /* name of the bonds: the lattice's name */
   long bond_count;
-  const int32_t *bonds;            /* [M][2] */
+  const int32_t *bonds; /* [M][2] */
   const result_field *fields;
   int field_count;
 } result_header;
@@ -64,7 +66,8 @@ bool result_sync(result *r, char *error, size_t size);
 /* Writes result.h5 and result.xdmf under temporary names and renames them; removes the working file unless
    `keep_working` (an interrupted run that can be resumed). */
 bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, bool keep_working, char *error, size_t size);
+                   const result_series *series, int series_count, bool keep_working, char *error,
+                   size_t size);
 /* Removes the working file; the result is closed afterwards all the same. */
 void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
@@ -73,20 +76,22 @@ void result_close(result *r); /* frees; keeps files */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
-double *result_read_series(result_file *f, const char *name, long *count, char *unit, size_t unit_size,
-                           char *error, size_t size);          /* "time", "load", "energy/kinetic" */
-double *result_read_frame(result_file *f, const char *field, long frame, long *count, int *components,
-                          char *unit, size_t unit_size, char *error, size_t size);
-double *result_read_reference(result_file *f, long *particles);       /* [N][2] */
-int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds); /* [M][2]; NULL name: the first */
+double *result_read_series(result_file *f, const char *name, long *count, char *unit,
+                           size_t unit_size, char *error,
+                           size_t size); /* "time", "load", "energy/kinetic" */
+double *result_read_frame(result_file *f, const char *field, long frame, long *count,
+                          int *components, char *unit, size_t unit_size, char *error, size_t size);
+double *result_read_reference(result_file *f, long *particles); /* [N][2] */
+int32_t *result_read_bonds(result_file *f, const char *interaction,
+                           long *bonds); /* [M][2]; NULL name: the first */
 /* The name under which result_read_frame knows a field: `given` itself, or of a bond's field without its interaction when
    only one has it. False when there is none, or several. */
 bool result_find_field(result_file *f, const char *given, char *name, size_t size);
 /* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error ""). */
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);
-char *result_read_text(result_file *f, const char *path);             /* "/input/deck" */
-char *result_read_title(result_file *f);                              /* "" without one */
+char *result_read_text(result_file *f, const char *path); /* "/input/deck" */
+char *result_read_title(result_file *f);                  /* "" without one */
 /* Names of the members of a group ("/history", "/frames"), comma separated; malloc'ed. */
 char *result_list(result_file *f, const char *group);
 /* Data sets of a group and of the groups in it, to be read: "load, time, energy/kinetic". malloc'ed, never NULL. */

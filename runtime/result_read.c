@@ -20,9 +20,9 @@ result_file *result_read(const char *path, char *error, size_t size) {
   struct stat about;
   FILE *probe = fopen(path, "rb");
   if (!probe || fstat(fileno(probe), &about) != 0 || !S_ISREG(about.st_mode)) {
-    snprintf(error, size, "cannot read the result `%s`: %s", path, probe ? "it is not a file" : strerror(errno));
-    if (probe)
-      fclose(probe);
+    snprintf(error, size, "cannot read the result `%s`: %s", path,
+             probe ? "it is not a file" : strerror(errno));
+    if (probe) fclose(probe);
     return NULL;
   }
   fclose(probe);
@@ -31,7 +31,8 @@ result_file *result_read(const char *path, char *error, size_t size) {
     snprintf(error, size, "`%s` is not a whole HDF5 file", path);
     return NULL;
   }
-  if (H5Lexists(file, "/history", H5P_DEFAULT) <= 0 || H5Lexists(file, "/particles", H5P_DEFAULT) <= 0) {
+  if (H5Lexists(file, "/history", H5P_DEFAULT) <= 0 ||
+      H5Lexists(file, "/particles", H5P_DEFAULT) <= 0) {
     H5Fclose(file);
     snprintf(error, size, "`%s` is damaged, or not a result of perilat", path);
     return NULL;
@@ -52,14 +53,11 @@ static hid_t open_set(const result_file *f, const char *name) {
   char part[512];
   for (const char *at = strchr(name + 1, '/');; at = strchr(at + 1, '/')) {
     size_t n = at ? (size_t)(at - name) : strlen(name);
-    if (n >= sizeof part)
-      return -1;
+    if (n >= sizeof part) return -1;
     memcpy(part, name, n);
     part[n] = 0;
-    if (H5Lexists(f->file, part, H5P_DEFAULT) <= 0)
-      return -1;
-    if (!at)
-      return H5Dopen2(f->file, name, H5P_DEFAULT);
+    if (H5Lexists(f->file, part, H5P_DEFAULT) <= 0) return -1;
+    if (!at) return H5Dopen2(f->file, name, H5P_DEFAULT);
   }
 }
 
@@ -98,8 +96,7 @@ static char *append_name(char *text, const char *folder, const char *name) {
 
 static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
   int rank;
-  if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted)
-    return NULL;
+  if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted) return NULL;
   size_t count = 1;
   for (int k = 0; k < rank; k++)
     count *= (size_t)shape[k];
@@ -114,26 +111,26 @@ static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hs
 char *result_members(result_file *f, const char *group) {
   char *names = result_list(f, group), *rest = NULL;
   char *text = must_calloc(1, 1);
-  for (char *name = names ? strtok_r(names, ",", &rest) : NULL; name; name = strtok_r(NULL, ",", &rest)) {
+  for (char *name = names ? strtok_r(names, ",", &rest) : NULL; name;
+       name = strtok_r(NULL, ",", &rest)) {
     char path[512];
     snprintf(path, sizeof path, "%.250s/%.250s", group, name);
     char *inner = result_list(f, path), *inner_rest = NULL;
-    if (!inner)
-      text = append_name(text, "", name);
-    for (char *part = inner ? strtok_r(inner, ",", &inner_rest) : NULL; part; part = strtok_r(NULL, ",", &inner_rest)) {
+    if (!inner) text = append_name(text, "", name);
+    for (char *part = inner ? strtok_r(inner, ",", &inner_rest) : NULL; part;
+         part = strtok_r(NULL, ",", &inner_rest)) {
       snprintf(path, sizeof path, "%.250s/", name);
       text = append_name(text, path, part);
     }
     free(inner);
   }
   free(names);
-  if (!*text)
-    text = append_name(text, "", "nothing");
+  if (!*text) text = append_name(text, "", "nothing");
   return text;
 }
 
-double *result_read_series(result_file *f, const char *name, long *count, char *unit_text, size_t unit_size,
-                           char *error, size_t size) {
+double *result_read_series(result_file *f, const char *name, long *count, char *unit_text,
+                           size_t unit_size, char *error, size_t size) {
   char path[512];
   snprintf(path, sizeof path, "/history/%s", name);
   hid_t set = open_set(f, path);
@@ -147,8 +144,7 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
     snprintf(error, size, "`%s` has no history `%s`; it has %s", f->path, name, names);
     free(names);
   }
-  if (set >= 0)
-    H5Dclose(set);
+  if (set >= 0) H5Dclose(set);
   return values;
 }
 
@@ -156,7 +152,8 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
 static char *field_names(result_file *f, bool of_bonds) {
   char *members = result_members(f, "/frames"), *rest = NULL, *names = must_calloc(1, 1);
   for (char *name = strtok_r(members, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
-    if ((strchr(name, '/') != NULL) == of_bonds && strcmp(name, "time") != 0 && strcmp(name, "nothing") != 0)
+    if ((strchr(name, '/') != NULL) == of_bonds && strcmp(name, "time") != 0 &&
+        strcmp(name, "nothing") != 0)
       names = append_name(names, "", name);
   free(members);
   return *names ? names : append_name(names, "", "none");
@@ -164,8 +161,8 @@ static char *field_names(result_file *f, bool of_bonds) {
 
 static void no_such_field(result_file *f, const char *field, char *error, size_t size) {
   char *of_particles = field_names(f, false), *of_bonds = field_names(f, true);
-  snprintf(error, size, "`%s` has no field `%s`; fields of particles: %s; of bonds: %s", f->path, field, of_particles,
-           of_bonds);
+  snprintf(error, size, "`%s` has no field `%s`; fields of particles: %s; of bonds: %s", f->path,
+           field, of_particles, of_bonds);
   free(of_particles);
   free(of_bonds);
 }
@@ -178,14 +175,14 @@ static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]
               H5Dread(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
   H5Sclose(memory);
   H5Sclose(space);
-  if (good)
-    return values;
+  if (good) return values;
   free(values);
   return NULL;
 }
 
-double *result_read_frame(result_file *f, const char *field, long frame, long *count, int *components, char *unit_text,
-                          size_t unit_size, char *error, size_t size) {
+double *result_read_frame(result_file *f, const char *field, long frame, long *count,
+                          int *components, char *unit_text, size_t unit_size, char *error,
+                          size_t size) {
   char path[512];
   snprintf(path, sizeof path, "/frames/%s", field);
   hid_t set = open_set(f, path);
@@ -193,14 +190,14 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   hsize_t shape[3] = {0, 0, 0};
   if (set < 0 || !shape_of(set, 1, &rank, shape) || rank < 2) {
     no_such_field(f, field, error, size);
-    if (set >= 0)
-      H5Dclose(set);
+    if (set >= 0) H5Dclose(set);
     return NULL;
   }
   long frames = (long)shape[0], wanted = frame < 0 ? frames + frame : frame;
   double *values = NULL;
   if (wanted < 0 || wanted >= frames)
-    snprintf(error, size, "`%s` has %ld frames, numbered from 0; there is no frame %ld", f->path, frames, frame);
+    snprintf(error, size, "`%s` has %ld frames, numbered from 0; there is no frame %ld", f->path,
+             frames, frame);
   else if (!(values = read_slab(set, wanted, rank, shape)))
     snprintf(error, size, "frame %ld of `%s` in `%s` cannot be read", wanted, field, f->path);
   *count = (long)shape[1];
@@ -216,18 +213,16 @@ bool result_find_field(result_file *f, const char *given, char *name, size_t siz
   snprintf(path, sizeof path, "/frames/%.400s", given);
   snprintf(name, size, "%s", given);
   hid_t set = open_set(f, path);
-  for (char *i = set < 0 && interactions ? strtok_r(interactions, ",", &rest) : NULL; i; i = strtok_r(NULL, ",", &rest)) {
+  for (char *i = set < 0 && interactions ? strtok_r(interactions, ",", &rest) : NULL; i;
+       i = strtok_r(NULL, ",", &rest)) {
     snprintf(path, sizeof path, "/frames/%.200s/%.200s", i, given);
     hid_t other = open_set(f, path);
-    if (other < 0)
-      continue;
+    if (other < 0) continue;
     H5Dclose(other);
-    if (!found++)
-      snprintf(name, size, "%s", path + strlen("/frames/"));
+    if (!found++) snprintf(name, size, "%s", path + strlen("/frames/"));
   }
   free(interactions);
-  if (set >= 0)
-    H5Dclose(set);
+  if (set >= 0) H5Dclose(set);
   return set >= 0 || found == 1;
 }
 
@@ -235,8 +230,7 @@ static bool is_damage(result_file *f, const char *field) {
   char path[512], kind[16] = "";
   snprintf(path, sizeof path, "/frames/%.500s", field);
   hid_t set = open_set(f, path);
-  if (set < 0)
-    return false;
+  if (set < 0) return false;
   h5_read_attribute_text(set, "kind", kind, sizeof kind);
   H5Dclose(set);
   return strcmp(kind, "damage") == 0;
@@ -244,15 +238,12 @@ static bool is_damage(result_file *f, const char *field) {
 
 /* Takes one more damage into `most`, which may be NULL; frees it. NULL when they do not fit. */
 static double *larger_of(double *most, long bonds, double *more, long count) {
-  if (!most)
-    return more;
+  if (!most) return more;
   const bool fits = more && count == bonds;
   for (long b = 0; fits && b < bonds; b++)
-    if (more[b] > most[b])
-      most[b] = more[b];
+    if (more[b] > most[b]) most[b] = more[b];
   free(more);
-  if (fits)
-    return most;
+  if (fits) return most;
   free(most);
   return NULL;
 }
@@ -263,17 +254,17 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
   bool good = interaction != NULL;
   error[0] = 0;
   *bonds = 0;
-  if (interaction)
-    interaction[strcspn(interaction, ",")] = 0;
+  if (interaction) interaction[strcspn(interaction, ",")] = 0;
   snprintf(name, sizeof name, "/frames/%.400s", interaction ? interaction : "");
   char *fields = interaction ? result_list(f, name) : NULL;
-  for (char *field = fields ? strtok_r(fields, ",", &rest) : NULL; good && field; field = strtok_r(NULL, ",", &rest)) {
+  for (char *field = fields ? strtok_r(fields, ",", &rest) : NULL; good && field;
+       field = strtok_r(NULL, ",", &rest)) {
     long count = 0;
     int components = 0;
     snprintf(name, sizeof name, "%.250s/%.250s", interaction, field);
-    if (!is_damage(f, name))
-      continue;
-    double *more = result_read_frame(f, name, frame, &count, &components, unit_text, sizeof unit_text, error, size);
+    if (!is_damage(f, name)) continue;
+    double *more = result_read_frame(f, name, frame, &count, &components, unit_text,
+                                     sizeof unit_text, error, size);
     if (more && components != 1) { /* one number a bond */
       free(more);
       more = NULL;
@@ -288,7 +279,8 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
   return most;
 }
 
-static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int rank, long *rows_read) {
+static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int rank,
+                        long *rows_read) {
   hid_t set = open_set(f, path);
   hsize_t shape[3] = {0, 0, 0};
   void *values = set >= 0 ? read_whole(set, type, width, rank, shape) : NULL;
@@ -297,8 +289,7 @@ static void *read_table(result_file *f, const char *path, hid_t type, size_t wid
     values = NULL;
   }
   *rows_read = values ? (long)shape[0] : 0;
-  if (set >= 0)
-    H5Dclose(set);
+  if (set >= 0) H5Dclose(set);
   return values;
 }
 
@@ -331,8 +322,7 @@ double *result_read_frame_times(result_file *f, long *frames) {
 
 char *result_read_text(result_file *f, const char *path) {
   hid_t set = open_set(f, path);
-  if (set < 0)
-    return NULL;
+  if (set < 0) return NULL;
   char *text = h5_read_text(set);
   H5Dclose(set);
   return text;
@@ -348,19 +338,16 @@ static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, vo
   name_list *l = data;
   size_t n = strlen(name);
   l->text = must_realloc(l->text, l->length + n + 2);
-  if (l->length)
-    l->text[l->length++] = ',';
+  if (l->length) l->text[l->length++] = ',';
   memcpy(l->text + l->length, name, n + 1);
   l->length += n;
   return 0;
 }
 
 char *result_list(result_file *f, const char *group) {
-  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0)
-    return NULL;
+  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0) return NULL;
   hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
-  if (g < 0)
-    return NULL;
+  if (g < 0) return NULL;
   name_list l = {NULL, 0};
   H5Literate(g, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, &l);
   H5Gclose(g);

@@ -15,29 +15,32 @@
 #define ROWS_MAX_DIRECTIONS 16
 
 typedef struct rows {
-  int row_count;               /* rows with sites, without ghost rows */
-  long pitch;                  /* doubles between the starts of rows; multiple of PL_LANES */
-  long size;                   /* (row_count + 2) * pitch + PL_LANES: length of every site array (the far end
+  int row_count;  /* rows with sites, without ghost rows */
+  long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
+  long size;      /* (row_count + 2) * pitch + PL_LANES: length of every site array (the far end
                                   of the last row's strips reaches one past the upper ghost row) */
-  int directions;              /* 3 */
-  long offset[2][ROWS_MAX_DIRECTIONS];   /* [row parity][direction] */
-  double chord[ROWS_MAX_DIRECTIONS][2];  /* reference chord from owner to partner, m (rotated) */
-  double length[ROWS_MAX_DIRECTIONS];    /* m */
-  double spacing, volume;      /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
-  double site_area;            /* m^2 of the plane that one site stands for */
-  double stiffness_thickness;  /* m: `t` of the laws */
-  double mass, inertia;        /* set from rho by the simulation: kg, kg m^2 */
-  int64_t *flags;              /* [size] PL_PRESENT, PL_PROTECTED of the owned bonds */
-  unsigned char *present;      /* [size] the site exists */
-  double *x, *y;               /* [size] reference position, m (absent sites too) */
+  int directions; /* 3 */
+  long offset[2][ROWS_MAX_DIRECTIONS];  /* [row parity][direction] */
+  double chord[ROWS_MAX_DIRECTIONS][2]; /* reference chord from owner to partner, m (rotated) */
+  double length[ROWS_MAX_DIRECTIONS];   /* m */
+  double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
+  double site_area;           /* m^2 of the plane that one site stands for */
+  double stiffness_thickness; /* m: `t` of the laws */
+  double mass, inertia;       /* set from rho by the simulation: kg, kg m^2 */
+  int64_t *flags;             /* [size] PL_PRESENT, PL_PROTECTED of the owned bonds */
+  unsigned char *present;     /* [size] the site exists */
+  double *x, *y;              /* [size] reference position, m (absent sites too) */
   long particle_count, bond_count;
-  int32_t *particle_site;      /* [particle_count] site of each particle, in row order: the order of results */
-  int32_t *site_particle;      /* [size] particle of each site, or -1 */
-  double width, height;        /* extent of the present sites along x and y, m */
+  int32_t *
+      particle_site; /* [particle_count] site of each particle, in row order: the order of results */
+  int32_t *site_particle; /* [size] particle of each site, or -1 */
+  double width, height;   /* extent of the present sites along x and y, m */
 } rows;
 
 /* First site of row r (0 .. row_count-1). */
-static inline long rows_start(const rows *w, int r) { return (r + 1) * w->pitch; }
+static inline long rows_start(const rows *w, int r) {
+  return (r + 1) * w->pitch;
+}
 
 /* What a law is told about the bonds of one direction; masses as `mass` says. `area` is 0: no bars here. */
 pl_bond_class rows_bond_class(const rows *w, int direction);

@@ -57,8 +57,7 @@ static void limit_with_fields(simulation *s) {
     for (int k = 0; k < f->count; k++) {
       const bool all = f->count <= MOST_AT_ONCE, one = !all && c < 2 * f->count;
       const bool high = all ? c >> k & 1 : c & 1;
-      if (!one || c / 2 == k)
-        values[s->law->varying[k]] = high ? f->largest[k] : f->smallest[k];
+      if (!one || c / 2 == k) values[s->law->varying[k]] = high ? f->largest[k] : f->smallest[k];
     }
     step_limit limit = {0};
     if (!are_allowed(s->law, values)) continue;
@@ -73,9 +72,10 @@ static void warn_of_protection(const simulation *s, diagnostics *d) {
   for (int f = 0; f < s->law->field_count; f++)
     if (s->law->fields[f].kind == PL_FIELD_DAMAGE) return;
   if (s->deck->protect_count > 0 && s->law->field_count > 0)
-    diag_report(d, DIAG_DECK_WARNING, s->deck->protects[0].item.where,
-                "the law `%s` has no damage that could be held back; its states go on as they do elsewhere",
-                s->law->name);
+    diag_report(
+        d, DIAG_DECK_WARNING, s->deck->protects[0].item.where,
+        "the law `%s` has no damage that could be held back; its states go on as they do elsewhere",
+        s->law->name);
 }
 
 static bool choose_step(simulation *s, diagnostics *d) {
@@ -85,8 +85,10 @@ static bool choose_step(simulation *s, diagnostics *d) {
   const double limit = s->limit.limit;
   if (!(limit > 0)) {
     diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
-                "the law `%s` has no finite stiffness at rest, so that no step is stable", s->law->name);
-    diag_hint(d, "look for a division by zero or a root where stretch, rotations and states are all 0");
+                "the law `%s` has no finite stiffness at rest, so that no step is stable",
+                s->law->name);
+    diag_hint(
+        d, "look for a division by zero or a root where stretch, rotations and states are all 0");
     return false;
   }
   if (k->step > limit) {
@@ -114,7 +116,8 @@ static bool count_steps(simulation *s, diagnostics *d) {
   }
   s->step_count = steps < 1 ? 1 : (int64_t)steps;
   s->sample_interval = s->deck->output.sample > 0 ? s->deck->output.sample : end / 2000;
-  s->sample_interval = fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
+  s->sample_interval =
+      fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
   const double samples = fmin(ceil(end / s->sample_interval), steps);
   s->history_capacity = (int64_t)samples + 3;
   return true;
@@ -231,7 +234,8 @@ sweep *simulation_state(simulation *s) {
 
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
-  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) + site * (double)s->lattice->size +
+  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) +
+         site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
@@ -270,7 +274,9 @@ static void record_sample(simulation *s) {
   }
 }
 
-const deck_stop *simulation_stopped_by(const simulation *s) { return s->stopped_by; }
+const deck_stop *simulation_stopped_by(const simulation *s) {
+  return s->stopped_by;
+}
 
 long simulation_history(const simulation *s, const double **time) {
   if (time) *time = s->time;

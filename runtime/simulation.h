@@ -82,10 +82,11 @@ typedef struct bad_state {
   double x, y;
   long bond_particle;                             /* partner of the first bad bond, or -1 */
   double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
-  const double *fields; /* of that bond after the step's rules, initial values where these gave no number */
-  int field_count;      /* 0 without a bond; the values are the simulation's */
+  const double
+      *fields; /* of that bond after the step's rules, initial values where these gave no number */
+  int field_count;          /* 0 without a bond; the values are the simulation's */
   const double *parameters; /* of the law in that bond; NULL without a bond */
-  const char *what; /* "not a number", "runaway velocity" */
+  const char *what;         /* "not a number", "runaway velocity" */
 } bad_state;
 bad_state simulation_bad(const simulation *s);
 

@@ -69,7 +69,7 @@ static double bond_force(const simulation *s, const rows_bond *b, int direction,
   return worse(forces[2] / c.s, worse(forces[1] / c.s, forces[0]));
 }
 
-/* The rules have already been at work; a rule that gave no number is looked at from the beginning. */
+/* The rules have already been at work; one that gave no number is looked at from the beginning. */
 static void keep_fields(simulation *s, const rows_bond *b) {
   const pl_law *law = s->law;
   for (int f = 0; f < law->field_count; f++) {

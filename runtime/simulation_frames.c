@@ -31,13 +31,13 @@ static void offer(simulation *s, bool offered, frame_field field, frame_source f
 void frames_choose(simulation *s) {
   const pl_law *law = s->law;
   const bool all = s->deck->output.field_count == 0;
-  const size_t most = 6 + (size_t)law->field_count + (size_t)law->output_count +
-                      (size_t)law->varying_count;
+  const size_t most =
+      6 + (size_t)law->field_count + (size_t)law->output_count + (size_t)law->varying_count;
   s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
   double *const *u = s->state->displacement, *const *v = s->state->velocity;
-  offer(s, all || frames_want(s, "displacement"), (frame_field){"displacement", "m", false, 2, "other"},
-        (frame_source){FROM_STATE, u, 0});
+  offer(s, all || frames_want(s, "displacement"),
+        (frame_field){"displacement", "m", false, 2, "other"}, (frame_source){FROM_STATE, u, 0});
   offer(s, all || frames_want(s, "velocity"), (frame_field){"velocity", "m/s", false, 2, "other"},
         (frame_source){FROM_STATE, v, 0});
   offer(s, law->dof > 2 && (all || frames_want(s, "rotation")),

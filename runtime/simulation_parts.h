@@ -24,7 +24,15 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
 } progress_state;
 
 typedef struct frame_source { /* where a frame field comes from */
-  enum { FROM_STATE, FROM_FORCE, FROM_DAMAGE, FROM_DISSIPATED, FROM_FIELD, FROM_OUTPUT, FROM_PARAMETER } kind;
+  enum {
+    FROM_STATE,
+    FROM_FORCE,
+    FROM_DAMAGE,
+    FROM_DISSIPATED,
+    FROM_FIELD,
+    FROM_OUTPUT,
+    FROM_PARAMETER
+  } kind;
   double *const *arrays; /* STATE: one a component */
   int index;             /* FIELD, OUTPUT, PARAMETER (of those that differ from bond to bond) */
 } frame_source;
@@ -33,8 +41,8 @@ struct simulation {
   const deck *deck;
   rows *lattice;
   const pl_law *law;
-  double *parameters;     /* the caller's; those of random fields become their mean */
-  random_fields *fields;  /* NULL without */
+  double *parameters;    /* the caller's; those of random fields become their mean */
+  random_fields *fields; /* NULL without */
   sweep *state;
   loads *loads;
   monitors *monitors;
@@ -51,9 +59,9 @@ struct simulation {
   int frame_field_count;
   bad_state bad;
   double *bad_parameters; /* of the bad bond */
-  double *bad_fields; /* [law's fields], of the bad bond */
+  double *bad_fields;     /* [law's fields], of the bad bond */
   progress_state at;
-  bool observe, go_on; /* set by one thread for all */
+  bool observe, go_on;         /* set by one thread for all */
   const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
   const volatile sig_atomic_t *interrupted;

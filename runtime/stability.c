@@ -57,8 +57,7 @@ static bool damages(bond_probe *b, bond_motion m) {
   double forces[PL_STATE_RESULTS];
   bond_probe_forces(b, m, forces);
   for (int f = 0; f < b->law->field_count; f++)
-    if (b->law->fields[f].kind == PL_FIELD_DAMAGE &&
-        b->new_fields[f] > b->law->fields[f].initial)
+    if (b->law->fields[f].kind == PL_FIELD_DAMAGE && b->new_fields[f] > b->law->fields[f].initial)
       return true;
   return false;
 }
@@ -81,9 +80,9 @@ static double harmless_part(bond_probe *b, bond_motion full) {
 }
 
 typedef struct rate_scan {
-  bool bounded;             /* every rate term stays below its elastic force */
+  bool bounded;                   /* every rate term stays below its elastic force */
   double slope[PL_STATE_RESULTS]; /* of the state with the largest: N s, N m s, N m s */
-  double size;              /* of that slope */
+  double size;                    /* of that slope */
 } rate_scan;
 
 static void scan_bound(rate_scan *r, bond_probe *b, bond_motion k) {
@@ -121,7 +120,7 @@ static rate_scan scan_rates(bond_probe *b) {
   for (int path = 0; path < paths; path++) {
     const double sign = path % 2 == 0 ? 1 : -1;
     const bond_motion full = {sign * LARGEST_STRETCH, 0, LARGEST_STRETCH * bending[path / 2][0],
-                                  LARGEST_STRETCH * bending[path / 2][1]};
+                              LARGEST_STRETCH * bending[path / 2][1]};
     const double harmless = harmless_part(b, full);
     for (double u = 1; u > 1e-4; u /= 4) {
       const double part = u * harmless;

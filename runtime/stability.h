@@ -19,6 +19,7 @@
 void stability_limit(const pl_law *law, const double *parameters, const rows *w, step_limit *out);
 
 /* Largest frequency (rad/s) of all branches at wave vector k (1/m), undamped; NaN when the tangent is not finite. */
-double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx, double ky);
+double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx,
+                       double ky);
 
 #endif

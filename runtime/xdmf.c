@@ -41,25 +41,27 @@ static void print_place(FILE *out, const char *file, const char *set) {
 }
 
 /* A frame's slab of a data set [F, count(, components)]. `first` and `width` choose components. */
-static void print_slab(FILE *out, const char *file, const char *set, long frames, long frame, const result_field *f,
-                       int first, int width) {
+static void print_slab(FILE *out, const char *file, const char *set, long frames, long frame,
+                       const result_field *f, int first, int width) {
   bool flat = f->interaction != NULL;
-  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%ld%s\" Type=\"HyperSlab\">", f->count,
-          flat || width == 1 ? "" : " 2");
+  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%ld%s\" Type=\"HyperSlab\">",
+          f->count, flat || width == 1 ? "" : " 2");
   if (flat)
-    fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%ld 0 1 1 1 %ld</DataItem>", frame, f->count);
+    fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%ld 0 1 1 1 %ld</DataItem>", frame,
+            f->count);
   else
-    fprintf(out, "<DataItem Dimensions=\"3 3\" Format=\"XML\">%ld 0 %d 1 1 1 1 %ld %d</DataItem>", frame, first,
-            f->count, width);
-  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%ld %ld", frames, f->count);
-  if (!flat)
-    fprintf(out, " %d", f->components);
+    fprintf(out, "<DataItem Dimensions=\"3 3\" Format=\"XML\">%ld 0 %d 1 1 1 1 %ld %d</DataItem>",
+            frame, first, f->count, width);
+  fprintf(out, "<DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" Dimensions=\"%ld %ld",
+          frames, f->count);
+  if (!flat) fprintf(out, " %d", f->components);
   fputs("\">", out);
   print_place(out, file, set);
   fputs("</DataItem></DataItem>\n", out);
 }
 
-static void print_attribute(FILE *out, const char *file, long frames, long frame, const result_field *f) {
+static void print_attribute(FILE *out, const char *file, long frames, long frame,
+                            const result_field *f) {
   char set[512];
   const char *centre = f->interaction ? "Cell" : "Node";
   if (f->interaction)
@@ -71,7 +73,10 @@ static void print_attribute(FILE *out, const char *file, long frames, long frame
     print_slab(out, file, set, frames, frame, f, 0, 1);
   } else { /* vectors have three components there */
     fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"Vector\" Center=\"%s\">", f->name, centre);
-    fprintf(out, "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%ld 3\">\n", f->count);
+    fprintf(
+        out,
+        "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%ld 3\">\n",
+        f->count);
     print_slab(out, file, set, frames, frame, f, 0, 1);
     print_slab(out, file, set, frames, frame, f, 1, 1);
     fputs("</DataItem>", out);
@@ -80,25 +85,32 @@ static void print_attribute(FILE *out, const char *file, long frames, long frame
 }
 
 static void print_geometry(FILE *out, const char *file, const result_header *h) {
-  fprintf(out, "<Geometry GeometryType=\"XY\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-               "Dimensions=\"%ld 2\">",
-          h->particle_count);
+  fprintf(
+      out,
+      "<Geometry GeometryType=\"XY\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+      "Dimensions=\"%ld 2\">",
+      h->particle_count);
   print_place(out, file, "/particles/reference");
   fputs("</DataItem></Geometry>\n", out);
 }
 
-static void print_frame(FILE *out, const char *file, const result_header *h, long frames, long frame, double time) {
-  fprintf(out, "<Grid Name=\"frame %ld\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time Value=\"%.17g\"/>\n",
+static void print_frame(FILE *out, const char *file, const result_header *h, long frames,
+                        long frame, double time) {
+  fprintf(out,
+          "<Grid Name=\"frame %ld\" GridType=\"Collection\" CollectionType=\"Spatial\"><Time "
+          "Value=\"%.17g\"/>\n",
           frame, time);
-  fprintf(out, "<Grid Name=\"particles\"><Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" NumberOfElements=\"%ld\"/>\n",
+  fprintf(out,
+          "<Grid Name=\"particles\"><Topology TopologyType=\"Polyvertex\" NodesPerElement=\"1\" "
+          "NumberOfElements=\"%ld\"/>\n",
           h->particle_count);
   print_geometry(out, file, h);
   for (int k = 0; k < h->field_count; k++)
-    if (!h->fields[k].interaction)
-      print_attribute(out, file, frames, frame, &h->fields[k]);
-  fprintf(out, "</Grid>\n<Grid Name=\"bonds\"><Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
-               "NumberOfElements=\"%ld\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
-               "Dimensions=\"%ld 2\">",
+    if (!h->fields[k].interaction) print_attribute(out, file, frames, frame, &h->fields[k]);
+  fprintf(out,
+          "</Grid>\n<Grid Name=\"bonds\"><Topology TopologyType=\"Polyline\" NodesPerElement=\"2\" "
+          "NumberOfElements=\"%ld\"><DataItem Format=\"HDF\" NumberType=\"Int\" Precision=\"4\" "
+          "Dimensions=\"%ld 2\">",
           h->bond_count, h->bond_count);
   print_place(out, file, "/bonds/");
   print_text(out, h->interaction);
@@ -110,8 +122,8 @@ static void print_frame(FILE *out, const char *file, const result_header *h, lon
   fputs("</Grid></Grid>\n", out);
 }
 
-bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first, char *error,
-                size_t size) {
+bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first,
+                char *error, size_t size) {
   char path[PATH_LENGTH], temporary[PATH_LENGTH + 8];
   size_t n = strlen(h->path);
   bool ends = n > 3 && strcmp(h->path + n - 3, ".h5") == 0;
@@ -125,7 +137,8 @@ bool xdmf_write(const result_header *h, int working_file, long frames, size_t re
           out);
     for (long frame = 0; good && frame < frames; frame++) {
       double time;
-      good = pread(working_file, &time, sizeof time, first + (off_t)(record * (size_t)frame)) == (ssize_t)sizeof time;
+      good = pread(working_file, &time, sizeof time, first + (off_t)(record * (size_t)frame)) ==
+             (ssize_t)sizeof time;
       print_frame(out, base_name(h->path), h, frames, frame, time);
     }
     fputs("</Grid></Domain></Xdmf>\n", out);

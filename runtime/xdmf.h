@@ -8,6 +8,7 @@
 
 /* Writes PATH with .h5 replaced by .xdmf, through a temporary name. The times are read from the working file: the first
    value of each record. */
-bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first, char *error, size_t size);
+bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first,
+                char *error, size_t size);
 
 #endif

@@ -133,16 +133,17 @@ static void micropolar_law_is_understood(void **state) {
   X("cbrt(V)", "m", SCALAR)                                                                        \
   X("V**(1/3)", "m", SCALAR)                                                                       \
   X("s**-2", "1/m^2", SCALAR)                                                                      \
-  X("s**0.5*s**1.5", "m^2", SCALAR) X("(s**2)**(3/4)", "m^1.5", SCALAR)                            \
-      X("stretch**rate_free", "1", SCALAR) X("2**stretch", "1", SCALAR) X(                         \
-          "m*stretch_rate**2", "kg/s^2", SCALAR) X("theta_i - 2*theta_j", "1", BENDING)            \
-          X("EI*theta_i/s", "N*m", BENDING) X("norm(EI*theta_i/s**2)", "N", SCALAR) X(             \
-              "theta_i : theta_j", "1", SCALAR) X("EI*(theta_i : theta_i)/s", "J", SCALAR)         \
-              X("sign(EA)", "1", SCALAR) X("positive_part(EA - 1 [kN])", "N", SCALAR) X(           \
-                  "max(0, EA, 1 [kN])", "N", SCALAR) X("min(0, stretch)", "1", SCALAR)             \
-                  X("atan2(s, spacing)", "1", SCALAR) X("exp(-stretch)*EA", "N", SCALAR) X(        \
-                      "abs(EA)", "N", SCALAR) X("soft_sign(stretch)", "1", SCALAR)                 \
-                      X("twist*EA", "N", SCALAR) X("diff(EA*stretch**2, stretch)", "N", SCALAR)    \
+  X("s**0.5*s**1.5", "m^2", SCALAR)                                                                \
+  X("(s**2)**(3/4)", "m^1.5", SCALAR) X("stretch**rate_free", "1", SCALAR)                         \
+      X("2**stretch", "1", SCALAR) X("m*stretch_rate**2", "kg/s^2", SCALAR)                        \
+          X("theta_i - 2*theta_j", "1", BENDING) X("EI*theta_i/s", "N*m", BENDING) X(              \
+              "norm(EI*theta_i/s**2)", "N", SCALAR) X("theta_i : theta_j", "1", SCALAR)            \
+              X("EI*(theta_i : theta_i)/s", "J", SCALAR) X("sign(EA)", "1", SCALAR) X(             \
+                  "positive_part(EA - 1 [kN])", "N", SCALAR) X("max(0, EA, 1 [kN])", "N", SCALAR)  \
+                  X("min(0, stretch)", "1", SCALAR) X("atan2(s, spacing)", "1",                    \
+                                                      SCALAR) X("exp(-stretch)*EA", "N", SCALAR)   \
+                      X("abs(EA)", "N", SCALAR) X("soft_sign(stretch)", "1", SCALAR) X(            \
+                          "twist*EA", "N", SCALAR) X("diff(EA*stretch**2, stretch)", "N", SCALAR)  \
                           X("diff(EA*stretch, stretch_rate)", "N*s",                               \
                             SCALAR) X("diff(EI*theta_i/s, theta_i)", "N*m", SCALAR)                \
                               X("diff(EI*theta_i/s, s)", "N", BENDING)                             \

@@ -24,16 +24,19 @@ typedef struct workplace {
 static const char small_deck[] =
     "! A small beam, pushed down in the middle\n"
     "&simulation  title = 'small beam'  end_time = '1 ms'  /\n"
-    "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '6.35 mm'  thickness = '152.4 mm'  /\n"
+    "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '6.35 mm'  thickness = '152.4 "
+    "mm'  /\n"
     "&material    lattice = 'concrete'  model = 'mplm_bilinear'  /\n"
-    "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '38.1 mm', '12 mm'  /\n"
+    "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '38.1 mm', '12 "
+    "mm'  /\n"
     "&region      name = 'left'  shape = 'point'  at = 0, 0  /\n"
     "&region      name = 'right'  shape = 'point'  at = '38.1 mm', 0  /\n"
     "&region      name = 'loader'  shape = 'point'  at = '19.05 mm', '11 mm'  /\n"
     "&support     region = 'left'  fix = 'xy'  /\n"
     "&support     region = 'right'  fix = 'y'  /\n"
     "&drive       region = 'loader'  component = 'y'  velocity = '-20 mm/s'  rise = '0.2 ms'  /\n"
-    "&monitor     name = 'load'  kind = 'reaction'  region = 'loader'  component = 'y'  scale = -1  /\n"
+    "&monitor     name = 'load'  kind = 'reaction'  region = 'loader'  component = 'y'  scale = -1 "
+    " /\n"
     "&output      result = 'beam.h5'  frames = 4  /\n";
 
 static inline const char *in_workplace(const workplace *w, const char *name) {
@@ -42,7 +45,8 @@ static inline const char *in_workplace(const workplace *w, const char *name) {
   return path;
 }
 
-static inline void write_bytes(const workplace *w, const char *name, const void *data, size_t size) {
+static inline void write_bytes(const workplace *w, const char *name, const void *data,
+                               size_t size) {
   FILE *out = fopen(in_workplace(w, name), "wb");
   assert_non_null(out);
   assert_int_equal(fwrite(data, 1, size, out), size);
@@ -66,7 +70,9 @@ static inline char *read_bytes(const workplace *w, const char *name, size_t *siz
   return data;
 }
 
-static inline bool exists(const workplace *w, const char *name) { return access(in_workplace(w, name), F_OK) == 0; }
+static inline bool exists(const workplace *w, const char *name) {
+  return access(in_workplace(w, name), F_OK) == 0;
+}
 
 static inline int set_up_workplace(void **state) {
   workplace *w = calloc(1, sizeof *w);
@@ -78,7 +84,8 @@ static inline int set_up_workplace(void **state) {
   return 0;
 }
 
-static inline int remove_entry(const char *path, const struct stat *about, int kind, struct FTW *at) {
+static inline int remove_entry(const char *path, const struct stat *about, int kind,
+                               struct FTW *at) {
   (void)about, (void)kind, (void)at;
   return remove(path);
 }
@@ -91,7 +98,8 @@ static inline int tear_down_workplace(void **state) {
 }
 
 /* A line of shell in the workplace, where $P is the program. Its exit status, 128 + signal; its outputs go to w->said. */
-static inline int shell(workplace *w, const char *format, ...) __attribute__((format(printf, 2, 3)));
+static inline int shell(workplace *w, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 static inline int shell(workplace *w, const char *format, ...) {
   char line[2000], whole[4000];
   va_list values;
@@ -99,7 +107,8 @@ static inline int shell(workplace *w, const char *format, ...) {
   vsnprintf(line, sizeof line, format, values);
   va_end(values);
   snprintf(whole, sizeof whole,
-           "cd '%s' && export PERILAT_MODELS='" SOURCE_DIR "/models' && P='" PERILAT_PROGRAM "' && (%s) > said 2>&1",
+           "cd '%s' && export PERILAT_MODELS='" SOURCE_DIR "/models' && P='" PERILAT_PROGRAM
+           "' && (%s) > said 2>&1",
            w->folder, line);
   int status = system(whole);
   size_t size;
@@ -109,17 +118,17 @@ static inline int shell(workplace *w, const char *format, ...) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-static inline void show_failure(const workplace *w, const char *line, int status, int expected, const char *wanted) {
-  fprintf(stderr, "%s\n  gave status %d (expected %d); it said\n%s\n  expected: %s\n", line, status, expected, w->said,
-          wanted);
+static inline void show_failure(const workplace *w, const char *line, int status, int expected,
+                                const char *wanted) {
+  fprintf(stderr, "%s\n  gave status %d (expected %d); it said\n%s\n  expected: %s\n", line, status,
+          expected, w->said, wanted);
 }
 
 /* `perilat <arguments>` must end with `status` and say `wanted`. */
 static inline void expect(workplace *w, const char *arguments, int status, const char *wanted) {
   int found = shell(w, "$P %s", arguments);
   bool good = found == status && strstr(w->said, wanted) && !strstr(w->said, "runtime error");
-  if (!good)
-    show_failure(w, arguments, found, status, wanted);
+  if (!good) show_failure(w, arguments, found, status, wanted);
   assert_true(good);
 }
 
@@ -128,8 +137,7 @@ static inline void expect(workplace *w, const char *arguments, int status, const
 static inline result_file *open_result_of(const workplace *w, const char *name) {
   char error[1000];
   result_file *f = result_read(in_workplace(w, name), error, sizeof error);
-  if (!f)
-    fprintf(stderr, "%s\n", error);
+  if (!f) fprintf(stderr, "%s\n", error);
   assert_non_null(f);
   return f;
 }
@@ -137,8 +145,10 @@ static inline result_file *open_result_of(const workplace *w, const char *name) 
 static inline void same_series(result_file *a, result_file *b, const char *name) {
   long count[2];
   char unit_text[64], error[1000];
-  double *x = result_read_series(a, name, &count[0], unit_text, sizeof unit_text, error, sizeof error);
-  double *y = result_read_series(b, name, &count[1], unit_text, sizeof unit_text, error, sizeof error);
+  double *x =
+      result_read_series(a, name, &count[0], unit_text, sizeof unit_text, error, sizeof error);
+  double *y =
+      result_read_series(b, name, &count[1], unit_text, sizeof unit_text, error, sizeof error);
   assert_non_null(x);
   assert_non_null(y);
   assert_int_equal(count[0], count[1]);
@@ -156,8 +166,10 @@ static inline void same_frames(result_file *a, result_file *b, const char *field
     long count;
     int components;
     char unit_text[64], error[1000];
-    double *x = result_read_frame(a, field, k, &count, &components, unit_text, sizeof unit_text, error, sizeof error);
-    double *y = result_read_frame(b, field, k, &count, &components, unit_text, sizeof unit_text, error, sizeof error);
+    double *x = result_read_frame(a, field, k, &count, &components, unit_text, sizeof unit_text,
+                                  error, sizeof error);
+    double *y = result_read_frame(b, field, k, &count, &components, unit_text, sizeof unit_text,
+                                  error, sizeof error);
     assert_non_null(x);
     assert_non_null(y);
     assert_memory_equal(x, y, (size_t)(count * components) * sizeof *x);

@@ -100,7 +100,8 @@ typedef struct tested_state {
 
 static inline void evaluate_law(const tested_law *t, tested_state *x, int with_tangent) {
   double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS + MOST_FIELDS];
-  const double *in[PL_STATE_INPUTS + MOST_FIELDS] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
+  const double *in[PL_STATE_INPUTS + MOST_FIELDS] = {&x->stretch, &x->rate, &x->theta_i,
+                                                     &x->theta_j, &length};
   double *out[PL_TANGENTS];
   for (int k = 0; k < t->kernel->field_count; k++)
     in[PL_STATE_INPUTS + k] = &x->field[k];

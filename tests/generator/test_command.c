@@ -113,7 +113,8 @@ static void overrides_are_checked(void **state) {
       {"run beam.nml --set material.E=-1", 1, "is not in (0, inf)"},
       {"run beam.nml --set material.Q=1", 1, "has no parameter `Q`"},
       {"run beam.nml --set material.model=nope", 1, "there is no model `nope`"},
-      {"run beam.nml --set output.result=folder/x.h5", 1, "cannot write the result into the folder"},
+      {"run beam.nml --set output.result=folder/x.h5", 1,
+       "cannot write the result into the folder"},
       {"run beam.nml --set output.result=.", 1, "is a folder"},
       {"run beam.nml --set output.result=/dev/null", 1, "is not an ordinary file"},
       {"run beam.nml --set output.result=beam.nml", 1, "the result would overwrite `beam.nml`"},
@@ -137,11 +138,26 @@ static void a_second_lattice_is_refused(void **state) {
 static void paths_with_blanks_and_line_ends_of_windows(void **state) {
   workplace *w = *state;
   mkdir(in_workplace(w, "a f\xc3\xb6lder"), 0777);
-  assert_int_equal(shell(w, "sed -e \"s/result = 'beam.h5'//\" -e 's/$/\\r/' beam.nml > 'a f\xc3\xb6lder/my d\xc3\xa9""ck.nml'"), 0);
-  expect(w, "run 'a f\xc3\xb6lder/my d\xc3\xa9""ck.nml'", 0, "written    my d\xc3\xa9""ck.h5");
+  assert_int_equal(
+      shell(
+          w,
+          "sed -e \"s/result = 'beam.h5'//\" -e 's/$/\\r/' beam.nml > 'a f\xc3\xb6lder/my d\xc3\xa9"
+          "ck.nml'"),
+      0);
+  expect(w,
+         "run 'a f\xc3\xb6lder/my d\xc3\xa9"
+         "ck.nml'",
+         0,
+         "written    my d\xc3\xa9"
+         "ck.h5");
   expect(w, "run beam.nml", 0, "written    beam.h5");
-  expect_same_results(w, "beam.h5", "my d\xc3\xa9""ck.h5");
-  expect(w, "plot 'my d\xc3\xa9""ck.h5' -o 'a f\xc3\xb6lder/c.svg'", 0, "written");
+  expect_same_results(w, "beam.h5",
+                      "my d\xc3\xa9"
+                      "ck.h5");
+  expect(w,
+         "plot 'my d\xc3\xa9"
+         "ck.h5' -o 'a f\xc3\xb6lder/c.svg'",
+         0, "written");
 }
 
 static const char law_with_options[] = "model opt\n"
@@ -159,11 +175,16 @@ static void options_of_a_law(void **state) {
   write_text(w, "opt.plm", law_with_options);
   static const mistake list[] = {
       {"run beam.nml --set material.model=opt", 0, "written"},
-      {"run beam.nml --set material.model=./opt.plm --set material.Shape=cubic --set output.result=c.h5", 0, "written"},
-      {"run beam.nml --set material.model=opt --set material.shape=quartic", 1, "the choices are 'linear', 'cubic'"},
-      {"run beam.nml --set material.model=opt --set material.shape=1", 1, "the option `shape` takes a word"},
+      {"run beam.nml --set material.model=./opt.plm --set material.Shape=cubic --set "
+       "output.result=c.h5",
+       0, "written"},
+      {"run beam.nml --set material.model=opt --set material.shape=quartic", 1,
+       "the choices are 'linear', 'cubic'"},
+      {"run beam.nml --set material.model=opt --set material.shape=1", 1,
+       "the option `shape` takes a word"},
       {"run beam.nml --set material.shape=cubic", 1, "has no parameter `shape`"},
-      {"run beam.nml --set material.model=opt --set output.result=opt.plm", 1, "the result would overwrite"},
+      {"run beam.nml --set material.model=opt --set output.result=opt.plm", 1,
+       "the result would overwrite"},
   };
   expect_all(w, list, COUNT(list));
   size_t sizes[2];
@@ -181,22 +202,32 @@ static void a_law_that_goes_wrong_is_named(void **state) {
                              "  parameter E   = 30 [GPa]       in (0, inf)\n"
                              "  parameter rho = 2323 [kg/m^3]  in (0, inf)\n";
   char text[1000];
-  snprintf(text, sizeof text, "model root\n%s  root = sqrt(1 - 1e4*stretch)\n  force N = E*s*t*stretch*root\nend model\n", head);
+  snprintf(
+      text, sizeof text,
+      "model root\n%s  root = sqrt(1 - 1e4*stretch)\n  force N = E*s*t*stretch*root\nend model\n",
+      head);
   write_text(w, "root.plm", text);
   snprintf(text, sizeof text,
            "model kick\n%s  kick = | 0 when stretch <= 1e-5\n         | 1e6 otherwise\n"
-           "  force N = E*s*t*(stretch - kick)\nend model\n", head);
+           "  force N = E*s*t*(stretch - kick)\nend model\n",
+           head);
   write_text(w, "kick.plm", text);
   snprintf(text, sizeof text,
-           "model old\n%s  inverse = 1/(1 - previous(w))\n  damage w on bond = min(1, 1e4*max(0, stretch))\n"
-           "  force N = E*s*t*stretch*inverse\nend model\n", head);
+           "model old\n%s  inverse = 1/(1 - previous(w))\n  damage w on bond = min(1, 1e4*max(0, "
+           "stretch))\n"
+           "  force N = E*s*t*stretch*inverse\nend model\n",
+           head);
   write_text(w, "old.plm", text);
   static const mistake list[] = {
-      {"run beam.nml --no-physics --set material.model=old", 2, "old.plm:5: the law's `inverse` stops being finite there"},
-      {"run beam.nml --no-physics --set material.model=root", 2, "root.plm:5: the law's `root` stops being finite there"},
-      {"run beam.nml --no-physics --set material.model=root --interpret", 2, "error: not a number in step"},
+      {"run beam.nml --no-physics --set material.model=old", 2,
+       "old.plm:5: the law's `inverse` stops being finite there"},
+      {"run beam.nml --no-physics --set material.model=root", 2,
+       "root.plm:5: the law's `root` stops being finite there"},
+      {"run beam.nml --no-physics --set material.model=root --interpret", 2,
+       "error: not a number in step"},
       {"run beam.nml --no-physics --set material.model=kick", 2, "kick.plm:7: the law's `N` is -"},
-      {"run beam.nml --no-physics --set material.model=kick --interpret", 2, "error: runaway velocity in step"},
+      {"run beam.nml --no-physics --set material.model=kick --interpret", 2,
+       "error: runaway velocity in step"},
   };
   expect_all(w, list, COUNT(list));
   assert_true(strstr(w->said, "bond to particle") && exists(w, "beam.h5"));
@@ -211,10 +242,13 @@ static void without_a_compiler_the_bits_are_the_same(void **state) {
   assert_int_equal(shell(w, "PERILAT_CC=missing $P run beam.nml --set output.result=slow.h5"), 0);
   assert_non_null(strstr(w->said, "warning: no C compiler was found"));
   expect_same_results(w, "beam.h5", "slow.h5");
-  assert_int_equal(shell(w, "PERILAT_CC=/bin/false PERILAT_CACHE=$PWD/cache $P run beam.nml --set output.result=x.h5"), 2);
+  assert_int_equal(shell(w, "PERILAT_CC=/bin/false PERILAT_CACHE=$PWD/cache $P run beam.nml --set "
+                            "output.result=x.h5"),
+                   2);
   assert_int_equal(shell(w, "PERILAT_CC=/bin/false $P build beam.nml -o solver"), 2);
   assert_false(exists(w, "x.h5") || exists(w, "x.h5.frames") || exists(w, "solver"));
-  assert_int_equal(shell(w, "PERILAT_CACHE=/proc/none $P run beam.nml --set output.result=y.h5"), 0);
+  assert_int_equal(shell(w, "PERILAT_CACHE=/proc/none $P run beam.nml --set output.result=y.h5"),
+                   0);
 }
 
 static void a_solver_needs_no_compiler(void **state) {
@@ -232,7 +266,8 @@ static void a_solver_needs_no_compiler(void **state) {
   assert_int_equal(shell(w, "./my\\ solver other.nml"), 1);
   assert_non_null(strstr(w->said, "it takes no file"));
   assert_int_equal(shell(w, "./my\\ solver --set material.E=-1"), 1);
-  assert_int_equal(shell(w, "./my\\ solver --set simulation.end_time=1e-5 --set output.result=s.h5"), 0);
+  assert_int_equal(
+      shell(w, "./my\\ solver --set simulation.end_time=1e-5 --set output.result=s.h5"), 0);
 #endif
 }
 
@@ -245,7 +280,8 @@ static void damaged_results_are_refused(void **state) {
   char *whole = read_bytes(w, "beam.h5", &size);
   for (size_t part = 0; part < 16; part++) {
     write_bytes(w, "cut.h5", whole, size * part / 16);
-    expect(w, part % 2 ? "info cut.h5" : "plot cut.h5 --map damage -o cut.png", 1, "is not a whole HDF5 file");
+    expect(w, part % 2 ? "info cut.h5" : "plot cut.h5 --map damage -o cut.png", 1,
+           "is not a whole HDF5 file");
   }
   uint32_t seed = 1;
   for (int trial = 0; trial < 16; trial++) { /* bytes anywhere: any answer but a crash */
@@ -269,7 +305,8 @@ static void pictures(void **state) {
   expect(w, "run beam.nml", 0, "written");
   static const mistake list[] = {
       {"plot beam.h5", 0, "written curve.png"},
-      {"plot beam.h5 beam.h5 --label a --label b --x load --y energy/external -o two.svg", 0, "written two.svg"},
+      {"plot beam.h5 beam.h5 --label a --label b --x load --y energy/external -o two.svg", 0,
+       "written two.svg"},
       {"plot beam.h5 --map damage", 0, "written map.png"},
       {"plot beam.h5 --map displacement --component 1 --frame 0 -o u.pdf", 0, "written u.pdf"},
       {"plot beam.h5 --map omega -o omega.svg", 0, "written omega.svg"},
@@ -279,7 +316,8 @@ static void pictures(void **state) {
       {"plot beam.h5 --x time --x load", 1, "--x is given twice, `time` and `load`"},
       {"plot beam.h5 --y-unit mm", 1, "`load` is in N; it cannot be shown in `mm`"},
       {"plot beam.h5 --y nothing", 1, "it has energy/dissipated_damage"},
-      {"plot beam.h5 --map nothing", 1, "fields of particles: damage, displacement; of bonds: concrete/omega"},
+      {"plot beam.h5 --map nothing", 1,
+       "fields of particles: damage, displacement; of bonds: concrete/omega"},
       {"plot beam.h5 --map damage --frame 5", 1, "there is no frame 5"},
       {"plot beam.h5 --map damage --frame 99999999999999999999", 1, "--frame needs a whole number"},
       {"plot beam.h5 --map damage --frame 1.5", 1, "--frame needs a whole number"},
@@ -297,7 +335,8 @@ static void pictures(void **state) {
   expect_all(w, list, COUNT(list));
   static const struct {
     const char *name, *begins;
-  } files[] = {{"curve.png", "\x89PNG"}, {"map.png", "\x89PNG"}, {"two.svg", "<?xml"}, {"u.pdf", "%PDF"}};
+  } files[] = {
+      {"curve.png", "\x89PNG"}, {"map.png", "\x89PNG"}, {"two.svg", "<?xml"}, {"u.pdf", "%PDF"}};
   for (size_t k = 0; k < COUNT(files); k++) {
     size_t size;
     char *data = read_bytes(w, files[k].name, &size);
@@ -326,14 +365,19 @@ static const char law_with_states[] = "model two\n"
 static void what_is_stored_and_what_is_drawn(void **state) {
   workplace *w = *state;
   write_text(w, "two.plm", law_with_states);
-  assert_int_equal(shell(w, "sed -e 's/mplm_bilinear/two/' beam.nml > two.nml; "
-                            "echo \"&monitor name = 'many' kind = 'broken' above = 0.02 /\" >> two.nml"), 0);
+  assert_int_equal(
+      shell(w, "sed -e 's/mplm_bilinear/two/' beam.nml > two.nml; "
+               "echo \"&monitor name = 'many' kind = 'broken' above = 0.02 /\" >> two.nml"),
+      0);
   static const mistake list[] = {
       {"run two.nml --set output.result=two.h5", 0, ", many "},
       {"plot two.h5 --map damage", 0, "written map.png"},
-      {"plot two.h5 --map a_state", 1, "fields of particles: damage, displacement; of bonds: concrete/small, concrete/tall"},
-      {"run two.nml --set output.fields=displacement,a_state --set output.result=b.h5", 0, "written"},
-      {"plot b.h5 --map damage", 1, "`b.h5` holds no damage of bonds: write fields = 'displacement', 'damage'"},
+      {"plot two.h5 --map a_state", 1,
+       "fields of particles: damage, displacement; of bonds: concrete/small, concrete/tall"},
+      {"run two.nml --set output.fields=displacement,a_state --set output.result=b.h5", 0,
+       "written"},
+      {"plot b.h5 --map damage", 1,
+       "`b.h5` holds no damage of bonds: write fields = 'displacement', 'damage'"},
       {"plot b.h5 --map a_state", 0, "written map.png"},
       {"run two.nml --set output.fields=a_state --set output.result=c.h5", 0, "written"},
       {"plot c.h5 --map a_state", 1, "a map needs displacements, and `c.h5` holds none"},
@@ -343,13 +387,15 @@ static void what_is_stored_and_what_is_drawn(void **state) {
       {"info d.h5", 0, "dissipated"},
   };
   expect_all(w, list, COUNT(list));
-  assert_int_equal(shell(w, "$P run two.nml 2>&1 | grep -E 'many [0-9]+ 1'"), 1); /* counts have no unit */
+  assert_int_equal(shell(w, "$P run two.nml 2>&1 | grep -E 'many [0-9]+ 1'"),
+                   1); /* counts have no unit */
   result_file *f = open_result_of(w, "two.h5");
   char unit_text[64], said[1000];
   long bonds;
   int components;
   double *damage = result_read_damage(f, -1, &bonds, said, sizeof said);
-  double *tall = result_read_frame(f, "concrete/tall", -1, &bonds, &components, unit_text, sizeof unit_text, said, sizeof said);
+  double *tall = result_read_frame(f, "concrete/tall", -1, &bonds, &components, unit_text,
+                                   sizeof unit_text, said, sizeof said);
   double largest = 0;
   assert_non_null(damage);
   assert_non_null(tall);
@@ -367,16 +413,22 @@ static void a_full_disk_leaves_no_rubbish(void **state) {
   expect(w, "run beam.nml --set output.frames=30 --set output.result=whole.h5", 0, "written");
   static const char *const pictures_of[] = {"c.png", "c.svg", "c.pdf"};
   for (size_t k = 0; k < COUNT(pictures_of); k++) {
-    assert_int_equal(shell(w, "trap '' XFSZ; ulimit -f 1; exec $P plot whole.h5 --map damage -o %s", pictures_of[k]), 1);
+    assert_int_equal(shell(w, "trap '' XFSZ; ulimit -f 1; exec $P plot whole.h5 --map damage -o %s",
+                           pictures_of[k]),
+                     1);
     assert_non_null(strstr(w->said, "File too large"));
     assert_false(exists(w, pictures_of[k]));
   }
   assert_int_equal(shell(w, "ulimit -f 2; exec $P run beam.nml --set output.frames=30"), 2);
-  assert_false(exists(w, "beam.h5") || exists(w, "beam.h5.frames") || exists(w, "beam.h5.checkpoint") ||
-               exists(w, "beam.h5.checkpoint.tmp"));
+  assert_false(exists(w, "beam.h5") || exists(w, "beam.h5.frames") ||
+               exists(w, "beam.h5.checkpoint") || exists(w, "beam.h5.checkpoint.tmp"));
   size_t size;
-  free(read_bytes(w, "whole.h5", &size)); /* a little less is enough for frames and checkpoint, not for the result */
-  assert_int_equal(shell(w, "ulimit -f %zu; exec $P run beam.nml --set output.frames=30", (size - 1024) / 512), 2);
+  free(read_bytes(
+      w, "whole.h5",
+      &size)); /* a little less is enough for frames and checkpoint, not for the result */
+  assert_int_equal(
+      shell(w, "ulimit -f %zu; exec $P run beam.nml --set output.frames=30", (size - 1024) / 512),
+      2);
   assert_non_null(strstr(w->said, "go on with --resume"));
   assert_false(exists(w, "beam.h5") || exists(w, "beam.h5.part"));
   expect(w, "run beam.nml --set output.frames=30 --resume", 0, "written");
@@ -396,7 +448,9 @@ static void a_result_that_is_there_stays_until_the_run_succeeds(void **state) {
   chmod(in_workplace(w, "beam.h5"), 0444);
   expect(w, "run beam.nml", 1, "is protected against writing");
   mkdir(in_workplace(w, "far"), 0777);
-  assert_int_equal(shell(w, "touch far/there.h5; ln -s far/there.h5 link.h5; $P run beam.nml --set output.result=link.h5"), 0);
+  assert_int_equal(shell(w, "touch far/there.h5; ln -s far/there.h5 link.h5; $P run beam.nml --set "
+                            "output.result=link.h5"),
+                   0);
   assert_int_equal(shell(w, "test -L link.h5 && test -s far/there.h5 && $P info link.h5"), 0);
 }
 
@@ -420,7 +474,8 @@ static pid_t start_long_run(const workplace *w, const char *output) {
   pid_t child = fork();
   assert_true(child >= 0);
   if (child == 0) {
-    if (chdir(w->folder) != 0 || !freopen("said_long", "w", stdout) || !freopen("said_long", "w", stderr))
+    if (chdir(w->folder) != 0 || !freopen("said_long", "w", stdout) ||
+        !freopen("said_long", "w", stderr))
       _exit(99);
     setenv("PERILAT_MODELS", SOURCE_DIR "/models", 1);
     execl(PERILAT_PROGRAM, "perilat", "run", "long.nml", "--set", set, (char *)NULL);
@@ -430,8 +485,7 @@ static pid_t start_long_run(const workplace *w, const char *output) {
   for (int k = 0; k < 60000; k++) {
     off_t now = size_of(w, frames);
     first = first ? first : now;
-    if (first && now > 5 * first)
-      return child;
+    if (first && now > 5 * first) return child;
     wait_a_little();
   }
   fail_msg("the run of %s did not write frames", output);
@@ -445,9 +499,10 @@ static int end_of(pid_t child) {
 }
 
 static void write_long_deck(workplace *w) {
-  assert_int_equal(shell(w, "sed -e 's/1 ms/40 ms/' -e 's/frames = 4/frames = 100/' beam.nml > long.nml; "
-                            "echo '&checkpoint interval = 0.02 /' >> long.nml"),
-                   0);
+  assert_int_equal(
+      shell(w, "sed -e 's/1 ms/40 ms/' -e 's/frames = 4/frames = 100/' beam.nml > long.nml; "
+               "echo '&checkpoint interval = 0.02 /' >> long.nml"),
+      0);
 }
 
 static void a_stopped_run_goes_on_to_the_same_bits(void **state) {
@@ -465,7 +520,8 @@ static void a_stopped_run_goes_on_to_the_same_bits(void **state) {
     assert_true(exists(w, "part.h5.checkpoint") && exists(w, "part.h5.frames"));
     assert_int_equal(exists(w, "part.h5"), signals[k] != SIGKILL);
     /* The checkpoint belongs to the whole of deck and overrides: these are given again. */
-    expect(w, "run long.nml --set output.result=part.h5 --set material.zeta=0 --resume", 1, "belongs to another deck");
+    expect(w, "run long.nml --set output.result=part.h5 --set material.zeta=0 --resume", 1,
+           "belongs to another deck");
     expect(w, "run long.nml --set output.result=part.h5 --resume --threads 2", 0, "resumed at");
     expect_same_results(w, "whole.h5", "part.h5");
     assert_false(exists(w, "part.h5.checkpoint") || exists(w, "part.h5.frames"));
@@ -481,7 +537,8 @@ static void checkpoints_that_do_not_fit_are_refused(void **state) {
   kill(run, SIGTERM);
   assert_int_equal(end_of(run), 0);
   size_t size, frames_size;
-  char *checkpoint = read_bytes(w, "part.h5.checkpoint", &size), *frames = read_bytes(w, "part.h5.frames", &frames_size);
+  char *checkpoint = read_bytes(w, "part.h5.checkpoint", &size),
+       *frames = read_bytes(w, "part.h5.frames", &frames_size);
   write_bytes(w, "part.h5.frames", frames, frames_size / 4);
   expect(w, resume, 1, "holds fewer than the");
   write_text(w, "part.h5.frames", "these are not the frames of any run");

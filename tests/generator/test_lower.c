@@ -217,6 +217,25 @@ static void a_family_law_is_refused(void **state) {
   close_law(t);
 }
 
+/* What cannot be compiled is never taken for a bound of 0. */
+static void a_bound_that_cannot_be_compiled_is_said(void **state) {
+  (void)state;
+  tested_law *t = open_law("model m\n  law state\n  parameter a = 1 [N] in (0, inf)\n"
+                           "  force state F[j] = a*stretch[j]\nend model\n");
+  ir *g = ir_new();
+  const expr *neighbours = t->law->rules[t->law->rule_count - 1]->value;
+  const int errors = t->said.errors;
+  assert_int_equal(lower_bound(g, t->law, neighbours, 0, &t->said), IR_NONE);
+  assert_int_equal(t->said.errors, errors + 1);
+  assert_int_equal(t->said.items[t->said.count - 1].code, DIAG_NOT_SUPPORTED);
+
+  ir_node open = lower_bound(g, t->law, NULL, INFINITY, &t->said);
+  assert_true(ir_value(g, open) == INFINITY);
+  assert_int_equal(t->said.errors, errors + 1);
+  ir_free(g);
+  close_law(t);
+}
+
 /* Each function calls the one before twice: 1024 calls, but of few different values. */
 static void repeated_calls_are_expanded_once(void **state) {
   (void)state;
@@ -341,6 +360,7 @@ int main(void) {
       cmocka_unit_test(diff_is_the_derivative),
       cmocka_unit_test(bending_norm_is_the_size),
       cmocka_unit_test(a_family_law_is_refused),
+      cmocka_unit_test(a_bound_that_cannot_be_compiled_is_said),
       cmocka_unit_test(repeated_calls_are_expanded_once),
       cmocka_unit_test(stored_energy_of_each_kind),
       cmocka_unit_test(a_broken_affine_bond_holds_nothing),

@@ -16,20 +16,22 @@
 #include "generator/manual.h"
 #include "tests/generator/command_tools.h"
 
-static bool is_solver(const option_entry *o) { return strcmp(o->command, "solver") == 0; }
+static bool is_solver(const option_entry *o) {
+  return strcmp(o->command, "solver") == 0;
+}
 
 static void every_command_takes_its_options(void **state) {
   workplace *w = *state;
   for (int k = 0; k < option_count; k++) {
     const option_entry *o = &option_table[k];
-    if (is_solver(o))
-      continue;
+    if (is_solver(o)) continue;
     shell(w, "$P %s %s%s", o->command, o->name, *o->value ? " 1" : "");
     if (strstr(w->said, "has no option"))
       fail_msg("perilat %s refuses %s: %s", o->command, o->name, w->said);
     shell(w, "$P %s %s", o->command, o->name); /* at the end of the line */
     if ((strstr(w->said, "needs a value") != NULL) != (*o->value != 0))
-      fail_msg("perilat %s %s: the table has the value `%s`, but it said: %s", o->command, o->name, o->value, w->said);
+      fail_msg("perilat %s %s: the table has the value `%s`, but it said: %s", o->command, o->name,
+               o->value, w->said);
   }
 }
 
@@ -37,17 +39,17 @@ static void options_of_others_are_refused(void **state) {
   workplace *w = *state;
   for (int c = 0; c < command_count; c++) {
     const char *command = command_table[c].name;
-    if (!command_has_options(command))
-      continue;
+    if (!command_has_options(command)) continue;
     for (int k = 0; k < option_count; k++) {
       bool own = false;
       for (int o = 0; o < option_count; o++)
-        own = own || (!strcmp(option_table[o].command, command) && !strcmp(option_table[o].name, option_table[k].name));
-      if (own || (k && !strcmp(option_table[k].name, option_table[k - 1].name)))
-        continue;
+        own = own || (!strcmp(option_table[o].command, command) &&
+                      !strcmp(option_table[o].name, option_table[k].name));
+      if (own || (k && !strcmp(option_table[k].name, option_table[k - 1].name))) continue;
       int status = shell(w, "$P %s %s 1", command, option_table[k].name);
       if (status != 1 || !strstr(w->said, "has no option"))
-        fail_msg("perilat %s takes %s, which has no row: %s", command, option_table[k].name, w->said);
+        fail_msg("perilat %s takes %s, which has no row: %s", command, option_table[k].name,
+                 w->said);
     }
   }
 }
@@ -59,17 +61,16 @@ static int check_source(const char *path) {
   FILE *in = fopen(path, "r");
   assert_non_null(in);
   while (fgets(line, sizeof line, in)) {
-    if (!strstr(line, "option_flag(") && !strstr(line, "option_value(") && !strstr(line, "special_value("))
+    if (!strstr(line, "option_flag(") && !strstr(line, "option_value(") &&
+        !strstr(line, "special_value("))
       continue;
     char *name = strstr(line, ", \"-"), *end = name ? strchr(name + 3, '"') : NULL;
-    if (!end)
-      continue;
+    if (!end) continue;
     *end = 0;
     bool known = false;
     for (int k = 0; k < option_count; k++)
       known = known || strcmp(option_table[k].name, name + 3) == 0;
-    if (!known)
-      fail_msg("%s asks for %s, which is not in the table of options", path, name + 3);
+    if (!known) fail_msg("%s asks for %s, which is not in the table of options", path, name + 3);
     found++;
   }
   fclose(in);
@@ -90,8 +91,7 @@ static void every_option_in_the_sources_has_a_row(void **state) {
 static void help_shows_every_option(void **state) {
   workplace *w = *state;
   for (int k = 0; k < option_count; k++) {
-    if (is_solver(&option_table[k]))
-      continue;
+    if (is_solver(&option_table[k])) continue;
     char wanted[300], topic[100];
     snprintf(wanted, sizeof wanted, "  %s %s", option_table[k].name, option_table[k].value);
     snprintf(topic, sizeof topic, "%s --help", option_table[k].command);
@@ -106,11 +106,13 @@ static void help_shows_every_option(void **state) {
 
 /* What bash offers, sorted, after a line whose words are given as it would cut them. */
 static void expect_offers(workplace *w, const char *words, const char *wanted) {
-  shell(w, "bash -c '. ./perilat.bash; COMP_WORDS=(%s); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); _perilat; "
-           "printf \"%%s\\n\" \"${COMPREPLY[@]}\" | LC_ALL=C sort | paste -s -d , | sed \"s/.*/<&>/\"'",
-        words);
-  if (!strstr(w->said, wanted))
-    fail_msg("after %s bash offers %s, not %s", words, w->said, wanted);
+  shell(
+      w,
+      "bash -c '. ./perilat.bash; COMP_WORDS=(%s); COMP_CWORD=$((${#COMP_WORDS[@]} - 1)); "
+      "_perilat; "
+      "printf \"%%s\\n\" \"${COMPREPLY[@]}\" | LC_ALL=C sort | paste -s -d , | sed \"s/.*/<&>/\"'",
+      words);
+  if (!strstr(w->said, wanted)) fail_msg("after %s bash offers %s, not %s", words, w->said, wanted);
 }
 
 static void bash_completes(void **state) {
@@ -132,17 +134,14 @@ static void bash_completes(void **state) {
 static void other_shells_read_theirs(void **state) {
   workplace *w = *state;
   assert_int_equal(completion_write(w->folder), 0);
-  if (shell(w, "command -v zsh") == 0)
-    assert_int_equal(shell(w, "zsh -n _perilat"), 0);
-  if (shell(w, "command -v fish") == 0)
-    assert_int_equal(shell(w, "fish -n perilat.fish"), 0);
+  if (shell(w, "command -v zsh") == 0) assert_int_equal(shell(w, "zsh -n _perilat"), 0);
+  if (shell(w, "command -v fish") == 0) assert_int_equal(shell(w, "fish -n perilat.fish"), 0);
   size_t sizes[2];
   char *texts[2] = {read_bytes(w, "_perilat", &sizes[0]), read_bytes(w, "perilat.fish", &sizes[1])};
   for (int k = 0; k < option_count; k++) {
     char zsh[100], fish[200];
     const char *name = option_table[k].name;
-    if (is_solver(&option_table[k]))
-      continue;
+    if (is_solver(&option_table[k])) continue;
     snprintf(zsh, sizeof zsh, "'*%s", name);
     snprintf(fish, sizeof fish, "from %s' -%s ", option_table[k].command,
              name[1] == '-' ? "l" : "s");
@@ -181,7 +180,8 @@ static void man_pages_are_whole(void **state) {
 
 static void new_files_work_at_once(void **state) {
   workplace *w = *state;
-  static const char *const kinds[][2] = {{"fresh", ""}, {"Law_2", " --kind=micropolar"}, {"third", " --kind central"}};
+  static const char *const kinds[][2] = {
+      {"fresh", ""}, {"Law_2", " --kind=micropolar"}, {"third", " --kind central"}};
   for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++) {
     const char *name = kinds[k][0];
     char line[300], written[300];
@@ -200,40 +200,61 @@ static void new_files_work_at_once(void **state) {
     expect(w, line, 0, "written    ");
     snprintf(line, sizeof line, "plot %s.h5 --x elongation --y load -o %s.svg", name, name);
     expect(w, line, 0, "written");
-    assert_int_equal(shell(w, "grep -l NAME %s.plm %s_drive.nml %s.nml", name, name, name), 1); /* no mark is left */
+    assert_int_equal(shell(w, "grep -l NAME %s.plm %s_drive.nml %s.nml", name, name, name),
+                     1); /* no mark is left */
   }
 }
 
 static void new_refuses(void **state) {
   workplace *w = *state;
-  static const char *const names[] = {"''", "2nd", "a-b", "a/b", "../a", "a.plm", "'a b'", "_a", "\xc3\xa4", "model", "stretch", "if",
-                                      "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"};
+  static const char *const names[] = {
+      "''",
+      "2nd",
+      "a-b",
+      "a/b",
+      "../a",
+      "a.plm",
+      "'a b'",
+      "_a",
+      "\xc3\xa4",
+      "model",
+      "stretch",
+      "if",
+      "aaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaaa"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++) {
     int status = shell(w, "$P new %s", names[k]);
     bool made = shell(w, "ls *.plm") == 0;
     if (made) /* a name that the language allows must then work */
       status = shell(w, "$P check *.plm && rm *.plm *_drive.nml && rm -f [!b]*.nml") == 0 ? 1 : -1;
-    if (status != 1)
-      fail_msg("perilat new %s: status %d: %s", names[k], status, w->said);
+    if (status != 1) fail_msg("perilat new %s: status %d: %s", names[k], status, w->said);
   }
   expect(w, "new", 1, "needs a name");
   expect(w, "new a b", 1, "takes one name");
   expect(w, "new a --kind state", 1, "--kind takes central or micropolar");
   expect(w, "new a --kin central", 1, "did you mean `--kind`?");
-  for (int k = 0; k < 3; k++) { /* one file of the three is in the way: it stays, and nothing else appears */
+  for (int k = 0; k < 3;
+       k++) { /* one file of the three is in the way: it stays, and nothing else appears */
     static const char *const files[] = {"x.plm", "x_drive.nml", "x.nml"};
     write_text(w, files[k], "mine");
     expect(w, "new x", 1, "nothing was written");
-    assert_int_equal(shell(w, "[ \"$(cat %s)\" = mine ] && [ \"$(echo x*)\" = %s ] && rm %s", files[k], files[k], files[k]), 0);
+    assert_int_equal(shell(w, "[ \"$(cat %s)\" = mine ] && [ \"$(echo x*)\" = %s ] && rm %s",
+                           files[k], files[k], files[k]),
+                     0);
   }
 }
 
 int main(void) {
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
-      T(every_command_takes_its_options), T(options_of_others_are_refused), T(every_option_in_the_sources_has_a_row),
-      T(help_shows_every_option),         T(bash_completes),                T(other_shells_read_theirs),
-      T(man_pages_are_whole),             T(new_files_work_at_once),        T(new_refuses),
+      T(every_command_takes_its_options),
+      T(options_of_others_are_refused),
+      T(every_option_in_the_sources_has_a_row),
+      T(help_shows_every_option),
+      T(bash_completes),
+      T(other_shells_read_theirs),
+      T(man_pages_are_whole),
+      T(new_files_work_at_once),
+      T(new_refuses),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,5 +1,6 @@
-/* One bond through pl_law's `states` and `tangent`: forces of a linear bar against EA times stretch,
-   damage that is shown, taken over and forgotten, the tangent against differences of the forces. */
+/* One bond through pl_law's `states` and `tangent`: forces of a linear bar against EA times
+   stretch, damage that is shown, taken over and forgotten, the tangent against differences of the
+   forces. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -32,8 +33,8 @@ static void forces_are_those_of_the_law(void **state) {
   (void)state;
   bond_probe *p = bond_probe_new(&elastic_beam, values, &a_bond);
   double f[PL_STATE_RESULTS];
-  const double EI = E_MODULUS * pow(a_bond.s, 3) * a_bond.t * (1 - 3 * NU) /
-                    (12 * sqrt(3) * (1 - NU * NU));
+  const double EI =
+      E_MODULUS * pow(a_bond.s, 3) * a_bond.t * (1 - 3 * NU) / (12 * sqrt(3) * (1 - NU * NU));
   bond_probe_forces(p, (bond_motion){0.5 * S_T, 0, 2e-3, -1e-3}, f);
   near(f[0], 0.5 * S_T * EA(), 1e-14);
   near(f[1], 2 * EI / a_bond.s * (2 * 2e-3 - 1e-3), 1e-12);

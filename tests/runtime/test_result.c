@@ -3,6 +3,7 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+
 #include <cmocka.h>
 
 #include <fcntl.h>
@@ -30,11 +31,25 @@ static const result_field fields[] = {{"displacement", "m", NULL, 2, PARTICLES, 
 static char error[512];
 
 static result_header header(const char *path) {
-  return (result_header){.path = path, .title = "three particles", .started = "now", .version = "0", .kernel_key = "k",
-                         .deck_text = "&simulation /", .models = deck_models, .model_count = 1, .kernels = kernels,
-                         .kernel_count = 1, .particle_count = PARTICLES, .reference = reference, .body = body,
-                         .volume = volume, .interaction = "concrete", .bond_count = BONDS, .bonds = bonds,
-                         .fields = fields, .field_count = 2};
+  return (result_header){.path = path,
+                         .title = "three particles",
+                         .started = "now",
+                         .version = "0",
+                         .kernel_key = "k",
+                         .deck_text = "&simulation /",
+                         .models = deck_models,
+                         .model_count = 1,
+                         .kernels = kernels,
+                         .kernel_count = 1,
+                         .particle_count = PARTICLES,
+                         .reference = reference,
+                         .body = body,
+                         .volume = volume,
+                         .interaction = "concrete",
+                         .bond_count = BONDS,
+                         .bonds = bonds,
+                         .fields = fields,
+                         .field_count = 2};
 }
 
 /* Values of frame k: displacement k + p/10 + c/100, damage k/10 + b. */
@@ -63,7 +78,8 @@ static void expect_frame(result_file *f, int k) {
   long count;
   int components;
   char unit_text[16];
-  double *u = result_read_frame(f, "displacement", k, &count, &components, unit_text, sizeof unit_text, error, sizeof error);
+  double *u = result_read_frame(f, "displacement", k, &count, &components, unit_text,
+                                sizeof unit_text, error, sizeof error);
   assert_non_null(u);
   assert_int_equal(count, PARTICLES);
   assert_int_equal(components, 2);
@@ -71,7 +87,8 @@ static void expect_frame(result_file *f, int k) {
   for (int q = 0; q < 2 * PARTICLES; q++)
     assert_true(u[q] == k + 0.1 * (q / 2) + 0.01 * (q % 2));
   free(u);
-  double *omega = result_read_frame(f, "concrete/omega", k, &count, &components, unit_text, sizeof unit_text, error, sizeof error);
+  double *omega = result_read_frame(f, "concrete/omega", k, &count, &components, unit_text,
+                                    sizeof unit_text, error, sizeof error);
   assert_non_null(omega);
   assert_int_equal(count, BONDS);
   assert_true(omega[1] == 0.1 * k + 1);
@@ -93,24 +110,29 @@ static void written_and_read_back(void **state) {
     expect_frame(f, k);
   long count;
   char unit_text[16];
-  double *load = result_read_series(f, "load", &count, unit_text, sizeof unit_text, error, sizeof error);
+  double *load =
+      result_read_series(f, "load", &count, unit_text, sizeof unit_text, error, sizeof error);
   assert_int_equal(count, SAMPLES);
   assert_string_equal(unit_text, "N");
   assert_true(load[4] == 16000);
   free(load);
-  double *kinetic = result_read_series(f, "energy/kinetic", &count, unit_text, sizeof unit_text, error, sizeof error);
+  double *kinetic = result_read_series(f, "energy/kinetic", &count, unit_text, sizeof unit_text,
+                                       error, sizeof error);
   assert_non_null(kinetic);
   free(kinetic);
-  char *deck = result_read_text(f, "/input/deck"), *law_text = result_read_text(f, "/input/models/law");
+  char *deck = result_read_text(f, "/input/deck"),
+       *law_text = result_read_text(f, "/input/models/law");
   assert_string_equal(deck, "&simulation /");
   assert_string_equal(law_text, "model law");
   free(deck);
   free(law_text);
-  assert_null(result_read_series(f, "lode", &count, unit_text, sizeof unit_text, error, sizeof error));
+  assert_null(
+      result_read_series(f, "lode", &count, unit_text, sizeof unit_text, error, sizeof error));
   assert_non_null(strstr(error, "load")); /* the message lists what there is */
   long particles;
   int components;
-  assert_null(result_read_frame(f, "displacement", 4, &particles, &components, unit_text, sizeof unit_text, error, sizeof error));
+  assert_null(result_read_frame(f, "displacement", 4, &particles, &components, unit_text,
+                                sizeof unit_text, error, sizeof error));
   result_read_close(f);
 }
 
@@ -121,7 +143,8 @@ static void resumed_after_a_kill(void **state) {
   result *r = result_open(&h, -1, error, sizeof error);
   for (int k = 0; k < 3; k++)
     write_frame(r, k);
-  result_close(r); /* as a kill would leave it: three frames, of which the checkpoint knows two, and half a fourth */
+  result_close(
+      r); /* as a kill would leave it: three frames, of which the checkpoint knows two, and half a fourth */
   int file = open("result_b.h5.frames", O_WRONLY | O_APPEND);
   assert_int_equal(write(file, "garbage", 7), 7);
   close(file);
@@ -200,22 +223,22 @@ static int count_elements(const char *text) {
   int depth = 0, elements = 0;
   for (const char *at = strpbrk(text, "<&"); at; at = strpbrk(at + 1, "<&")) {
     if (*at == '&') {
-      assert_true(!strncmp(at, "&amp;", 5) || !strncmp(at, "&lt;", 4) || !strncmp(at, "&gt;", 4) || !strncmp(at, "&quot;", 6));
+      assert_true(!strncmp(at, "&amp;", 5) || !strncmp(at, "&lt;", 4) || !strncmp(at, "&gt;", 4) ||
+                  !strncmp(at, "&quot;", 6));
       continue;
     }
     const char *end = strchr(at, '>');
     assert_non_null(end);
-    if (at[1] == '?')
-      continue;
+    if (at[1] == '?') continue;
     size_t length = strcspn(at + 1 + (at[1] == '/'), " />");
     if (at[1] == '/') {
-      assert_true(depth > 0 && strlen(open[depth - 1]) == length && !strncmp(open[depth - 1], at + 2, length));
+      assert_true(depth > 0 && strlen(open[depth - 1]) == length &&
+                  !strncmp(open[depth - 1], at + 2, length));
       depth--;
       continue;
     }
     elements++;
-    if (end[-1] == '/')
-      continue;
+    if (end[-1] == '/') continue;
     assert_true(depth < 32 && length < 32);
     snprintf(open[depth++], 32, "%.*s", (int)length, at + 1);
   }
@@ -268,7 +291,11 @@ static void pictures(void **state) {
     plot_curve_options curve = {.output = curves[k], .x = "time", .y = "load", .y_unit = "kN"};
     assert_true(plot_curve(results, 2, &curve, error, sizeof error));
     assert_true(size_of(curves[k]) > 1000);
-    plot_map_options map = {.output = maps[k], .frame = -1, .field = k ? "displacement" : "damage", .component = -1, .factor = -1};
+    plot_map_options map = {.output = maps[k],
+                            .frame = -1,
+                            .field = k ? "displacement" : "damage",
+                            .component = -1,
+                            .factor = -1};
     assert_true(plot_map("result_f.h5", &map, error, sizeof error));
     assert_true(size_of(maps[k]) > 1000);
   }
@@ -277,7 +304,8 @@ static void pictures(void **state) {
   assert_non_null(strstr(error, "`load` is in N"));
   wrong = (plot_curve_options){.output = "curve_f.jpg", .x = "time", .y = "load"};
   assert_false(plot_curve(results, 1, &wrong, error, sizeof error));
-  plot_map_options none = {.output = "map_f.png", .frame = 7, .field = "damage", .component = -1, .factor = -1};
+  plot_map_options none = {
+      .output = "map_f.png", .frame = 7, .field = "damage", .component = -1, .factor = -1};
   assert_false(plot_map("result_f.h5", &none, error, sizeof error));
   assert_non_null(strstr(error, "2 frames"));
 }
@@ -285,15 +313,18 @@ static void pictures(void **state) {
 /* --- kinds of fields ---------------------------------------------------------------------------- */
 
 enum { KINDS = 6 };
-static const result_field of_kinds[KINDS] = {
-    {"displacement", "m", NULL, 2, PARTICLES, "other"}, {"damage", "1", NULL, 1, PARTICLES, "damage"},
-    {"alpha", "1", "concrete", 1, BONDS, "state"},      {"omega_c", "1", "concrete", 1, BONDS, "damage"},
-    {"omega_t", "1", "concrete", 1, BONDS, "damage"},   {"w", "m", "concrete", 1, BONDS, "output"}};
+static const result_field of_kinds[KINDS] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
+                                             {"damage", "1", NULL, 1, PARTICLES, "damage"},
+                                             {"alpha", "1", "concrete", 1, BONDS, "state"},
+                                             {"omega_c", "1", "concrete", 1, BONDS, "damage"},
+                                             {"omega_t", "1", "concrete", 1, BONDS, "damage"},
+                                             {"w", "m", "concrete", 1, BONDS, "output"}};
 
 /* One frame of a law with a state, two damages and an output; without the first `skip` fields. */
 static void write_kinds(const char *path, int skip, int count) {
-  static const double u[2 * PARTICLES] = {0}, mean[PARTICLES] = {0.2, 0.6, 1}, alpha[BONDS] = {5, 7},
-                      crushed[BONDS] = {0.2, 0.3}, torn[BONDS] = {0.1, 1}, width[BONDS] = {0, 1e-3};
+  static const double u[2 * PARTICLES] = {0}, mean[PARTICLES] = {0.2, 0.6, 1},
+                            alpha[BONDS] = {5, 7}, crushed[BONDS] = {0.2, 0.3},
+                            torn[BONDS] = {0.1, 1}, width[BONDS] = {0, 1e-3};
   const double *values[KINDS] = {u, mean, alpha, crushed, torn, width};
   result_header h = header(path);
   h.fields = of_kinds + skip;
@@ -317,8 +348,10 @@ static void damage_is_the_largest_of_the_damages(void **state) {
   free(damage);
   assert_null(result_read_damage(f, 3, &count, error, sizeof error));
   assert_non_null(strstr(error, "there is no frame 3"));
-  static const char *const given[][2] = {
-      {"w", "concrete/w"}, {"concrete/w", "concrete/w"}, {"displacement", "displacement"}, {"damage", "damage"}};
+  static const char *const given[][2] = {{"w", "concrete/w"},
+                                         {"concrete/w", "concrete/w"},
+                                         {"displacement", "displacement"},
+                                         {"damage", "damage"}};
   for (int k = 0; k < 4; k++) {
     assert_true(result_find_field(f, given[k][0], name, sizeof name));
     assert_string_equal(name, given[k][1]);
@@ -386,7 +419,8 @@ static void damaged_heaps_of_texts_do_no_harm(void **state) {
   for (off_t k = 0; k + ROOM + 16 < about.st_size; k++)
     if (memcmp(whole + k, "GCOL", 4) == 0) {
       heaps++;
-      assert_int_equal(pwrite(file, noise, ROOM, k + 16), ROOM); /* after signature, version and size */
+      assert_int_equal(pwrite(file, noise, ROOM, k + 16),
+                       ROOM); /* after signature, version and size */
     }
   free(whole);
   close(file);
@@ -419,7 +453,8 @@ static void texts_of_fixed_length_are_read(void **state) {
     H5Tset_cset(type, sets[k]);
     hid_t a = H5Acreate2(file, names[k], type, space, H5P_DEFAULT, H5P_DEFAULT);
     hid_t d = H5Dcreate2(file, names[k], type, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    assert_true(H5Awrite(a, type, "eight ch") >= 0 && H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, "eight ch") >= 0);
+    assert_true(H5Awrite(a, type, "eight ch") >= 0 &&
+                H5Dwrite(d, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, "eight ch") >= 0);
     assert_true(h5_read_attribute_text(file, names[k], text, sizeof text));
     assert_string_equal(text, "eight ch");
     assert_true(h5_read_attribute_text(file, names[k], text, 6)); /* cut */
@@ -431,7 +466,8 @@ static void texts_of_fixed_length_are_read(void **state) {
     H5Aclose(a);
     H5Tclose(type);
   }
-  assert_true(h5_attribute_text(file, "empty", "") && h5_attribute_text(file, "long", "longer than the place for it"));
+  assert_true(h5_attribute_text(file, "empty", "") &&
+              h5_attribute_text(file, "long", "longer than the place for it"));
   assert_true(h5_read_attribute_text(file, "empty", text, sizeof text));
   assert_string_equal(text, "");
   assert_true(h5_read_attribute_text(file, "long", text, sizeof text));
@@ -455,23 +491,27 @@ static long pixels(const char *path, colour ink) {
   for (int y = ABOVE; y < cairo_image_surface_get_height(s) - BELOW; y++)
     for (int x = 0; x < cairo_image_surface_get_width(s); x++) {
       const unsigned char *p = data + y * cairo_image_surface_get_stride(s) + 4 * x; /* B G R */
-      count += fabs(p[2] - 255 * ink.r) < NEAR && fabs(p[1] - 255 * ink.g) < NEAR && fabs(p[0] - 255 * ink.b) < NEAR;
+      count += fabs(p[2] - 255 * ink.r) < NEAR && fabs(p[1] - 255 * ink.g) < NEAR &&
+               fabs(p[0] - 255 * ink.b) < NEAR;
     }
   cairo_surface_destroy(s);
   return count;
 }
 
-static const colour yellow = {0.95, 0.80, 0.10}, black = {0, 0, 0}, lowest = {0.27, 0.00, 0.33}, highest = {0.99, 0.91, 0.14};
+static const colour yellow = {0.95, 0.80, 0.10}, black = {0, 0, 0}, lowest = {0.27, 0.00, 0.33},
+                    highest = {0.99, 0.91, 0.14};
 
 static bool map_of(const char *path, const char *field) {
-  const plot_map_options o = {.output = "map_k.png", .frame = -1, .field = field, .component = -1, .factor = 1};
+  const plot_map_options o = {
+      .output = "map_k.png", .frame = -1, .field = field, .component = -1, .factor = 1};
   return plot_map(path, &o, error, sizeof error);
 }
 
 static void maps_show_their_field(void **state) {
   (void)state;
   write_kinds("result_k.h5", 0, KINDS);
-  assert_true(map_of("result_k.h5", "damage")); /* 0.2 is yellow, 1 a crack; the state 5, 7 would be two cracks */
+  assert_true(map_of("result_k.h5",
+                     "damage")); /* 0.2 is yellow, 1 a crack; the state 5, 7 would be two cracks */
   assert_true(pixels("map_k.png", yellow) > 500 && pixels("map_k.png", black) > 500);
   static const char *const width[] = {"w", "concrete/w"};
   for (int k = 0; k < 2; k++) {
@@ -480,10 +520,13 @@ static void maps_show_their_field(void **state) {
     assert_true(pixels("map_k.png", black) > 500 && pixels("map_k.png", yellow) == 0);
   }
   assert_false(map_of("result_k.h5", "nothing"));
-  assert_non_null(strstr(error, "fields of particles: damage, displacement; of bonds: concrete/alpha, concrete/omega_c"));
+  assert_non_null(strstr(
+      error,
+      "fields of particles: damage, displacement; of bonds: concrete/alpha, concrete/omega_c"));
   write_kinds("result_n.h5", 0, 3);
   assert_false(map_of("result_n.h5", "damage"));
-  assert_non_null(strstr(error, "holds no damage of bonds: write fields = 'displacement', 'damage' in &output"));
+  assert_non_null(strstr(
+      error, "holds no damage of bonds: write fields = 'displacement', 'damage' in &output"));
   assert_true(map_of("result_n.h5", "alpha"));
   assert_int_equal(pixels("map_k.png", black), 0); /* no damage, no cracks */
   write_kinds("result_n.h5", 1, 4);
@@ -494,7 +537,8 @@ static void maps_show_their_field(void **state) {
 static void several_histories_are_several_curves(void **state) {
   (void)state;
   static const colour first = {0.00, 0.27, 0.55}, second = {0.80, 0.25, 0.05};
-  const char *results[] = {"result_k.h5"}, *ys[] = {"energy/kinetic", "time"}, *loads[] = {"load", "load"};
+  const char *results[] = {"result_k.h5"}, *ys[] = {"energy/kinetic", "time"},
+             *loads[] = {"load", "load"};
   write_kinds("result_k.h5", 0, KINDS);
   plot_curve_options o = {.output = "curve_k.png", .ys = loads, .y_count = 1};
   assert_true(plot_curve(results, 1, &o, error, sizeof error));
@@ -504,7 +548,8 @@ static void several_histories_are_several_curves(void **state) {
   assert_true(pixels("curve_k.png", first) > 50 && pixels("curve_k.png", second) > 100);
   o.ys = ys;
   assert_false(plot_curve(results, 1, &o, error, sizeof error));
-  assert_non_null(strstr(error, "`time` of `result_k.h5` is in s, but `energy/kinetic` of `result_k.h5` is in J"));
+  assert_non_null(strstr(
+      error, "`time` of `result_k.h5` is in s, but `energy/kinetic` of `result_k.h5` is in J"));
 }
 
 /* The numbers along the x axis of a curve from `low` to 1. */
@@ -525,7 +570,8 @@ static unsigned char *x_numbers(double low, size_t *size) {
 static void an_axis_gets_no_step_for_what_cannot_be_seen(void **state) {
   (void)state;
   size_t size;
-  unsigned char *exact = x_numbers(0, &size), *nearly = x_numbers(-1e-3, &size), *less = x_numbers(-0.05, &size);
+  unsigned char *exact = x_numbers(0, &size), *nearly = x_numbers(-1e-3, &size),
+                *less = x_numbers(-0.05, &size);
   assert_memory_equal(exact, nearly, size);
   assert_memory_not_equal(exact, less, size);
   free(exact);
@@ -535,12 +581,19 @@ static void an_axis_gets_no_step_for_what_cannot_be_seen(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(written_and_read_back),       cmocka_unit_test(resumed_after_a_kill),
-      cmocka_unit_test(resume_needs_its_frames),     cmocka_unit_test(two_runs_do_not_share_a_result),
-      cmocka_unit_test(an_old_result_survives_a_failed_write), cmocka_unit_test(damaged_files_are_refused),
-      cmocka_unit_test(the_sidecar_is_xml_whatever_the_names), cmocka_unit_test(pictures),
-      cmocka_unit_test(damage_is_the_largest_of_the_damages), cmocka_unit_test(attributes_have_the_types_readers_expect),
-      cmocka_unit_test(damaged_heaps_of_texts_do_no_harm), cmocka_unit_test(texts_of_fixed_length_are_read), cmocka_unit_test(maps_show_their_field),
+      cmocka_unit_test(written_and_read_back),
+      cmocka_unit_test(resumed_after_a_kill),
+      cmocka_unit_test(resume_needs_its_frames),
+      cmocka_unit_test(two_runs_do_not_share_a_result),
+      cmocka_unit_test(an_old_result_survives_a_failed_write),
+      cmocka_unit_test(damaged_files_are_refused),
+      cmocka_unit_test(the_sidecar_is_xml_whatever_the_names),
+      cmocka_unit_test(pictures),
+      cmocka_unit_test(damage_is_the_largest_of_the_damages),
+      cmocka_unit_test(attributes_have_the_types_readers_expect),
+      cmocka_unit_test(damaged_heaps_of_texts_do_no_harm),
+      cmocka_unit_test(texts_of_fixed_length_are_read),
+      cmocka_unit_test(maps_show_their_field),
       cmocka_unit_test(several_histories_are_several_curves),
       cmocka_unit_test(an_axis_gets_no_step_for_what_cannot_be_seen)};
   return cmocka_run_group_tests_name("result", tests, NULL, NULL);

@@ -488,7 +488,8 @@ static void the_larger_of_two_damages_counts(void **state) {
   sweep *w = simulation_state(r.simulation);
   rows_bond *bonds = rows_bonds(simulation_rows(r.simulation, 0));
   assert_int_equal(w->lattice->bond_count, 2);
-  const double given[2][3] = {{0.3, 0.99, 0.6}, {0.9, 0.99, 0.1}}; /* of each bond: omega, alpha, crush */
+  const double given[2][3] = {{0.3, 0.99, 0.6},
+                              {0.9, 0.99, 0.1}}; /* of each bond: omega, alpha, crush */
   int32_t ends[3] = {0};
   for (int b = 0; b < 2; b++) {
     for (int f = 0; f < 3; f++)
@@ -499,8 +500,9 @@ static void the_larger_of_two_damages_counts(void **state) {
   static const struct {
     const char *name, *kind;
     bool on_bonds;
-  } expected[] = {{"damage", "damage", false}, {"dissipated", "other", false}, {"omega", "damage", true},
-                  {"alpha", "state", true},    {"crush", "damage", true},      {"axial", "output", true}};
+  } expected[] = {{"damage", "damage", false}, {"dissipated", "other", false},
+                  {"omega", "damage", true},   {"alpha", "state", true},
+                  {"crush", "damage", true},   {"axial", "output", true}};
   const frame_field *offered;
   assert_int_equal(simulation_frame_fields(r.simulation, &offered), 6);
   for (int k = 0; k < 6; k++) {

@@ -333,7 +333,8 @@ static void an_interrupted_run_leaves_a_result_and_resumes(void **state) {
 static void a_run_without_room_resumes_with_the_same_bits(void **state) {
   (void)state;
   const char *target = in_folder("full.h5"), *log = in_folder("full.log");
-  command c = {{"/bin/sh", "-c", "ulimit -f 400 && exec \"$@\"", "sh", PERILAT_PROGRAM, "run", DECK}, 7};
+  command c = {
+      {"/bin/sh", "-c", "ulimit -f 400 && exec \"$@\"", "sh", PERILAT_PROGRAM, "run", DECK}, 7};
   char text[256];
   set_result(&c, target, text, sizeof text);
   assert_int_equal(finish(&c, log), 2);
