@@ -10,6 +10,7 @@
 #include "dsl/format.h"
 #include "dsl/help.h"
 #include "generator/commands.h"
+#include "generator/drive.h"
 #include "generator/model.h"
 #include "runtime/deck_table.h"
 
@@ -178,19 +179,24 @@ static void show_key(const deck_key_info *key) {
   putchar('\n');
 }
 
-static void show_group(int g) {
-  const deck_group_info *group = &deck_groups[g];
-  printf("&%s (a group of decks)\n\n%s\n\n", group->name, group->doc);
+static void show_group(const deck_group_info *group, const char *of) {
+  printf("&%s (a group of %s)\n\n%s\n\n", group->name, of, group->doc);
   for (int k = 0; k < group->key_count; k++)
     show_key(&group->keys[k]);
 }
 
 static int show_topic(const char *topic) {
   int shown = help_show(topic[0] == '&' ? "" : topic, stdout);
-  int group = deck_group_find(topic[0] == '&' ? topic + 1 : topic);
+  const char *name = topic[0] == '&' ? topic + 1 : topic;
+  int group = deck_group_find(name);
   if (group >= 0) {
     if (shown++) putchar('\n');
-    show_group(group);
+    show_group(&deck_groups[group], "decks");
+  }
+  const deck_group_info *path = drive_group(name);
+  if (path) {
+    if (shown++) putchar('\n');
+    show_group(path, "paths, read by `perilat drive`");
   }
   for (int k = 0; k < command_count; k++)
     if (strcmp(command_table[k].name, topic) == 0) {

@@ -90,6 +90,8 @@ typedef struct drive_input {
 drive_input *drive_read(arena *a, source_set *sources, int file, diagnostics *d);
 /* Every group and key, as Markdown. */
 void drive_reference(FILE *out);
+/* The group of paths with that name (without &), or NULL. */
+const struct deck_group_info *drive_group(const char *name);
 
 /* Value at a time, and the slope there, which is taken at a time between two steps. */
 double drive_at(const drive_input *in, drive_quantity q, double time);

@@ -216,6 +216,12 @@ static const deck_group_info groups[GROUP_COUNT] = {
 #undef X
 };
 
+const deck_group_info *drive_group(const char *name) {
+  for (int g = 0; g < GROUP_COUNT; g++)
+    if (strcmp(groups[g].name, name) == 0) return &groups[g];
+  return NULL;
+}
+
 static const char *value_words(const deck_key_info *key) {
   if (key->type == DECK_COUNT) return "whole number";
   if (!key->unit || !*key->unit) return "text";
