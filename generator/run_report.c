@@ -27,7 +27,10 @@ static void announce_law(const run *r, int lattice) {
   const pl_law *kernel = r->laws[lattice].law;
   implied_elasticity e;
   printf("  law        %s", kernel->name);
-  if (r->open_models > lattice && r->models[lattice].path) printf(" (%s)", r->models[lattice].path);
+  if (r->open_models > lattice && r->models[lattice].path) {
+    const char *path = r->models[lattice].path;
+    printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
+  }
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
     printf(", nu = %.4f", e.nu[0]);

@@ -52,13 +52,6 @@ bool canvas_open(canvas *c, const char *path, double width, double height, char 
   return true;
 }
 
-void canvas_discard(canvas *c) {
-  cairo_destroy(c->cr);
-  cairo_surface_destroy(c->surface);
-  fclose(c->file);
-  unlink(c->temporary);
-}
-
 bool canvas_close(canvas *c, char *error, size_t size) {
   cairo_status_t status = cairo_status(c->cr);
   if (status == CAIRO_STATUS_SUCCESS && c->is_png)

@@ -23,12 +23,11 @@ typedef struct canvas {
 } canvas;
 
 /* False with a sentence in `error` when the ending is none of .png, .svg, .pdf or the file cannot be made. White
-   background. The canvas must stay where it is until it is closed or discarded. */
+   background. The canvas must stay where it is until it is closed. */
 bool canvas_open(canvas *c, const char *path, double width, double height, char *error,
                  size_t size);
 /* Writes under a temporary name and renames; frees. */
 bool canvas_close(canvas *c, char *error, size_t size);
-void canvas_discard(canvas *c);
 
 typedef enum anchor { ANCHOR_LEFT, ANCHOR_CENTRE, ANCHOR_RIGHT } anchor;
 
