@@ -670,16 +670,23 @@ static void write_varying(emitter *e) {
   c_text_add(e->out, "};\n\n");
 }
 
+static const char *place_of_field(const symbol *s) {
+  return s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
+         : s->place == ON_BOND   ? "PL_ON_BOND"
+                                 : "PL_ON_NEIGHBOUR";
+}
+
 static void write_fields(emitter *e, const symbol_list *list, const char *name) {
   if (!list->count) return;
   c_text_add(e->out, "static const pl_field %s[] = {\n", name);
   for (int k = 0; k < list->count; k++) {
     const symbol *s = list->items[k];
     write_symbol(e, s);
-    c_text_add(e->out, ", %s},\n",
+    c_text_add(e->out, ", %s, %s},\n",
                s->kind == SYMBOL_DAMAGE  ? "PL_FIELD_DAMAGE"
                : s->kind == SYMBOL_STATE ? "PL_FIELD_STATE"
-                                         : "PL_FIELD_OUTPUT");
+                                         : "PL_FIELD_OUTPUT",
+               place_of_field(s));
   }
   c_text_add(e->out, "};\n\n");
 }

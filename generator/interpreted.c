@@ -291,12 +291,17 @@ static int field_kind(const symbol *s) {
   return s->kind == SYMBOL_STATE ? PL_FIELD_STATE : PL_FIELD_OUTPUT;
 }
 
+static int field_place(const symbol *s) {
+  if (s->place <= ON_PARTICLE) return PL_ON_PARTICLE;
+  return s->place == ON_BOND ? PL_ON_BOND : PL_ON_NEIGHBOUR;
+}
+
 static const pl_field *describe_fields(arena *memory, const symbol_list *list) {
   pl_field *all = arena_alloc(memory, ((size_t)list->count + 1) * sizeof *all);
   for (int k = 0; k < list->count; k++) {
     const symbol *s = list->items[k];
-    all[k] =
-        (pl_field){s->name, unit_text(memory, s), s->doc ? s->doc : "", s->initial, field_kind(s)};
+    all[k] = (pl_field){s->name,    unit_text(memory, s), s->doc ? s->doc : "",
+                        s->initial, field_kind(s),        field_place(s)};
   }
   return all;
 }

@@ -4,13 +4,17 @@
    A strip is a run of bonds of one direction: bond k joins particle i(k) to j(k). On rows, i and j are unit-stride
    (near end and far end arrays, same index); on lists they are gathered through index arrays. Arrays hold, per
    degree of freedom, displacement (m) and velocity (m/s) components first, then rotations (rad, rad/s).
-   Dimensions of this ABI: 2D now; dof = 2 (central) or 3 (micropolar). */
+   Strips are of the plane; dof = 2 (central) or 3 (micropolar).
+
+   A law that reads a particle's whole family comes as programs instead: passes over runs of particles, one after the
+   other over the whole body. A pass reads what neighbours had at the beginning of the step, and what earlier passes of
+   the program left in links. In the plane or in space; dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 2
+#define PL_KERNEL_ABI 3
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -23,6 +27,8 @@
 
 enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
+/* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle. */
+enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2 };
 
 /* Bits of a strip's flags. */
 #define PL_PRESENT(direction)   (INT64_C(1) << (direction))        /* the bond exists */
@@ -51,7 +57,8 @@ typedef struct pl_parameter {
 typedef struct pl_field {
   const char *name, *unit, *doc;
   double initial;
-  int kind; /* pl_field_kind */
+  int kind;  /* pl_field_kind */
+  int place; /* pl_place */
 } pl_field;
 
 typedef struct pl_strip {
@@ -76,6 +83,40 @@ typedef struct pl_strip {
 struct pl_law;
 typedef void (*pl_strip_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_strip *strip);
+
+#define PL_MAX_DIRECTIONS 64 /* pairs of opposite neighbours of a family */
+#define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
+
+/* A run of particles of one row. Arrays begin at the run's first site. Neighbour k of site q is site q + offset[k];
+   neighbour k + neighbours/2 lies opposite to it. In a law of families a bond's field, too, has a value on either side.
+   Fields on particles have one plane, all others one for each neighbour, `plane` doubles apart: that of particle q
+   toward neighbour k is field[f][k * plane + q]. */
+typedef struct pl_family {
+  long count;            /* sites, a multiple of PL_LANES */
+  long neighbours;       /* of a full family; even */
+  long plane;            /* doubles between planes of a field */
+  const long *offset;    /* [neighbours] */
+  const uint64_t *bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
+  const uint64_t *held;  /* not 0: the damage of this particle, and of its bonds, stays as it is */
+  const double *displacement[3], *velocity[3]; /* [dimensions] */
+  /* Inverse (or pseudo-inverse) of the shape matrix sum(n n^T) over the reference bonds that exist, n = (x^2, y^2, x y) or
+     (x^2, y^2, z^2, x y, y z, x z) of the bond's reference direction: upper triangle, row by row; shear counts twice. */
+  const double *const *shape;     /* [PL_SHAPE_VALUES] */
+  const double *const *old_field; /* [fields] at the beginning of the step */
+  double *const *new_field;       /* [fields] written by the pass that finds them; never the same memory */
+  double *const *link;            /* [links] values of particles, written by one pass and read by later ones */
+  double *const *force;           /* [dimensions] N: sum over the bonds, written by the last pass of the step */
+  double *const *observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
+  double time_step;        /* s */
+} pl_family;
+
+/* uniforms: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour */
+typedef void (*pl_family_function)(const struct pl_law *law, const double *uniforms,
+                                   const pl_family *family);
+typedef struct pl_program {
+  int pass_count;
+  const pl_family_function *pass; /* [pass_count] */
+} pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, moment on i, moment on j. */
 typedef struct pl_law {
@@ -117,6 +158,11 @@ typedef struct pl_law {
   /* Symbolic tangent at such states: out[PL_TANGENTS][count] = dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
   void (*tangent)(const struct pl_law *law, const double *uniforms, long count,
                   const double *const *in, double *const *out);
+
+  /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
+  int link_count;
+  pl_program step;    /* new fields and the forces */
+  pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
 
   const void *context; /* the interpreter's; NULL in compiled kernels */
 } pl_law;

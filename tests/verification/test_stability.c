@@ -84,7 +84,7 @@ static void tangent(const pl_law *law, const double *u, long count, const double
   }
 }
 
-static const pl_field fields[] = {{"omega", "1", "", 0, PL_FIELD_DAMAGE}};
+static const pl_field fields[] = {{"omega", "1", "", 0, PL_FIELD_DAMAGE, PL_ON_BOND}};
 
 static const pl_law micropolar = {.abi = PL_KERNEL_ABI,
                                   .kind = PL_MICROPOLAR,
