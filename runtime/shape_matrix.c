@@ -98,3 +98,9 @@ void shape_matrices(const rows *w, const long *offset, double *const *matrix) {
   }
   free(known);
 }
+
+void shape_matrix_full(const rows *w, double *values) {
+  known_family f = {.own = UINT64_MAX, .incoming = UINT64_MAX};
+  find_matrix(w, &f);
+  memcpy(values, f.matrix, (size_t)PL_SHAPE_VALUES(w->dimensions) * sizeof *values);
+}

@@ -11,4 +11,7 @@
    neighbours in each row: [row_count][2 directions] (family.h). */
 void shape_matrices(const rows *w, const long *offset, double *const *matrix);
 
+/* The matrix of a particle whose neighbours are all there: values[PL_SHAPE_VALUES]. */
+void shape_matrix_full(const rows *w, double *values);
+
 #endif
