@@ -331,6 +331,7 @@ static long pitch_for(long columns) {
 static void set_directions(rows *w, const frame *f, long first_row) {
   const double along[3] = {f->spacing, f->spacing / 2, -f->spacing / 2};
   const double up[3] = {0, f->height, f->height};
+  w->dimensions = 2;
   w->directions = HEXAGONAL_DIRECTIONS;
   for (int k = 0; k < w->directions; k++) {
     w->chord[k][0] = f->cosine * along[k] - f->sine * up[k];
@@ -357,11 +358,13 @@ static rows *rows_new(const builder *b, const range *r) {
   w->stiffness_thickness = l->stiffness_thickness;
   set_directions(w, &b->frame, r->row[0]);
   w->flags = aligned_zeros(w->size, sizeof *w->flags);
+  w->bonds = aligned_zeros(w->size, sizeof *w->bonds);
+  w->held = aligned_zeros(w->size, sizeof *w->held);
   w->present = aligned_zeros(w->size, 1);
   w->x = aligned_zeros(w->size, sizeof *w->x);
   w->y = aligned_zeros(w->size, sizeof *w->y);
   w->site_particle = aligned_zeros(w->size, sizeof *w->site_particle);
-  if (w->flags && w->present && w->x && w->y && w->site_particle) return w;
+  if (w->flags && w->bonds && w->held && w->present && w->x && w->y && w->site_particle) return w;
   diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "spacing"),
               "there is not enough memory for %ld sites", w->size);
   rows_free(w);
@@ -414,9 +417,12 @@ static void join_neighbours(rows *w) {
 
 static void count_bonds(rows *w) {
   w->bond_count = 0;
-  for (long p = 0; p < w->particle_count; p++)
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
     for (int k = 0; k < w->directions; k++)
-      w->bond_count += (w->flags[w->particle_site[p]] & PL_PRESENT(k)) != 0;
+      if (w->flags[site] & PL_PRESENT(k)) w->bonds[site] |= UINT64_C(1) << k;
+    w->bond_count += __builtin_popcountll(w->bonds[site]);
+  }
 }
 
 /* --- notches ------------------------------------------------------------------------------------
@@ -502,6 +508,8 @@ rows *rows_build(const deck *k, int lattice, diagnostics *d) {
 void rows_free(rows *w) {
   if (w == NULL) return;
   free(w->flags);
+  free(w->bonds);
+  free(w->held);
   free(w->present);
   free(w->x);
   free(w->y);
@@ -510,7 +518,9 @@ void rows_free(rows *w) {
   free(w);
 }
 
-pl_bond_class rows_bond_class(const rows *w, int direction) {
+pl_bond_class rows_bond_class(const rows *w, int neighbour) {
+  const int direction = neighbour % w->directions;
+  const double sign = neighbour < w->directions ? 1 : -1;
   return (pl_bond_class){.s = w->length[direction],
                          .spacing = w->spacing,
                          .t = w->stiffness_thickness,
@@ -519,7 +529,8 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
                          .mass_j = w->mass,
                          .shell = 1,
                          .n = FULL_FAMILY,
-                         .chord = {w->chord[direction][0], w->chord[direction][1], 0}};
+                         .chord = {sign * w->chord[direction][0], sign * w->chord[direction][1],
+                                   sign * w->chord[direction][2]}};
 }
 
 /* --- regions ------------------------------------------------------------------------------------
@@ -606,6 +617,7 @@ void rows_protect(rows *w, const int32_t *particles, long count, double radius) 
   unsigned char *near = mark_near(w, particles, count, reach);
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
+    if (near[site]) w->held[site] = 1;
     for (int k = 0; k < w->directions; k++) {
       if (!(w->flags[site] & PL_PRESENT(k))) continue;
       if (near[site] || near[partner(w, site, k)]) w->flags[site] |= PL_PROTECTED(k);
