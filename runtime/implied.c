@@ -89,8 +89,8 @@ static bool invert3(const double a[3][3], double inverse[3][3]) {
 
 bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
                      implied_elasticity *out) {
-  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
-  double tangents[ROWS_MAX_DIRECTIONS][PL_TANGENTS];
+  lattice_bond bonds[PL_MAX_DIRECTIONS];
+  double tangents[PL_MAX_DIRECTIONS][PL_TANGENTS];
   for (int k = 0; k < w->directions; k++) {
     bonds[k] = bond_of(law, parameters, w, k);
     bond_probe_tangent(bonds[k].probe, (bond_motion){0, 0, 0, 0}, tangents[k]);
@@ -119,7 +119,7 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 static double scan_strength(const pl_law *law, const double *parameters, const rows *w,
                             int component, double from, double factor, double step, int count,
                             double *where) {
-  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
+  lattice_bond bonds[PL_MAX_DIRECTIONS];
   for (int k = 0; k < w->directions; k++)
     bonds[k] = bond_of(law, parameters, w, k);
   double largest = 0, strain = from;

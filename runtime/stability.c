@@ -35,7 +35,7 @@ typedef struct bond_matrices {
 
 typedef struct crystal {
   int dof, directions;
-  bond_matrices bonds[ROWS_MAX_DIRECTIONS];
+  bond_matrices bonds[PL_MAX_DIRECTIONS];
   double scale[MOST_DOF];  /* 1/sqrt(mass), 1/sqrt(mass), 1/sqrt(inertia) */
   double reciprocal[2][2]; /* 1/m, of the lattice of chords 0 and 1 */
   bool finite, damped;

@@ -46,6 +46,14 @@ static void find_spans(sweep *w) {
   }
 }
 
+/* Bits of the lattice's bonds as strips have them. */
+static void compose_flags(sweep *w) {
+  const rows *g = w->lattice;
+  w->flags = (int64_t *)doubles(w, g->size);
+  for (long q = 0; q < g->size; q++)
+    w->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
+}
+
 static void prepare_uniforms(sweep *w, const double *parameters) {
   const int n = w->law->uniform_count;
   w->uniforms = doubles(w, (long)w->lattice->directions * n);
@@ -100,6 +108,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
                  int threads, bool ledger, bool forces) {
   sweep *w = must_calloc(1, sizeof *w);
   assert(law->dimensions == 2 && law->force_planes <= PL_MAX_PLANES);
+  assert(lattice->dimensions == 2 && lattice->directions == 3);
   w->lattice = lattice;
   w->law = law;
   w->time_step = time_step;
@@ -112,6 +121,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   }
   w->stride = lattice->pitch + 2 * PL_LANES;
   find_spans(w);
+  compose_flags(w);
   prepare_uniforms(w, parameters);
   new_state(w, forces);
   w->block_count = threads < lattice->row_count ? threads : lattice->row_count;
@@ -153,6 +163,7 @@ void sweep_free(sweep *w) {
     free(w->field[f]);
   free(w->field);
   free(w->uniforms);
+  free(w->flags);
   free(w->dissipated_state);
   free(w->dissipated_rate);
   free(w->row_kinetic);
@@ -217,10 +228,10 @@ static void clear_outside(const sweep *w, int row, double *strip) {
 
 static void strip_ends(const sweep *w, sweep_block *b, int row, int direction, pl_strip *s) {
   const rows *g = w->lattice;
-  const long near = rows_start(g, row) + w->begin[row], far = near + g->offset[row & 1][direction];
+  const long near = rows_start(g, row) + w->begin[row], far = near + rows_offset(g, row, direction);
   s->count = w->count[row];
   s->direction = direction;
-  s->flags = g->flags + near;
+  s->flags = w->flags + near;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -283,9 +294,11 @@ static void evaluate_aside(sweep *w, sweep_block *b, int row, double *buffer) {
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
+enum { MOST_DIRECTIONS = 3 }; /* of a law of bonds */
+
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
-  const double *own[ROWS_MAX_DIRECTIONS], *incoming[ROWS_MAX_DIRECTIONS];
+  const double *own[MOST_DIRECTIONS], *incoming[MOST_DIRECTIONS];
 } gathered;
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
@@ -296,7 +309,7 @@ static gathered gather(const sweep *w, int row, int component, double *here, dou
   const long begin = w->begin[row];
   gathered s = {{0}, {0}};
   for (int k = 0; k < g->directions; k++) {
-    const long along = g->offset[row & 1][k], up = g->offset[(row & 1) ^ 1][k];
+    const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
     s.own[k] = plane(w, here, component, k) + begin;
     s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
                                          : plane(w, below, far_plane, k) + begin - (up - g->pitch);
@@ -349,7 +362,6 @@ static int64_t add_push(long count, double push, double limit, const double *res
 static int64_t kick_component(const sweep *w, const gathered *s, int d, long count, const double *v,
                               double *next) {
   const double factor = w->time_step / w->mass[d];
-  assert(w->lattice->directions == 3);
   if (d >= 2) return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
   const int64_t bad = kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
   if (!w->weight) return bad;

@@ -38,6 +38,7 @@ typedef struct sweep_totals { /* sums over all particles and bonds, J */
 
 typedef struct sweep {
   const rows *lattice;
+  int64_t *flags; /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
   const pl_law *law;
   double time_step;    /* s */
   double decay;        /* factor of mass damping on the velocities in the coming step; 1: none */

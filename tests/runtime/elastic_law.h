@@ -29,8 +29,8 @@ static const pl_parameter elastic_parameters[ELASTIC_PARAMETERS] = {
     {"S_t", "1", "stretch where damage begins", 1e30, 1},
 };
 
-static const pl_field elastic_fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE}};
-static const pl_field elastic_outputs[] = {{"axial", "N", "axial force", 0, PL_FIELD_OUTPUT}};
+static const pl_field elastic_fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE, PL_ON_BOND}};
+static const pl_field elastic_outputs[] = {{"axial", "N", "axial force", 0, PL_FIELD_OUTPUT, PL_ON_BOND}};
 
 /* Rigidities of a hexagonal lattice in plane stress (Asadollahi 2014, eq 2.49). */
 static void elastic_prepare(const pl_law *law, const double *p, const pl_bond_class *b,

@@ -467,9 +467,9 @@ static void damage_is_counted_and_protection_kept(void **state) {
    bonds, far below any growth of damage. */
 static void the_larger_of_two_damages_counts(void **state) {
   (void)state;
-  static const pl_field fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE},
-                                    {"alpha", "1", "state", 0, PL_FIELD_STATE},
-                                    {"crush", "1", "damage", 0, PL_FIELD_DAMAGE}};
+  static const pl_field fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE, PL_ON_BOND},
+                                    {"alpha", "1", "state", 0, PL_FIELD_STATE, PL_ON_BOND},
+                                    {"crush", "1", "damage", 0, PL_FIELD_DAMAGE, PL_ON_BOND}};
   pl_law law = elastic_bar;
   law.field_count = 3;
   law.fields = fields;
