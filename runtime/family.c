@@ -193,27 +193,18 @@ static void output_values(sweep *w, int output, double *values) {
 
 double family_bond_value(const sweep *w, const double *field, int direction, long i) {
   const rows *g = w->lattice;
-  const long j = i + rows_offset(g, (int)(i / g->pitch) - 1, direction);
+  const long j = rows_partner(g, i, direction);
   return 0.5 * (field[direction * g->size + i] + field[(direction + g->directions) * g->size + j]);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Rows that nothing leads to from below look into the ghost row, where there are no bonds. */
 static void find_offsets(const sweep *w, family *f) {
   const rows *g = w->lattice;
   f->offset = must_calloc((size_t)g->row_count * (size_t)f->neighbours, sizeof *f->offset);
   for (int r = 0; r < g->row_count; r++)
-    for (int k = 0; k < g->directions; k++)
-      f->offset[(long)r * f->neighbours + g->directions + k] = -rows_start(g, r);
-  for (int r = 0; r < g->row_count; r++)
-    for (int k = 0; k < g->directions; k++) {
-      const long there = rows_offset(g, r, k);
-      const long other = r + lround((double)there / (double)g->pitch);
-      f->offset[(long)r * f->neighbours + k] = there;
-      if (other >= 0 && other < g->row_count)
-        f->offset[other * f->neighbours + g->directions + k] = -there;
-    }
+    for (int k = 0; k < f->neighbours; k++)
+      f->offset[(long)r * f->neighbours + k] = rows_offset(g, r, k);
 }
 
 double *family_uniforms(const pl_law *law, const rows *g, const double *parameters) {

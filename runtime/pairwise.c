@@ -17,6 +17,7 @@ typedef struct pairwise_block { /* what one thread works with */
 
 typedef struct pairwise {
   double *uniforms;       /* [directions][uniform_count] */
+  int64_t *flags;         /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
   pairwise_block *blocks; /* [block_count] */
@@ -42,10 +43,10 @@ static void clear_outside(const sweep *w, int row, double *strip) {
 
 static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, pl_strip *s) {
   const rows *g = w->lattice;
-  const long near = rows_start(g, row) + w->begin[row], far = near + g->offset[row & 1][direction];
+  const long near = rows_start(g, row) + w->begin[row], far = near + rows_offset(g, row, direction);
   s->count = w->count[row];
   s->direction = direction;
-  s->flags = g->flags + near;
+  s->flags = own(w)->flags + near;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -60,6 +61,10 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
     s->dissipated_state = w->dissipated_state + near;
     s->dissipated_rate = w->dissipated_rate + near;
   }
+}
+
+const int64_t *pairwise_flags(const sweep *w) {
+  return own(w)->flags;
 }
 
 const double *pairwise_uniforms(const sweep *w, int direction) {
@@ -108,9 +113,11 @@ static void evaluate_aside(sweep *w, pairwise_block *b, int row, double *buffer)
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
+enum { MOST_DIRECTIONS = 3 }; /* of a law of bonds */
+
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
-  const double *own[ROWS_MAX_DIRECTIONS], *incoming[ROWS_MAX_DIRECTIONS];
+  const double *own[MOST_DIRECTIONS], *incoming[MOST_DIRECTIONS];
 } gathered;
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
@@ -121,7 +128,7 @@ static gathered gather(const sweep *w, int row, int component, double *here, dou
   const long begin = w->begin[row];
   gathered s = {{0}, {0}};
   for (int k = 0; k < g->directions; k++) {
-    const long along = g->offset[row & 1][k], up = g->offset[(row & 1) ^ 1][k];
+    const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
     s.own[k] = plane(w, here, component, k) + begin;
     s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
                                          : plane(w, below, far_plane, k) + begin - (up - g->pitch);
@@ -310,15 +317,26 @@ static void free_own(sweep *w) {
   }
   free(p->blocks);
   free(p->uniforms);
+  free(p->flags);
   free(p);
+}
+
+/* Bits of the lattice's bonds as strips have them. */
+static void compose_flags(sweep *w, pairwise *p) {
+  const rows *g = w->lattice;
+  p->flags = (int64_t *)sweep_doubles(w, g->size);
+  for (long q = 0; q < g->size; q++)
+    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
 }
 
 sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   pairwise *p = must_calloc(1, sizeof *p);
   assert(w->dimensions == 2 && w->law->force_planes <= PL_MAX_PLANES);
+  assert(w->lattice->directions == MOST_DIRECTIONS);
   p->stride = w->lattice->pitch + 2 * PL_LANES;
   p->buffer = w->law->force_planes * w->lattice->directions * p->stride;
   prepare_uniforms(w, p, parameters);
+  compose_flags(w, p);
   p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->block_count; k++)
     new_block(w, p, &p->blocks[k]);
