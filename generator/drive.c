@@ -298,6 +298,7 @@ pl_bond_class drive_bond_class(const drive_input *in, double rho) {
                          .mass_j = mass_j,
                          .shell = 1,
                          .n = 6,
+                         .weight = 1,
                          .chord = {s, 0, 0}};
 }
 

@@ -282,7 +282,8 @@ static pl_bond_class draw_class(bench *b, int lane, double density) {
                          .mass_j = mass * uneven,
                          .area = s * t,
                          .shell = 1,
-                         .n = 6};
+                         .n = 6,
+                         .weight = 1};
 }
 
 void bench_draw(bench *b, double *const *states, int lane) {

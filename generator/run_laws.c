@@ -164,7 +164,7 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
 
 /* Kernels are compiled for plane stress only. */
 static bool setting_is_supported(run *r, const deck_lattice *l) {
-  if (strcmp(l->setting, "plane_stress") == 0) return true;
+  if (strcmp(l->setting, "plane_strain") != 0) return true;
   diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&l->item, "setting"),
               "laws cannot be compiled for plane strain yet");
   diag_hint(&r->said, "write setting = 'plane_stress', or leave it out");
@@ -185,7 +185,8 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
                                .mass_i = mass,
                                .mass_j = mass,
                                .shell = 1,
-                               .n = 6};
+                               .n = 6,
+                               .weight = 1};
   diagnostics found;
   diag_begin(&found, &opened->sources);
   bool good = physics_check(

@@ -27,16 +27,22 @@ typedef struct deck_item { /* what every group has */
 /* Place of a key's value in the item, or of the group when the key was not written. */
 span deck_where(const deck_item *item, const char *key);
 
+typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
+
 typedef struct deck_lattice {
   deck_item item;
   const char *name;
-  const char *kind;                           /* "hexagonal" */
-  double spacing;                             /* m */
+  const char *kind; /* "hexagonal", "square", "cubic", "fcc" */
+  double spacing;   /* m */
+  double horizon;   /* in spacings; 0: `shells` decides */
+  int shells;       /* 0: the nearest neighbours */
+  volume_correction volume_correction;
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
-  double origin[2];                           /* m: a point that is a lattice site; default 0, 0 */
-  double thickness;                           /* m */
+  double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
+  double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
+  double thickness;                           /* m; these three are 0 in space */
   double stiffness_thickness, mass_thickness; /* m; default: thickness */
-  const char *setting;                        /* "plane_stress" (default) or "plane_strain" */
+  const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
 
 typedef struct deck_assignment { /* parameter = value in a &material */
@@ -64,7 +70,7 @@ typedef enum shape_kind { SHAPE_POINT, SHAPE_RECTANGLE, SHAPE_DISC, SHAPE_POLYGO
 
 typedef struct deck_shape {
   shape_kind kind;
-  double at[2];              /* point: position; the nearest site within `within` is meant */
+  double at[3];              /* point: position; the nearest site within `within` is meant */
   double within;             /* point: m; default half a spacing (0 here: not given) */
   double corner[2], size[2]; /* rectangle: lower left, extent; m */
   double centre[2], radius, inner_radius; /* disc; m */
@@ -240,8 +246,9 @@ typedef struct deck {
   X(field)                                                                                         \
   X(body)                                                                                          \
   X(notch)                                                                                         \
-  X(region) X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity)            \
-      X(initial_velocity) X(stop) X(monitor)
+  X(region)                                                                                        \
+  X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity)  \
+      X(stop) X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \
   int group##_count;

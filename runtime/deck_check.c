@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/bravais.h"
 #include "runtime/deck_load.h"
 #include "runtime/deck_value.h"
 
@@ -76,6 +77,13 @@ static void warn_late(deck_reader *r, const deck_item *item, const char *key, do
               "`%s` is not before the end of the run", key);
 }
 
+static void refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b) {
+  const namelist_key *first = namelist_find(from, a), *second = namelist_find(from, b);
+  if (!first || !second) return;
+  diag_report(r->d, DIAG_CONFLICT, second->name_where, "`%s` and `%s` exclude each other", a, b);
+  diag_note(r->d, first->name_where, "`%s` is given here", a);
+}
+
 /* --- shapes ----------------------------------------------------------------------------------- */
 
 enum {
@@ -135,10 +143,41 @@ void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simu
                 "`step` is longer than the run");
 }
 
+enum { IN_PLANE = 1 << 2, IN_SPACE = 1 << 3 }; /* by dimensions */
+static const char *const dimension_words[] = {
+    [2] = "a lattice in the plane", [3] = "a lattice in space"};
+static const deck_key_use lattice_uses[] = {{"axis", IN_SPACE, false},
+                                            {"thickness", IN_PLANE, true},
+                                            {"stiffness_thickness", IN_PLANE, false},
+                                            {"mass_thickness", IN_PLANE, false},
+                                            {"setting", IN_PLANE, false}};
+
+/* A place of two or three coordinates, as the lattice has dimensions. */
+static void check_place(deck_reader *r, const namelist_group *from, const char *name,
+                        int dimensions) {
+  const namelist_key *key = namelist_find(from, name);
+  if (!key || key->value_count == dimensions) return;
+  diag_report(r->d, DIAG_BAD_VALUE, key->value_where,
+              "`%s` takes %d values in %s, but %d are given", name, dimensions,
+              dimensions == 2 ? "the plane" : "space", key->value_count);
+}
+
+/* Which keys a lattice has depends on its dimensions. */
+static void check_dimensions(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  const int dimensions = bravais_dimensions(item->kind);
+  if (!deck_keys_fit(from, lattice_uses, 5, dimensions, dimension_words[dimensions], r->d)) return;
+  check_place(r, from, "origin", dimensions);
+  if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";
+}
+
 void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
   static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
                                       "force", "damage",     "rotation",     "."};
-  (void)from;
+  check_dimensions(r, from, item);
+  refuse_both(r, from, "horizon", "shells");
+  if (namelist_find(from, "shells") && item->shells == 0)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "shells"),
+                "a particle has at least one shell of neighbours");
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
   span where = deck_where(&item->item, "name");
@@ -204,13 +243,6 @@ static bool read_number(deck_reader *r, const namelist_group *from, const char *
     return false;
   *n = (deck_number){true, q.has_unit, q.value, q.dim};
   return true;
-}
-
-static void refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b) {
-  const namelist_key *first = namelist_find(from, a), *second = namelist_find(from, b);
-  if (!first || !second) return;
-  diag_report(r->d, DIAG_CONFLICT, second->name_where, "`%s` and `%s` exclude each other", a, b);
-  diag_note(r->d, first->name_where, "`%s` is given here", a);
 }
 
 /* What makes a distribution whole, and no more than that. */

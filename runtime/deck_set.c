@@ -163,7 +163,7 @@ static bool takes_several(const setter *s) {
   deck_type type = s->group->keys[k].type;
   bool listed = strcmp(s->key, "times") == 0 || strcmp(s->key, "values") == 0;
   return commas < MOST_PIECES && (type == DECK_NAMES || type == DECK_FIXED || type == DECK_PAIR ||
-                                  type == DECK_REALS || listed);
+                                  type == DECK_PLACE || type == DECK_DIRECTION ||                                  type == DECK_REALS || listed);
 }
 
 /* Mixed values such as `4 mm, 0.1` split into texts: a bare number in one is a number again. */

@@ -130,35 +130,62 @@ static const deck_key_info lattice_keys[] = {
     {.name = "name", .type = DECK_NAME, .required = true, AT(lattice, name), .doc = "its name"},
     {.name = "kind",
      .type = DECK_WORD,
-     .choices = "hexagonal",
+     .choices = "hexagonal|square|cubic|fcc",
      .required = true,
      AT(lattice, kind),
-     .doc = "arrangement of the sites"},
+     .doc = "arrangement of the sites: `hexagonal` and `square` in the plane, `cubic` and `fcc` (edges of the cubes "
+            "along x, y, z) in space"},
     {.name = "spacing",
      .type = DECK_REAL,
      .unit = "m",
      .bound = BOUND_POSITIVE,
      .required = true,
      AT(lattice, spacing),
-     .doc = "distance of neighbouring sites"},
+     .doc = "distance of nearest neighbours"},
+    {.name = "horizon",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= the nearest neighbours",
+     AT(lattice, horizon),
+     .doc = "in spacings: bonds join sites as far apart as this, and 0.1 % more; e.g. 3.015"},
+    {.name = "shells",
+     .type = DECK_COUNT,
+     .fallback = "= 1",
+     .most = 64,
+     AT(lattice, shells),
+     .doc = "instead of the horizon: 1 for the nearest neighbours, 2 for the second nearest, too, and so on"},
+    {.name = "volume_correction",
+     .type = DECK_CHOICE,
+     .choices = "none|linear",
+     .fallback = "'none'",
+     AT(lattice, volume_correction),
+     .doc = "part of a neighbour's volume that counts, for laws that use it; `linear`: (horizon + spacing/2 - "
+            "distance)/spacing, from 0 to 1"},
     {.name = "rotation",
      .type = DECK_ANGLE,
      .fallback = "0",
      AT(lattice, rotation),
      .doc = "angle from x to the rows of sites; a plain number is in degrees"},
+    {.name = "axis",
+     .type = DECK_DIRECTION,
+     .unit = "1",
+     .fallback = "= 0, 0, 1",
+     AT(lattice, axis),
+     .doc = "in space: direction about which the lattice is rotated"},
     {.name = "origin",
-     .type = DECK_PAIR,
+     .type = DECK_PLACE,
      .unit = "m",
-     .fallback = "0, 0",
+     .fallback = "= 0, 0",
      AT(lattice, origin),
      .doc = "a point that is a site"},
     {.name = "thickness",
      .type = DECK_REAL,
      .unit = "m",
      .bound = BOUND_POSITIVE,
-     .required = true,
+     .fallback = "= none; required in the plane",
      AT(lattice, thickness),
-     .doc = "out of the plane"},
+     .doc = "out of the plane; the last four keys are not for lattices in space"},
     {.name = "stiffness_thickness",
      .type = DECK_REAL,
      .unit = "m",
@@ -176,7 +203,7 @@ static const deck_key_info lattice_keys[] = {
     {.name = "setting",
      .type = DECK_WORD,
      .choices = "plane_stress|plane_strain",
-     .fallback = "'plane_stress'",
+     .fallback = "= 'plane_stress'",
      AT(lattice, setting),
      .doc = "what the thickness direction does"},
 };
@@ -639,6 +666,12 @@ static void print_type(const deck_key_info *key, FILE *out) {
   switch (key->type) {
   case DECK_PAIR:
     fprintf(out, "two values, %s", shown);
+    break;
+  case DECK_DIRECTION:
+    fputs("three values", out);
+    break;
+  case DECK_PLACE:
+    fprintf(out, "two values, in space three, %s", shown);
     break;
   case DECK_REALS:
     fprintf(out, "list, %s", shown);

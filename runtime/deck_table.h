@@ -17,6 +17,8 @@ typedef enum deck_type {
   DECK_REAL,
   DECK_STEP,  /* a time or 'auto', which is kept as 0 */
   DECK_PAIR,  /* two reals */
+  DECK_PLACE, /* two reals in the plane, three in space */
+  DECK_DIRECTION, /* three reals, not all 0 */
   DECK_REALS, /* list of reals */
   DECK_ANGLE, /* plain number: degrees; kept in rad */
   DECK_COUNT, /* int */

@@ -385,6 +385,14 @@ static bool read_choice(arena *a, const deck_key_info *info, const namelist_key 
   return true;
 }
 
+static bool read_direction(const deck_key_info *info, const namelist_key *key, double field[3],
+                           diagnostics *d) {
+  if (!deck_values_counted(key, 3, d) || !read_reals(info, key, field, d)) return false;
+  if (field[0] != 0 || field[1] != 0 || field[2] != 0) return true;
+  diag_report(d, DIAG_BAD_VALUE, key->value_where, "`%s` = 0, 0, 0 has no direction", info->name);
+  return false;
+}
+
 bool deck_field_read(arena *a, const deck_key_info *info, const namelist_key *key, void *item,
                      diagnostics *d) {
   char *base = item;
@@ -399,6 +407,11 @@ bool deck_field_read(arena *a, const deck_key_info *info, const namelist_key *ke
     return read_fixed(a, info, key, field, d);
   case DECK_PAIR:
     return deck_values_counted(key, 2, d) && read_reals(info, key, field, d);
+  case DECK_PLACE: /* whether it fits its lattice is known later only */
+    return deck_values_counted(key, key->value_count == 3 ? 3 : 2, d) &&
+           read_reals(info, key, field, d);
+  case DECK_DIRECTION:
+    return read_direction(info, key, field, d);
   case DECK_NAMES:
     if (info->count_offset == 0) /* a pair of names: no structure begins with a count */
       return deck_values_counted(key, 2, d) && read_names(a, info, key, field, d);

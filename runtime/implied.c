@@ -110,8 +110,8 @@ static bool invert_stiffness(int order, const double *D, double *S) {
 
 static void pairwise_stiffness(const pl_law *law, const double *parameters, const rows *w,
                                implied_elasticity *out) {
-  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
-  double tangents[ROWS_MAX_DIRECTIONS][PL_TANGENTS];
+  lattice_bond bonds[PL_MAX_DIRECTIONS];
+  double tangents[PL_MAX_DIRECTIONS][PL_TANGENTS];
   for (int k = 0; k < w->directions; k++) {
     bonds[k] = bond_of(law, parameters, w, k);
     bond_probe_tangent(bonds[k].probe, (bond_motion){0, 0, 0, 0}, tangents[k]);
@@ -167,7 +167,7 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 static double scan_strength(const pl_law *law, const double *parameters, const rows *w,
                             int component, double from, double factor, double step, int count,
                             double *where) {
-  lattice_bond bonds[ROWS_MAX_DIRECTIONS];
+  lattice_bond bonds[PL_MAX_DIRECTIONS];
   for (int k = 0; k < w->directions; k++)
     bonds[k] = bond_of(law, parameters, w, k);
   double largest = 0, strain = from;

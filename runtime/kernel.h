@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 3
+#define PL_KERNEL_ABI 4
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -46,6 +46,7 @@ typedef struct pl_bond_class {
   double n;              /* bonds of a full family */
   double
       chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists carry their own) */
+  double weight; /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
 } pl_bond_class;
 
 typedef struct pl_parameter {
@@ -161,7 +162,7 @@ typedef struct pl_law {
 
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
   int link_count;
-  int reads_shape;    /* 1: a pass reads `shape` */
+  int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
 

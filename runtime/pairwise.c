@@ -17,6 +17,7 @@ typedef struct pairwise_block { /* what one thread works with */
 
 typedef struct pairwise {
   double *uniforms;       /* [directions][uniform_count] */
+  int64_t *flags;         /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
   pairwise_block *blocks; /* [block_count] */
@@ -42,10 +43,10 @@ static void clear_outside(const sweep *w, int row, double *strip) {
 
 static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, pl_strip *s) {
   const rows *g = w->lattice;
-  const long near = rows_start(g, row) + w->begin[row], far = near + g->offset[row & 1][direction];
+  const long near = rows_start(g, row) + w->begin[row], far = near + rows_offset(g, row, direction);
   s->count = w->count[row];
   s->direction = direction;
-  s->flags = g->flags + near;
+  s->flags = own(w)->flags + near;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -106,11 +107,17 @@ static void evaluate_aside(sweep *w, pairwise_block *b, int row, double *buffer)
   }
 }
 
+const int64_t *pairwise_flags(const sweep *w) {
+  return own(w)->flags;
+}
+
 /* --- particles of a row ----------------------------------------------------------------------- */
+
+enum { DIRECTIONS = 3 }; /* of a law of bonds */
 
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
-  const double *own[ROWS_MAX_DIRECTIONS], *incoming[ROWS_MAX_DIRECTIONS];
+  const double *own[DIRECTIONS], *incoming[DIRECTIONS];
 } gathered;
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
@@ -121,7 +128,7 @@ static gathered gather(const sweep *w, int row, int component, double *here, dou
   const long begin = w->begin[row];
   gathered s = {{0}, {0}};
   for (int k = 0; k < g->directions; k++) {
-    const long along = g->offset[row & 1][k], up = g->offset[(row & 1) ^ 1][k];
+    const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
     s.own[k] = plane(w, here, component, k) + begin;
     s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
                                          : plane(w, below, far_plane, k) + begin - (up - g->pitch);
@@ -160,9 +167,8 @@ kick(const gathered *from, int directions, double sign, long count, double kick_
 static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, double *next) {
   const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
   const long count = w->count[row];
-  assert(w->lattice->directions == 3);
-  if (d >= 2) return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
-  const int64_t bad = kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
+  if (d >= 2) return kick(s, DIRECTIONS, 1, count, factor, w->decay, w->limit[d], v, next);
+  const int64_t bad = kick(s, DIRECTIONS, -1, count, factor, w->decay, w->limit[d], v, next);
   return w->weight ? sweep_push(w, row, d, next) : bad;
 }
 
@@ -284,6 +290,14 @@ static void prepare_uniforms(sweep *w, pairwise *p, const double *parameters) {
   }
 }
 
+/* Bits of the lattice's bonds as strips have them. */
+static void compose_flags(sweep *w, pairwise *p) {
+  const rows *g = w->lattice;
+  p->flags = (int64_t *)sweep_doubles(w, g->size);
+  for (long q = 0; q < g->size; q++)
+    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
+}
+
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
   const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
@@ -310,15 +324,18 @@ static void free_own(sweep *w) {
   }
   free(p->blocks);
   free(p->uniforms);
+  free(p->flags);
   free(p);
 }
 
 sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   pairwise *p = must_calloc(1, sizeof *p);
-  assert(w->dimensions == 2 && w->law->force_planes <= PL_MAX_PLANES);
+  assert(w->dimensions == 2 && w->lattice->directions == DIRECTIONS);
+  assert(w->law->force_planes <= PL_MAX_PLANES);
   p->stride = w->lattice->pitch + 2 * PL_LANES;
   p->buffer = w->law->force_planes * w->lattice->directions * p->stride;
   prepare_uniforms(w, p, parameters);
+  compose_flags(w, p);
   p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->block_count; k++)
     new_block(w, p, &p->blocks[k]);

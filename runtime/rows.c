@@ -1,152 +1,80 @@
 #include "runtime/rows.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "runtime/shape.h"
+#include "runtime/site_marks.h"
 
-#define OUTLINE_TOLERANCE 1e-6 /* spacings: a site this near to an outline lies on it */
-#define CHORD_TOLERANCE   1e-9 /* spacings: a chord must enter a notch deeper than this to be cut */
-#define TIE_TOLERANCE     1e-9 /* spacings: of sites equally near to a point the first is taken */
-#define MOST_SITES        2e8  /* absent ones included: site numbers and memory stay in bounds */
-#define FARTHEST          1e8  /* spacings from the origin: positions keep 1e-8 spacings */
+#define CHORD_TOLERANCE 1e-9 /* spacings: a chord must enter a notch deeper than this to be cut */
 
-enum { LEAD = 1, HEXAGONAL_DIRECTIONS = 3, FULL_FAMILY = 6 };
-enum { IN_BODY = 1, IN_NOTCH = 2 };
-
-/* The infinite lattice. Row R lies R * height above the origin along the turned y axis; odd rows
-   are shifted by half a spacing along the turned x axis. */
-typedef struct frame {
-  double origin[2], cosine, sine, spacing, height;
-} frame;
-
-/* Rows and columns of the infinite lattice, ends included. */
-typedef struct range {
-  long row[2], column[2];
-} range;
-
-/* Sites of a range, row by row, with the bits IN_BODY, IN_NOTCH. */
-typedef struct marks {
-  range span;
-  long columns;
-  unsigned char *bits;
-} marks;
+enum { COLUMN, ROW, LAYER };
 
 typedef struct builder {
   const deck *deck;
   const deck_lattice *lattice;
-  frame frame;
-  marks marks;
+  bravais infinite;
+  bravais_neighbour family[PL_MAX_DIRECTIONS];
+  int directions;
+  int reach[3]; /* columns, rows, layers to the farthest neighbour in each */
+  site_marks marks;
   diagnostics *d;
 } builder;
 
-static frame frame_of(const deck_lattice *l) {
-  return (frame){.origin = {l->origin[0], l->origin[1]},
-                 .cosine = cos(l->rotation),
-                 .sine = sin(l->rotation),
-                 .spacing = l->spacing,
-                 .height = l->spacing * sqrt(3) / 2};
-}
-
-static double shift_of(long row) {
-  return row % 2 != 0 ? 0.5 : 0.0;
-}
-
-static void site_position(const frame *f, long row, long column, double p[2]) {
-  const double along = ((double)column + shift_of(row)) * f->spacing;
-  const double up = (double)row * f->height;
-  p[0] = f->origin[0] + f->cosine * along - f->sine * up;
-  p[1] = f->origin[1] + f->sine * along + f->cosine * up;
-}
-
-/* Along the rows in spacings, across them in row heights. */
-static void to_frame(const frame *f, const double p[2], double out[2]) {
-  const double x = p[0] - f->origin[0], y = p[1] - f->origin[1];
-  out[0] = (f->cosine * x + f->sine * y) / f->spacing;
-  out[1] = (f->cosine * y - f->sine * x) / f->height;
-}
-
-/* The nearest site is in one of the two rows around the point. */
-static double nearest_site(const frame *f, const double p[2], range *site) {
-  double at[2], best = INFINITY;
-  to_frame(f, p, at);
-  for (long row = (long)floor(at[1]); row <= (long)floor(at[1]) + 1; row++) {
-    const long column = lround(at[0] - shift_of(row));
-    double q[2];
-    site_position(f, row, column, q);
-    const double distance = hypot(q[0] - p[0], q[1] - p[1]);
-    if (distance >= best - TIE_TOLERANCE * f->spacing) continue;
-    best = distance;
-    *site = (range){{row, row}, {column, column}};
-  }
-  return best;
-}
-
-/* Corners of the shape's box, seen from the lattice; false when it is too far away to be numbered.
+/* --- the lattice --------------------------------------------------------------------------------
  */
-static bool shape_range(const frame *f, const deck_shape *shape, range *out) {
-  double lower[2], upper[2], least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
-  shape_box(shape, lower, upper);
-  for (int corner = 0; corner < 4; corner++) {
-    const double p[2] = {corner & 1 ? upper[0] : lower[0], corner & 2 ? upper[1] : lower[1]};
-    double q[2];
-    to_frame(f, p, q);
-    for (int c = 0; c < 2; c++) {
-      if (!(fabs(q[c]) < FARTHEST)) return false;
-      least[c] = fmin(least[c], q[c]);
-      most[c] = fmax(most[c], q[c]);
+
+/* Columns from a site of a row with that shift to its neighbour. */
+static int columns_to(const bravais *b, const bravais_neighbour *n, int shift) {
+  const int there = (shift + bravais_shift(b, n->row, n->layer)) & 1;
+  return (n->halves + shift - there) / 2;
+}
+
+static bravais_neighbour opposite(bravais_neighbour n) {
+  return (bravais_neighbour){-n.halves, -n.row, -n.layer, n.square, n.shell};
+}
+
+static void grow(int *reach, int steps) {
+  if (abs(steps) > *reach) *reach = abs(steps);
+}
+
+static void find_reach(builder *b) {
+  for (int k = 0; k < b->directions; k++) {
+    const bravais_neighbour n = b->family[k], m = opposite(n);
+    for (int shift = 0; shift < ROWS_CLASSES; shift++) {
+      grow(&b->reach[COLUMN], columns_to(&b->infinite, &n, shift));
+      grow(&b->reach[COLUMN], columns_to(&b->infinite, &m, shift));
     }
+    grow(&b->reach[ROW], n.row);
+    grow(&b->reach[LAYER], n.layer);
   }
-  const double margin = 2 * OUTLINE_TOLERANCE;
-  out->row[0] = (long)ceil(least[1] - margin);
-  out->row[1] = (long)floor(most[1] + margin);
-  out->column[0] = (long)ceil(least[0] - 0.5 - margin);
-  out->column[1] = (long)floor(most[0] + margin);
-  return true;
 }
 
-static double point_within(const deck_shape *shape, double spacing) {
-  return shape->within > 0 ? shape->within : spacing / 2;
-}
-
-static double point_reach(const deck_shape *shape, double spacing) {
-  return point_within(shape, spacing) + OUTLINE_TOLERANCE * spacing;
-}
-
-/* Sites that may lie in the shape; of a point exactly one, or none. Empty ranges have row[0] >
- * row[1]. */
-static bool candidate_range(const frame *f, const deck_shape *shape, range *out) {
-  if (!shape_range(f, shape, out)) return false;
-  if (shape->kind != SHAPE_POINT) return true;
-  if (nearest_site(f, shape->at, out) > point_reach(shape, f->spacing))
-    out->row[1] = out->row[0] - 1;
-  return true;
-}
-
-static bool of_lattice(const builder *b, const char *name) {
-  return name == NULL || strcmp(name, b->lattice->name) == 0;
-}
-
-static void widen(range *all, const range *one) {
-  if (one->row[0] > one->row[1] || one->column[0] > one->column[1]) return;
-  if (one->row[0] < all->row[0]) all->row[0] = one->row[0];
-  if (one->row[1] > all->row[1]) all->row[1] = one->row[1];
-  if (one->column[0] < all->column[0]) all->column[0] = one->column[0];
-  if (one->column[1] > all->column[1]) all->column[1] = one->column[1];
-}
-
-static double range_sites(const range *r) {
-  if (r->row[0] > r->row[1] || r->column[0] > r->column[1]) return 0;
-  return ((double)(r->row[1] - r->row[0]) + 1) * ((double)(r->column[1] - r->column[0]) + 1);
-}
-
-static bool lattice_is_sound(const builder *b) {
+static bool family_is_sound(builder *b) {
   const deck_lattice *l = b->lattice;
-  if (strcmp(l->kind, "hexagonal") != 0) {
+  const char *key = l->horizon > 0 ? "horizon" : "shells";
+  b->directions = bravais_family(&b->infinite, l->horizon, l->shells, b->family);
+  if (b->directions == 0) {
+    diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "horizon"),
+                "a horizon of %.6g spacings reaches no neighbour", l->horizon);
+    return false;
+  }
+  if (b->directions <= PL_MAX_DIRECTIONS) return true;
+  diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, key),
+              "with this `%s` a particle has more than %d neighbours, the most there can be", key,
+              ROWS_MAX_NEIGHBOURS);
+  return false;
+}
+
+static bool lattice_is_sound(builder *b) {
+  const deck_lattice *l = b->lattice;
+  if (!bravais_of(l, &b->infinite)) {
     diag_report(b->d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "there is no lattice of kind '%s'", l->kind);
-    diag_hint(b->d, "write kind = 'hexagonal'");
+    diag_hint(b->d,
+              "the kinds are 'hexagonal' and 'square' in the plane, 'cubic' and 'fcc' in space");
     return false;
   }
   if (!(l->spacing > 0) || !isfinite(l->spacing)) {
@@ -154,162 +82,9 @@ static bool lattice_is_sound(const builder *b) {
                 "the spacing of a lattice must be positive");
     return false;
   }
+  if (!family_is_sound(b)) return false;
+  find_reach(b);
   return true;
-}
-
-static bool too_many(const builder *b, double sites) {
-  if (sites <= MOST_SITES) return false;
-  const double spacing = b->lattice->spacing;
-  diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
-              "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
-              b->lattice->name, sites, MOST_SITES);
-  diag_hint(b->d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * spacing * sqrt(sites / MOST_SITES) * 1.01);
-  return true;
-}
-
-static bool body_range(const builder *b, const deck_body *body, range *out) {
-  if (candidate_range(&b->frame, &body->shape, out)) return true;
-  diag_report(b->d, DIAG_OUT_OF_BOUNDS, body->item.where,
-              "the body reaches farther than %.0e spacings from the origin of lattice '%s'",
-              FARTHEST, b->lattice->name);
-  diag_hint(b->d, "check the units of the body's lengths and of the lattice's spacing");
-  return false;
-}
-
-/* The range that all bodies need; nothing has been allocated yet when it is refused. */
-static bool find_span(builder *b) {
-  range all = {{2, -2}, {2, -2}};
-  bool any = false;
-  for (int k = 0; k < b->deck->body_count; k++) {
-    const deck_body *body = &b->deck->bodys[k];
-    range r;
-    if (!of_lattice(b, body->lattice)) continue;
-    if (!body_range(b, body, &r)) return false;
-    if (range_sites(&r) == 0) continue;
-    if (any)
-      widen(&all, &r);
-    else
-      all = r;
-    any = true;
-  }
-  if (too_many(b, range_sites(&all))) return false;
-  b->marks.span = all;
-  b->marks.columns = any ? all.column[1] - all.column[0] + 1 : 0;
-  b->marks.bits = calloc((size_t)range_sites(&all) + 1, 1);
-  if (b->marks.bits != NULL) return true;
-  diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
-              "there is not enough memory for %.3g sites", range_sites(&all));
-  return false;
-}
-
-static unsigned char *mark_at(const marks *m, long row, long column) {
-  return m->bits + (row - m->span.row[0]) * m->columns + (column - m->span.column[0]);
-}
-
-static void clip_ends(long ends[2], const long to[2]) {
-  if (ends[0] < to[0]) ends[0] = to[0];
-  if (ends[1] > to[1]) ends[1] = to[1];
-}
-
-static void clip(range *r, const range *to) {
-  clip_ends(r->row, to->row);
-  clip_ends(r->column, to->column);
-}
-
-typedef struct mark_counts {
-  long inside; /* sites of the shape that `wanted` allows */
-  long fresh;  /* of these, sites that did not have the bit */
-} mark_counts;
-
-/* Sets `bit` on the sites of the shape that have all bits of `wanted`. */
-static mark_counts mark_shape(builder *b, const deck_shape *shape, unsigned char wanted,
-                              unsigned char bit) {
-  mark_counts counts = {0, 0};
-  range r;
-  if (!candidate_range(&b->frame, shape, &r)) return counts;
-  clip(&r, &b->marks.span);
-  const double tolerance = OUTLINE_TOLERANCE * b->frame.spacing;
-  for (long row = r.row[0]; row <= r.row[1]; row++) {
-    for (long column = r.column[0]; column <= r.column[1]; column++) {
-      unsigned char *mark = mark_at(&b->marks, row, column);
-      double p[2];
-      if ((*mark & wanted) != wanted) continue;
-      site_position(&b->frame, row, column, p);
-      if (shape->kind != SHAPE_POINT && !shape_contains(shape, p, tolerance)) continue;
-      counts.inside++;
-      if (!(*mark & bit)) counts.fresh++;
-      *mark = (unsigned char)(*mark | bit);
-    }
-  }
-  return counts;
-}
-
-static void report_empty_body(const builder *b, const deck_body *body) {
-  if (body->shape.kind != SHAPE_POINT) {
-    diag_report(b->d, DIAG_EMPTY_REGION, body->item.where,
-                "the body contains no site of lattice '%s'", b->lattice->name);
-    diag_hint(b->d, "its extent is less than the spacing of %.6g mm, or a length has a wrong unit",
-              1e3 * b->frame.spacing);
-    return;
-  }
-  range site;
-  double p[2];
-  const double distance = nearest_site(&b->frame, body->shape.at, &site);
-  site_position(&b->frame, site.row[0], site.column[0], p);
-  diag_report(b->d, DIAG_EMPTY_REGION, deck_where(&body->item, "at"),
-              "no site of lattice '%s' lies within %.6g mm of this point", b->lattice->name,
-              1e3 * point_within(&body->shape, b->frame.spacing));
-  diag_hint(b->d, "the nearest site, %.6g mm away, is at '%.8g mm', '%.8g mm'", 1e3 * distance,
-            1e3 * p[0], 1e3 * p[1]);
-}
-
-/* An extra point that is there already is meant to be conditional: no message. */
-static bool mark_bodies(builder *b) {
-  bool sound = true, any = false;
-  for (int k = 0; k < b->deck->body_count; k++) {
-    const deck_body *body = &b->deck->bodys[k];
-    if (!of_lattice(b, body->lattice)) continue;
-    any = true;
-    const mark_counts counts = mark_shape(b, &body->shape, 0, IN_BODY);
-    if (counts.inside == 0) {
-      report_empty_body(b, body);
-      sound = false;
-    } else if (counts.fresh == 0 && body->shape.kind != SHAPE_POINT) {
-      diag_report(b->d, DIAG_DECK_WARNING, body->item.where,
-                  "the body adds nothing: other bodies cover all of its %ld sites", counts.inside);
-    }
-  }
-  if (any) return sound;
-  diag_report(b->d, DIAG_EMPTY_REGION, b->lattice->item.where, "lattice '%s' has no body",
-              b->lattice->name);
-  diag_hint(b->d, "add a group &body with lattice = '%s'", b->lattice->name);
-  return false;
-}
-
-static bool stands(unsigned char mark) {
-  return mark == IN_BODY;
-}
-
-/* Rows and columns that are left. */
-static bool trim(builder *b, range *out) {
-  const marks *m = &b->marks;
-  bool any = false;
-  for (long row = m->span.row[0]; row <= m->span.row[1]; row++) {
-    for (long column = m->span.column[0]; column <= m->span.column[1]; column++) {
-      if (!stands(*mark_at(m, row, column))) continue;
-      const range one = {{row, row}, {column, column}};
-      if (any)
-        widen(out, &one);
-      else
-        *out = one;
-      any = true;
-    }
-  }
-  if (any) return true;
-  diag_report(b->d, DIAG_EMPTY_REGION, b->lattice->item.where,
-              "the notches remove every site of lattice '%s'", b->lattice->name);
-  return false;
 }
 
 /* --- storage ------------------------------------------------------------------------------------
@@ -322,215 +97,262 @@ static void *aligned_zeros(long count, size_t each) {
   return p != NULL ? memset(p, 0, whole) : NULL;
 }
 
+static long whole_lanes(long columns) {
+  return (columns + PL_LANES - 1) / PL_LANES * PL_LANES;
+}
+
 /* Rows a multiple of 4 KiB apart would share one cache set. */
 static long pitch_for(long columns) {
-  const long pitch = (columns + 2 * LEAD + PL_LANES - 1) / PL_LANES * PL_LANES;
+  const long pitch = whole_lanes(columns);
   return pitch % 512 == 0 ? pitch + PL_LANES : pitch;
 }
 
-static void set_directions(rows *w, const frame *f, long first_row) {
-  const double along[3] = {f->spacing, f->spacing / 2, -f->spacing / 2};
-  const double up[3] = {0, f->height, f->height};
-  w->dimensions = 2;
-  w->directions = HEXAGONAL_DIRECTIONS;
+/* Part of a neighbour's volume that lies within the horizon when its extent of a spacing along the bond counts. */
+static double weight_of(const builder *b, double length) {
+  const double last = sqrt(b->family[b->directions - 1].square);
+  const double horizon = b->lattice->horizon > 0 ? b->lattice->horizon : last;
+  if (b->lattice->volume_correction == VOLUME_WHOLE) return 1;
+  return fmin(fmax(horizon + 0.5 - length, 0), 1);
+}
+
+static void set_directions(rows *w, const builder *b) {
+  w->directions = b->directions;
   for (int k = 0; k < w->directions; k++) {
-    w->chord[k][0] = f->cosine * along[k] - f->sine * up[k];
-    w->chord[k][1] = f->sine * along[k] + f->cosine * up[k];
-    w->length[k] = f->spacing;
-  }
-  for (int parity = 0; parity < 2; parity++) {
-    const bool shifted = (first_row + parity) % 2 != 0;
-    w->offset[parity][0] = 1;
-    w->offset[parity][1] = w->pitch + (shifted ? 1 : 0);
-    w->offset[parity][2] = w->pitch - (shifted ? 0 : 1);
+    const bravais_neighbour n = b->family[k], pair[2] = {n, opposite(n)};
+    const double length = sqrt(n.square);
+    bravais_chord(&b->infinite, &n, w->chord[k]);
+    w->length[k] = length * w->spacing;
+    w->weight[k] = weight_of(b, length);
+    w->shell[k] = n.shell;
+    for (int end = 0; end < 2; end++)
+      for (int shift = 0; shift < ROWS_CLASSES; shift++)
+        w->offset[shift][k + end * w->directions] =
+            ((long)pair[end].layer * w->layer_rows + pair[end].row) * w->pitch +
+            columns_to(&b->infinite, &pair[end], shift);
   }
 }
 
-static rows *rows_new(const builder *b, const range *r) {
-  rows *w = must_calloc(1, sizeof *w);
-  const deck_lattice *l = b->lattice;
-  w->row_count = (int)(r->row[1] - r->row[0] + 1);
-  w->pitch = pitch_for(r->column[1] - r->column[0] + 1);
-  w->size = (w->row_count + 2L) * w->pitch + PL_LANES;
-  w->spacing = l->spacing;
-  w->site_area = sqrt(3) / 2 * l->spacing * l->spacing;
-  w->volume = w->site_area * l->mass_thickness;
-  w->stiffness_thickness = l->stiffness_thickness;
-  set_directions(w, &b->frame, r->row[0]);
-  w->flags = aligned_zeros(w->size, sizeof *w->flags);
+/* Numbers of a row in the infinite lattice. Empty rows before the first layer and behind the last go on with these. */
+static void row_numbers(const rows *w, const builder *b, int row, long *number, long *layer) {
+  const site_range *left = &b->marks.left;
+  const long top = left->last[LAYER] - left->first[LAYER];
+  const long rise = row < 0 ? 0 : row / w->layer_rows < top ? row / w->layer_rows : top;
+  *layer = left->first[LAYER] + rise;
+  *number = left->first[ROW] + row - rise * w->layer_rows;
+}
+
+static rows *allocate(rows *w, const builder *b) {
+  w->row_class = must_calloc((size_t)(w->row_count + 2 * w->margin), 1);
   w->bonds = aligned_zeros(w->size, sizeof *w->bonds);
+  w->held_bonds = aligned_zeros(w->size, sizeof *w->held_bonds);
   w->held = aligned_zeros(w->size, sizeof *w->held);
   w->present = aligned_zeros(w->size, 1);
   w->x = aligned_zeros(w->size, sizeof *w->x);
   w->y = aligned_zeros(w->size, sizeof *w->y);
+  if (w->dimensions == 3) w->z = aligned_zeros(w->size, sizeof *w->z);
   w->site_particle = aligned_zeros(w->size, sizeof *w->site_particle);
-  if (w->flags && w->bonds && w->held && w->present && w->x && w->y && w->site_particle) return w;
-  diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "spacing"),
+  if (w->bonds && w->held_bonds && w->held && w->present && w->x && w->y &&
+      (w->z || w->dimensions == 2) && w->site_particle)
+    return w;
+  diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
               "there is not enough memory for %ld sites", w->size);
   rows_free(w);
   return NULL;
 }
 
-static void place_sites(rows *w, const builder *b, const range *r) {
-  for (long site = 0; site < w->size - PL_LANES; site++) {
-    const long row = r->row[0] + site / w->pitch - 1;
-    const long column = r->column[0] + site % w->pitch - LEAD;
-    double p[2];
-    site_position(&b->frame, row, column, p);
-    w->x[site] = p[0];
-    w->y[site] = p[1];
-    if (row < r->row[0] || row > r->row[1] || column < r->column[0] || column > r->column[1])
-      continue;
-    w->present[site] = stands(*mark_at(&b->marks, row, column));
+static rows *rows_new(const builder *b) {
+  const deck_lattice *l = b->lattice;
+  const long *first = b->marks.left.first, *last = b->marks.left.last;
+  const long columns = last[COLUMN] - first[COLUMN] + 1, per_layer = last[ROW] - first[ROW] + 1;
+  const long layer_rows = per_layer + b->reach[ROW];
+  const long row_count = (last[LAYER] - first[LAYER]) * layer_rows + per_layer;
+  const long margin = b->reach[LAYER] * layer_rows + b->reach[ROW];
+  const long pitch = pitch_for(columns + 2 * b->reach[COLUMN]);
+  const long ends = whole_lanes(b->reach[COLUMN]);
+  const double size = ((double)row_count + 2 * (double)margin) * (double)pitch + 2 * (double)ends;
+  if (site_too_many(l, size, b->d)) return NULL;
+  rows *w = must_calloc(1, sizeof *w);
+  *w = (rows){.infinite = b->infinite,
+              .dimensions = b->infinite.dimensions,
+              .row_count = (int)row_count,
+              .layer_rows = (int)layer_rows,
+              .margin = (int)margin,
+              .pitch = pitch,
+              .first = margin * pitch + ends,
+              .size = (long)size,
+              .spacing = l->spacing,
+              .stiffness_thickness = l->stiffness_thickness};
+  w->site_area = w->dimensions == 2 ? b->infinite.site_measure : 0;
+  w->volume = b->infinite.site_measure * (w->dimensions == 2 ? l->mass_thickness : 1);
+  set_directions(w, b);
+  return allocate(w, b);
+}
+
+static void place_row(rows *w, const builder *b, int row) {
+  const site_range *left = &b->marks.left;
+  long number, layer;
+  row_numbers(w, b, row, &number, &layer);
+  w->row_class[row + w->margin] = (unsigned char)bravais_shift(&b->infinite, number, layer);
+  const bool stored = row >= 0 && number >= left->first[ROW] && number <= left->last[ROW];
+  for (long k = 0; k < w->pitch; k++) {
+    const long column = left->first[COLUMN] + k - b->reach[COLUMN], site = rows_start(w, row) + k;
+    double at[3];
+    bravais_place(&b->infinite, column, number, layer, at);
+    w->x[site] = at[0];
+    w->y[site] = at[1];
+    if (w->z) w->z[site] = at[2];
+    if (!stored || column < left->first[COLUMN] || column > left->last[COLUMN]) continue;
+    w->present[site] = site_marks_stands(&b->marks, column, number, layer);
     w->particle_count += w->present[site];
   }
 }
 
+static void place_sites(rows *w, const builder *b) {
+  for (int row = -w->margin; row < w->row_count + w->margin; row++)
+    place_row(w, b, row);
+}
+
 static void number_particles(rows *w) {
-  double lower[2] = {INFINITY, INFINITY}, upper[2] = {-INFINITY, -INFINITY};
+  double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
   int32_t next = 0;
   w->particle_site = must_alloc((size_t)w->particle_count * sizeof *w->particle_site);
   for (long site = 0; site < w->size; site++) {
     w->site_particle[site] = w->present[site] ? next : -1;
     if (!w->present[site]) continue;
     w->particle_site[next++] = (int32_t)site;
-    lower[0] = fmin(lower[0], w->x[site]);
-    lower[1] = fmin(lower[1], w->y[site]);
-    upper[0] = fmax(upper[0], w->x[site]);
-    upper[1] = fmax(upper[1], w->y[site]);
+    double at[3];
+    rows_place(w, site, at);
+    for (int c = 0; c < 3; c++) {
+      lower[c] = fmin(lower[c], at[c]);
+      upper[c] = fmax(upper[c], at[c]);
+    }
   }
   w->width = upper[0] - lower[0];
   w->height = upper[1] - lower[1];
-}
-
-static long partner(const rows *w, long site, int direction) {
-  return site + w->offset[(site / w->pitch - 1) & 1][direction];
+  w->depth = upper[2] - lower[2];
 }
 
 static void join_neighbours(rows *w) {
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
+    const long *offset = w->offset[w->row_class[rows_row(w, site) + w->margin]];
     for (int k = 0; k < w->directions; k++)
-      if (w->present[partner(w, site, k)]) w->flags[site] |= PL_PRESENT(k);
+      w->bonds[site] |= (uint64_t)w->present[site + offset[k]] << k;
   }
 }
 
 static void count_bonds(rows *w) {
   w->bond_count = 0;
-  for (long p = 0; p < w->particle_count; p++) {
-    const long site = w->particle_site[p];
-    for (int k = 0; k < w->directions; k++)
-      if (w->flags[site] & PL_PRESENT(k)) w->bonds[site] |= UINT64_C(1) << k;
-    w->bond_count += __builtin_popcountll(w->bonds[site]);
-  }
+  for (long p = 0; p < w->particle_count; p++)
+    w->bond_count += __builtin_popcountll(w->bonds[w->particle_site[p]]);
 }
 
 /* --- notches ------------------------------------------------------------------------------------
  */
 
 static bool chord_cut(const rows *w, long site, int k, const deck_shape *shape) {
-  const long other = partner(w, site, k);
-  const double a[2] = {w->x[site], w->y[site]}, c[2] = {w->x[other], w->y[other]};
+  double a[3], c[3];
+  rows_place(w, site, a);
+  rows_place(w, rows_partner(w, site, k), c);
   return shape_crossed(shape, a, c, CHORD_TOLERANCE * w->spacing);
 }
 
-/* Bonds whose chord crosses the notch, whether an earlier notch has cut them or not. */
-static long cut_bonds(rows *w, const builder *b, const range *r, const deck_shape *shape) {
-  range near;
+/* Bonds of the site that the notch cuts, whether an earlier notch has cut them or not. */
+static long cut_bonds_of(rows *w, long site, const deck_shape *shape) {
   long count = 0;
-  if (!shape_range(&b->frame, shape, &near)) return 0;
-  /* owners lie in the row below or one site beside */
-  near.row[0] -= 1;
-  near.column[0] -= 1;
-  near.column[1] += 1;
-  clip(&near, r);
-  for (long row = near.row[0]; row <= near.row[1]; row++) {
-    for (long column = near.column[0]; column <= near.column[1]; column++) {
-      const long site = (row - r->row[0] + 1) * w->pitch + column - r->column[0] + LEAD;
-      for (int k = 0; k < w->directions && w->present[site]; k++) {
-        if (!w->present[partner(w, site, k)] || !chord_cut(w, site, k, shape)) continue;
-        w->flags[site] &= ~PL_PRESENT(k);
-        count++;
-      }
-    }
+  for (int k = 0; k < w->directions && w->present[site]; k++) {
+    if (!w->present[rows_partner(w, site, k)] || !chord_cut(w, site, k, shape)) continue;
+    w->bonds[site] &= ~(UINT64_C(1) << k);
+    count++;
   }
   return count;
 }
 
-/* removed[k]: sites that notch k takes from the bodies */
-static void mark_notches(builder *b, long *removed) {
-  for (int k = 0; k < b->deck->notch_count; k++)
-    if (of_lattice(b, b->deck->notchs[k].lattice))
-      removed[k] = mark_shape(b, &b->deck->notchs[k].shape, IN_BODY, IN_NOTCH).inside;
+static long cut_bonds(rows *w, const builder *b, const deck_shape *shape) {
+  const site_range *left = &b->marks.left;
+  site_range near;
+  long count = 0;
+  if (!site_range_of(&b->infinite, shape, &near)) return 0;
+  for (int c = 0; c < 3; c++) { /* owners lie this far away */
+    near.first[c] -= b->reach[c];
+    near.last[c] += b->reach[c];
+  }
+  site_range_clip(&near, left);
+  for (long layer = near.first[LAYER]; layer <= near.last[LAYER]; layer++)
+    for (long row = near.first[ROW]; row <= near.last[ROW]; row++) {
+      const long stored = (layer - left->first[LAYER]) * w->layer_rows + row - left->first[ROW];
+      const long start = rows_start(w, (int)stored) + b->reach[COLUMN] - left->first[COLUMN];
+      for (long column = near.first[COLUMN]; column <= near.last[COLUMN]; column++)
+        count += cut_bonds_of(w, start + column, shape);
+    }
+  return count;
 }
 
-static void cut_notches(rows *w, const builder *b, const range *r, const long *removed) {
+static void cut_notches(rows *w, const builder *b) {
   for (int k = 0; k < b->deck->notch_count; k++) {
     const deck_notch *notch = &b->deck->notchs[k];
-    if (!of_lattice(b, notch->lattice)) continue;
-    const long cut = notch->cut_bonds ? cut_bonds(w, b, r, &notch->shape) : 0;
-    if (removed[k] + cut > 0) continue;
+    if (!site_of_lattice(b->lattice, notch->lattice)) continue;
+    const long cut = notch->cut_bonds ? cut_bonds(w, b, &notch->shape) : 0;
+    if (b->marks.removed[k] + cut > 0) continue;
     diag_report(b->d, DIAG_DECK_WARNING, notch->item.where,
                 "the notch removes no particle%s of lattice '%s'",
                 notch->cut_bonds ? " and cuts no bond" : "", b->lattice->name);
   }
 }
 
-static rows *build(builder *b, long *removed) {
-  range r = {{0, 0}, {0, 0}};
-  if (!mark_bodies(b)) return NULL;
-  mark_notches(b, removed);
-  if (!trim(b, &r)) return NULL;
-  rows *w = rows_new(b, &r);
-  if (w == NULL) return NULL;
-  place_sites(w, b, &r);
-  number_particles(w);
-  join_neighbours(w);
-  cut_notches(w, b, &r, removed);
-  count_bonds(w);
-  return w;
-}
-
 rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   builder b = {.deck = k, .lattice = &k->lattices[lattice], .d = d};
   if (!lattice_is_sound(&b)) return NULL;
-  b.frame = frame_of(b.lattice);
   rows *w = NULL;
-  if (find_span(&b)) {
-    long *removed = must_calloc((size_t)k->notch_count + 1, sizeof *removed);
-    w = build(&b, removed);
-    free(removed);
+  if (site_marks_make(&b.marks, &b.infinite, k, b.lattice, d)) w = rows_new(&b);
+  if (w) {
+    place_sites(w, &b);
+    number_particles(w);
+    join_neighbours(w);
+    cut_notches(w, &b);
+    count_bonds(w);
   }
-  free(b.marks.bits);
+  site_marks_free(&b.marks);
   return w;
 }
 
 void rows_free(rows *w) {
   if (w == NULL) return;
-  free(w->flags);
+  free(w->row_class);
   free(w->bonds);
+  free(w->held_bonds);
   free(w->held);
   free(w->present);
   free(w->x);
   free(w->y);
+  free(w->z);
   free(w->particle_site);
   free(w->site_particle);
   free(w);
 }
 
-pl_bond_class rows_bond_class(const rows *w, int neighbour) {
-  const int direction = neighbour % w->directions;
-  const double sign = neighbour < w->directions ? 1 : -1;
-  return (pl_bond_class){.s = w->length[direction],
-                         .spacing = w->spacing,
-                         .t = w->stiffness_thickness,
-                         .V = w->volume,
-                         .mass_i = w->mass,
-                         .mass_j = w->mass,
-                         .shell = 1,
-                         .n = FULL_FAMILY,
-                         .chord = {sign * w->chord[direction][0], sign * w->chord[direction][1],
-                                   sign * w->chord[direction][2]}};
+pl_bond_class rows_bond_class(const rows *w, int direction) {
+  const int k = direction % w->directions;
+  const double sign = direction < w->directions ? 1 : -1;
+  return (pl_bond_class){
+      .s = w->length[k],
+      .spacing = w->spacing,
+      .t = w->stiffness_thickness,
+      .V = w->volume,
+      .mass_i = w->mass,
+      .mass_j = w->mass,
+      .shell = w->shell[k],
+      .n = 2 * w->directions,
+      .chord = {sign * w->chord[k][0], sign * w->chord[k][1], sign * w->chord[k][2]},
+      .weight = w->weight[k]};
+}
+
+const char *rows_place_text(const rows *w, const double at[3], char text[ROWS_PLACE_TEXT]) {
+  if (w->dimensions == 2)
+    snprintf(text, ROWS_PLACE_TEXT, "(%.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1]);
+  else
+    snprintf(text, ROWS_PLACE_TEXT, "(%.6g, %.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1], 1e3 * at[2]);
+  return text;
 }
 
 /* --- regions ------------------------------------------------------------------------------------
@@ -539,13 +361,14 @@ pl_bond_class rows_bond_class(const rows *w, int neighbour) {
 static long select_nearest(const rows *w, const deck_shape *shape, int32_t *list) {
   double best = INFINITY;
   for (long p = 0; p < w->particle_count; p++) {
-    const long site = w->particle_site[p];
-    const double distance = hypot(w->x[site] - shape->at[0], w->y[site] - shape->at[1]);
-    if (distance >= best - TIE_TOLERANCE * w->spacing) continue;
+    double at[3];
+    rows_place(w, w->particle_site[p], at);
+    const double distance = bravais_distance(at, shape->at);
+    if (distance >= best - SITE_TIE_TOLERANCE * w->spacing) continue;
     best = distance;
     list[0] = (int32_t)p;
   }
-  return best <= point_reach(shape, w->spacing) ? 1 : 0;
+  return best <= site_point_reach(shape, w->spacing) ? 1 : 0;
 }
 
 long rows_select(const rows *w, const deck_shape *shape, int32_t **list) {
@@ -554,8 +377,10 @@ long rows_select(const rows *w, const deck_shape *shape, int32_t **list) {
   *list = chosen;
   if (shape->kind == SHAPE_POINT) return select_nearest(w, shape, chosen);
   for (long p = 0; p < w->particle_count; p++) {
-    const double at[2] = {w->x[w->particle_site[p]], w->y[w->particle_site[p]]};
-    if (shape_contains(shape, at, OUTLINE_TOLERANCE * w->spacing)) chosen[count++] = (int32_t)p;
+    double at[3];
+    rows_place(w, w->particle_site[p], at);
+    if (shape_contains(shape, at, SITE_OUTLINE_TOLERANCE * w->spacing))
+      chosen[count++] = (int32_t)p;
   }
   return count;
 }
@@ -572,36 +397,42 @@ void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body) {
   }
 }
 
-/* Columns of storage row `row` within `reach` (m) of the site: +1 at the first, -1 behind the last.
- */
-static void add_interval(const rows *w, long site, long row, double reach, int32_t *steps) {
-  const double height = w->spacing * sqrt(3) / 2;
-  const long own_row = site / w->pitch, rise = row - own_row;
-  const double up = (double)rise * height;
-  if (fabs(up) > reach) return;
-  const double half = sqrt(reach * reach - up * up) / w->spacing;
-  /* a row of the other parity is shifted by half a spacing: to the right when this one is not
-   * shifted */
-  const bool shifted = w->offset[(own_row - 1) & 1][1] != w->pitch;
-  const double shift = rise % 2 == 0 ? 0 : shifted ? -0.5 : 0.5;
-  const double middle = (double)(site % w->pitch) - shift;
+/* Columns of the row within `reach` (m) of the site: +1 at the first, -1 behind the last. */
+static void add_interval(const rows *w, long site, int row, double reach, int32_t *steps) {
+  const double *step = w->infinite.step;
+  const int own = rows_row(w, site);
+  const double across = (row % w->layer_rows - own % w->layer_rows) * step[ROW];
+  const double above = (row / w->layer_rows - own / w->layer_rows) * step[LAYER];
+  const double square = across * across + above * above;
+  if (square > reach * reach) return;
+  const double half = sqrt(reach * reach - square) / step[COLUMN];
+  const int shift = w->row_class[row + w->margin] - w->row_class[own + w->margin];
+  const double middle = (double)(site - rows_start(w, own)) - 0.5 * shift;
   const double first = fmax(ceil(middle - half), 0);
   const double last = fmin(floor(middle + half), (double)w->pitch - 1);
   if (first > last) return;
-  steps[row * w->pitch + (long)first]++;
-  steps[row * w->pitch + (long)last + 1]--;
+  steps[rows_start(w, row) + (long)first]++;
+  steps[rows_start(w, row) + (long)last + 1]--;
 }
 
-/* Sites within `reach` of the particles; intervals a row, so that a wide reach costs rows and not
- * areas. */
+static int steps_within(double reach, double step, int most) {
+  return step > 0 ? (int)fmin(ceil(reach / step), most) : 0;
+}
+
+/* Sites within `reach` of the particles; intervals a row, so that a wide reach costs rows and not sites. */
 static unsigned char *mark_near(const rows *w, const int32_t *particles, long count, double reach) {
   int32_t *steps = must_calloc((size_t)w->size + 1, sizeof *steps);
   unsigned char *near = must_calloc((size_t)w->size, 1);
-  const double rise = fmin(ceil(reach / (w->spacing * sqrt(3) / 2)), (double)w->row_count + 1);
+  const int rise = steps_within(reach, w->infinite.step[ROW], w->layer_rows);
+  const int climb = steps_within(reach, w->infinite.step[LAYER], w->row_count / w->layer_rows);
   for (long p = 0; p < count; p++) {
-    const long site = w->particle_site[particles[p]], own = site / w->pitch;
-    for (long row = own - (long)rise; row <= own + (long)rise; row++)
-      if (row >= 1 && row <= w->row_count) add_interval(w, site, row, reach, steps);
+    const long site = w->particle_site[particles[p]];
+    const int own = rows_row(w, site), in_layer = own % w->layer_rows;
+    for (int layer = own - in_layer - climb * w->layer_rows;
+         layer <= own - in_layer + climb * w->layer_rows; layer += w->layer_rows)
+      for (int row = in_layer - rise; row <= in_layer + rise; row++)
+        if (row >= 0 && row < w->layer_rows && layer >= 0 && layer + row < w->row_count)
+          add_interval(w, site, layer + row, reach, steps);
   }
   int32_t depth = 0;
   for (long site = 0; site < w->size; site++) {
@@ -613,15 +444,14 @@ static unsigned char *mark_near(const rows *w, const int32_t *particles, long co
 }
 
 void rows_protect(rows *w, const int32_t *particles, long count, double radius) {
-  const double reach = fmax(radius, 0) + OUTLINE_TOLERANCE * w->spacing;
+  const double reach = fmax(radius, 0) + SITE_OUTLINE_TOLERANCE * w->spacing;
   unsigned char *near = mark_near(w, particles, count, reach);
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     if (near[site]) w->held[site] = 1;
-    for (int k = 0; k < w->directions; k++) {
-      if (!(w->flags[site] & PL_PRESENT(k))) continue;
-      if (near[site] || near[partner(w, site, k)]) w->flags[site] |= PL_PROTECTED(k);
-    }
+    for (int k = 0; k < w->directions; k++)
+      if (rows_has_bond(w, site, k) && (near[site] || near[rows_partner(w, site, k)]))
+        w->held_bonds[site] |= UINT64_C(1) << k;
   }
   free(near);
 }
@@ -632,9 +462,9 @@ rows_bond *rows_bonds(const rows *w) {
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     for (int k = 0; k < w->directions; k++) {
-      if (!(w->flags[site] & PL_PRESENT(k))) continue;
+      if (!rows_has_bond(w, site, k)) continue;
       bonds[next++] = (rows_bond){.i = (int32_t)p,
-                                  .j = w->site_particle[partner(w, site, k)],
+                                  .j = w->site_particle[rows_partner(w, site, k)],
                                   .slot = (int64_t)k * w->size + site};
     }
   }

@@ -1,61 +1,100 @@
-/* A Bravais lattice as rows: row r holds consecutive sites along the first lattice vector, all rows in one array
-   with one pitch, so that the partner of site q in direction k is always q + offset[parity of the row][k]. One ghost
-   row below and above and at least one ghost column at either end hold no bond; rows begin on aligned addresses.
-   Sites cut away stay as absent sites. Each bond is owned by its lower (then left) end: a hexagonal lattice has 3
-   directions. */
+/* A Bravais lattice (bravais.h) as rows: row r holds consecutive sites along the first lattice vector, all rows in one
+   array with one pitch. In space the rows of a layer follow those of the layer below. Neighbour k of site q is always
+   q + rows_offset(row, k): the number is the same along a row, and rows fall into one or two classes by their shift.
+   Empty rows before the first, behind the last and between layers, and empty columns at either end of each, make every
+   neighbour of every site of a row a place of the array; sites cut away stay as absent sites. Rows begin on aligned
+   addresses.
+
+   Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first `directions`, in the
+   order of bravais_family, are those whose bonds a site owns: they lie in a higher layer, else in a higher row, else
+   further along the row. */
 #ifndef PERILAT_RUNTIME_ROWS_H
 #define PERILAT_RUNTIME_ROWS_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
+#include "runtime/bravais.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
 
-#define ROWS_MAX_DIRECTIONS 16
+enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 
 typedef struct rows {
-  int row_count;  /* rows with sites, without ghost rows */
+  bravais infinite; /* the lattice without ends */
+  int dimensions;   /* 2 or 3 */
+  int row_count; /* rows from the first with sites to the last, empty ones between layers included */
+  int layer_rows; /* rows from the first of a layer to the first of the next */
+  int margin;     /* empty rows before the first, and as many behind the last */
   long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
-  long size;      /* (row_count + 2) * pitch + PL_LANES: length of every site array (the far end
-                                  of the last row's strips reaches one past the upper ghost row) */
-  int dimensions; /* 2 */
-  int directions; /* 3 */
-  long offset[2][ROWS_MAX_DIRECTIONS];  /* [row parity][direction] */
-  double chord[ROWS_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */
-  double length[ROWS_MAX_DIRECTIONS];   /* m */
+  long first;     /* site at which row 0 starts */
+  long size;      /* length of every site array */
+  int directions; /* owned bonds of a site of the infinite lattice: half the neighbours */
+  long offset[ROWS_CLASSES][ROWS_MAX_NEIGHBOURS];
+  unsigned char *row_class;           /* [margin + row_count + margin] */
+  double chord[PL_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */
+  double length[PL_MAX_DIRECTIONS];   /* m */
+  double weight[PL_MAX_DIRECTIONS];   /* part of the partner's volume that lies in the horizon */
+  int shell[PL_MAX_DIRECTIONS];       /* 1: of the nearest neighbours */
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
-  double site_area;           /* m^2 of the plane that one site stands for */
-  double stiffness_thickness; /* m: `t` of the laws */
+  double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
+  double stiffness_thickness; /* m: `t` of the laws; 0 in space */
   double mass, inertia;       /* set from rho by the simulation: kg, kg m^2 */
-  int64_t *flags;             /* [size] PL_PRESENT, PL_PROTECTED of the owned bonds */
-  uint64_t *bonds;            /* [size] bit k: the owned bond of direction k exists */
-  uint64_t *held;             /* [size] 1: a protected particle, whose damage stays; 0 elsewhere */
+  uint64_t *bonds;            /* [size] bit k: the owned bond k exists */
+  uint64_t *held_bonds;       /* [size] bit k: the damage of the owned bond k stays as it is */
+  uint64_t *held;             /* [size] 1: the particle is protected */
   unsigned char *present;     /* [size] the site exists */
-  double *x, *y, *z; /* [size] reference position, m (absent sites too); z NULL in the plane */
+  double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
   long particle_count, bond_count;
   int32_t *
       particle_site; /* [particle_count] site of each particle, in row order: the order of results */
-  int32_t *site_particle; /* [size] particle of each site, or -1 */
-  double width, height;   /* extent of the present sites along x and y, m */
+  int32_t *site_particle;      /* [size] particle of each site, or -1 */
+  double width, height, depth; /* extent of the present sites along x, y and z, m */
 } rows;
 
-/* First site of row r (0 .. row_count-1). */
+/* First site of row r (0 .. row_count-1; in the margins, too). */
 static inline long rows_start(const rows *w, int r) {
-  return (r + 1) * w->pitch;
+  return w->first + (long)r * w->pitch;
 }
 
-/* Offset from a site of row r to its partner in an owned direction. */
-static inline long rows_offset(const rows *w, int r, int direction) {
-  return w->offset[r & 1][direction];
+/* Row of a site of rows 0 .. row_count-1. */
+static inline int rows_row(const rows *w, long site) {
+  return (int)((site - w->first) / w->pitch);
 }
 
-/* What a law is told about the bonds of one direction (directions .. 2 directions - 1: the opposites); masses as `mass` says. `area` is 0: no bars here. */
-pl_bond_class rows_bond_class(const rows *w, int neighbour);
+/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. */
+static inline long rows_offset(const rows *w, int row, int direction) {
+  return w->offset[w->row_class[row + w->margin]][direction];
+}
+
+static inline long rows_partner(const rows *w, long site, int direction) {
+  return site + rows_offset(w, rows_row(w, site), direction);
+}
+
+/* The bond that the site owns in that direction exists. */
+static inline bool rows_has_bond(const rows *w, long site, int direction) {
+  return w->bonds[site] >> direction & 1;
+}
+
+/* Reference position of a site; at[2] is 0 in the plane. */
+static inline void rows_place(const rows *w, long site, double at[3]) {
+  at[0] = w->x[site];
+  at[1] = w->y[site];
+  at[2] = w->z ? w->z[site] : 0;
+}
+
+/* "(x, y) mm" or "(x, y, z) mm", as messages name a place of the lattice. */
+enum { ROWS_PLACE_TEXT = 80 };
+const char *rows_place_text(const rows *w, const double at[3], char text[ROWS_PLACE_TEXT]);
+
+/* What a law is told about the bonds of one direction, 0 .. 2 directions - 1; masses as `mass` says. `area` is 0: no
+   bars here. */
+pl_bond_class rows_bond_class(const rows *w, int direction);
 
 /* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
    present neighbours whose chord crosses no notch. NULL on errors (a body without sites, a point body with no
-   lattice site within its tolerance, too many sites), reported at the deck's line. */
+   lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
 rows *rows_build(const deck *k, int lattice, diagnostics *d);
 void rows_free(rows *w);
 
@@ -66,7 +105,7 @@ long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
 /* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
 void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
 
-/* Protects every bond that touches a particle within `radius` (m) of one of the `particles`, and holds those particles. */
+/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the bonds of these. */
 void rows_protect(rows *w, const int32_t *particles, long count, double radius);
 
 /* Bond m of the results: its ends as particles and where its fields stand (direction * size + site). */

@@ -46,10 +46,11 @@ static void box_of_points(const outline *o, double lower[2], double upper[2]) {
   }
 }
 
-void shape_box(const deck_shape *shape, double lower[2], double upper[2]) {
+void shape_box(const deck_shape *shape, double lower[3], double upper[3]) {
   outline o;
   const double *middle = shape->kind == SHAPE_DISC ? shape->centre : shape->at;
   const double reach = shape->kind == SHAPE_DISC ? shape->radius : 0;
+  lower[2] = upper[2] = 0;
   switch (shape->kind) {
   case SHAPE_POINT:
   case SHAPE_DISC:
@@ -110,7 +111,7 @@ static double shape_distance(const deck_shape *shape, const double p[2]) {
   return INFINITY;
 }
 
-bool shape_contains(const deck_shape *shape, const double point[2], double tolerance) {
+bool shape_contains(const deck_shape *shape, const double *point, double tolerance) {
   return shape_distance(shape, point) <= tolerance;
 }
 
@@ -218,7 +219,7 @@ static bool outline_crossed(const deck_shape *shape, const double a[2], const do
 
 static bool boxes_apart(const deck_shape *shape, const double a[2], const double b[2],
                         double tolerance) {
-  double lower[2], upper[2];
+  double lower[3], upper[3];
   shape_box(shape, lower, upper);
   for (int c = 0; c < 2; c++) {
     if (fmin(a[c], b[c]) > upper[c] + tolerance) return true;
@@ -227,8 +228,7 @@ static bool boxes_apart(const deck_shape *shape, const double a[2], const double
   return false;
 }
 
-bool shape_crossed(const deck_shape *shape, const double a[2], const double b[2],
-                   double tolerance) {
+bool shape_crossed(const deck_shape *shape, const double *a, const double *b, double tolerance) {
   if (shape->kind == SHAPE_POINT || boxes_apart(shape, a, b, tolerance)) return false;
   cuts c = {.count = 0, .capacity = NEAR_CUTS};
   c.all = c.near;

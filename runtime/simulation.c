@@ -142,6 +142,19 @@ static void new_history(simulation *s) {
   s->sampled = must_calloc((size_t)s->series_count + 1, sizeof(double));
 }
 
+/* Laws of bonds run on the hexagonal lattice of nearest neighbours. */
+static bool lattice_serves(const simulation *s, diagnostics *d) {
+  const deck_lattice *l = &s->deck->lattices[0];
+  const bool hexagonal = strcmp(l->kind, "hexagonal") == 0;
+  if (s->law->kind == PL_STATE || (hexagonal && s->lattice->directions == 3)) return true;
+  const char *key = !hexagonal ? "kind" : l->horizon > 0 ? "horizon" : "shells";
+  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, key),
+              "`%s` is a law of bonds: it runs on a hexagonal lattice of nearest neighbours",
+              s->law->name);
+  diag_hint(d, "only laws of families, `law state`, run on other lattices");
+  return false;
+}
+
 static bool set_up(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
   if (k->lattice_count > 1) {
@@ -150,7 +163,7 @@ static bool set_up(simulation *s, diagnostics *d) {
     return false;
   }
   s->lattice = rows_build(k, 0, d);
-  if (!s->lattice) return false;
+  if (!s->lattice || !lattice_serves(s, d)) return false;
   s->bonds = rows_bonds(s->lattice);
   if (k->field_count > 0 || s->law->varying_count > 0) {
     s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);

@@ -8,11 +8,11 @@
 /* The row of a bad particle was not moved; others have been. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
   const sweep *w = s->state;
-  const long bad_row = w->blocks[sweep_bad(w)].bad_site / s->lattice->pitch;
+  const int bad_row = rows_row(s->lattice, w->blocks[sweep_bad(w)].bad_site);
   for (int d = 0; d < 3; d++) {
     u[d] = d < w->dof ? w->displacement[d][site] : 0;
     v[d] = d < w->dof ? w->velocity[d][site] : 0;
-    if (site / s->lattice->pitch != bad_row && isfinite(v[d])) u[d] -= w->time_step * v[d];
+    if (rows_row(s->lattice, site) != bad_row && isfinite(v[d])) u[d] -= w->time_step * v[d];
   }
 }
 

@@ -378,7 +378,7 @@ static void hold_bonds(handwritten *h) {
   for (int row = 0; row < g->row_count; row++)
     for (long q = 0; q < 3 * g->pitch; q++) {
       const long d = q / g->pitch, site = rows_start(g, row) + q % g->pitch;
-      if (!(g->flags[site] & PL_PROTECTED(d))) continue;
+      if (!(g->held_bonds[site] >> d & 1)) continue;
       h->held[d * g->size + site] = 1;
       h->row_held[row] = 1;
     }
@@ -391,7 +391,7 @@ handwritten *NAMED(_new)(const problem *p) {
   h->problem = p;
   for (int d = 0; d < 3; d++) {
     for (int c = 0; c < 2; c++) {
-      h->offset[c][d] = g->offset[c][d];
+      h->offset[c][d] = rows_offset(g, c, d);
       h->chord[d][c] = g->chord[d][c] / g->spacing;
     }
     h->u[d] = zeros(g->size);
@@ -436,7 +436,7 @@ void NAMED(_set)(handwritten *h, const motion *from) {
       const long slot = d * g->size + q;
       h->u[d][q] = from->displacement[d][q] / length_unit(h, d);
       h->v[d][q] = from->velocity[d][q] / velocity_unit(h, d);
-      h->intact[slot] = g->flags[q] & PL_PRESENT(d) ? 1 - from->damage[slot] : 0;
+      h->intact[slot] = rows_has_bond(g, q, d) ? 1 - from->damage[slot] : 0;
     }
   for (int row = 0; row < g->row_count; row++)
     for (long q = 0; q < g->pitch; q++)
@@ -452,7 +452,7 @@ void NAMED(_get)(const handwritten *h, motion *to) {
       const long slot = d * g->size + q;
       to->displacement[d][q] = h->u[d][q] * length_unit(h, d);
       to->velocity[d][q] = h->v[d][q] * velocity_unit(h, d);
-      to->damage[slot] = g->flags[q] & PL_PRESENT(d) ? 1 - h->intact[slot] : 0;
+      to->damage[slot] = rows_has_bond(g, q, d) ? 1 - h->intact[slot] : 0;
     }
 }
 

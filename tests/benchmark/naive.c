@@ -46,7 +46,7 @@ naive *naive_new(const problem *p) {
                          .chord_x = g->chord[direction][0],
                          .chord_y = g->chord[direction][1],
                          .length = g->length[direction],
-                         .is_protected = (g->flags[site] & PL_PROTECTED(direction)) != 0};
+                         .is_protected = g->held_bonds[site] >> direction & 1};
   }
   return n;
 }

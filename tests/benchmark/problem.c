@@ -84,7 +84,7 @@ double motion_difference(const motion *a, const motion *b, const rows *lattice) 
   for (int k = 0; k < lattice->directions; k++)
     for (long q = 0; q < lattice->size; q++) {
       const long slot = k * lattice->size + q;
-      if (lattice->flags[q] & PL_PRESENT(k))
+      if (rows_has_bond(lattice, q, k))
         most = larger(most, fabs(a->damage[slot] - b->damage[slot]));
     }
   return most;
@@ -94,6 +94,6 @@ double motion_damaged(const motion *m, const rows *lattice, double least) {
   long damaged = 0;
   for (int k = 0; k < lattice->directions; k++)
     for (long q = 0; q < lattice->size; q++)
-      if (lattice->flags[q] & PL_PRESENT(k)) damaged += m->damage[k * lattice->size + q] > least;
+      if (rows_has_bond(lattice, q, k)) damaged += m->damage[k * lattice->size + q] > least;
   return (double)damaged / (double)lattice->bond_count;
 }

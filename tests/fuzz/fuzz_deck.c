@@ -40,7 +40,7 @@ static void check_deck(const deck *k) {
   MUST(k->lattice_count > 0);
   for (int m = 0; m < k->lattice_count; m++)
     MUST(k->lattices[m].spacing > 0 && isfinite(k->lattices[m].spacing) &&
-         k->lattices[m].thickness > 0);
+         (k->lattices[m].thickness > 0 || strcmp(k->lattices[m].setting, "space") == 0));
   for (int m = 0; m < k->region_count; m++)
     MUST(deck_find_region(k, k->regions[m].name) >= 0 &&
          deck_find_lattice(k, k->regions[m].lattice) >= 0);

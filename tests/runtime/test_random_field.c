@@ -346,7 +346,7 @@ static void bonds_share_the_values_of_particles(void **state) {
     if (s.bonds[m].slot / w->size)
       continue; /* the next bond of the same row begins where this ends */
     const int64_t next = s.bonds[m].slot + 1;
-    if (!(w->flags[next] & PL_PRESENT(0))) continue;
+    if (!rows_has_bond(w, next, 0)) continue;
     product += d * (s.fields->value[0][next] - 30e9) / 3e9;
     pairs++;
   }
@@ -422,7 +422,7 @@ static double roughness(int seed) {
   long pairs = 0;
   for (long m = 0; m < w->bond_count; m++) {
     const int64_t slot = s.bonds[m].slot;
-    if (slot / w->size || !(w->flags[slot + 1] & PL_PRESENT(0))) continue;
+    if (slot / w->size || !rows_has_bond(w, slot + 1, 0)) continue;
     const double d = (s.fields->value[0][slot + 1] - s.fields->value[0][slot]) / 3e9;
     square += d * d;
     pairs++;

@@ -87,7 +87,7 @@ static deck_shape polygon(const double *points, int count) {
 }
 
 static long partner(const rows *w, long site, int k) {
-  return site + w->offset[(site / w->pitch - 1) & 1][k];
+  return rows_partner(w, site, k);
 }
 
 /* --- invariants of the storage ------------------------------------------------------------------
@@ -97,15 +97,16 @@ static void check_storage(const rows *w) {
   long particles = 0, bonds = 0;
   assert_true(w->pitch % PL_LANES == 0 && w->pitch % 512 != 0);
   assert_true(w->size >= (w->row_count + 2) * w->pitch);
-  assert_true((uintptr_t)w->flags % PL_ALIGNMENT == 0);
+  assert_true((uintptr_t)w->bonds % PL_ALIGNMENT == 0);
   assert_true((uintptr_t)(w->x + rows_start(w, 0)) % PL_ALIGNMENT == 0);
   for (long site = 0; site < w->size; site++) {
-    const long row = site / w->pitch, column = site % w->pitch;
-    const bool ghost = row < 1 || row > w->row_count || column < 1 || column >= w->pitch - 1;
-    if (ghost) assert_true(w->present[site] == 0 && w->flags[site] == 0);
+    const int row = site < w->first ? -1 : rows_row(w, site);
+    const long column = site - rows_start(w, row);
+    const bool ghost = row < 0 || row >= w->row_count || column < 1 || column >= w->pitch - 1;
+    if (ghost) assert_true(w->present[site] == 0 && w->bonds[site] == 0);
     if (!w->present[site]) {
       assert_int_equal(w->site_particle[site], -1);
-      assert_true(w->flags[site] == 0);
+      assert_true(w->bonds[site] == 0);
       continue;
     }
     assert_int_equal(w->site_particle[site], particles);
@@ -113,8 +114,8 @@ static void check_storage(const rows *w) {
     particles++;
     for (int k = 0; k < w->directions; k++) {
       const long other = partner(w, site, k);
-      assert_true(other >= 0 && other < (w->row_count + 2) * w->pitch);
-      if (!(w->flags[site] & PL_PRESENT(k))) continue;
+      assert_true(other >= 0 && other < w->size);
+      if (!rows_has_bond(w, site, k)) continue;
       bonds++;
       assert_true(w->present[other]);
       assert_true(fabs(w->x[other] - w->x[site] - w->chord[k][0]) < 1e-9 * w->spacing);
@@ -125,9 +126,11 @@ static void check_storage(const rows *w) {
   assert_int_equal(particles, w->particle_count);
   assert_int_equal(bonds, w->bond_count);
   /* the far end of the last row's strips must lie in the arrays */
-  for (int parity = 0; parity < 2; parity++)
-    for (int k = 0; k < w->directions; k++)
-      assert_true(rows_start(w, w->row_count - 1) + w->offset[parity][k] + w->pitch <= w->size);
+  for (int k = 0; k < 2 * w->directions; k++) {
+    const int last = w->row_count - 1;
+    assert_true(rows_start(w, 0) + rows_offset(w, 0, k) >= 0);
+    assert_true(rows_start(w, last) + rows_offset(w, last, k) + w->pitch <= w->size);
+  }
 }
 
 /* Bonds are all pairs of particles within 1.001 spacings, each once, less those whose chord crosses
@@ -141,7 +144,7 @@ static void check_bonds(const bench *b, const rows *w) {
     const long site = bonds[m].slot % w->size, k = bonds[m].slot / w->size;
     assert_true(i < j); /* the lower, then left end owns it */
     assert_int_equal(w->particle_site[i], site);
-    assert_true((w->flags[site] & PL_PRESENT(k)) != 0);
+    assert_true(rows_has_bond(w, site, (int)k));
     assert_int_equal(joined[i * n + j], 0);
     joined[i * n + j] = 1;
   }
@@ -420,7 +423,7 @@ static void protection_reaches_as_far_as_asked(void **unused) {
             near || hypot(w->x[p] - w->x[q], w->y[p] - w->y[q]) <= (radii[r] + 1e-6) * w->spacing;
       }
       const long site = bonds[m].slot % w->size, k = bonds[m].slot / w->size;
-      assert_int_equal((w->flags[site] & PL_PROTECTED(k)) != 0, near);
+      assert_int_equal(w->held_bonds[site] >> k & 1, near);
     }
     free(bonds);
     check_storage(w);

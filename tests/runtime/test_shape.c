@@ -75,7 +75,7 @@ static const double letter_u[] = {0, 0, 0, 3, 1, 3, 1, 1, 3, 1, 3, 3, 4, 3, 4, 0
 static void concave_polygon(void **unused) {
   (void)unused;
   const deck_shape s = polygon(letter_u, 8);
-  double lower[2], upper[2];
+  double lower[3], upper[3];
   state = 1;
   shape_box(&s, lower, upper);
   assert_true(lower[0] == 0 && lower[1] == 0 && upper[0] == 4 && upper[1] == 3);

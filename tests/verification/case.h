@@ -166,7 +166,7 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
   double *fields = calloc((size_t)(kernel->field_count * g->pitch) + 1, sizeof *fields);
   for (int r = 0; r < g->row_count; r++)
     for (int k = 0; k < g->directions && w->count[r] > 0; k++) {
-      const long near = rows_start(g, r) + w->begin[r], far = near + g->offset[r & 1][k];
+      const long near = rows_start(g, r) + w->begin[r], far = near + rows_offset(g, r, k);
       double *field[16], *planes[PL_MAX_PLANES];
       for (int f = 0; f < kernel->field_count; f++) {
         field[f] = fields + f * g->pitch;
@@ -176,7 +176,7 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
         planes[p] = force[p] + k * g->size + near;
       pl_strip s = {.count = w->count[r],
                     .direction = k,
-                    .flags = g->flags + near,
+                    .flags = pairwise_flags(w) + near,
                     .field = field,
                     .force = planes,
                     .time_step = w->time_step};

@@ -161,7 +161,7 @@ static void unit_forces(sweep *w, const double H[2][2], double F[3][4], double *
   *unbalanced = fmax(*unbalanced, fabs(moment) / (modulus * spacing * spacing * thickness));
   for (long b = 0; b < 3 * g->size; b++) {
     const long k = b / g->size;
-    if (!(g->flags[b % g->size] & PL_PRESENT(k))) continue;
+    if (!rows_has_bond(g, b % g->size, (int)k)) continue;
     for (int c = 0; c < 4; c++)
       *uneven = fmax(*uneven, fabs((plus[c][b] - minus[c][b]) / (2 * strain) - F[k][c]) /
                                   (modulus * spacing * thickness));
