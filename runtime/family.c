@@ -1,7 +1,6 @@
 #include "runtime/family.h"
 
 #include <assert.h>
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -19,7 +18,6 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
 
 typedef struct family {
   int neighbours;
-  long *offset;                /* [row_count][neighbours] */
   double *uniforms;            /* [neighbours][uniform_count] */
   double **new_field;          /* [fields][planes * size] */
   double **link;               /* [links][size] */
@@ -55,7 +53,7 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
   pl_family run = {.count = w->count[row],
                    .neighbours = f->neighbours,
                    .plane = w->lattice->size,
-                   .offset = f->offset + (long)row * f->neighbours,
+                   .offset = w->lattice->offset[w->lattice->row_class[row + w->lattice->margin]],
                    .bonds = w->lattice->bonds + start,
                    .held = w->lattice->held + start,
                    .shape = b->shape,
@@ -199,14 +197,6 @@ double family_bond_value(const sweep *w, const double *field, int direction, lon
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-static void find_offsets(const sweep *w, family *f) {
-  const rows *g = w->lattice;
-  f->offset = must_calloc((size_t)g->row_count * (size_t)f->neighbours, sizeof *f->offset);
-  for (int r = 0; r < g->row_count; r++)
-    for (int k = 0; k < f->neighbours; k++)
-      f->offset[(long)r * f->neighbours + k] = rows_offset(g, r, k);
-}
-
 double *family_uniforms(const pl_law *law, const rows *g, const double *parameters) {
   const int count = 2 * g->directions;
   double *uniforms = must_calloc((size_t)count * (size_t)law->uniform_count + 1, sizeof *uniforms);
@@ -220,7 +210,7 @@ double *family_uniforms(const pl_law *law, const rows *g, const double *paramete
 static void find_shapes(sweep *w, family *f) {
   for (int v = 0; v < PL_SHAPE_VALUES(w->dimensions); v++)
     f->shape[v] = sweep_doubles(w, w->lattice->size);
-  shape_matrices(w->lattice, f->offset, f->shape);
+  shape_matrices(w->lattice, f->shape);
 }
 
 static void new_planes(sweep *w, family *f) {
@@ -273,7 +263,6 @@ static void free_own(sweep *w) {
   for (int v = 0; v < SHAPE_VALUES; v++)
     free(f->shape[v]);
   free(f->blocks);
-  free(f->offset);
   free(f->uniforms);
   free(f);
 }
@@ -281,10 +270,9 @@ static void free_own(sweep *w) {
 sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
-  assert(law->dof == law->dimensions && rows_start(w->lattice, 0) >= w->lattice->pitch);
+  assert(law->dof == law->dimensions);
   f->neighbours = 2 * w->lattice->directions;
   f->uniforms = family_uniforms(law, w->lattice, parameters);
-  find_offsets(w, f);
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);

@@ -63,10 +63,6 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   }
 }
 
-const int64_t *pairwise_flags(const sweep *w) {
-  return own(w)->flags;
-}
-
 const double *pairwise_uniforms(const sweep *w, int direction) {
   return own(w)->uniforms + (long)direction * w->law->uniform_count;
 }
@@ -111,13 +107,17 @@ static void evaluate_aside(sweep *w, pairwise_block *b, int row, double *buffer)
   }
 }
 
+const int64_t *pairwise_flags(const sweep *w) {
+  return own(w)->flags;
+}
+
 /* --- particles of a row ----------------------------------------------------------------------- */
 
-enum { MOST_DIRECTIONS = 3 }; /* of a law of bonds */
+enum { DIRECTIONS = 3 }; /* of a law of bonds */
 
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
-  const double *own[MOST_DIRECTIONS], *incoming[MOST_DIRECTIONS];
+  const double *own[DIRECTIONS], *incoming[DIRECTIONS];
 } gathered;
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
@@ -167,9 +167,8 @@ kick(const gathered *from, int directions, double sign, long count, double kick_
 static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, double *next) {
   const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
   const long count = w->count[row];
-  assert(w->lattice->directions == 3);
-  if (d >= 2) return kick(s, 3, 1, count, factor, w->decay, w->limit[d], v, next);
-  const int64_t bad = kick(s, 3, -1, count, factor, w->decay, w->limit[d], v, next);
+  if (d >= 2) return kick(s, DIRECTIONS, 1, count, factor, w->decay, w->limit[d], v, next);
+  const int64_t bad = kick(s, DIRECTIONS, -1, count, factor, w->decay, w->limit[d], v, next);
   return w->weight ? sweep_push(w, row, d, next) : bad;
 }
 
@@ -291,6 +290,14 @@ static void prepare_uniforms(sweep *w, pairwise *p, const double *parameters) {
   }
 }
 
+/* Bits of the lattice's bonds as strips have them. */
+static void compose_flags(sweep *w, pairwise *p) {
+  const rows *g = w->lattice;
+  p->flags = (int64_t *)sweep_doubles(w, g->size);
+  for (long q = 0; q < g->size; q++)
+    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
+}
+
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
   const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
@@ -321,18 +328,10 @@ static void free_own(sweep *w) {
   free(p);
 }
 
-/* Bits of the lattice's bonds as strips have them. */
-static void compose_flags(sweep *w, pairwise *p) {
-  const rows *g = w->lattice;
-  p->flags = (int64_t *)sweep_doubles(w, g->size);
-  for (long q = 0; q < g->size; q++)
-    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
-}
-
 sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   pairwise *p = must_calloc(1, sizeof *p);
-  assert(w->dimensions == 2 && w->law->force_planes <= PL_MAX_PLANES);
-  assert(w->lattice->directions == MOST_DIRECTIONS);
+  assert(w->dimensions == 2 && w->lattice->directions == DIRECTIONS);
+  assert(w->law->force_planes <= PL_MAX_PLANES);
   p->stride = w->lattice->pitch + 2 * PL_LANES;
   p->buffer = w->law->force_planes * w->lattice->directions * p->stride;
   prepare_uniforms(w, p, parameters);

@@ -72,12 +72,11 @@ static void find_matrix(const rows *w, known_family *f) {
   invert(order, f->matrix);
 }
 
-static const double *matrix_at(const rows *w, const long *offset, known_family *known, long site) {
-  const long *to = offset + (site / w->pitch - 1) * 2 * w->directions + w->directions;
+static const double *matrix_at(const rows *w, known_family *known, long site) {
   const uint64_t own = w->bonds[site];
   uint64_t incoming = 0;
   for (int k = 0; k < w->directions; k++)
-    incoming |= w->bonds[site + to[k]] & (UINT64_C(1) << k);
+    incoming |= w->bonds[rows_partner(w, site, w->directions + k)] & (UINT64_C(1) << k);
   const uint64_t mixed =
       own * UINT64_C(0x9e3779b97f4a7c15) ^ incoming * UINT64_C(0xc2b2ae3d27d4eb4f);
   known_family *f = &known[(mixed >> 32) % PLACES];
@@ -87,12 +86,12 @@ static const double *matrix_at(const rows *w, const long *offset, known_family *
   return f->matrix;
 }
 
-void shape_matrices(const rows *w, const long *offset, double *const *matrix) {
+void shape_matrices(const rows *w, double *const *matrix) {
   const int values = PL_SHAPE_VALUES(w->dimensions);
   known_family *known = must_calloc(PLACES, sizeof *known);
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
-    const double *here = matrix_at(w, offset, known, site);
+    const double *here = matrix_at(w, known, site);
     for (int v = 0; v < values; v++)
       matrix[v][site] = here[v];
   }

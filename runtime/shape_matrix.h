@@ -7,9 +7,8 @@
 
 #include "runtime/rows.h"
 
-/* matrix[PL_SHAPE_VALUES][size]: upper triangles row by row, set at the particles. `offset` of the
-   neighbours in each row: [row_count][2 directions] (family.h). */
-void shape_matrices(const rows *w, const long *offset, double *const *matrix);
+/* matrix[PL_SHAPE_VALUES][size]: upper triangles row by row, set at the particles. */
+void shape_matrices(const rows *w, double *const *matrix);
 
 /* The matrix of a particle whose neighbours are all there: values[PL_SHAPE_VALUES]. */
 void shape_matrix_full(const rows *w, double *values);
