@@ -66,10 +66,10 @@ static const char *const c_own_words[] = {"static",
                                           "pl_wrap_angle"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
-    "asm",    "auto",   "break",  "case",    "continue", "default",  "do",       "else",
-    "extern", "float",  "goto",   "if",      "inline",   "register", "short",    "signed",
-    "sizeof", "struct", "switch", "typedef", "typeof",   "union",    "volatile", "while",
-    "linux",  "unix",   "NULL",   "bool",    "true",     "false"};
+    "asm",    "auto",   "break",  "case",   "continue", "default", "do",       "else",
+    "extern", "float",  "goto",   "if",     "inline",   "int",     "register", "short",
+    "signed", "sizeof", "struct", "switch", "typedef",  "typeof",  "union",    "volatile",
+    "while",  "linux",  "unix",   "NULL",   "bool",     "true",    "false"};
 /* Functions that a kernel defines. */
 static const char *const c_own_functions[] = {
     "prepare",     "bounds",       "rows",      "rows_ledger", "rows_observe",   "list",
@@ -131,6 +131,9 @@ static inline size_t c_quoted(const char *at) {
 
 static inline size_t c_comment(const char *at) {
   static const char begins[] = "/* line ";
+  static const char *const whole[] = {"/* particle by particle */", "/* neighbour by neighbour */"};
+  for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
+    if (strncmp(at, whole[k], strlen(whole[k])) == 0) return strlen(whole[k]);
   const size_t head = sizeof begins - 1;
   if (strncmp(at, begins, head) != 0) return 0;
   const size_t digits = strspn(at + head, "0123456789");
