@@ -5,6 +5,14 @@
 
 #include "runtime/bond_probe.h"
 #include "runtime/stability.h"
+#include "runtime/stencil.h"
+
+/* LAPACK: factors of a symmetric positive matrix, and its inverse from them. The last argument is
+ * the hidden text length. */
+void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int *info,
+             size_t triangle_length);
+void dpotri_(const char *triangle, const int *n, double *a, const int *lda, int *info,
+             size_t triangle_length);
 
 /* Volume of lattice that stress is counted on: a site's area times the stiffness thickness. */
 static double site_volume(const rows *w) {
@@ -87,15 +95,27 @@ static bool invert3(const double a[3][3], double inverse[3][3]) {
   return true;
 }
 
-bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
-                     implied_elasticity *out) {
+/* Of a symmetric positive matrix; else false, and the inverse means nothing. */
+static bool invert_stiffness(int order, const double *D, double *S) {
+  int info = 0;
+  memcpy(S, D, (size_t)(order * order) * sizeof *S);
+  dpotrf_("U", &order, S, &order, &info, 1);
+  if (info != 0) return false;
+  dpotri_("U", &order, S, &order, &info, 1); /* column-major: the lower triangle of rows */
+  for (int r = 0; r < order; r++)
+    for (int c = r + 1; c < order; c++)
+      S[r * order + c] = S[c * order + r];
+  return info == 0;
+}
+
+static void pairwise_stiffness(const pl_law *law, const double *parameters, const rows *w,
+                               implied_elasticity *out) {
   lattice_bond bonds[PL_MAX_DIRECTIONS];
   double tangents[PL_MAX_DIRECTIONS][PL_TANGENTS];
   for (int k = 0; k < w->directions; k++) {
     bonds[k] = bond_of(law, parameters, w, k);
     bond_probe_tangent(bonds[k].probe, (bond_motion){0, 0, 0, 0}, tangents[k]);
   }
-  *out = (implied_elasticity){.asymmetry = 0};
   for (int c = 0; c < 3; c++) {
     double e[3] = {c == 0, c == 1, c == 2}, stress[4];
     linear_stress(bonds, tangents, w->directions, e, stress);
@@ -105,6 +125,34 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
   }
   for (int k = 0; k < w->directions; k++)
     bond_probe_free(bonds[k].probe);
+}
+
+/* In space the compliance knows all six strains, D only those of the plane x, y. */
+static bool families_elastic(const pl_law *law, const double *parameters, const rows *w,
+                             implied_elasticity *out) {
+  const int order = law->dimensions == 2 ? 3 : 6, shear = law->dimensions;
+  const int plane[3] = {0, 1, shear};
+  double D[36], S[36];
+  stencil s = stencil_new(law, parameters, w);
+  stencil_elastic(&s, w, D);
+  const bool stiff = s.finite && invert_stiffness(order, D, S);
+  stencil_free(&s);
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++)
+      out->D[r][c] = D[plane[r] * order + plane[c]];
+  for (int c = 0; c < 2; c++) {
+    out->E[c] = 1 / S[c * order + c];
+    out->nu[c] = -S[c * order + 1 - c] / S[c * order + c];
+  }
+  out->G = 1 / S[shear * order + shear];
+  return stiff;
+}
+
+bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
+                     implied_elasticity *out) {
+  *out = (implied_elasticity){.asymmetry = 0};
+  if (law->kind == PL_STATE) return families_elastic(law, parameters, w, out);
+  pairwise_stiffness(law, parameters, w, out);
   double S[3][3];
   if (!invert3(out->D, S)) return false;
   for (int c = 0; c < 2; c++) {
@@ -146,6 +194,8 @@ static double scan_strength(const pl_law *law, const double *parameters, const r
 double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
                         double *strain) {
   const double first = 1e-8, last = 1.0;
+  if (strain) *strain = NAN;
+  if (law->kind == PL_STATE) return INFINITY;
   const int coarse = 1600, fine = 400;
   double factor = pow(last / first, 1.0 / (coarse - 1)), at;
   scan_strength(law, parameters, w, component, first, factor, 0, coarse, &at);

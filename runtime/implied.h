@@ -1,5 +1,5 @@
 /* What a law implies for a perfect lattice made of it: elastic constants and strength under uniform
-   strain, from the law's own functions. Small strain; particle rotation in moment balance for the
+   strain, from the law's own functions (laws of families: elastic constants alone, from long waves). Small strain; particle rotation in moment balance for the
    elastic constants, zero for strength. */
 #ifndef PERILAT_RUNTIME_IMPLIED_H
 #define PERILAT_RUNTIME_IMPLIED_H
@@ -10,7 +10,7 @@
 #include "runtime/rows.h"
 
 typedef struct implied_elasticity {
-  double D[3][3];     /* Pa: (s_xx, s_yy, s_xy) = D (e_xx, e_yy, 2 e_xy) */
+  double D[3][3];     /* Pa: (s_xx, s_yy, s_xy) = D (e_xx, e_yy, 2 e_xy), all other strains 0 */
   double asymmetry;   /* Pa: |s_xy - s_yx| left over; rounding */
   double E[2], nu[2]; /* Pa, 1: loaded along x, along y; the other direction free */
   double G;           /* Pa */
@@ -22,7 +22,7 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 
 /* Largest stress (Pa) along direction `component` (0 x, 1 y) under growing uniform strain along it,
    the other strains held at zero; *strain receives where. Infinite (strain NaN) when the stress
-   only grows up to a strain of 1. */
+   only grows up to a strain of 1, and for laws of families, whose strength is not looked for. */
 double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
                         double *strain);
 

@@ -162,6 +162,7 @@ typedef struct pl_law {
 
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
   int link_count;
+  int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
 

@@ -379,7 +379,7 @@ static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
 /* Weight of the step that begins at step * time_step: what it adds to a velocity, and its work for
    a velocity after that step; as for forces the mean of both ends of the way works. */
 static void set_gravity(const loads *l, sweep *w, long step) {
-  for (int c = 0; c < 2; c++) {
+  for (int c = 0; c < w->dimensions; c++) {
     double here = 0, next = 0;
     for (int i = 0; i < l->deck->gravity_count; i++) {
       const deck_gravity *g = &l->deck->gravitys[i];
@@ -409,7 +409,7 @@ void loads_begin(loads *l, sweep *w) {
    particle: the velocity after the step turns out to be larger by `change`. */
 static void correct_free_way(loads *l, const sweep *w, int component, double before,
                              double change) {
-  if (component < 2) l->work += w->push_work[component] * change;
+  if (component < w->dimensions) l->work += w->push_work[component] * change;
   l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
 }
 
@@ -468,7 +468,7 @@ void loads_apply(loads *l, sweep *w, long step) {
  * it. */
 static double free_velocity(const sweep *w, const constraint *c) {
   const double force = w->force[c->component][c->site];
-  const double push = c->component < 2 ? w->push[c->component] : 0;
+  const double push = c->component < w->dimensions ? w->push[c->component] : 0;
   return w->decay * c->velocity + w->time_step / w->mass[c->component] * force + push;
 }
 

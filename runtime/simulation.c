@@ -324,6 +324,7 @@ static void after_step(simulation *s) {
     s->go_on = s->observe = false;
     return;
   }
+  sweep_turn(s->state);
   loads_apply(s->loads, s->state, (long)s->at.step);
   s->at.step++;
   monitors_step(s->monitors, (long)s->at.step);
@@ -352,21 +353,24 @@ static void meet(simulation *s, void (*alone)(simulation *)) {
     if (looks > PATIENCE) sched_yield();
 }
 
-/* A team may be smaller than the number of blocks; the blocks, and so the results, stay the same.
- */
-static void run_blocks(simulation *s, void (*work)(sweep *, int), void (*alone)(simulation *)) {
-  for (int b = omp_get_thread_num(); b < s->state->block_count; b += omp_get_num_threads())
-    work(s->state, b);
-  meet(s, alone);
+/* One stage after the other by all threads, the last one followed by `alone`. A team may be smaller
+   than the number of blocks; the blocks, and so the results, stay the same. */
+static void run_stages(simulation *s, int stages, void (*work)(sweep *, int, int),
+                       void (*alone)(simulation *)) {
+  for (int stage = 0; stage < stages; stage++) {
+    for (int b = omp_get_thread_num(); b < s->state->block_count; b += omp_get_num_threads())
+      work(s->state, stage, b);
+    meet(s, stage == stages - 1 ? alone : NULL);
+  }
 }
 
 static void time_loop(simulation *s) {
   const unsigned environment = sweep_enter();
+  const sweep_engine *engine = &s->state->engine;
   for (;;) {
-    if (s->observe) run_blocks(s, sweep_observe, after_observing);
+    if (s->observe) run_stages(s, engine->observe_stages, engine->observe, after_observing);
     if (!s->go_on) break;
-    run_blocks(s, sweep_seam, NULL);
-    run_blocks(s, sweep_rows, after_step);
+    run_stages(s, engine->step_stages, engine->step, after_step);
   }
   sweep_leave(environment);
 }

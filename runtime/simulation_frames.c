@@ -209,8 +209,7 @@ void simulation_frame_values(simulation *s, int field, double *values) {
   const unsigned environment = sweep_enter();
   switch (from->kind) {
   case FROM_FORCE:
-    for (int b = 0; b < s->state->block_count; b++)
-      sweep_observe(s->state, b);
+    sweep_observe(s->state);
     site_values(s, from->arrays, 2, values);
     break;
   case FROM_STATE:

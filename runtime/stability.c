@@ -1,55 +1,21 @@
 #include "runtime/stability.h"
 
-#include <complex.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "runtime/bond_probe.h"
-
-/* LAPACK: eigenvalues and vectors of a Hermitian matrix. The last two arguments are the hidden text
- * lengths. */
-void zheev_(const char *job, const char *triangle, const int *n, double complex *a, const int *lda,
-            double *values, double complex *work, const int *work_size, double *real_work,
-            int *info, size_t job_length, size_t triangle_length);
+#include "runtime/stencil.h"
+#include "runtime/waves.h"
 
 enum {
-  MOST_DOF = 3, /* u_x, u_y, rotation */
+  MOST_DOF = WAVES_MOST_DOF,
   MOST_ORDER = 2 * MOST_DOF,
-  GRID = 48,        /* wave vectors along either reciprocal vector; holds G, K and M */
-  STARTS = 6,       /* best grid points that are refined */
-  MOST_MOVES = 500, /* of one refinement; about 30 are needed */
   LAW_VARIABLES = 3 /* stretch, theta_i, theta_j; conjugate: N s, M_i, M_j */
 };
 
 #define LARGEST_STRETCH                                                                            \
   0.01 /* rate terms are judged up to here when nothing is damaged earlier                         \
         */
-
-/* A bond's share of stiffness and damping, over the degrees of freedom of end i, then of end j. */
-typedef struct bond_matrices {
-  double stiffness[MOST_ORDER][MOST_ORDER]; /* N/m, N, N m */
-  double damping[MOST_ORDER][MOST_ORDER];   /* N s/m, ... */
-  double chord[2];                          /* m */
-} bond_matrices;
-
-typedef struct crystal {
-  int dof, directions;
-  bond_matrices bonds[PL_MAX_DIRECTIONS];
-  double scale[MOST_DOF];  /* 1/sqrt(mass), 1/sqrt(mass), 1/sqrt(inertia) */
-  double reciprocal[2][2]; /* 1/m, of the lattice of chords 0 and 1 */
-  bool finite, damped;
-} crystal;
-
-typedef double complex matrix[MOST_DOF][MOST_DOF];
-
-/* The wave that rules at one wave vector. */
-typedef struct wave {
-  double pole;      /* 2/dt of its stability limit, 1/s */
-  double frequency; /* rad/s */
-  double damping_ratio;
-  double rotation; /* share of its kinetic energy */
-} wave;
 
 /* --- one state of one bond -------------------------------------------------------------------- */
 
@@ -173,245 +139,61 @@ static void congruence(double b[LAW_VARIABLES][MOST_ORDER], double s,
   }
 }
 
+/* Symmetric part of B^T diag(s, 1, 1) D B, as what the ends feel. */
+static void bond_part(const pl_bond_class *bonds, double d[LAW_VARIABLES][LAW_VARIABLES], int dof,
+                      wave_part *out) {
+  double b[LAW_VARIABLES][MOST_ORDER], m[MOST_ORDER][MOST_ORDER];
+  kinematic_matrix(bonds->chord, bonds->s, dof, b);
+  congruence(b, bonds->s, d, 2 * dof, m);
+  for (int p = 0; p < dof; p++)
+    for (int q = 0; q < dof; q++) {
+      out->self[p][q] = m[p][q] + m[dof + p][dof + q];
+      out->forward[p][q] = m[p][dof + q];
+      out->backward[p][q] = m[dof + p][q];
+    }
+}
+
 static void bond_setup(crystal *c, int direction, const pl_law *law, const double *parameters,
                        const rows *w) {
   const pl_bond_class bonds = rows_bond_class(w, direction);
-  bond_matrices *out = &c->bonds[direction];
-  double t[PL_TANGENTS], kinematic[LAW_VARIABLES][MOST_ORDER];
+  wave_term *out = &c->terms[direction];
+  double t[PL_TANGENTS];
   bond_probe *b = bond_probe_new(law, parameters, &bonds);
   bond_probe_tangent(b, (bond_motion){0, 0, 0, 0}, t);
   for (int k = 0; k < PL_TANGENTS; k++)
     if (!isfinite(t[k])) c->finite = false;
   double elastic[LAW_VARIABLES][LAW_VARIABLES] = {
       {t[0], t[2], t[3]}, {t[4], t[6], t[7]}, {t[8], t[10], t[11]}};
-  kinematic_matrix(bonds.chord, bonds.s, c->dof, kinematic);
-  congruence(kinematic, bonds.s, elastic, 2 * c->dof, out->stiffness);
+  bond_part(&bonds, elastic, c->dof, &out->stiffness);
   const rate_scan rates = scan_rates(b);
   if (!rates.bounded && rates.size > 0) {
     double viscous[LAW_VARIABLES][LAW_VARIABLES] = {
         {fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
-    congruence(kinematic, bonds.s, viscous, 2 * c->dof, out->damping);
+    bond_part(&bonds, viscous, c->dof, &out->damping);
     c->damped = true;
   }
-  memcpy(out->chord, bonds.chord, sizeof out->chord);
+  memcpy(out->R, bonds.chord, sizeof out->R);
   bond_probe_free(b);
 }
 
-static void crystal_setup(crystal *c, const pl_law *law, const double *parameters, const rows *w) {
-  memset(c, 0, sizeof *c);
-  c->dof = law->dof < MOST_DOF ? law->dof : MOST_DOF;
-  c->directions = w->directions;
-  c->finite = w->mass > 0 && (c->dof < MOST_DOF || w->inertia > 0);
-  for (int k = 0; k < c->dof; k++)
-    c->scale[k] = 1 / sqrt(k < 2 ? w->mass : w->inertia);
-  for (int k = 0; k < c->directions; k++)
-    bond_setup(c, k, law, parameters, w);
-  const double *a = w->chord[0], *b = w->chord[1];
-  const double turn = 2 * acos(-1) / (a[0] * b[1] - a[1] * b[0]);
-  const double reciprocal[2][2] = {{turn * b[1], -turn * b[0]}, {-turn * a[1], turn * a[0]}};
-  memcpy(c->reciprocal, reciprocal, sizeof reciprocal);
-}
-
-/* --- waves ------------------------------------------------------------------------------------ */
-
-static void add_bond(const crystal *c, const double bond[MOST_ORDER][MOST_ORDER],
-                     double complex phase, matrix out) {
-  const int n = c->dof;
-  for (int p = 0; p < n; p++)
-    for (int q = 0; q < n; q++)
-      out[p][q] +=
-          c->scale[p] * c->scale[q] *
-          (bond[p][q] + bond[n + p][n + q] + bond[p][n + q] * phase + bond[n + p][q] * conj(phase));
-}
-
-/* M^-1/2 K(k) M^-1/2 and the same of damping. */
-static void wave_matrices(const crystal *c, const double k[2], matrix stiffness, matrix damping) {
-  memset(stiffness, 0, sizeof(matrix));
-  memset(damping, 0, sizeof(matrix));
-  for (int d = 0; d < c->directions; d++) {
-    const double complex phase =
-        cexp(I * (k[0] * c->bonds[d].chord[0] + k[1] * c->bonds[d].chord[1]));
-    add_bond(c, c->bonds[d].stiffness, phase, stiffness);
-    if (c->damped) add_bond(c, c->bonds[d].damping, phase, damping);
-  }
-}
-
-/* Eigenvalues ascending; a (column-major, order n) becomes the eigenvectors. */
-static bool eigen(int n, double complex *a, double *values) {
-  double complex work[16 * MOST_ORDER];
-  double real_work[3 * MOST_ORDER];
-  const int size = 16 * MOST_ORDER;
-  int info = 0;
-  zheev_("V", "U", &n, a, &n, values, work, &size, real_work, &info, 1, 1);
-  return info == 0;
-}
-
-/* Modes of the undamped wave: frequencies, and vectors[m][p] of mode m. */
-static bool modes(const crystal *c, matrix stiffness, double *omega, matrix vectors) {
-  const int n = c->dof;
-  double complex a[MOST_DOF * MOST_DOF];
-  for (int p = 0; p < n; p++)
-    for (int q = 0; q < n; q++)
-      a[q * n + p] = stiffness[p][q];
-  if (!eigen(n, a, omega)) return false;
-  for (int m = 0; m < n; m++) {
-    omega[m] = sqrt(fmax(omega[m], 0));
-    for (int p = 0; p < n; p++)
-      vectors[m][p] = a[m * n + p];
-  }
-  return true;
-}
-
-static double complex sandwich(int n, const double complex *left, matrix a,
-                               const double complex *right) {
-  double complex sum = 0;
-  for (int p = 0; p < n; p++)
-    for (int q = 0; q < n; q++)
-      sum += conj(left[p]) * a[p][q] * right[q];
-  return sum;
-}
-
-/* dt^2 K + 2 dt C = 4 M, with p = 2/dt, is p^2 x = p C x + K x; with y = K^1/2 x / p it is the
-   Hermitian problem p (x, y) = ((C, K^1/2), (K^1/2, 0)) (x, y), written here in the undamped modes.
-   The largest p rules. */
-static bool damped_wave(const crystal *c, matrix damping, const double *omega, matrix vectors,
-                        wave *out, double complex *mode) {
-  const int n = c->dof, order = 2 * n;
-  double complex a[MOST_ORDER * MOST_ORDER] = {0};
-  double values[MOST_ORDER], square = 0, stiff = 0;
-  for (int p = 0; p < n; p++) {
-    for (int q = 0; q < n; q++)
-      a[q * order + p] = sandwich(n, vectors[p], damping, vectors[q]);
-    a[(n + p) * order + p] = a[p * order + n + p] = omega[p];
-  }
-  if (!eigen(order, a, values)) return false;
-  const double complex *x = a + (order - 1) * order;
-  for (int p = 0; p < n; p++)
-    mode[p] = 0;
-  for (int m = 0; m < n; m++) {
-    const double share = creal(x[m] * conj(x[m]));
-    square += share;
-    stiff += share * omega[m] * omega[m];
-    for (int p = 0; p < n; p++)
-      mode[p] += x[m] * vectors[m][p];
-  }
-  if (!(square > 0)) { /* neither stiffness nor damping: any vector will do */
-    memcpy(mode, vectors[n - 1], (size_t)n * sizeof *mode);
-    return true;
-  }
-  out->pole = values[order - 1];
-  out->frequency = sqrt(stiff / square);
-  const double rate = creal(sandwich(n, mode, damping, mode)) / square;
-  out->damping_ratio = out->frequency > 0 ? rate / (2 * out->frequency) : rate > 0 ? INFINITY : 0;
-  return true;
-}
-
-static bool wave_at(const crystal *c, const double k[2], bool damped, wave *out) {
-  matrix stiffness, damping, vectors;
-  double omega[MOST_DOF];
-  double complex mode[MOST_DOF];
-  const int n = c->dof;
-  wave_matrices(c, k, stiffness, damping);
-  if (!modes(c, stiffness, omega, vectors)) return false;
-  *out = (wave){.pole = omega[n - 1], .frequency = omega[n - 1]};
-  memcpy(mode, vectors[n - 1], (size_t)n * sizeof *mode);
-  if (damped && !damped_wave(c, damping, omega, vectors, out, mode)) return false;
-  double all = 0, turning = 0;
-  for (int p = 0; p < n; p++) {
-    const double share = creal(mode[p] * conj(mode[p]));
-    all += share;
-    if (p == 2) turning += share;
-  }
-  out->rotation = turning / all;
-  return true;
-}
-
-/* --- search over the Brillouin zone ----------------------------------------------------------- */
-
-typedef struct found {
-  double at[2]; /* in reciprocal vectors */
-  wave wave;
-} found;
-
-static bool look(const crystal *c, const double at[2], bool damped, found *out) {
-  const double k[2] = {at[0] * c->reciprocal[0][0] + at[1] * c->reciprocal[1][0],
-                       at[0] * c->reciprocal[0][1] + at[1] * c->reciprocal[1][1]};
-  memcpy(out->at, at, sizeof out->at);
-  return wave_at(c, k, damped, &out->wave);
-}
-
-static void keep_best(found best[STARTS], int *count, const found *f) {
-  int rank = *count;
-  while (rank > 0 && f->wave.pole > best[rank - 1].wave.pole)
-    rank--;
-  if (rank == STARTS) return;
-  const int last = *count < STARTS ? *count : STARTS - 1;
-  memmove(best + rank + 1, best + rank, (size_t)(last - rank) * sizeof *best);
-  best[rank] = *f;
-  if (*count < STARTS) (*count)++;
-}
-
-/* Halving pattern search: branches cross, so the largest frequency has kinks and no derivative
- * there. */
-static bool refine(const crystal *c, bool damped, found *f) {
-  static const int steps[8][2] = {{1, 0}, {0, 1},   {-1, 0}, {0, -1},
-                                  {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
-  double h = 0.5 / GRID;
-  for (int move = 0; move < MOST_MOVES && h > 1e-9; move++) {
-    const found from = *f;
-    for (int k = 0; k < 8; k++) {
-      const double at[2] = {from.at[0] + h * steps[k][0], from.at[1] + h * steps[k][1]};
-      found next;
-      if (!look(c, at, damped, &next)) return false;
-      if (next.wave.pole > f->wave.pole * (1 + 1e-14)) *f = next;
-    }
-    if (f->at[0] == from.at[0] && f->at[1] == from.at[1]) h /= 2;
-  }
-  return true;
-}
-
-/* The ruling wave of the whole zone; k and -k are one, so half of it suffices. */
-static bool search(const crystal *c, bool damped, wave *out) {
-  found best[STARTS];
-  int count = 0;
-  for (int p = 0; p <= GRID / 2; p++) {
-    for (int q = 0; q < GRID; q++) {
-      const double at[2] = {(double)p / GRID, (double)q / GRID};
-      found f;
-      if (!look(c, at, damped, &f)) return false;
-      keep_best(best, &count, &f);
-    }
-  }
-  *out = best[0].wave;
-  for (int k = 0; k < count; k++) {
-    if (!refine(c, damped, &best[k])) return false;
-    if (best[k].wave.pole > out->pole * (1 + 1e-12)) *out = best[k].wave;
-  }
-  return true;
+static crystal crystal_of(const pl_law *law, const double *parameters, const rows *w) {
+  if (law->kind == PL_STATE) return stencil_crystal(law, parameters, w);
+  crystal c = crystal_new(w, law->dof, w->directions);
+  for (int k = 0; k < w->directions; k++)
+    bond_setup(&c, k, law, parameters, w);
+  return c;
 }
 
 void stability_limit(const pl_law *law, const double *parameters, const rows *w, step_limit *out) {
-  crystal c;
-  wave free, ruling;
-  out->limit = 0;
-  out->omega_max = NAN;
-  out->damping_ratio = 0;
-  out->mode = "translation";
-  crystal_setup(&c, law, parameters, w);
-  if (!c.finite || !search(&c, false, &free)) return;
-  ruling = free;
-  if (c.damped && !search(&c, true, &ruling)) return;
-  out->omega_max = free.frequency;
-  out->limit = ruling.pole > 0 ? 2 / ruling.pole : INFINITY;
-  out->damping_ratio = ruling.damping_ratio;
-  out->mode = ruling.rotation > 0.5 ? "rotation" : "translation";
+  crystal c = crystal_of(law, parameters, w);
+  waves_limit(&c, out);
+  crystal_free(&c);
 }
 
 double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx,
                        double ky) {
-  crystal c;
-  wave found_there;
-  const double k[2] = {kx, ky};
-  crystal_setup(&c, law, parameters, w);
-  return c.finite && wave_at(&c, k, false, &found_there) ? found_there.frequency : NAN;
+  crystal c = crystal_of(law, parameters, w);
+  const double omega = waves_omega(&c, (const double[3]){kx, ky, 0});
+  crystal_free(&c);
+  return omega;
 }

@@ -1,27 +1,21 @@
-/* The state of a body of particles on rows and the sweep that moves it one step: bonds of a row
-   into a row buffer, its forces at once into velocities and displacements. Knows neither loads nor
-   files.
+/* The state of a body of particles on rows, and the sweep that moves it by one step. Knows neither
+   loads nor files.
 
-   Rows are shared out to threads in contiguous blocks. A row's forces need the bonds of the row
-   below, so that the last row of a block (its seam) is evaluated before anything moves: every block
-   does sweep_seam; when all have, every block does sweep_rows.
+   A step is a few stages: every block of rows does a stage, and when all blocks have, the next one
+   begins. What the stages do is an engine's affair: pairwise.h for laws of bonds, family.h for laws
+   that read a particle's whole family. Both kick and move the particles of a row in the same way.
 
-   A particle's force is summed in one order: its own bonds by direction, then those that others own
-   by direction. */
+   Rows are shared out to threads in contiguous blocks. A particle's bonds are summed in one order,
+   whatever the blocks, so that results are the same to the last bit. */
 #ifndef PERILAT_RUNTIME_SWEEP_H
 #define PERILAT_RUNTIME_SWEEP_H
 
 #include "runtime/kernel.h"
 #include "runtime/rows.h"
 
-typedef struct sweep_block { /* what one thread works on and with */
+typedef struct sweep_block { /* what one thread works on */
   int first, last;           /* rows first .. last-1 */
-  double *buffer[2], *seam;  /* bond forces of one row each: [planes][directions][stride] */
   double *next;              /* [dof][pitch] velocities after the kick */
-  double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
-  double *observed; /* [1 + outputs][pitch] */
-  double **pointers;         /* of fields and observed values, for strips */
-  const double **parameters; /* [varying] for strips */
   long bad_site;             /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
@@ -30,43 +24,57 @@ typedef struct sweep_block { /* what one thread works on and with */
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
   double kinetic; /* half m (v before)(v after): what a spring and a mass conserve exactly */
   double stored;
-  double dissipated_state, dissipated_rate; /* by the law since the start */
+  double dissipated_state, dissipated_rate; /* pairwise laws: by the law since the start */
+  double
+      internal; /* laws of families: work done against the forces of the bonds, up to the state */
   double dissipated_mass; /* by mass damping since the start, up to the middle of the last step */
   double gravity;         /* work of gravity since the start */
   double dissipated_pending; /* by mass damping from there to the state sampled */
 } sweep_totals;
 
-typedef struct sweep {
+typedef struct sweep sweep;
+
+typedef struct sweep_engine {
+  int step_stages, observe_stages;
+  void (*step)(sweep *w, int stage, int block);
+  void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
+  void (*observe)(sweep *w, int stage, int block);
+  void (*output)(sweep *w, int output, double *values);
+  void (*free)(sweep *w);
+  void *own;
+} sweep_engine;
+
+struct sweep {
   const rows *lattice;
-  int64_t *flags; /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
   const pl_law *law;
   double time_step;    /* s */
   double decay;        /* factor of mass damping on the velocities in the coming step; 1: none */
-  double push[2];      /* m/s that gravity adds to the velocities in the coming step */
-  double push_work[2]; /* J s/m: work of gravity over the velocity after the coming step */
+  double push[3];      /* m/s that gravity adds to the velocities in the coming step */
+  double push_work[3]; /* J s/m: work of gravity over the velocity after the coming step */
   double *weight;      /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;         /* dissipated energies are kept */
-  double *uniforms;    /* [directions][uniform_count] */
-  int dof;
+  int dimensions, dof;
   double mass[PL_MAX_DOF]; /* kg, kg, kg m^2 */
   double
       limit[PL_MAX_DOF]; /* velocity that no particle may reach: one spacing, half a turn a step */
   double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF]; /* [size] m, rad; m/s, rad/s */
-  double **field;                                          /* [fields][directions * size] */
+  double *
+      *field; /* [fields][sweep_planes * size]; which memory is a field's may change in a step */
   double *const *parameter; /* [varying][directions * size] of random fields; not owned */
-  double *dissipated_state,
-      *dissipated_rate;      /* [size] J at the site that owns the bond; NULL without ledger */
-  double *force[PL_MAX_DOF]; /* [size] N, N m: sums over bonds, written by sweep_observe; NULL when
-                                never asked */
+  double *dissipated_state, *dissipated_rate; /* [size] J at the site that owns the bond; NULL
+                                                 without ledger and for laws of families */
+  double *force[PL_MAX_DOF]; /* [size] N, N m: sums over bonds, as last observed (families: as last
+                                used); NULL when never asked */
   double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
+  double *row_internal, *row_internal_pending;               /* [row_count] J */
   double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
   long *begin,
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */
   int block_count;
   sweep_block *blocks;
-  long stride;  /* doubles of a direction in a buffer */
   size_t bytes; /* held altogether */
-} sweep;
+  sweep_engine engine;
+};
 
 /* The fields start at their initial values, all at rest. With `ledger` or `forces` the force arrays
  * exist. */
@@ -76,23 +84,31 @@ void sweep_free(sweep *w);
 /* From now on `push` counts. */
 void sweep_add_gravity(sweep *w);
 
+/* Site arrays that make up a field or an output in that place (pl_place): one for each direction of
+   a pairwise law's bonds; of a law of families one on particles, else one for each neighbour. */
+int sweep_planes(const sweep *w, int where);
+
 /* Subnormal numbers are slow and mean nothing here: they count as zero in this thread until
  * sweep_leave. */
 unsigned sweep_enter(void);
 void sweep_leave(unsigned before);
 
-void sweep_seam(sweep *w, int block);
-void sweep_rows(sweep *w, int block);
-/* Block with the lowest bad site after sweep_rows, or -1. */
+/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved. */
 int sweep_bad(const sweep *w);
+/* Ends a step in which nothing was bad, alone. */
+void sweep_turn(sweep *w);
+/* All stages and blocks of a step, one after the other: for tools and tests. False when it went
+ * bad. */
+bool sweep_step(sweep *w);
 
-/* Forces on the particles in the present state, and the block's share of the energies; changes no
-   state. The velocity after the coming kick is needed for the kinetic energy: that of free
-   particles without applied forces is taken. */
-void sweep_observe(sweep *w, int block);
-/* Sums in row order; call after all blocks were observed. */
+/* Observing is done in stages too: forces on the particles in the present state, and the energies;
+   it changes no state. The velocity after the coming kick is needed for the kinetic energy: that of
+   free particles without applied forces is taken. This does all stages and blocks. */
+void sweep_observe(sweep *w);
+/* Sums in row order; call after all was observed. */
 sweep_totals sweep_sum(const sweep *w);
-/* An output of the law in the present state: values[directions * size], defined where bonds are. */
+/* An output of the law in the present state: values[sweep_planes * size], defined where bonds or
+ * particles are. */
 void sweep_output(sweep *w, int output, double *values);
 
 #endif

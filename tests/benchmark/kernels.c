@@ -94,11 +94,8 @@ static void sweep_get(const void *state, motion *to) {
 }
 
 static void sweep_advance(void *state, long steps) {
-  for (long step = 0; step < steps; step++) {
-    sweep_seam(state, 0);
-    sweep_rows(state, 0);
-  }
-  if (sweep_bad(state) >= 0) give_up("the generated kernel ran away");
+  for (long step = 0; step < steps; step++)
+    if (!sweep_step(state)) give_up("the generated kernel ran away");
 }
 
 static void run_set(void *state, const motion *from) {

@@ -255,10 +255,7 @@ static void reactions_balance_the_momentum(void **state) {
         outside[d] -=
             w->mass[d] * (1 - w->decay) / w->time_step * w->velocity[d][g->particle_site[p]];
       }
-    for (int b = 0; b < w->block_count; b++)
-      sweep_seam(w, b);
-    for (int b = 0; b < w->block_count; b++)
-      sweep_rows(w, b);
+    sweep_step(w);
     loads_apply(l, w, n);
     for (long c = 0; c < l->constraint_count; c++)
       outside[l->constraints[c].component] += l->constraints[c].reaction;

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/pairwise.h"
 #include "tests/runtime/small_run.h"
 
 /* A body with ragged rows: disc, rotated lattice, a notch. */
@@ -69,7 +70,7 @@ static double *forces_by_list(const sweep *w) {
       s.velocity_i[d] = &w->velocity[d][i];
       s.velocity_j[d] = &w->velocity[d][j];
     }
-    w->law->rows(w->law, w->uniforms + k * w->law->uniform_count, &s);
+    w->law->rows(w->law, pairwise_uniforms(w, k), &s);
     for (int d = 0; d < 2; d++) {
       force[3 * bonds[m].i + d] += plane[d];
       force[3 * bonds[m].j + d] -= plane[d];
@@ -94,15 +95,11 @@ static void check_against_list(const pl_law *law, double rotation, int threads) 
       v[3 * p + d] = w->velocity[d][g->particle_site[p]];
       scale[d] = fmax(scale[d], fabs(force[3 * p + d]));
     }
-  for (int b = 0; b < w->block_count; b++)
-    sweep_observe(w, b);
+  sweep_observe(w);
   for (long p = 0; p < g->particle_count; p++)
     for (int d = 0; d < w->dof; d++) /* a few roundings of sums in another order */
       assert_true(fabs(w->force[d][g->particle_site[p]] - force[3 * p + d]) <= 1e-14 * scale[d]);
-  for (int b = 0; b < w->block_count; b++)
-    sweep_seam(w, b);
-  for (int b = 0; b < w->block_count; b++)
-    sweep_rows(w, b);
+  sweep_step(w);
   for (long p = 0; p < g->particle_count; p++)
     for (int d = 0; d < w->dof; d++) {
       const double change = w->time_step / w->mass[d] * force[3 * p + d];
@@ -168,8 +165,7 @@ static void observing_changes_no_state(void **state) {
   open_ragged(&b, &elastic_beam, 0, 2);
   shake(&a, 5);
   shake(&b, 5);
-  for (int block = 0; block < 2; block++)
-    sweep_observe(simulation_state(a.simulation), block);
+  sweep_observe(simulation_state(a.simulation));
   same_arrays(simulation_state(a.simulation), simulation_state(b.simulation));
   small_close(&a);
   small_close(&b);

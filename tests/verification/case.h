@@ -10,6 +10,7 @@
 
 #include "generator/model.h"
 #include "generator/run.h"
+#include "runtime/pairwise.h"
 #include "runtime/simulation.h"
 
 /* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */
@@ -175,7 +176,7 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
         planes[p] = force[p] + k * g->size + near;
       pl_strip s = {.count = w->count[r],
                     .direction = k,
-                    .flags = w->flags + near,
+                    .flags = pairwise_flags(w) + near,
                     .field = field,
                     .force = planes,
                     .time_step = w->time_step};
@@ -185,7 +186,7 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
         s.velocity_i[d] = w->velocity[d] + near;
         s.velocity_j[d] = w->velocity[d] + far;
       }
-      kernel->rows(kernel, w->uniforms + (long)k * kernel->uniform_count, &s);
+      kernel->rows(kernel, pairwise_uniforms(w, k), &s);
     }
   free(fields);
 }

@@ -152,7 +152,7 @@ static void stiffness_times(cantilever *b, const double *u, double *product) {
     for (long p = 0; p < b->g->particle_count; p++)
       for (int d = 0; d < 3; d++)
         w->displacement[d][b->g->particle_site[p]] = side * 1e-6 / size * u[3 * p + d];
-    sweep_observe(w, 0);
+    sweep_observe(w);
     for (long p = 0; p < b->g->particle_count; p++)
       for (int d = 0; d < 3; d++) {
         const double half = -side * w->force[d][b->g->particle_site[p]] * size / 2e-6;

@@ -67,8 +67,7 @@ static void a_rigid_motion_costs_nothing(void **state) {
       w->displacement[2][q] = angles[k];
     }
     double largest = 0;
-    for (int b = 0; b < w->block_count; b++)
-      sweep_observe(w, b);
+    sweep_observe(w);
     for (long p = 0; p < w->lattice->particle_count; p++)
       for (int d = 0; d < 3; d++)
         largest =

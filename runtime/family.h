@@ -1,0 +1,23 @@
+/* The sweep for laws of families: the passes of the law's step one after the other over all rows,
+   then the particles move. Passes read the fields of the beginning of the step and write new ones,
+   which take their place when the step is done; values of particles that later passes read from
+   neighbours stand in links.
+
+   Fields on particles have one plane of [size], all others one for each neighbour, neighbour
+   k + directions opposite to k. */
+#ifndef PERILAT_RUNTIME_FAMILY_H
+#define PERILAT_RUNTIME_FAMILY_H
+
+#include "runtime/sweep.h"
+
+/* For a sweep whose state is set up. */
+sweep_engine family_engine(sweep *w, const double *parameters);
+
+/* What the law's `prepare` gives for the neighbours of a lattice: [neighbours][uniform_count]; to be
+   freed. */
+double *family_uniforms(const pl_law *law, const rows *w, const double *parameters);
+
+/* Value of a field (or output) on neighbours in a bond that its end i owns in direction k: the mean of both sides. */
+double family_bond_value(const sweep *w, const double *field, int direction, long i);
+
+#endif

@@ -1,0 +1,353 @@
+#include "runtime/pairwise.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "runtime/sweep_parts.h"
+
+typedef struct pairwise_block { /* what one thread works with */
+  double *buffer[2], *seam;     /* bond forces of one row each: [planes][directions][stride] */
+  double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
+  double *observed; /* [1 + outputs][pitch] */
+  double **pointers;         /* of fields and observed values, for strips */
+  const double **parameters; /* [varying] for strips */
+} pairwise_block;
+
+typedef struct pairwise {
+  double *uniforms;       /* [directions][uniform_count] */
+  int64_t *flags;         /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
+  long stride;            /* doubles of a direction in a buffer */
+  long buffer;            /* doubles of a buffer */
+  pairwise_block *blocks; /* [block_count] */
+} pairwise;
+
+static pairwise *own(const sweep *w) {
+  return w->engine.own;
+}
+
+/* --- bonds of a row --------------------------------------------------------------------------- */
+
+static double *plane(const sweep *w, double *buffer, int p, int direction) {
+  return buffer + ((long)p * w->lattice->directions + direction) * own(w)->stride + PL_LANES;
+}
+
+/* A buffer's places outside the row's span keep forces of an earlier row: they count as absent
+ * bonds. */
+static void clear_outside(const sweep *w, int row, double *strip) {
+  const long begin = w->begin[row], end = begin + w->count[row];
+  memset(strip, 0, (size_t)begin * sizeof *strip);
+  memset(strip + end, 0, (size_t)(w->lattice->pitch - end) * sizeof *strip);
+}
+
+static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, pl_strip *s) {
+  const rows *g = w->lattice;
+  const long near = rows_start(g, row) + w->begin[row], far = near + rows_offset(g, row, direction);
+  s->count = w->count[row];
+  s->direction = direction;
+  s->flags = own(w)->flags + near;
+  s->time_step = w->time_step;
+  s->parameter = b->parameters;
+  for (int k = 0; k < w->law->varying_count; k++)
+    b->parameters[k] = w->parameter[k] + direction * g->size + near;
+  for (int d = 0; d < w->dof; d++) {
+    s->displacement_i[d] = w->displacement[d] + near;
+    s->displacement_j[d] = w->displacement[d] + far;
+    s->velocity_i[d] = w->velocity[d] + near;
+    s->velocity_j[d] = w->velocity[d] + far;
+  }
+  if (w->ledger) {
+    s->dissipated_state = w->dissipated_state + near;
+    s->dissipated_rate = w->dissipated_rate + near;
+  }
+}
+
+const double *pairwise_uniforms(const sweep *w, int direction) {
+  return own(w)->uniforms + (long)direction * w->law->uniform_count;
+}
+
+/* Forces of the bonds that row `row` owns, into `buffer`; their fields move on by one step. */
+static void evaluate(sweep *w, pairwise_block *b, int row, double *buffer) {
+  const rows *g = w->lattice;
+  const pl_strip_function kernel = w->ledger ? w->law->rows_ledger : w->law->rows;
+  for (int k = 0; k < g->directions; k++) {
+    double *force[PL_MAX_PLANES];
+    for (int p = 0; p < w->law->force_planes; p++) {
+      clear_outside(w, row, plane(w, buffer, p, k));
+      force[p] = plane(w, buffer, p, k) + w->begin[row];
+    }
+    if (w->count[row] == 0) continue;
+    for (int f = 0; f < w->law->field_count; f++)
+      b->pointers[f] = w->field[f] + k * g->size + rows_start(g, row) + w->begin[row];
+    pl_strip s = {.field = b->pointers, .force = force};
+    strip_ends(w, b, row, k, &s);
+    kernel(w->law, pairwise_uniforms(w, k), &s);
+  }
+}
+
+/* The same on a copy of the fields: forces of the present state without a trace. */
+static void evaluate_aside(sweep *w, pairwise_block *b, int row, double *buffer) {
+  const rows *g = w->lattice;
+  for (int k = 0; k < g->directions; k++) {
+    double *force[PL_MAX_PLANES];
+    for (int p = 0; p < w->law->force_planes; p++) {
+      clear_outside(w, row, plane(w, buffer, p, k));
+      force[p] = plane(w, buffer, p, k) + w->begin[row];
+    }
+    if (w->count[row] == 0) continue;
+    for (int f = 0; f < w->law->field_count; f++) {
+      b->pointers[f] = b->fields + f * g->pitch;
+      memcpy(b->pointers[f], w->field[f] + k * g->size + rows_start(g, row) + w->begin[row],
+             (size_t)w->count[row] * sizeof(double));
+    }
+    pl_strip s = {.field = b->pointers, .force = force};
+    strip_ends(w, b, row, k, &s);
+    w->law->rows(w->law, pairwise_uniforms(w, k), &s);
+  }
+}
+
+const int64_t *pairwise_flags(const sweep *w) {
+  return own(w)->flags;
+}
+
+/* --- particles of a row ----------------------------------------------------------------------- */
+
+enum { DIRECTIONS = 3 }; /* of a law of bonds */
+
+typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
+                             direction */
+  const double *own[DIRECTIONS], *incoming[DIRECTIONS];
+} gathered;
+
+/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
+ */
+static gathered gather(const sweep *w, int row, int component, double *here, double *below) {
+  const rows *g = w->lattice;
+  const int far_plane = component < 2 ? component : 3;
+  const long begin = w->begin[row];
+  gathered s = {{0}, {0}};
+  for (int k = 0; k < g->directions; k++) {
+    const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
+    s.own[k] = plane(w, here, component, k) + begin;
+    s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
+                                         : plane(w, below, far_plane, k) + begin - (up - g->pitch);
+  }
+  return s;
+}
+
+static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int directions,
+                                                             double sign, long q) {
+  double f = s->own[0][q];
+  for (int k = 1; k < directions; k++)
+    f += s->own[k][q];
+  for (int k = 0; k < directions; k++)
+    f += sign * s->incoming[k][q];
+  return f;
+}
+
+/* next = decay v + dt/m f. Returns nonzero when a velocity is not below the limit (NaN is not below
+ * anything). */
+static inline __attribute__((always_inline)) int64_t
+kick(const gathered *from, int directions, double sign, long count, double kick_factor,
+     double decay, double limit, const double *restrict v, double *restrict next) {
+  const gathered s = *from;
+  int64_t bad = 0;
+  INDEPENDENT
+  for (long q = 0; q < count; q++) {
+    const double after = decay * v[q] + kick_factor * bond_sum(&s, directions, sign, q);
+    next[q] = after;
+    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
+  }
+  return bad;
+}
+
+/* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
+   forces on j are the opposite of those on i. */
+static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, double *next) {
+  const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
+  const long count = w->count[row];
+  if (d >= 2) return kick(s, DIRECTIONS, 1, count, factor, w->decay, w->limit[d], v, next);
+  const int64_t bad = kick(s, DIRECTIONS, -1, count, factor, w->decay, w->limit[d], v, next);
+  return w->weight ? sweep_push(w, row, d, next) : bad;
+}
+
+/* Moves a row. A row with a bad velocity stays where it is, so that its state before the step can
+ * be reported. */
+static void move_row(sweep *w, sweep_block *b, int row, double *here, double *below) {
+  int64_t bad = 0;
+  for (int d = 0; d < w->dof; d++) {
+    const gathered s = gather(w, row, d, here, below);
+    bad |= kick_component(w, row, &s, d, b->next + d * w->lattice->pitch);
+  }
+  if (bad)
+    sweep_note_bad(w, b, row);
+  else
+    sweep_drift(w, b, row);
+}
+
+static void evaluate_seam(sweep *w, int block) {
+  sweep_block *b = &w->blocks[block];
+  pairwise_block *p = &own(w)->blocks[block];
+  b->bad_site = -1;
+  evaluate(w, p, b->last - 1, p->seam);
+}
+
+static void move_rows(sweep *w, int block) {
+  sweep_block *b = &w->blocks[block];
+  pairwise_block *p = &own(w)->blocks[block];
+  double *below = block > 0 ? own(w)->blocks[block - 1].seam : p->buffer[1];
+  if (block == 0) /* nothing below the first row */
+    memset(below, 0, (size_t)own(w)->buffer * sizeof *below);
+  for (int r = b->first; r < b->last; r++) {
+    double *here = r == b->last - 1 ? p->seam : p->buffer[(r - b->first) & 1];
+    if (here != p->seam) evaluate(w, p, r, here);
+    move_row(w, b, r, here, below);
+    below = here;
+  }
+}
+
+static void step(sweep *w, int stage, int block) {
+  if (stage == 0)
+    evaluate_seam(w, block);
+  else
+    move_rows(w, block);
+}
+
+/* --- sampling --------------------------------------------------------------------------------- */
+
+/* Stored energy and outputs of a row's bonds of one direction, into the block's `observed`. */
+static pl_strip observe_strip(sweep *w, pairwise_block *b, int row, int direction) {
+  const rows *g = w->lattice;
+  double **observed = b->pointers + w->law->field_count;
+  for (int f = 0; f < w->law->field_count; f++)
+    b->pointers[f] = w->field[f] + direction * g->size + rows_start(g, row) + w->begin[row];
+  for (int o = 0; o <= w->law->output_count; o++)
+    observed[o] = b->observed + o * g->pitch;
+  pl_strip s = {.field = b->pointers, .observed = observed};
+  strip_ends(w, b, row, direction, &s);
+  w->law->rows_observe(w->law, pairwise_uniforms(w, direction), &s);
+  return s;
+}
+
+static double stored_in_row(sweep *w, pairwise_block *b, int row) {
+  double sum = 0;
+  for (int k = 0; k < w->lattice->directions && w->count[row] > 0; k++) {
+    const pl_strip s = observe_strip(w, b, row, k);
+    for (long q = 0; q < s.count; q++)
+      if (s.flags[q] & PL_PRESENT(k)) sum += b->observed[q];
+  }
+  return sum;
+}
+
+static void output_values(sweep *w, int output, double *values) {
+  const rows *g = w->lattice;
+  pairwise_block *b = &own(w)->blocks[0];
+  for (int r = 0; r < g->row_count; r++)
+    for (int k = 0; k < g->directions && w->count[r] > 0; k++) {
+      const pl_strip s = observe_strip(w, b, r, k);
+      memcpy(values + k * g->size + rows_start(g, r) + w->begin[r],
+             b->observed + (1 + output) * g->pitch, (size_t)s.count * sizeof *values);
+    }
+}
+
+static void observe_row(sweep *w, int block, int row, double *here, double *below) {
+  sweep_block *b = &w->blocks[block];
+  const long start = sweep_start(w, row), count = w->count[row];
+  for (int d = 0; d < w->dof; d++) {
+    const gathered s = gather(w, row, d, here, below);
+    kick_component(w, row, &s, d, b->next + d * w->lattice->pitch);
+    for (long q = 0; q < count; q++)
+      w->force[d][start + q] = bond_sum(&s, w->lattice->directions, d < 2 ? -1 : 1, q);
+  }
+  sweep_observe_motion(w, b, row);
+  w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
+}
+
+static void observe(sweep *w, int stage, int block) {
+  (void)stage; /* there is one */
+  const sweep_block *b = &w->blocks[block];
+  pairwise_block *p = &own(w)->blocks[block];
+  double *below = p->buffer[1];
+  memset(below, 0, (size_t)own(w)->buffer * sizeof *below);
+  if (b->first > 0) evaluate_aside(w, p, b->first - 1, below);
+  for (int r = b->first; r < b->last; r++) {
+    double *here = p->buffer[(r - b->first) & 1];
+    evaluate_aside(w, p, r, here);
+    observe_row(w, block, r, here, below);
+    below = here;
+  }
+}
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+static void prepare_uniforms(sweep *w, pairwise *p, const double *parameters) {
+  const int n = w->law->uniform_count;
+  p->uniforms = sweep_doubles(w, (long)w->lattice->directions * n);
+  for (int k = 0; k < w->lattice->directions; k++) {
+    pl_bond_class c = rows_bond_class(w->lattice, k);
+    w->law->prepare(w->law, parameters, &c, p->uniforms + (long)k * n);
+  }
+}
+
+/* Bits of the lattice's bonds as strips have them. */
+static void compose_flags(sweep *w, pairwise *p) {
+  const rows *g = w->lattice;
+  p->flags = (int64_t *)sweep_doubles(w, g->size);
+  for (long q = 0; q < g->size; q++)
+    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
+}
+
+static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
+  const long pitch = w->lattice->pitch;
+  const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
+  b->buffer[0] = sweep_doubles(w, p->buffer);
+  b->buffer[1] = sweep_doubles(w, p->buffer);
+  b->seam = sweep_doubles(w, p->buffer);
+  b->fields = sweep_doubles(w, w->law->field_count * pitch);
+  b->observed = sweep_doubles(w, (1 + w->law->output_count) * pitch);
+  b->pointers = must_calloc(pointers, sizeof *b->pointers);
+  b->parameters = must_calloc((size_t)w->law->varying_count + 1, sizeof *b->parameters);
+}
+
+static void free_own(sweep *w) {
+  pairwise *p = own(w);
+  for (int k = 0; k < w->block_count; k++) {
+    pairwise_block *b = &p->blocks[k];
+    free(b->buffer[0]);
+    free(b->buffer[1]);
+    free(b->seam);
+    free(b->fields);
+    free(b->observed);
+    free(b->pointers);
+    free(b->parameters);
+  }
+  free(p->blocks);
+  free(p->uniforms);
+  free(p->flags);
+  free(p);
+}
+
+sweep_engine pairwise_engine(sweep *w, const double *parameters) {
+  pairwise *p = must_calloc(1, sizeof *p);
+  assert(w->dimensions == 2 && w->lattice->directions == DIRECTIONS);
+  assert(w->law->force_planes <= PL_MAX_PLANES);
+  p->stride = w->lattice->pitch + 2 * PL_LANES;
+  p->buffer = w->law->force_planes * w->lattice->directions * p->stride;
+  prepare_uniforms(w, p, parameters);
+  compose_flags(w, p);
+  p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
+  for (int k = 0; k < w->block_count; k++)
+    new_block(w, p, &p->blocks[k]);
+  if (w->ledger) {
+    w->dissipated_state = sweep_doubles(w, w->lattice->size);
+    w->dissipated_rate = sweep_doubles(w, w->lattice->size);
+  }
+  return (sweep_engine){.step_stages = 2,
+                        .observe_stages = 1,
+                        .step = step,
+                        .observe = observe,
+                        .output = output_values,
+                        .free = free_own,
+                        .own = p};
+}

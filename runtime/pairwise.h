@@ -1,0 +1,24 @@
+/* The sweep for laws of bonds: bonds of a row into a row buffer, its forces at once into velocities
+   and displacements, so that bond forces never go to memory.
+
+   A row's forces need the bonds of the row below, so that the last row of a block (its seam) is
+   evaluated before anything moves: the first stage of a step does the seams, the second one the
+   rows.
+
+   A particle's force is summed in one order: its own bonds by direction, then those that others own
+   by direction. */
+#ifndef PERILAT_RUNTIME_PAIRWISE_H
+#define PERILAT_RUNTIME_PAIRWISE_H
+
+#include "runtime/sweep.h"
+
+/* For a sweep whose state is set up. */
+sweep_engine pairwise_engine(sweep *w, const double *parameters);
+
+/* What the law's `prepare` gave for the bonds of a direction: [uniform_count]. */
+const double *pairwise_uniforms(const sweep *w, int direction);
+
+/* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns. */
+const int64_t *pairwise_flags(const sweep *w);
+
+#endif

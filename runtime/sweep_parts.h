@@ -1,0 +1,38 @@
+/* Inside of a sweep, for its engines (pairwise.c, family.c): memory, and what happens to the
+   particles of a row once the forces on them are known. */
+#ifndef PERILAT_RUNTIME_SWEEP_PARTS_H
+#define PERILAT_RUNTIME_SWEEP_PARTS_H
+
+#include "runtime/sweep.h"
+
+#if defined(__clang__)
+#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#else
+#define INDEPENDENT _Pragma("GCC ivdep")
+#endif
+
+/* `count` zeros, aligned, counted in w->bytes. */
+double *sweep_doubles(sweep *w, long count);
+
+/* First site of the part of a row that holds sites. */
+static inline long sweep_start(const sweep *w, int row) {
+  return rows_start(w->lattice, row) + w->begin[row];
+}
+
+/* What gravity adds to the velocities after the kick, next[count of the row]; not 0 when one is not
+   below its limit. */
+int64_t sweep_push(const sweep *w, int row, int component, double *next);
+/* Notes the first bad velocity of the row among the block's `next`. */
+void sweep_note_bad(const sweep *w, sweep_block *b, int row);
+/* The velocities of the row become the block's `next`, the displacements follow, the ledger of mass
+   damping and gravity goes on. */
+void sweep_drift(sweep *w, sweep_block *b, int row);
+
+/* Sums in an order of their own, whatever the vector width; count is a multiple of PL_LANES. */
+double sweep_dot(long count, const double *a, const double *b);
+double sweep_total(long count, const double *a);
+/* Kinetic energy of the row with the block's `next`, and what mass damping takes from the middle of
+   the last step to the present state. */
+void sweep_observe_motion(sweep *w, const sweep_block *b, int row);
+
+#endif

@@ -1,0 +1,115 @@
+/* Force constants read off a law's own step: against theory, against the bonds' tangents, and against
+   what a body does at steps just below and just above the limit. */
+#include <math.h>
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include <cmocka.h>
+
+#include "runtime/implied.h"
+#include "runtime/stability.h"
+#include "runtime/stencil.h"
+#include "tests/runtime/elastic_law.h"
+#include "tests/runtime/family_law.h"
+
+static const double spacing = 0.01, thickness = 0.1;
+
+static void values_of(double *parameters, double nu, double tau) {
+  for (int p = 0; p < FAMILY_PARAMETERS; p++)
+    parameters[p] = family_parameters[p].initial;
+  parameters[FAMILY_NU] = nu;
+  parameters[FAMILY_TAU] = tau;
+}
+
+static void rigid_motions_leave_no_force(void **state) {
+  (void)state;
+  double parameters[FAMILY_PARAMETERS];
+  rows *w = implied_lattice(spacing, thickness, 2323);
+  values_of(parameters, 0.2, 1e-7);
+  stencil s = stencil_new(&family_hexagon, parameters, w);
+  assert_true(s.finite);
+  assert_true(s.imbalance < 1e-9);
+  assert_int_equal(s.count, 25);
+  long reached = 0; /* two chords far: the hexagon's 18 neighbours of neighbours and the particle */
+  for (int n = 0; n < s.count; n++)
+    reached += fabs(s.blocks[n].stiffness[0][0]) + fabs(s.blocks[n].stiffness[1][1]) >
+               1e-9 * s.blocks[0].stiffness[0][0];
+  assert_int_equal(reached, 19);
+  stencil_free(&s);
+  rows_free(w);
+}
+
+/* Nikravesh 2017: omega_max = sqrt(6 a/(L0 m)). */
+static void largest_frequency_is_that_of_theory(void **state) {
+  (void)state;
+  const double ratios[] = {0.1, 0.2, 0.3, 1.0 / 3};
+  for (int k = 0; k < 4; k++) {
+    double parameters[FAMILY_PARAMETERS];
+    values_of(parameters, ratios[k], 0);
+    rows *w = implied_lattice(spacing, thickness, 2323);
+    const double a = 2 * 30e9 * spacing * thickness / (sqrt(3) * (1 + ratios[k]));
+    const double omega = sqrt(6 * a / (spacing * w->mass));
+    step_limit limit;
+    stability_limit(&family_hexagon, parameters, w, &limit);
+    assert_true(fabs(limit.omega_max - omega) <= 1e-9 * omega);
+    assert_true(fabs(limit.limit - 2 / omega) <= 1e-9 * 2 / omega);
+    assert_true(limit.damping_ratio == 0);
+    rows_free(w);
+  }
+}
+
+/* Without b (nu = 1/3) the law is one of bonds: both ways to the limit must agree, damped too. */
+static void bonds_and_families_have_the_same_limit(void **state) {
+  (void)state;
+  const double times[] = {0, 1e-7, 3e-6};
+  for (int k = 0; k < 3; k++) {
+    double mine[FAMILY_PARAMETERS], bonds[ELASTIC_PARAMETERS];
+    values_of(mine, 1.0 / 3, times[k]);
+    for (int p = 0; p < ELASTIC_PARAMETERS; p++)
+      bonds[p] = elastic_parameters[p].initial;
+    bonds[ELASTIC_NU] = 1.0 / 3;
+    bonds[ELASTIC_TAU] = times[k];
+    rows *w = implied_lattice(spacing, thickness, 2323);
+    step_limit families, pairs;
+    stability_limit(&family_hexagon, mine, w, &families);
+    stability_limit(&elastic_bar, bonds, w, &pairs);
+    assert_true(fabs(families.omega_max - pairs.omega_max) <= 1e-9 * pairs.omega_max);
+    assert_true(fabs(families.limit - pairs.limit) <= 1e-9 * pairs.limit);
+    assert_true(fabs(families.damping_ratio - pairs.damping_ratio) <= 1e-6 * pairs.damping_ratio);
+    assert_true((pairs.damping_ratio > 0) == (times[k] > 0));
+    rows_free(w);
+  }
+}
+
+static void long_waves_give_the_elastic_constants(void **state) {
+  (void)state;
+  const double ratios[] = {0.05, 0.2, 0.33};
+  for (int k = 0; k < 3; k++) {
+    double parameters[FAMILY_PARAMETERS];
+    values_of(parameters, ratios[k], 0);
+    rows *w = implied_lattice(spacing, thickness, 2323);
+    implied_elasticity e;
+    assert_true(implied_elastic(&family_hexagon, parameters, w, &e));
+    for (int c = 0; c < 2; c++) {
+      assert_true(fabs(e.E[c] - 30e9) <= 1e-9 * 30e9);
+      assert_true(fabs(e.nu[c] - ratios[k]) <= 1e-9);
+    }
+    assert_true(fabs(e.G - 30e9 / (2 * (1 + ratios[k]))) <= 1e-9 * 30e9);
+    rows_free(w);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(rigid_motions_leave_no_force),
+      cmocka_unit_test(largest_frequency_is_that_of_theory),
+      cmocka_unit_test(bonds_and_families_have_the_same_limit),
+      cmocka_unit_test(long_waves_give_the_elastic_constants),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
