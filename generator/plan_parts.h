@@ -14,6 +14,11 @@ void plan_hoist(kernel_plan *p);
 /* Fills in a plan of families. False after a diagnostic. */
 bool plan_programs(kernel_plan *p, diagnostics *d);
 
+/* For programs of families: the components of the force on a particle (roots[dimensions]), and what
+   takes the place of stretch, rate, length and direction. */
+void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
+program_motion plan_motion(const kernel_plan *plan, bool along_reference);
+
 /* What the roots of a pass cost for each bond. */
 ir_cost plan_cost(const kernel_plan *p, const pass *a);
 
