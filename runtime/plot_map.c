@@ -128,15 +128,15 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
   for (long p = 0; p < m->frame.particles; p++) {
     canvas_colour(c, coloured ? particle_colour(m, p, component, low, high)
                               : (colour){0.45, 0.48, 0.52});
+    cairo_new_path(c->cr);
     cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
               2 * M_PI);
     cairo_fill_preserve(c->cr);
     if (m->frame.surface) { /* an edge, so that those in front stand out */
       canvas_colour(c, (colour){0.25, 0.25, 0.28});
-      cairo_set_line_width(c->cr, 0.08 * radius);
-      cairo_stroke_preserve(c->cr);
+      cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
+      cairo_stroke(c->cr);
     }
-    cairo_new_path(c->cr);
   }
 }
 
