@@ -515,11 +515,34 @@ static void check_all(checker *ck, const law_choice *choices, int choice_count) 
   publish_types(ck);
 }
 
+static const char *const setting_names[] = {[SETTING_PLANE_STRESS] = "plane_stress",
+                                            [SETTING_PLANE_STRAIN] = "plane_strain",
+                                            [SETTING_SPACE] = "space"};
+
+const char *law_setting_name(law_setting setting) {
+  return setting_names[setting];
+}
+
+bool law_allows(const law *l, law_setting setting) {
+  const tree *t = l->tree;
+  for (int k = 0; k < t->setting_count; k++)
+    if (strcmp(t->settings[k], setting_names[setting]) == 0) return true;
+  return t->setting_count == 0;
+}
+
+static law_setting first_setting(const law *l) {
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
+    if (l->tree->setting_count && strcmp(l->tree->settings[0], setting_names[k]) == 0)
+      return (law_setting)k;
+  return SETTING_PLANE_STRESS;
+}
+
 law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
                int choice_count, diagnostics *d) {
   int errors = d->errors;
   law *l = arena_alloc(memory, sizeof(law));
   *l = (law){.tree = t, .memory = memory, .sources = sources};
+  l->setting = first_setting(l);
   checker ck = {.memory = memory, .tree = t, .sources = sources, .d = d, .law = l};
   list_statements(&ck);
   names_begin(&ck);

@@ -61,8 +61,12 @@ typedef struct law_choice {
   const char *option, *choice;
 } law_choice;
 
+/* What the lattice of a law is: it decides `when plane_strain` and the third direction of tensors. */
+typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
+
 typedef struct law {
   tree *tree;
+  law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
   arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;
@@ -82,6 +86,10 @@ typedef struct law {
    Law kinds that can be checked but not yet compiled are not errors here. */
 law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
                int choice_count, diagnostics *d);
+
+/* Whether the law names the setting after `for`, or none at all. */
+bool law_allows(const law *l, law_setting setting);
+const char *law_setting_name(law_setting setting);
 
 /* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of
    law->parameters; used for bounds. Infinite bounds have no expression. */

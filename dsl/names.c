@@ -399,6 +399,7 @@ static void declare_result(checker *ck, stmt *s) {
   if (!e) return;
   e->symbol.rule = s;
   e->refused = refused;
+  e->symbol.index = s->kind == STMT_ENERGY ? RESULT_W : RESULT_COUNT;
   if (s->kind == STMT_ENERGY && !ck->law->results[RESULT_W])
     ck->law->results[RESULT_W] = &e->symbol;
 }

@@ -157,6 +157,8 @@ static ir_node of_operation(ir *g, const term *t) {
   case IR_FAMILY_MAX:
   case IR_FAMILY_MIN:
     return of_family_extreme(g, t);
+  case IR_NEIGHBOUR:
+    return t->da == IR_NONE ? IR_NONE : unary(g, IR_NEIGHBOUR, t->da);
   default:
     return IR_NONE; /* constants, other inputs, sign, truth values: flat where they are smooth */
   }

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "generator/c_text.h"
+#include "generator/emit_parts.h"
 #include "generator/law_inputs.h"
 #include "generator/prelude.h"
 
@@ -15,43 +15,21 @@
 
 /* --- what a function is written from ---------------------------------------------------------- */
 
-/* The functions differ in where inputs come from and in how the loop, if any, runs. */
-typedef enum scope_kind { IN_PREPARE, IN_BOUNDS, IN_ROWS, IN_LIST, IN_STATES } scope_kind;
-
-typedef struct emitter {
-  const kernel_plan *plan;
-  const ir *graph;
-  c_text *out;
-  int node_count;
-  int *uniform_of; /* [node_count] index in `uniforms`, or -1 */
-
-  /* the function being written */
-  scope_kind scope;
-  const pass_root *roots;
-  int root_count;
-  c_names names;
-  unsigned char *needed; /* [node_count] */
-  int *uses;             /* [node_count] by needed nodes and roots */
-  ir_node *user;         /* [node_count] the last of them; IR_NONE: a root */
-  int *size;             /* [node_count] operations written in place of the node */
-  const char **name;     /* [node_count] NULL: written in place */
-} emitter;
-
 static bool in_loop(const emitter *e) {
   return e->scope >= IN_ROWS;
 }
 
 /* A value loaded from `uniforms`; in `prepare` the same node is computed. */
-static bool is_uniform(const emitter *e, ir_node n) {
+bool emit_is_uniform(const emitter *e, ir_node n) {
   return in_loop(e) && e->uniform_of[n] >= 0;
 }
 
-static bool is_input(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_INPUT && !is_uniform(e, n);
+bool emit_is_input(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_INPUT && !emit_is_uniform(e, n);
 }
 
 static bool is_ends_input(const emitter *e, ir_node n, ends_input which) {
-  return is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+  return emit_is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_ENDS &&
          ir_input_index(e->graph, n) == (int)which;
 }
 
@@ -77,13 +55,13 @@ static void use_node(emitter *e, ir_node n, ir_node user) {
 }
 
 static int operand_count(const emitter *e, ir_node n) {
-  return is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
+  return emit_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
 }
 
 /* Marks what the roots need; nodes only refer to earlier ones, so one walk down is enough. */
-static void find_needed(emitter *e) {
-  for (int k = 0; k < e->root_count; k++)
-    use_node(e, e->roots[k].node, IR_NONE);
+static void find_needed(emitter *e, const ir_node *nodes, int count) {
+  for (int k = 0; k < count; k++)
+    use_node(e, nodes[k], IR_NONE);
   for (ir_node n = e->node_count - 1; n >= 0; n--)
     for (int k = 0; e->needed[n] && k < operand_count(e, n); k++)
       use_node(e, ir_operand(e->graph, n, k), n);
@@ -105,7 +83,8 @@ static bool is_inline_condition(const emitter *e, ir_node n, ir_node user) {
 static bool is_inline(const emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
   if (op == IR_CONSTANT) return true;
-  if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE || is_uniform(e, n))
+  if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE ||
+      emit_is_uniform(e, n))
     return false;
   ir_node user = e->user[n];
   bool chosen = user == IR_NONE || ir_operation(e->graph, user) == IR_SELECT;
@@ -153,16 +132,37 @@ static void choose_names(emitter *e) {
         e->name[n] = c_names_make(&e->names, wished_name(e, n, space, sizeof space));
 }
 
-static void scope_open(emitter *e, scope_kind scope, const pass_root *roots, int root_count) {
-  static const char *const own[] = {
-      "law",       "uniforms",   "strip",       "count",        "q",
-      "flags",     "i",          "j",           "in",           "out",
-      "bonds",     "present",    "lower",       "upper",        "low_open",
-      "high_open", "parameters", "present_bit", "protected_bit"};
+void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count) {
+  static const char *const own[] = {"law",
+                                    "uniforms",
+                                    "strip",
+                                    "count",
+                                    "q",
+                                    "flags",
+                                    "i",
+                                    "j",
+                                    "in",
+                                    "out",
+                                    "bonds",
+                                    "present",
+                                    "lower",
+                                    "upper",
+                                    "low_open",
+                                    "high_open",
+                                    "parameters",
+                                    "present_bit",
+                                    "protected_bit",
+                                    "family",
+                                    "first",
+                                    "lanes",
+                                    "k",
+                                    "to",
+                                    "half",
+                                    "back"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
-  e->roots = roots;
-  e->root_count = root_count;
+  e->roots = NULL;
+  e->root_count = count;
   e->names = (c_names){0};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(&e->names, own[k]);
@@ -171,11 +171,20 @@ static void scope_open(emitter *e, scope_kind scope, const pass_root *roots, int
   e->user = must_calloc(n, sizeof *e->user);
   e->size = must_calloc(n, sizeof *e->size);
   e->name = must_calloc(n, sizeof *e->name);
-  find_needed(e);
+  find_needed(e, nodes, count);
   choose_names(e);
 }
 
-static void scope_close(emitter *e) {
+static void scope_open(emitter *e, scope_kind scope, const pass_root *roots, int root_count) {
+  ir_node *nodes = must_alloc(((size_t)root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < root_count; k++)
+    nodes[k] = roots[k].node;
+  emit_open_nodes(e, scope, nodes, root_count);
+  e->roots = roots;
+  free(nodes);
+}
+
+void emit_close(emitter *e) {
   c_names_clear(&e->names);
   free(e->needed);
   free(e->uses);
@@ -228,6 +237,10 @@ static void write_operand(emitter *e, ir_node n, int level) {
     write_expression(e, n);
     c_text_add(e->out, ")");
   }
+}
+
+void emit_value(emitter *e, ir_node n) {
+  write_operand(e, n, LEVEL_SUM);
 }
 
 static void write_infix(emitter *e, ir_node n, const char *sign, int left, int right) {
@@ -336,7 +349,7 @@ static void write_expression(emitter *e, ir_node n) {
 }
 
 /* "line 12" of the model file; nothing for lines of included files, whose numbers would mislead. */
-static void write_line_end(emitter *e, ir_node n) {
+void emit_line_end(emitter *e, ir_node n) {
   span where = ir_where(e->graph, n);
   const law *l = e->plan->law;
   if (where.end && where.file == l->tree->name_where.file)
@@ -381,12 +394,12 @@ static void write_array(emitter *e, ir_node n) {
 static void write_inputs_before_loop(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
     if (!e->needed[n] || is_constant(e, n)) continue;
-    if (is_uniform(e, n)) {
+    if (emit_is_uniform(e, n)) {
       c_text_add(e->out, "  const double %s = uniforms[%d]", e->name[n], e->uniform_of[n]);
-      write_line_end(e, n);
+      emit_line_end(e, n);
     } else if (is_ends_input(e, n, ENDS_TIME_STEP)) {
       c_text_add(e->out, "  const double %s = strip->time_step;\n", e->name[n]);
-    } else if (is_input(e, n) && !is_ends_input(e, n, ENDS_PROTECTED)) {
+    } else if (emit_is_input(e, n) && !is_ends_input(e, n, ENDS_PROTECTED)) {
       bool of_strip = e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD;
       if (!of_strip) /* a strip's fields are also written: write_field_arrays */
         write_array(e, n);
@@ -421,19 +434,25 @@ static void write_body_input(emitter *e, ir_node n) {
 /* --- lines ------------------------------------------------------------------------------------ */
 
 /* One line for each node that has a name here, in the order of the graph. */
-static void write_lines(emitter *e) {
-  const char *indent = in_loop(e) ? "    " : "  ";
+void emit_lines(emitter *e) {
+  const char *indent = e->scope == IN_NEIGHBOURS  ? "        "
+                       : e->scope == IN_PARTICLES ? "      "
+                       : in_loop(e)               ? "    "
+                                                  : "  ";
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (!e->needed[n] || !e->name[n] || is_uniform(e, n) || is_ends_input(e, n, ENDS_TIME_STEP))
+    if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) ||
+        is_ends_input(e, n, ENDS_TIME_STEP))
       continue;
     c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
-    if (!is_input(e, n))
+    if (!emit_is_input(e, n))
       write_expression(e, n);
+    else if (e->scope >= IN_PARTICLES)
+      emit_segment_input(e, n);
     else if (in_loop(e))
       write_loop_input(e, n);
     else
       write_body_input(e, n);
-    write_line_end(e, n);
+    emit_line_end(e, n);
   }
 }
 
@@ -447,7 +466,7 @@ static const pass_root *find_root(const emitter *e, pass_target target, int inde
 
 static bool reads(const emitter *e, ir_source from, int index) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && is_input(e, n) && ir_input_source(e->graph, n) == from &&
+    if (e->needed[n] && emit_is_input(e, n) && ir_input_source(e->graph, n) == from &&
         ir_input_index(e->graph, n) == index)
       return true;
   return false;
@@ -545,13 +564,13 @@ static void write_strip_pass(emitter *e, scope_kind scope, const pass *p, const 
   scope_open(e, scope, p->roots, p->root_count);
   write_strip_head(e, name, p->kind == PASS_LIST_OBSERVE);
   write_loop_begin(e);
-  write_lines(e);
+  emit_lines(e);
   if (p->root_count)
     c_text_add(e->out, "    const int32_t present = (int32_t)flags[q] & present_bit;\n");
   for (int k = 0; k < p->root_count; k++)
     write_store(e, &p->roots[k]);
   c_text_add(e->out, "  }\n}\n\n");
-  scope_close(e);
+  emit_close(e);
 }
 
 /* --- the law alone ---------------------------------------------------------------------------- */
@@ -568,7 +587,7 @@ static void write_states_pass(emitter *e, const pass *p, const char *name, int p
   for (int k = 0; k < planes; k++)
     c_text_add(e->out, "  double *restrict at_out_%d = out[%d];\n", k, k);
   write_loop_begin(e);
-  write_lines(e);
+  emit_lines(e);
   for (int k = 0; k < planes; k++) {
     const pass_root *r = find_root(e, TO_OUT, k);
     c_text_add(e->out, "    at_out_%d[q] = ", k);
@@ -579,7 +598,7 @@ static void write_states_pass(emitter *e, const pass *p, const char *name, int p
     c_text_add(e->out, ";\n");
   }
   c_text_add(e->out, "  }\n}\n\n");
-  scope_close(e);
+  emit_close(e);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -593,14 +612,14 @@ static void write_prepare(emitter *e) {
   c_text_add(e->out, "PL_RARE static void prepare(const pl_law *law, const double *parameters,\n"
                      "    const pl_bond_class *bonds, double *uniforms) {\n"
                      "  (void)law, (void)parameters, (void)bonds, (void)uniforms;\n");
-  write_lines(e);
+  emit_lines(e);
   for (int k = 0; k < count; k++) {
     c_text_add(e->out, "  uniforms[%d] = ", k);
     write_operand(e, roots[k].node, LEVEL_CHOICE);
     c_text_add(e->out, ";\n");
   }
   c_text_add(e->out, "}\n\n");
-  scope_close(e);
+  emit_close(e);
   free(roots);
 }
 
@@ -626,14 +645,14 @@ static void write_bounds(emitter *e) {
       "    double *upper, unsigned char *low_open, unsigned char *high_open) {\n"
       "  (void)law, (void)parameters, (void)lower, (void)upper, (void)low_open, "
       "(void)high_open;\n");
-  write_lines(e);
+  emit_lines(e);
   for (int k = 0; k < parameters->count; k++) {
     const bounds *in = &parameters->items[k]->declared->in;
     write_bound(e, k, TO_LOWER, "lower", "low_open", in->lower_open, "-");
     write_bound(e, k, TO_UPPER, "upper", "high_open", in->upper_open, "");
   }
   c_text_add(e->out, "}\n\n");
-  scope_close(e);
+  emit_close(e);
 }
 
 /* --- the table of facts ----------------------------------------------------------------------- */
@@ -720,6 +739,12 @@ static void write_descriptor(emitter *e, const char *key) {
 
 static void write_entry(emitter *e, const char *key) {
   write_descriptor(e, key);
+  if (e->plan->kind == PL_STATE) {
+    emit_program_members(e);
+    c_text_add(e->out, "};\n\nconst pl_law *perilat_kernel(void);\n"
+                       "const pl_law *perilat_kernel(void) { return &the_law; }\n");
+    return;
+  }
 #define X(pass, member, topology, task) c_text_add(e->out, "    .%s = %s,\n", #member, #member);
   STRIP_PASSES(X)
 #undef X
@@ -766,6 +791,12 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
   write_fields(&e, &p->law->outputs, "law_outputs");
   write_prepare(&e);
   write_bounds(&e);
+  if (p->kind == PL_STATE) {
+    emit_programs(&e);
+    write_entry(&e, key);
+    free(e.uniform_of);
+    return out.text;
+  }
 #define X(pass, member, topology, task)                                                            \
   write_strip_pass(&e, (topology) == STRIP_LIST ? IN_LIST : IN_ROWS, &p->passes[pass], #member);
   STRIP_PASSES(X)

@@ -9,6 +9,7 @@
 
 #include "dsl/arena.h"
 #include "generator/interpret.h"
+#include "generator/interpreted_family.h"
 #include "generator/law_inputs.h"
 #include "generator/passes.h"
 
@@ -18,6 +19,7 @@ enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKER
 typedef struct worker {
   atomic_flag busy;
   interpreter *run[RUN_COUNT];
+  family_runner *family;     /* of a law of families */
   const double **parameters; /* [parameters + uniforms] */
   const double **fields;     /* [fields] */
   unsigned char *field_stride;
@@ -39,6 +41,7 @@ typedef struct interpreted {
   ir_node *roots[RUN_COUNT]; /* with inputs in place of the hoisted values */
   int root_count[RUN_COUNT];
   int most_roots;
+  ir_node *inputs; /* [uniform_count] that stand for hoisted values */
   int worker_count;
   worker *workers;
 } interpreted;
@@ -67,6 +70,7 @@ static void set_up_worker(interpreted *p, worker *w) {
   for (int k = 0; k < RUN_COUNT; k++)
     if (p->root_count[k] > 0)
       w->run[k] = interpreter_new(plan->graph, p->roots[k], p->root_count[k]);
+  if (plan->kind == PL_STATE) w->family = family_runner_new(plan, p->inputs);
   w->parameters = arena_alloc(p->memory, (parameters + 1) * sizeof *w->parameters);
   w->fields = arena_alloc(p->memory, (fields + 1) * sizeof *w->fields);
   w->field_stride = arena_alloc(p->memory, fields + 1);
@@ -241,6 +245,7 @@ static void run_prepare(const pl_law *kernel, const double *parameters, const pl
   law_class_values(bonds, w->of_class);
   w->ends[ENDS_CLASS_CHORD_X] = &bonds->chord[0];
   w->ends[ENDS_CLASS_CHORD_Y] = &bonds->chord[1];
+  w->ends[ENDS_CLASS_CHORD_Z] = &bonds->chord[2];
   for (int k = 0; k < p->plan->law->parameters.count; k++)
     w->parameters[k] = parameters + k;
   interpreter_inputs in = inputs_of(w);
@@ -267,6 +272,37 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
     (a->roots[k].target == TO_LOWER ? lower : upper)[a->roots[k].index] = w->result[k][0];
   give_back(w);
 }
+
+/* --- programs of families --------------------------------------------------------------------- */
+
+static void run_family(const pl_law *kernel, const double *uniforms, const pl_family *family,
+                       bool observe, int number) {
+  worker *w = borrow(kernel);
+  family_runner_run(w->family, observe, number, uniforms, family);
+  give_back(w);
+}
+
+/* One function for each pass that a program may have. */
+#define PASS_NUMBERS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7)
+#define X(n)                                                                                       \
+  static void run_step_##n(const pl_law *k, const double *u, const pl_family *f) {                 \
+    run_family(k, u, f, false, n);                                                                 \
+  }                                                                                                \
+  static void run_observe_##n(const pl_law *k, const double *u, const pl_family *f) {              \
+    run_family(k, u, f, true, n);                                                                  \
+  }
+PASS_NUMBERS(X)
+#undef X
+static const pl_family_function step_passes[PLAN_MOST_PASSES] = {
+#define X(n) run_step_##n,
+    PASS_NUMBERS(X)
+#undef X
+};
+static const pl_family_function observe_passes[PLAN_MOST_PASSES] = {
+#define X(n) run_observe_##n,
+    PASS_NUMBERS(X)
+#undef X
+};
 
 /* --- the descriptor --------------------------------------------------------------------------- */
 
@@ -337,6 +373,15 @@ static void describe(interpreted *p, const char *key) {
       .tangent = run_tangent,
       .context = p,
   };
+  if (plan->kind != PL_STATE) return;
+  p->law.rows = p->law.rows_ledger = p->law.rows_observe = NULL;
+  p->law.list = p->law.list_ledger = p->law.list_observe = NULL;
+  p->law.states = NULL;
+  p->law.tangent = NULL;
+  p->law.link_count = plan->link_count;
+  p->law.reads_shape = plan->reads_shape;
+  p->law.step = (pl_program){plan->step.pass_count, step_passes};
+  p->law.observe = (pl_program){plan->observe.pass_count, observe_passes};
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */
@@ -364,6 +409,7 @@ static void take_all_roots(interpreted *p) {
     inputs[k] = ir_input(plan->graph, IR_FROM_PARAMETER, plan->law->parameters.count + k,
                          name ? name : "uniform", ON_BODY);
   }
+  p->inputs = inputs;
   for (int run = 0; run < PASS_COUNT; run++)
     take_roots(p, run, inputs);
   p->roots[RUN_PREPARE] = plan->uniforms;
@@ -397,6 +443,8 @@ void plan_interpreted_free(pl_law *kernel) {
   for (int k = 0; k < p->worker_count; k++)
     for (int run = 0; run < RUN_COUNT; run++)
       interpreter_free(p->workers[k].run[run]);
+  for (int k = 0; k < p->worker_count; k++)
+    family_runner_free(p->workers[k].family);
   free(p->workers);
   arena_free(p->memory);
   free(p);

@@ -17,6 +17,7 @@ typedef struct node {
   ir_source source; /* INPUT */
   int index;        /* INPUT */
   placement place;
+  bool of_class; /* differs from neighbour to neighbour, but not along a row */
   const char *name;
   span where;
 } node;
@@ -172,6 +173,13 @@ int ir_input_index(const ir *g, ir_node n) {
 placement ir_place(const ir *g, ir_node n) {
   return at(g, n)->place;
 }
+ir_node ir_mark_class(ir *g, ir_node input) {
+  g->nodes[input].of_class = true;
+  return input;
+}
+bool ir_is_of_class(const ir *g, ir_node n) {
+  return at(g, n)->of_class;
+}
 bool ir_is_logical(const ir *g, ir_node n) {
   return operations[at(g, n)->op].logical;
 }
@@ -211,6 +219,10 @@ static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
     n.operand[k] = operand[k];
     if (at(g, operand[k])->place > n.place) n.place = at(g, operand[k])->place;
   }
+  for (int k = 0; k < ir_arity(op) && !ir_is_reduction(op); k++)
+    n.of_class = n.of_class || at(g, operand[k])->of_class;
+  if (ir_is_reduction(op)) n.place = ON_PARTICLE;
+  if (op == IR_NEIGHBOUR) n.place = ON_NEIGHBOUR;
   return intern(g, &n);
 }
 
@@ -306,14 +318,14 @@ static ir_node simplify_select(ir *g, ir_node condition, ir_node yes, ir_node no
   return ir_make(g, IR_OR, first, second, IR_NONE);
 }
 
-static bool is_family(ir_op op) {
+bool ir_is_reduction(ir_op op) {
   return op == IR_FAMILY_SUM || op == IR_FAMILY_MAX || op == IR_FAMILY_MIN;
 }
 
 /* True, and the result in *value, when all operands are constants. */
 static bool fold(const ir *g, ir_op op, const ir_node operand[3], double *value) {
   double v[3] = {0.0, 0.0, 0.0};
-  if (is_family(op)) return false;
+  if (ir_is_reduction(op)) return false;
   for (int k = 0; k < ir_arity(op); k++) {
     if (!is_constant(g, operand[k])) return false;
     v[k] = ir_value(g, operand[k]);
@@ -330,6 +342,8 @@ ir_node ir_make(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
   assert(ir_arity(op) > 0);
   if (takes_logical(op)) a = as_logical(g, a);
   if (op == IR_AND || op == IR_OR) b = as_logical(g, b);
+  if (op == IR_NEIGHBOUR && is_constant(g, a)) return a;
+  if (op == IR_NEIGHBOUR && is_op(g, a, IR_NEIGHBOUR)) return ir_operand(g, a, 0);
   double value;
   if (fold(g, op, (ir_node[3]){a, b, c}, &value)) return ir_constant(g, value);
   switch (op) {

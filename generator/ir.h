@@ -29,7 +29,9 @@ typedef int32_t ir_node;
   X(LT, "lt", 2, 1) X(LE, "le", 2, 1) X(EQ, "eq", 2, 1)                                            \
   X(AND, "and", 2, 1) X(OR, "or", 2, 1) X(NOT, "not", 1, 1)                                        \
   X(SELECT, "select", 3, 0) /* a ? b : c; both are evaluated, neither may trap */                  \
-  X(FAMILY_SUM, "family_sum", 1, 0) X(FAMILY_MAX, "family_max", 1, 0) X(FAMILY_MIN, "family_min", 1, 0)
+  /* over the bonds of a particle that exist: 0, -inf, inf where there are none */                 \
+  X(FAMILY_SUM, "family_sum", 1, 0) X(FAMILY_MAX, "family_max", 1, 0) X(FAMILY_MIN, "family_min", 1, 0) \
+  X(NEIGHBOUR, "neighbour", 1, 0) /* of the particle at the other end, toward me where it is directed */
 
 typedef enum ir_op {
 #define X(code, name, arity, logical) IR_##code,
@@ -45,6 +47,13 @@ typedef enum ir_source {
   IR_FROM_FIELD,     /* index: law->fields; the value at hand: old one when a step begins */
   IR_FROM_BOND_PARAMETER, /* index: of the parameters that differ from bond to bond (kernel_plan) */
   IR_FROM_ENDS,      /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
+  /* in programs of families (program.h) */
+  IR_FROM_SHAPE,           /* index: entry of the particle's inverse shape matrix */
+  IR_FROM_NEIGHBOUR_FIELD, /* index: law->fields; of the neighbour, toward me where it is directed */
+  IR_FROM_LINK,            /* index: value of the particle that an earlier pass left */
+  IR_FROM_NEIGHBOUR_LINK,  /* the same of the neighbour */
+  IR_FROM_SLOT,            /* index: value of the particle within a pass */
+  IR_FROM_PLANE,           /* index: value toward each neighbour within a pass */
   IR_SOURCE_COUNT
 } ir_source;
 
@@ -85,7 +94,12 @@ double ir_value(const ir *g, ir_node n);          /* CONSTANT */
 ir_source ir_input_source(const ir *g, ir_node n); /* INPUT */
 int ir_input_index(const ir *g, ir_node n);        /* INPUT */
 placement ir_place(const ir *g, ir_node n);        /* the most local of its operands */
+/* Says that an input, placed ON_BODY, differs from neighbour to neighbour but not along a row of a lattice (its bond's
+   length, say); so does what is made of it, except sums over the family. Returns the input. */
+ir_node ir_mark_class(ir *g, ir_node input);
+bool ir_is_of_class(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
+bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
 const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */
 span ir_where(const ir *g, ir_node n);             /* of the named source line; end == 0 without */
 

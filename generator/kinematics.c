@@ -10,7 +10,11 @@ const ends_origin ends_origins[ENDS_COUNT] = {
 
 ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
-  return ir_input(g, IR_FROM_ENDS, (int)which, o->name, o->array == FROM_CLASS ? ON_BODY : ON_BOND);
+  placement on = o->array == FROM_CLASS                      ? ON_BODY
+                 : o->array == FROM_HELD && o->owner == OF_I ? ON_PARTICLE
+                                                             : ON_BOND;
+  ir_node n = ir_input(g, IR_FROM_ENDS, (int)which, o->name, on);
+  return o->array == FROM_CLASS ? ir_mark_class(g, n) : n;
 }
 
 /* Names are for readers of dumps and of generated C; these values have no line in a model. */
@@ -105,6 +109,52 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
     end_rotations(g, &k, chord, d, now);
     rotation_rates(g, &k, e, dv);
   }
+  return k;
+}
+
+static ir_node dot_of(ir *g, int dimensions, const ir_node *a, const ir_node *b) {
+  ir_node sum = ir_mul(g, a[0], b[0]);
+  for (int d = 1; d < dimensions; d++)
+    sum = ir_add(g, sum, ir_mul(g, a[d], b[d]));
+  return sum;
+}
+
+/* Both ends compute the same bits: exchanging them changes signs only. */
+family_kinematics kinematics_family(ir *g, int dimensions) {
+  static const ends_input u_i[] = {ENDS_U_IX, ENDS_U_IY, ENDS_U_IZ},
+                          u_j[] = {ENDS_U_JX, ENDS_U_JY, ENDS_U_JZ},
+                          v_i[] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
+                          v_j[] = {ENDS_V_JX, ENDS_V_JY, ENDS_V_JZ},
+                          chord_of[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
+  static const char *const d_names[] = {"d_x", "d_y", "d_z"}, *const e_names[] = {"e_x", "e_y",
+                                                                                  "e_z"};
+  family_kinematics k = {0};
+  ir_node chord[3] = {IR_NONE, IR_NONE, IR_NONE}, d[3] = {IR_NONE, IR_NONE, IR_NONE};
+  ir_node dv[3] = {IR_NONE, IR_NONE, IR_NONE}, now[3] = {IR_NONE, IR_NONE, IR_NONE};
+  ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
+  ir_node s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY), one = ir_constant(g, 1);
+  ir_mark_class(g, s);
+  for (int c = 0; c < dimensions; c++) {
+    chord[c] = kinematics_input(g, chord_of[c]);
+    ir_node from = kinematics_input(g, u_i[c]), to = kinematics_input(g, u_j[c]);
+    d[c] = named(g, ir_sub(g, to, from), d_names[c]);
+    now[c] = ir_add(g, chord[c], d[c]);
+    both[c] = ir_add(g, chord[c], now[c]);
+    from = kinematics_input(g, v_i[c]), to = kinematics_input(g, v_j[c]);
+    dv[c] = ir_sub(g, to, from);
+    k.reference[c] = ir_div(g, chord[c], s);
+  }
+  k.length = ir_make(g, IR_SQRT, dot_of(g, dimensions, now, now), IR_NONE, IR_NONE);
+  named(g, k.length, "length");
+  ir_node twice_s_mean = ir_mul(g, s, ir_add(g, k.length, s)); /* s (L + s), m^2 */
+  ir_node shared = named(g, ir_div(g, one, ir_mul(g, k.length, twice_s_mean)), "shared");
+  ir_node per_length = named(g, ir_mul(g, shared, twice_s_mean), "per_length");
+  ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
+  k.stretch = named(g, ir_mul(g, growth, ir_mul(g, shared, k.length)), "stretch");
+  for (int c = 0; c < dimensions; c++)
+    k.now[c] = named(g, ir_mul(g, now[c], per_length), e_names[c]);
+  ir_node rate = dot_of(g, dimensions, k.now, dv);
+  k.stretch_rate = named(g, ir_mul(g, rate, ir_div(g, one, s)), "stretch_rate");
   return k;
 }
 

@@ -9,7 +9,8 @@
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
    rate of end i or j. CHORD: reference chord of this bond (lists); CLASS_CHORD: the same chord for
    a whole strip (rows; pl_bond_class). PROTECTED: 1 where the damage of the bond stays as it is,
-   else 0 (a number; the graph asks 0 < protected). TIME_STEP: s, of the strip; ON_BOND because
+   else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families; what belongs to particle
+   i is ON_PARTICLE there. Rotations and third directions share component 2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because
    `prepare` does not know it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
@@ -29,6 +30,13 @@
   X(CHORD_Y, "chord_y", FROM_CHORD, OF_BOND, 1)                                                    \
   X(CLASS_CHORD_X, "class_chord_x", FROM_CLASS, OF_STRIP, 0)                                       \
   X(CLASS_CHORD_Y, "class_chord_y", FROM_CLASS, OF_STRIP, 1)                                       \
+  X(U_IZ, "u_iz", FROM_DISPLACEMENT, OF_I, 2)                                                      \
+  X(U_JZ, "u_jz", FROM_DISPLACEMENT, OF_J, 2)                                                      \
+  X(V_IZ, "v_iz", FROM_VELOCITY, OF_I, 2)                                                          \
+  X(V_JZ, "v_jz", FROM_VELOCITY, OF_J, 2)                                                          \
+  X(CLASS_CHORD_Z, "class_chord_z", FROM_CLASS, OF_STRIP, 2)                                       \
+  X(HELD_I, "held_i", FROM_HELD, OF_I, 0)                                                          \
+  X(HELD_J, "held_j", FROM_HELD, OF_J, 0)                                                          \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
   X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)
 
@@ -46,6 +54,7 @@ typedef enum ends_array {
   FROM_CHORD,
   FROM_CLASS,
   FROM_FLAGS,
+  FROM_HELD, /* families: a particle's damage stays as it is */
   FROM_TIME
 } ends_array;
 typedef enum ends_owner { OF_I, OF_J, OF_BOND, OF_STRIP } ends_owner;
@@ -58,8 +67,8 @@ typedef struct ends_origin {
 } ends_origin;
 extern const ends_origin ends_origins[ENDS_COUNT];
 
-/* The input node. Its placement follows from what it is: CLASS_CHORD on the body, all others on the
-   bond. */
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body, HELD_I on the particle, all others on
+   the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
 typedef struct bond_kinematics {
@@ -76,6 +85,14 @@ typedef struct bond_kinematics {
    rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
    (-pi, pi]. */
 bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord);
+
+/* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. */
+typedef struct family_kinematics {
+  ir_node stretch, stretch_rate, length;
+  ir_node now[3];       /* present direction, i to j */
+  ir_node reference[3]; /* reference direction */
+} family_kinematics;
+family_kinematics kinematics_family(ir *g, int dimensions);
 
 /* Forces on end i and moments on both ends (the particle receives minus the end moments):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes

@@ -10,6 +10,7 @@
 typedef enum lower_mode {
   LOWER_STEP,        /* fields read below their rule have their new value */
   LOWER_PROTECTABLE, /* the same, but a damage stays old where the input ENDS_PROTECTED is not 0 */
+  LOWER_HELD,        /* the same in families: where ENDS_HELD_I is, of bonds also ENDS_HELD_J */
   LOWER_FROZEN /* fields keep the value at hand everywhere: the elastic law of a given state */
 } lower_mode;
 
@@ -39,9 +40,11 @@ typedef struct lowered_text {
 
 typedef struct lowered_law {
   ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
-  ir_node W;           /* the law's own `energy`, or IR_NONE */
-  ir_node *fields;     /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
-  ir_node *outputs;    /* [law->outputs.count] */
+  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  bool along_reference; /* it acts along the reference bond */
+  ir_node W;            /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs;     /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
 
@@ -50,12 +53,12 @@ typedef struct lowered_law {
    damage (old and new) that is not x itself:
      N = dW/dL = (dW/dstretch)/s, M_i = dW/dtheta_i, M_j = dW/dtheta_j
    `force V` gives M_i = M_j = V L/2. A damage rule that is not a number gives a damage that is not
-   a number: it is found, not clamped away. False with a NOT_SUPPORTED diagnostic for what cannot be
-   compiled yet (state laws). */
+   a number: it is found, not clamped away. What goes over a family are FAMILY operations, what belongs to a neighbour
+   IR_NEIGHBOUR. False with a NOT_SUPPORTED diagnostic for what cannot be compiled yet. */
 bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
                diagnostics *d);
 
-/* The input node of a built-in quantity. Stretch, its rate, theta_i, theta_j and length vary from
+/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j and length vary from
    bond to bond; the others are those of a bond class. */
 ir_node lower_quantity(ir *g, builtin_quantity q);
 /* The input node of parameter or field k. */

@@ -6,6 +6,7 @@
 
 #include "dsl/arena.h"
 #include "generator/law_inputs.h"
+#include "generator/plan_parts.h"
 #include "generator/rewrite.h"
 
 static const char *const pass_names[PASS_COUNT] = {
@@ -142,11 +143,11 @@ static ir_node with_new_fields(planner *p, const topology *t, ir_node n) {
 
 /* --- passes ----------------------------------------------------------------------------------- */
 
-static pass *begin_pass(planner *p, pass_kind kind, int most_roots) {
-  pass *a = &p->plan->passes[kind];
+static pass *begin_pass(kernel_plan *p, pass_kind kind, int most_roots) {
+  pass *a = &p->passes[kind];
   a->kind = kind;
   a->name = pass_names[kind];
-  a->roots = arena_alloc(p->plan->memory, ((size_t)most_roots + 1) * sizeof *a->roots);
+  a->roots = arena_alloc(p->memory, ((size_t)most_roots + 1) * sizeof *a->roots);
   a->root_count = 0;
   return a;
 }
@@ -157,7 +158,7 @@ static void write_root(pass *a, ir_node node, pass_target target, int index) {
 
 static void plan_step(planner *p, const topology *t, pass_kind kind) {
   int fields = p->plan->law->fields.count;
-  pass *a = begin_pass(p, kind, PL_MAX_PLANES + fields + 2);
+  pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
   bond_forces f = kinematics_forces(p->plan->graph, &t->k, t->step.N, t->step.M_i, t->step.M_j);
   ir_node planes[] = {f.f_x, f.f_y, f.moment_i, f.moment_j};
   for (int k = 0; k < p->plan->force_planes; k++)
@@ -185,7 +186,7 @@ static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
 
 static void plan_observe(planner *p, const topology *t, pass_kind kind) {
   int outputs = p->plan->law->outputs.count;
-  pass *a = begin_pass(p, kind, 1 + outputs);
+  pass *a = begin_pass(p->plan, kind, 1 + outputs);
   write_root(a, t->stored, TO_OBSERVED, 0);
   for (int k = 0; k < outputs; k++)
     write_root(a, t->outputs[k], TO_OBSERVED, 1 + k);
@@ -204,7 +205,7 @@ static lowered_law unprotected_step(planner *p) {
 
 static void plan_states(planner *p, const lowered_law *bare) {
   int fields = p->plan->law->fields.count;
-  pass *a = begin_pass(p, PASS_STATES, PL_STATE_RESULTS + fields);
+  pass *a = begin_pass(p->plan, PASS_STATES, PL_STATE_RESULTS + fields);
   ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
@@ -222,7 +223,7 @@ static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
 
 static void plan_tangent(planner *p, const lowered_law *bare) {
   ir *g = p->plan->graph;
-  pass *a = begin_pass(p, PASS_TANGENT, PL_TANGENTS);
+  pass *a = begin_pass(p->plan, PASS_TANGENT, PL_TANGENTS);
   ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     for (int q = 0; q < PL_STATE_RATES; q++) {
@@ -232,13 +233,13 @@ static void plan_tangent(planner *p, const lowered_law *bare) {
     }
 }
 
-static bool plan_bounds(planner *p, diagnostics *d) {
-  const law *l = p->plan->law;
+bool plan_bounds(kernel_plan *p, diagnostics *d) {
+  const law *l = p->law;
   pass *a = begin_pass(p, PASS_BOUNDS, 2 * l->parameters.count);
   for (int k = 0; k < l->parameters.count; k++) {
     const bounds *in = &l->parameters.items[k]->declared->in;
-    ir_node lower = lower_bound(p->plan->graph, l, in->lower, -INFINITY, d);
-    ir_node upper = lower_bound(p->plan->graph, l, in->upper, INFINITY, d);
+    ir_node lower = lower_bound(p->graph, l, in->lower, -INFINITY, d);
+    ir_node upper = lower_bound(p->graph, l, in->upper, INFINITY, d);
     if (lower == IR_NONE || upper == IR_NONE) return false;
     write_root(a, lower, TO_LOWER, k);
     write_root(a, upper, TO_UPPER, k);
@@ -252,25 +253,56 @@ static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
   if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
 }
 
-static void mark_hoisted_of_pass(const ir *g, const pass *a, unsigned char *hoisted) {
+typedef struct hoisting {
+  const ir *graph;
+  unsigned char *hoisted;
+} hoisting;
+
+static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_count) {
+  const hoisting *h = context;
+  const ir *g = h->graph;
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  for (int k = 0; k < a->root_count; k++) {
-    ir_mark(g, &a->roots[k].node, 1, needed);
-    mark_hoisted(g, a->roots[k].node, hoisted);
-  }
+  ir_mark(g, roots, root_count, needed);
+  for (int k = 0; k < root_count; k++)
+    mark_hoisted(g, roots[k], h->hoisted);
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
     for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
-      mark_hoisted(g, ir_operand(g, n, k), hoisted);
+      mark_hoisted(g, ir_operand(g, n, k), h->hoisted);
   }
   free(needed);
 }
 
-static void hoist(kernel_plan *p) {
+static void visit_program(const family_program *q, plan_visitor visit, void *context) {
+  for (int k = 0; k < q->pass_count; k++)
+    for (int s = 0; s < q->passes[k].segment_count; s++) {
+      const segment *a = &q->passes[k].segments[s];
+      ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+      for (int r = 0; r < a->root_count; r++)
+        nodes[r] = a->roots[r].node;
+      visit(context, nodes, a->root_count);
+      free(nodes);
+    }
+}
+
+void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
+  for (int k = 0; k < PASS_COUNT; k++) {
+    const pass *a = &p->passes[k];
+    if (k == PASS_BOUNDS) continue;
+    ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+    for (int r = 0; r < a->root_count; r++)
+      nodes[r] = a->roots[r].node;
+    visit(context, nodes, a->root_count);
+    free(nodes);
+  }
+  visit_program(&p->step, visit, context);
+  visit_program(&p->observe, visit, context);
+}
+
+void plan_hoist(kernel_plan *p) {
   int count = ir_count(p->graph);
   unsigned char *hoisted = must_calloc((size_t)count + 1, 1);
-  for (int k = 0; k < PASS_COUNT; k++)
-    if (k != PASS_BOUNDS) mark_hoisted_of_pass(p->graph, &p->passes[k], hoisted);
+  plan_visit(p, mark_hoisted_of_roots, &(hoisting){p->graph, hoisted});
   for (ir_node n = 0; n < count; n++)
     p->uniform_count += hoisted[n];
   p->uniforms = arena_alloc(p->memory, ((size_t)p->uniform_count + 1) * sizeof *p->uniforms);
@@ -280,7 +312,7 @@ static void hoist(kernel_plan *p) {
   free(hoisted);
 }
 
-static ir_cost cost_of(const kernel_plan *p, const pass *a) {
+ir_cost plan_cost(const kernel_plan *p, const pass *a) {
   ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
   for (int k = 0; k < a->root_count; k++)
     nodes[k] = a->roots[k].node;
@@ -300,32 +332,18 @@ static bool lower_both(planner *p, diagnostics *d) {
   return true;
 }
 
-kernel_plan *plan_kernel(const law *l, diagnostics *d) {
-  return plan_kernel_varying(l, NULL, 0, d);
-}
-
-kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
-                                 diagnostics *d) {
+kernel_plan *plan_begin(const law *l) {
   kernel_plan *plan = must_calloc(1, sizeof *plan);
-  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
   plan->law = l;
   plan->graph = ir_new();
   ir_set_sources(plan->graph, l->sources);
   plan->memory = arena_new();
-  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
-  for (int k = 0; k < varying_count; k++)
-    kept[k] = varying[k];
-  plan->varying = kept;
-  plan->varying_count = varying_count;
-  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
-  plan->dimensions = 2;
-  plan->dof = micropolar ? 3 : 2;
-  plan->force_planes = micropolar ? 4 : 2;
+  return plan;
+}
+
+static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
-  if (!lower_both(&p, d)) {
-    plan_free(plan);
-    return NULL;
-  }
+  if (!lower_both(&p, d)) return false;
   static void (*const plan_strip[])(planner *, const topology *, pass_kind) = {
       [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
   topology rows = see_topology(&p, true), list = see_topology(&p, false);
@@ -336,12 +354,50 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
   lowered_law bare = unprotected_step(&p);
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);
-  if (!plan_bounds(&p, d)) {
+  return true;
+}
+
+static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
+  if (!good || !plan_bounds(plan, d)) {
     plan_free(plan);
     return NULL;
   }
-  hoist(plan);
-  ir_cost cost = cost_of(plan, &plan->passes[PASS_ROWS]);
+  plan_hoist(plan);
+  return plan;
+}
+
+kernel_plan *plan_kernel(const law *l, diagnostics *d) {
+  return plan_kernel_varying(l, NULL, 0, d);
+}
+
+kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+  kernel_plan *plan = plan_begin(l);
+  plan->kind = PL_STATE;
+  return finish(plan, plan_programs(plan, d), d);
+}
+
+kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
+                                 diagnostics *d) {
+  if (l->tree->law == LAW_STATE && varying_count == 0) return plan_kernel_of_families(l, d);
+  if (l->tree->law == LAW_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
+                "parameters of a law of families cannot differ from bond to bond yet");
+    return NULL;
+  }
+  kernel_plan *plan = plan_begin(l);
+  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
+  for (int k = 0; k < varying_count; k++)
+    kept[k] = varying[k];
+  plan->varying = kept;
+  plan->varying_count = varying_count;
+  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
+  plan->dimensions = 2;
+  plan->dof = micropolar ? 3 : 2;
+  plan->force_planes = micropolar ? 4 : 2;
+  plan = finish(plan, plan_strips(plan, d), d);
+  if (!plan) return NULL;
+  ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
   plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
   plan->divisions_per_bond = cost.divisions;
   return plan;
@@ -352,100 +408,4 @@ void plan_free(kernel_plan *p) {
   ir_free(p->graph);
   arena_free(p->memory);
   free(p);
-}
-
-/* --- printing --------------------------------------------------------------------------------- */
-
-static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
-  static const char *const planes[] = {"force x", "force y", "moment on i", "moment on j"};
-  const law *l = p->law;
-  switch (r->target) {
-  case TO_FORCE:
-    return planes[r->index];
-  case TO_FIELD:
-    return l->fields.items[r->index]->name;
-  case TO_DISSIPATED_STATE:
-    return "dissipated by states";
-  case TO_DISSIPATED_RATE:
-    return "dissipated by rates";
-  case TO_OBSERVED:
-    return r->index == 0 ? "stored energy" : l->outputs.items[r->index - 1]->name;
-  case TO_LOWER:
-  case TO_UPPER:
-    snprintf(text, size, "%s bound of %s", r->target == TO_LOWER ? "lower" : "upper",
-             l->parameters.items[r->index]->name);
-    return text;
-  default:
-    snprintf(text, size, "out %d", r->index);
-    return text;
-  }
-}
-
-static void dump_reads(const kernel_plan *p, const pass *a, FILE *out, int *read_count) {
-  const ir *g = p->graph;
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  for (int k = 0; k < a->root_count; k++)
-    ir_mark(g, &a->roots[k].node, 1, needed);
-  fputs("  reads ", out);
-  *read_count = 0;
-  for (ir_node n = 0; n < ir_count(g); n++) {
-    bool local = ir_operation(g, n) == IR_INPUT && ir_place(g, n) > ON_BODY;
-    if (!needed[n] || (!local && a->kind != PASS_BOUNDS) || ir_operation(g, n) != IR_INPUT)
-      continue;
-    fprintf(out, " %s", ir_name(g, n));
-    ++*read_count;
-  }
-  fputc('\n', out);
-  free(needed);
-}
-
-static void dump_pass(const kernel_plan *p, const pass *a, FILE *out) {
-  int read_count = 0;
-  char text[128];
-  fprintf(out, "pass %s\n", a->name);
-  dump_reads(p, a, out, &read_count);
-  fputs("  writes", out);
-  for (int k = 0; k < a->root_count; k++)
-    fprintf(out, "%s %s", k ? "," : "", target_name(p, &a->roots[k], text, sizeof text));
-  ir_cost c = cost_of(p, a);
-  fprintf(out,
-          "\n  cost   %d additions, %d multiplications, %d selects, %d divisions and roots, "
-          "%d functions; %d bytes\n",
-          c.additions, c.multiplications, c.selects, c.divisions, c.functions,
-          8 * (read_count + a->root_count));
-}
-
-void plan_dump(const kernel_plan *p, FILE *out) {
-  fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, %d force planes\n",
-          p->law->tree->name, p->kind == PL_MICROPOLAR ? "micropolar bond" : "central bond",
-          p->dimensions, p->dof, p->force_planes);
-  fprintf(out, "computed once for each bond class: %d values\n", p->uniform_count);
-  for (int k = 0; k < p->uniform_count; k++) {
-    ir_node n = p->uniforms[k];
-    fprintf(out, "  uniform %-3d %%%d %s %s\n", k, n, ir_op_name(ir_operation(p->graph, n)),
-            ir_name(p->graph, n) ? ir_name(p->graph, n) : "");
-  }
-  for (int k = 0; k < PASS_COUNT; k++)
-    dump_pass(p, &p->passes[k], out);
-}
-
-static void dump_pass_nodes(const kernel_plan *p, const pass *a, FILE *out) {
-  arena *memory = arena_new();
-  char text[128];
-  ir_node *nodes = arena_alloc(memory, ((size_t)a->root_count + 1) * sizeof *nodes);
-  const char **names = arena_alloc(memory, ((size_t)a->root_count + 1) * sizeof *names);
-  for (int k = 0; k < a->root_count; k++) {
-    const char *name = target_name(p, &a->roots[k], text, sizeof text);
-    nodes[k] = a->roots[k].node;
-    names[k] = arena_text(memory, name, strlen(name));
-  }
-  fprintf(out, "pass %s\n", a->name);
-  ir_dump(p->graph, nodes, names, a->root_count, out);
-  fputc('\n', out);
-  arena_free(memory);
-}
-
-void plan_dump_ir(const kernel_plan *p, FILE *out) {
-  for (int k = 0; k < PASS_COUNT; k++)
-    dump_pass_nodes(p, &p->passes[k], out);
 }

@@ -5,6 +5,7 @@
 
 #include "generator/kinematics.h"
 #include "generator/lower.h"
+#include "generator/program.h"
 #include "runtime/kernel.h"
 
 /* How bonds find their particles, and what is done over them. */
@@ -62,6 +63,8 @@ typedef struct pass {
   int root_count;
 } pass;
 
+enum { PLAN_MOST_PASSES = 8 }; /* of a program of families */
+
 typedef struct kernel_plan {
   const law *law;
   const int *varying; /* [varying_count] parameters that differ from bond to bond */
@@ -74,15 +77,22 @@ typedef struct kernel_plan {
                         of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
                         and nothing before it */
   int uniform_count;
-  double flops_per_bond, divisions_per_bond; /* of PASS_ROWS without what is hoisted */
+  double flops_per_bond, divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
+  /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
+  family_program step, observe;
+  int link_count;
+  bool reads_shape; /* inverse shape matrices */
   arena *memory;
 } kernel_plan;
 
-/* Plans all passes of a pairwise law in 2D. NULL with diagnostics when it cannot be compiled. */
+/* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
+   when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
 /* A variant for parameters (indices into law->parameters) that differ from bond to bond. */
 kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
                                  diagnostics *d);
+/* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond evaluate it. */
+kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
 void plan_free(kernel_plan *p);
 void plan_dump(const kernel_plan *p, FILE *out); /* --dump=passes */
 /* --dump=ir: the nodes of every pass, with their names and lines. */

@@ -208,6 +208,7 @@ static double degree_of(const ir *g, ir_node n, const double *degree) {
   case IR_FAMILY_SUM:
   case IR_FAMILY_MAX:
   case IR_FAMILY_MIN:
+  case IR_NEIGHBOUR:
     return a;
   default:
     return degree_of_function(op, a);

@@ -1,0 +1,281 @@
+/* Programs of families as C: one function for each pass; in it, for each chunk of particles, the segments one after the
+   other. Loops over the particles of a chunk are innermost and vectorise; a neighbour is an offset. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/emit_parts.h"
+#include "generator/kinematics.h"
+
+static const char *const reduction_start[] = {
+    [TO_SUM] = "0.0", [TO_LARGEST] = "-__builtin_inf()", [TO_SMALLEST] = "__builtin_inf()"};
+
+/* --- inputs ----------------------------------------------------------------------------------- */
+
+static bool is_time_step(const emitter *e, ir_node n) {
+  return ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+         ir_input_index(e->graph, n) == ENDS_TIME_STEP;
+}
+
+static bool is_held(const emitter *e, ir_node n) {
+  return ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(e->graph, n)].array == FROM_HELD;
+}
+
+static bool is_of_particle(const emitter *e, int field) {
+  return e->plan->law->fields.items[field]->place <= ON_PARTICLE;
+}
+
+void emit_segment_input(emitter *e, ir_node n) {
+  if (is_time_step(e, n))
+    c_text_add(e->out, "family->time_step");
+  else if (is_held(e, n))
+    c_text_add(e->out, "at_%s[q] != 0 ? 1.0 : 0.0", e->name[n]);
+  else
+    c_text_add(e->out, "at_%s[q]", e->name[n]);
+}
+
+/* Where the array of an input of particle positions, velocities or flags begins. */
+static void write_ends_array(emitter *e, ir_node n) {
+  const ends_origin *o = &ends_origins[ir_input_index(e->graph, n)];
+  const char *to = o->owner == OF_J ? " + to" : "";
+  if (o->array == FROM_HELD)
+    c_text_add(e->out, "family->held + first%s", to);
+  else
+    c_text_add(e->out, "family->%s[%d] + first%s",
+               o->array == FROM_DISPLACEMENT ? "displacement" : "velocity", o->component, to);
+}
+
+static void write_array(emitter *e, ir_node n) {
+  const int index = ir_input_index(e->graph, n);
+  const bool own = ir_place(e->graph, n) != ON_BOND; /* of a neighbour's fields: toward me */
+  switch (ir_input_source(e->graph, n)) {
+  case IR_FROM_FIELD:
+    c_text_add(e->out, "family->old_field[%d] + first%s", index,
+               is_of_particle(e, index) ? "" : " + k*family->plane");
+    break;
+  case IR_FROM_NEIGHBOUR_FIELD:
+    c_text_add(e->out, "family->old_field[%d] + first + to%s", index,
+               own ? " + back*family->plane" : "");
+    break;
+  case IR_FROM_LINK:
+    c_text_add(e->out, "family->link[%d] + first", index);
+    break;
+  case IR_FROM_NEIGHBOUR_LINK:
+    c_text_add(e->out, "family->link[%d] + first + to", index);
+    break;
+  case IR_FROM_SHAPE:
+    c_text_add(e->out, "family->shape[%d] + first", index);
+    break;
+  case IR_FROM_SLOT:
+    c_text_add(e->out, "slot_%d", index);
+    break;
+  case IR_FROM_PLANE:
+    c_text_add(e->out, "plane_%d[k]", index);
+    break;
+  default:
+    write_ends_array(e, n);
+  }
+}
+
+static void write_inputs(emitter *e) {
+  const char *indent = e->scope == IN_NEIGHBOURS ? "      " : "    ";
+  for (ir_node n = 0; n < e->node_count; n++) {
+    if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT) continue;
+    if (emit_is_uniform(e, n)) {
+      c_text_add(e->out, "%sconst double %s = uniforms[%s%d]", indent, e->name[n],
+                 e->scope == IN_NEIGHBOURS ? "k*UNIFORMS + " : "", e->uniform_of[n]);
+      emit_line_end(e, n);
+    } else if (emit_is_input(e, n) && !is_time_step(e, n)) {
+      c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
+                 is_held(e, n) ? "uint64_t" : "double", e->name[n]);
+      write_array(e, n);
+      c_text_add(e->out, ";\n");
+    }
+  }
+}
+
+/* --- outputs ---------------------------------------------------------------------------------- */
+
+/* The array that a root is written to. Slots and planes are the pass's own. */
+static void write_target(emitter *e, const segment_root *r) {
+  switch (r->target) {
+  case TO_LINK:
+    c_text_add(e->out, "family->link[%d] + first", r->index);
+    break;
+  case TO_PARTICLE_FIELD:
+    c_text_add(e->out, "family->new_field[%d] + first", r->index);
+    break;
+  case TO_PARTICLE_FORCE:
+    c_text_add(e->out, "family->force[%d] + first", r->index);
+    break;
+  case TO_PARTICLE_OBSERVED:
+    c_text_add(e->out, "family->observed[%d] + first", r->index);
+    break;
+  case TO_NEIGHBOUR_FIELD:
+    c_text_add(e->out, "family->new_field[%d] + first + k*family->plane", r->index);
+    break;
+  case TO_NEIGHBOUR_OBSERVED:
+    c_text_add(e->out, "family->observed[%d] + first + k*family->plane", r->index);
+    break;
+  case TO_PLANE:
+    c_text_add(e->out, "plane_%d[k]", r->index);
+    break;
+  default:
+    c_text_add(e->out, "slot_%d", r->index);
+  }
+}
+
+static void write_outputs(emitter *e, const segment *a) {
+  const char *indent = a->kind == OVER_NEIGHBOURS ? "      " : "    ";
+  for (int k = 0; k < a->root_count; k++) {
+    c_text_add(e->out, "%sdouble *restrict to_%d = ", indent, k);
+    write_target(e, &a->roots[k]);
+    c_text_add(e->out, ";\n");
+  }
+}
+
+static void write_value_or(emitter *e, ir_node n, const char *format, int root) {
+  c_text_add(e->out, "present ? ");
+  emit_value(e, n);
+  c_text_add(e->out, " : ");
+  c_text_add(e->out, format, root);
+  c_text_add(e->out, ";\n");
+}
+
+static void write_store(emitter *e, const segment_root *r, int root) {
+  c_text_add(e->out, "        to_%d[q] ", root);
+  switch (r->target) {
+  case TO_SUM:
+    c_text_add(e->out, "+= ");
+    write_value_or(e, r->node, "0.0", root);
+    break;
+  case TO_LARGEST:
+  case TO_SMALLEST:
+    c_text_add(e->out, "= present ? pl_%s(to_%d[q], ", r->target == TO_LARGEST ? "max" : "min",
+               root);
+    emit_value(e, r->node);
+    c_text_add(e->out, ") : to_%d[q];\n", root);
+    break;
+  case TO_NEIGHBOUR_OBSERVED:
+  case TO_NEIGHBOUR_FIELD:
+    c_text_add(e->out, "= ");
+    write_value_or(e, r->node, "0.0", root);
+    break;
+  default:
+    c_text_add(e->out, "= ");
+    emit_value(e, r->node);
+    c_text_add(e->out, ";\n");
+  }
+}
+
+/* --- segments --------------------------------------------------------------------------------- */
+
+static void open_segment(emitter *e, const segment *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  emit_open_nodes(e, a->kind == OVER_NEIGHBOURS ? IN_NEIGHBOURS : IN_PARTICLES, nodes,
+                  a->root_count);
+  free(nodes);
+}
+
+static void write_loop(emitter *e, const char *indent) {
+  c_text_add(e->out, "%sPL_INDEPENDENT\n%sfor (long q = 0; q < lanes; q++) {\n", indent, indent);
+}
+
+static void write_particles(emitter *e, const segment *a) {
+  c_text_add(e->out, "    { /* particle by particle */\n");
+  write_inputs(e);
+  write_outputs(e, a);
+  write_loop(e, "    ");
+  emit_lines(e);
+  for (int k = 0; k < a->root_count; k++)
+    write_store(e, &a->roots[k], k);
+  c_text_add(e->out, "    }\n    }\n");
+}
+
+static void write_starts(emitter *e, const segment *a) {
+  bool any = false;
+  for (int k = 0; k < a->root_count; k++)
+    any = any || (a->roots[k].target >= TO_SUM && a->roots[k].target <= TO_SMALLEST);
+  if (!any) return;
+  c_text_add(e->out, "    for (long q = 0; q < lanes; q++) {\n");
+  for (int k = 0; k < a->root_count; k++)
+    if (a->roots[k].target >= TO_SUM && a->roots[k].target <= TO_SMALLEST)
+      c_text_add(e->out, "      slot_%d[q] = %s;\n", a->roots[k].index,
+                 reduction_start[a->roots[k].target]);
+  c_text_add(e->out, "    }\n");
+}
+
+static void write_neighbours(emitter *e, const segment *a) {
+  write_starts(e, a);
+  c_text_add(e->out,
+             "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
+             "      const long to = family->offset[k], back = k < half ? k + half : k - half;\n"
+             "      const uint64_t *restrict bonds = family->bonds + first + (k < half ? 0 : to);\n"
+             "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n"
+             "      (void)to, (void)back;\n");
+  write_inputs(e);
+  write_outputs(e, a);
+  write_loop(e, "      ");
+  emit_lines(e);
+  c_text_add(e->out, "        const int32_t present = (bonds[q] & present_bit) != 0;\n");
+  for (int k = 0; k < a->root_count; k++)
+    write_store(e, &a->roots[k], k);
+  c_text_add(e->out, "      }\n    }\n");
+}
+
+/* --- passes ----------------------------------------------------------------------------------- */
+
+static void write_pass(emitter *e, const family_program *q, int number) {
+  const family_pass *p = &q->passes[number];
+  c_text_add(
+      e->out,
+      "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
+      "  const long half = family->neighbours / 2;\n"
+      "  (void)law, (void)uniforms, (void)half;\n",
+      q->name, number);
+  for (int k = 0; k < p->slot_count; k++)
+    c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double slot_%d[CHUNK];\n", k);
+  for (int k = 0; k < p->plane_count; k++)
+    c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double plane_%d[2*PL_MAX_DIRECTIONS][CHUNK];\n",
+               k);
+  c_text_add(e->out, "  for (long first = 0; first < family->count; first += CHUNK) {\n"
+                     "    const long left = family->count - first;\n"
+                     "    const long lanes = left < CHUNK ? left / PL_LANES * PL_LANES : CHUNK;\n");
+  for (int k = 0; k < p->segment_count; k++) {
+    const segment *a = &p->segments[k];
+    open_segment(e, a);
+    if (a->kind == OVER_NEIGHBOURS)
+      write_neighbours(e, a);
+    else
+      write_particles(e, a);
+    emit_close(e);
+  }
+  c_text_add(e->out, "  }\n}\n\n");
+}
+
+static void write_program(emitter *e, const family_program *q) {
+  for (int k = 0; k < q->pass_count; k++)
+    write_pass(e, q, k);
+  c_text_add(e->out, "static const pl_family_function %s_passes[] = {", q->name);
+  for (int k = 0; k < q->pass_count; k++)
+    c_text_add(e->out, "%s%s_%d", k ? ", " : "", q->name, k);
+  c_text_add(e->out, "};\n\n");
+}
+
+void emit_programs(emitter *e) {
+  c_text_add(e->out, "enum { CHUNK = %d, UNIFORMS = %d };\n\n", FAMILY_CHUNK,
+             e->plan->uniform_count);
+  write_program(e, &e->plan->step);
+  write_program(e, &e->plan->observe);
+}
+
+void emit_program_members(emitter *e) {
+  c_text_add(e->out,
+             "    .link_count = %d,\n    .reads_shape = %d,\n    .step = {%d, step_passes},\n"
+             "    .observe = {%d, observe_passes},\n",
+             e->plan->link_count, e->plan->reads_shape, e->plan->step.pass_count,
+             e->plan->observe.pass_count);
+}

@@ -1,0 +1,61 @@
+/* Inside of the emitter, shared by its parts: emit.c writes expressions, strips and the table of facts, emit_family.c the
+   programs of families. */
+#ifndef PERILAT_GENERATOR_EMIT_PARTS_H
+#define PERILAT_GENERATOR_EMIT_PARTS_H
+
+#include "generator/c_text.h"
+#include "generator/passes.h"
+
+/* The functions differ in where inputs come from and in how the loop, if any, runs. */
+typedef enum scope_kind {
+  IN_PREPARE,
+  IN_BOUNDS,
+  IN_ROWS,
+  IN_LIST,
+  IN_STATES,
+  IN_PARTICLES, /* segments of families */
+  IN_NEIGHBOURS
+} scope_kind;
+
+typedef struct emitter {
+  const kernel_plan *plan;
+  const ir *graph;
+  c_text *out;
+  int node_count;
+  int *uniform_of; /* [node_count] index in `uniforms`, or -1 */
+
+  /* the function being written */
+  scope_kind scope;
+  const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
+  int root_count;
+  c_names names;
+  unsigned char *needed; /* [node_count] */
+  int *uses;             /* [node_count] by needed nodes and roots */
+  ir_node *user;         /* [node_count] the last of them; IR_NONE: a root */
+  int *size;             /* [node_count] operations written in place of the node */
+  const char **name;     /* [node_count] NULL: written in place */
+} emitter;
+
+/* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
+void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count);
+void emit_close(emitter *e);
+/* A value loaded from `uniforms`; in `prepare` the same node is computed. */
+bool emit_is_uniform(const emitter *e, ir_node n);
+bool emit_is_input(const emitter *e, ir_node n);
+/* `const double x = ...;` for each node that has a name here, in the order of the graph. */
+void emit_lines(emitter *e);
+/* Node n as an operand that needs no parentheses inside a choice. */
+void emit_value(emitter *e, ir_node n);
+/* "; / * line 12 * /" and the end of the line. */
+void emit_line_end(emitter *e, ir_node n);
+
+/* --- emit_family.c --- */
+
+/* Functions of the passes and the tables of both programs. */
+void emit_programs(emitter *e);
+/* Members of the table of facts. */
+void emit_program_members(emitter *e);
+/* What a segment loads for an input. */
+void emit_segment_input(emitter *e, ir_node n);
+
+#endif

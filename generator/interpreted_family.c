@@ -1,0 +1,283 @@
+#include "generator/interpreted_family.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/elementary.h"
+#include "generator/interpret.h"
+#include "generator/kinematics.h"
+
+enum { LANES = FAMILY_CHUNK, MOST_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
+_Static_assert(FAMILY_CHUNK == INTERPRET_LANES, "a chunk is what the interpreter takes at a time");
+
+struct family_runner {
+  const kernel_plan *plan;
+  arena *memory;
+  interpreter ***run[2]; /* [program][pass][segment] */
+  const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **slots,
+      **planes, *shape[PL_SHAPE_VALUES(3)], *ends[ENDS_COUNT];
+  double *slot;  /* [slots][LANES] */
+  double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
+  double held[2][LANES];
+  double *results, **result; /* [most roots][LANES] */
+  unsigned char *ones, ends_stride[ENDS_COUNT];
+};
+
+static const family_program *program_of(const kernel_plan *p, int which) {
+  return which ? &p->observe : &p->step;
+}
+
+/* --- making ----------------------------------------------------------------------------------- */
+
+static int larger(int a, int b) {
+  return a > b ? a : b;
+}
+
+static interpreter *segment_interpreter(family_runner *r, const segment *a, const ir_node *inputs) {
+  const kernel_plan *p = r->plan;
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  ir_substitute(p->graph, nodes, a->root_count, p->uniforms, inputs, p->uniform_count, nodes);
+  interpreter *made = interpreter_new(p->graph, nodes, a->root_count);
+  free(nodes);
+  return made;
+}
+
+static void make_interpreters(family_runner *r, const ir_node *inputs, int *slots, int *planes,
+                              int *roots) {
+  for (int which = 0; which < 2; which++) {
+    const family_program *q = program_of(r->plan, which);
+    r->run[which] = arena_alloc(r->memory, ((size_t)q->pass_count + 1) * sizeof(interpreter **));
+    for (int k = 0; k < q->pass_count; k++) {
+      const family_pass *now = &q->passes[k];
+      *slots = larger(*slots, now->slot_count);
+      *planes = larger(*planes, now->plane_count);
+      r->run[which][k] =
+          arena_alloc(r->memory, ((size_t)now->segment_count + 1) * sizeof(interpreter *));
+      for (int s = 0; s < now->segment_count; s++) {
+        r->run[which][k][s] = segment_interpreter(r, &now->segments[s], inputs);
+        *roots = larger(*roots, now->segments[s].root_count);
+      }
+    }
+  }
+}
+
+static const double **pointers(family_runner *r, int count) {
+  return arena_alloc(r->memory, ((size_t)count + 1) * sizeof(double *));
+}
+
+family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
+  family_runner *r = must_calloc(1, sizeof *r);
+  int slots = 0, planes = 0, roots = 0, fields = p->law->fields.count;
+  r->plan = p;
+  r->memory = arena_new();
+  make_interpreters(r, inputs, &slots, &planes, &roots);
+  r->parameters = pointers(r, p->law->parameters.count + p->uniform_count);
+  r->fields = pointers(r, fields);
+  r->neighbour_fields = pointers(r, fields);
+  r->links = pointers(r, p->link_count);
+  r->neighbour_links = pointers(r, p->link_count);
+  r->slots = pointers(r, slots);
+  r->planes = pointers(r, planes);
+  r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
+  r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
+  r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
+  r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
+  for (int k = 0; k < roots; k++)
+    r->result[k] = r->results + (size_t)k * LANES;
+  for (int k = 0; k < slots; k++)
+    r->slots[k] = r->slot + (size_t)k * LANES;
+  const int most = larger(larger(fields, p->link_count), larger(slots, larger(planes, 21)));
+  r->ones = arena_alloc(r->memory, (size_t)most + 1);
+  memset(r->ones, 1, (size_t)most + 1);
+  memset(r->ends_stride, 1, sizeof r->ends_stride);
+  r->ends_stride[ENDS_TIME_STEP] = 0;
+  return r;
+}
+
+void family_runner_free(family_runner *r) {
+  if (!r) return;
+  for (int which = 0; which < 2; which++) {
+    const family_program *q = program_of(r->plan, which);
+    for (int k = 0; k < q->pass_count; k++)
+      for (int s = 0; s < q->passes[k].segment_count; s++)
+        interpreter_free(r->run[which][k][s]);
+  }
+  free(r->slot);
+  free(r->plane);
+  free(r->results);
+  arena_free(r->memory);
+  free(r);
+}
+
+/* --- inputs ----------------------------------------------------------------------------------- */
+
+static bool is_of_particle(const family_runner *r, int field) {
+  return r->plan->law->fields.items[field]->place <= ON_PARTICLE;
+}
+
+/* What a segment of the particles reads: neighbours are not touched. */
+static void point_at_particles(family_runner *r, const pl_family *f, long first) {
+  for (int k = 0; k < r->plan->link_count; k++)
+    r->links[k] = f->link[k] + first;
+  for (int k = 0; k < r->plan->law->fields.count; k++)
+    r->fields[k] = f->old_field[k] + first;
+  for (int k = 0; r->plan->reads_shape && k < PL_SHAPE_VALUES(r->plan->dimensions); k++)
+    r->shape[k] = f->shape[k] + first;
+  for (int k = 0; k < ENDS_COUNT; k++) {
+    const ends_origin *o = &ends_origins[k];
+    if (o->owner != OF_I || o->component >= r->plan->dimensions) continue;
+    if (o->array == FROM_DISPLACEMENT) r->ends[k] = f->displacement[o->component] + first;
+    if (o->array == FROM_VELOCITY) r->ends[k] = f->velocity[o->component] + first;
+  }
+  for (long q = 0; q < LANES && first + q < f->count; q++)
+    r->held[0][q] = f->held[first + q] ? 1 : 0;
+  r->ends[ENDS_HELD_I] = r->held[0];
+  r->ends[ENDS_TIME_STEP] = &f->time_step;
+}
+
+static void point_at_neighbour(family_runner *r, const pl_family *f, long first, long k,
+                               const double *uniforms) {
+  const long half = f->neighbours / 2, to = f->offset[k], back = k < half ? k + half : k - half;
+  const kernel_plan *p = r->plan;
+  const int parameters = p->law->parameters.count;
+  for (int u = 0; u < p->uniform_count; u++)
+    r->parameters[parameters + u] = uniforms + k * p->uniform_count + u;
+  for (int n = 0; n < p->link_count; n++)
+    r->neighbour_links[n] = f->link[n] + first + to;
+  for (int n = 0; n < p->law->fields.count; n++) {
+    const bool of_particle = is_of_particle(r, n);
+    r->fields[n] = f->old_field[n] + first + (of_particle ? 0 : k * f->plane);
+    r->neighbour_fields[n] = f->old_field[n] + first + to + (of_particle ? 0 : back * f->plane);
+  }
+  for (int e = 0; e < ENDS_COUNT; e++) {
+    const ends_origin *o = &ends_origins[e];
+    if (o->owner != OF_J || o->component >= p->dimensions) continue;
+    if (o->array == FROM_DISPLACEMENT) r->ends[e] = f->displacement[o->component] + first + to;
+    if (o->array == FROM_VELOCITY) r->ends[e] = f->velocity[o->component] + first + to;
+  }
+  for (long q = 0; q < LANES && first + q < f->count; q++)
+    r->held[1][q] = f->held[first + to + q] ? 1 : 0;
+  r->ends[ENDS_HELD_J] = r->held[1];
+}
+
+static void point_at_planes(family_runner *r, const family_pass *now, long k) {
+  for (int n = 0; n < now->plane_count; n++)
+    r->planes[n] = r->plane + ((size_t)n * MOST_NEIGHBOURS + (size_t)k) * LANES;
+}
+
+static interpreter_inputs inputs_of(const family_runner *r) {
+  return (interpreter_inputs){.values = {[IR_FROM_PARAMETER] = r->parameters,
+                                         [IR_FROM_FIELD] = r->fields,
+                                         [IR_FROM_ENDS] = r->ends,
+                                         [IR_FROM_SHAPE] = r->shape,
+                                         [IR_FROM_NEIGHBOUR_FIELD] = r->neighbour_fields,
+                                         [IR_FROM_LINK] = r->links,
+                                         [IR_FROM_NEIGHBOUR_LINK] = r->neighbour_links,
+                                         [IR_FROM_SLOT] = r->slots,
+                                         [IR_FROM_PLANE] = r->planes},
+                              .stride = {[IR_FROM_FIELD] = r->ones,
+                                         [IR_FROM_ENDS] = r->ends_stride,
+                                         [IR_FROM_SHAPE] = r->ones,
+                                         [IR_FROM_NEIGHBOUR_FIELD] = r->ones,
+                                         [IR_FROM_LINK] = r->ones,
+                                         [IR_FROM_NEIGHBOUR_LINK] = r->ones,
+                                         [IR_FROM_SLOT] = r->ones,
+                                         [IR_FROM_PLANE] = r->ones}};
+}
+
+/* --- outputs ---------------------------------------------------------------------------------- */
+
+static double *target_of(family_runner *r, const segment_root *root, const pl_family *f, long first,
+                         long k) {
+  switch (root->target) {
+  case TO_LINK:
+    return f->link[root->index] + first;
+  case TO_PARTICLE_FIELD:
+    return f->new_field[root->index] + first;
+  case TO_PARTICLE_FORCE:
+    return f->force[root->index] + first;
+  case TO_PARTICLE_OBSERVED:
+    return f->observed[root->index] + first;
+  case TO_NEIGHBOUR_FIELD:
+    return f->new_field[root->index] + first + k * f->plane;
+  case TO_NEIGHBOUR_OBSERVED:
+    return f->observed[root->index] + first + k * f->plane;
+  case TO_PLANE:
+    return r->plane + ((size_t)root->index * MOST_NEIGHBOURS + (size_t)k) * LANES;
+  default:
+    return r->slot + (size_t)root->index * LANES;
+  }
+}
+
+static bool is_present(const pl_family *f, long first, long k, long q) {
+  const long half = f->neighbours / 2, to = k < half ? 0 : f->offset[k];
+  return f->bonds[first + to + q] >> (k < half ? k : k - half) & 1;
+}
+
+static void store(family_runner *r, const segment_root *root, const double *value,
+                  const pl_family *f, long first, long k, long lanes) {
+  double *to = target_of(r, root, f, first, k);
+  const bool plain = root->target < TO_SUM || root->target == TO_PLANE;
+  for (long q = 0; q < lanes; q++) {
+    const bool present = plain || is_present(f, first, k, q);
+    switch (root->target) {
+    case TO_SUM:
+      to[q] += present ? value[q] : 0;
+      break;
+    case TO_LARGEST:
+      to[q] = present ? pl_max(to[q], value[q]) : to[q];
+      break;
+    case TO_SMALLEST:
+      to[q] = present ? pl_min(to[q], value[q]) : to[q];
+      break;
+    default:
+      to[q] = present ? value[q] : 0;
+    }
+  }
+}
+
+static void start_reductions(family_runner *r, const segment *a) {
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_target t = a->roots[k].target;
+    if (t != TO_SUM && t != TO_LARGEST && t != TO_SMALLEST) continue;
+    const double start = t == TO_SUM ? 0 : t == TO_LARGEST ? -PL_INFINITY : PL_INFINITY;
+    double *to = r->slot + (size_t)a->roots[k].index * LANES;
+    for (int q = 0; q < LANES; q++)
+      to[q] = start;
+  }
+}
+
+/* --- running ---------------------------------------------------------------------------------- */
+
+static void run_segment(family_runner *r, interpreter *run, const family_pass *now,
+                        const segment *a, const pl_family *f, long first, long lanes,
+                        const double *uniforms) {
+  const long loops = a->kind == OVER_NEIGHBOURS ? f->neighbours : 1;
+  if (a->kind == OVER_NEIGHBOURS) start_reductions(r, a);
+  point_at_particles(r, f, first);
+  for (int u = 0; u < r->plan->uniform_count; u++)
+    r->parameters[r->plan->law->parameters.count + u] = uniforms + u;
+  for (long k = 0; k < loops; k++) {
+    if (a->kind == OVER_NEIGHBOURS) {
+      point_at_neighbour(r, f, first, k, uniforms);
+      point_at_planes(r, now, k);
+    }
+    interpreter_inputs in = inputs_of(r);
+    interpreter_run(run, &in, (int)lanes, r->result);
+    for (int n = 0; n < a->root_count; n++)
+      store(r, &a->roots[n], r->result[n], f, first, k, lanes);
+  }
+}
+
+void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
+                       const pl_family *f) {
+  const family_pass *now = &program_of(r->plan, observe)->passes[number];
+  for (long first = 0; first < f->count; first += LANES) {
+    const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
+    for (int s = 0; s < now->segment_count; s++)
+      run_segment(r, r->run[observe][number][s], now, &now->segments[s], f, first, lanes, uniforms);
+  }
+}

@@ -1,0 +1,211 @@
+/* Programs of a law of families (program.h): what is wanted of a particle, in the terms of the law. */
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/kinematics.h"
+#include "generator/plan_parts.h"
+#include "generator/rewrite.h"
+
+typedef struct family_planner {
+  kernel_plan *plan;
+  ir *g;
+  lowered_law step, frozen;
+} family_planner;
+
+/* Stands for component d of the present direction until the motion is known. */
+static ir_node present_direction(ir *g, int d) {
+  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + d, "e", ON_BOND);
+}
+
+/* --- results ---------------------------------------------------------------------------------- */
+
+/* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the same on both. */
+static ir_node bond_force(family_planner *p) {
+  const law *l = p->plan->law;
+  ir *g = p->g;
+  ir_node f = p->step.N;
+  if (l->tree->law == LAW_STATE) {
+    ir_node other = ir_make(g, IR_NEIGHBOUR, p->step.F, IR_NONE, IR_NONE);
+    f = ir_mul(g, ir_constant(g, 0.5), ir_add(g, p->step.F, other));
+  }
+  ir_set_name(g, f, "bond_force", (span){0, 0, 0});
+  return f;
+}
+
+static ir_node family_sum(ir *g, ir_node n) {
+  return ir_make(g, IR_FAMILY_SUM, n, IR_NONE, IR_NONE);
+}
+
+/* The particle's share of what its bonds store, J. */
+static ir_node stored_energy(family_planner *p) {
+  const law *l = p->plan->law;
+  ir *g = p->g;
+  ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
+  ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
+  if (l->tree->law != LAW_STATE)
+    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(l, g, &p->frozen)));
+  ir_node F, W = p->frozen.W;
+  if (W != IR_NONE) {
+    rewrite_zero(g, &W, 1, &rate, 1, &W);
+    return W;
+  }
+  rewrite_zero(g, &p->frozen.F, 1, &rate, 1, &F);
+  if (rewrite_degree(g, F, &stretch, 1) != 1) return ir_constant(g, 0);
+  ir_node work = ir_mul(g, ir_mul(g, F, stretch), s);
+  return ir_mul(g, ir_constant(g, 0.25), family_sum(g, work));
+}
+
+/* --- roots ------------------------------------------------------------------------------------ */
+
+typedef struct root_list {
+  segment_root *items;
+  int count;
+} root_list;
+
+static root_list new_roots(kernel_plan *plan, int most) {
+  return (root_list){arena_alloc(plan->memory, ((size_t)most + 1) * sizeof(segment_root)), 0};
+}
+
+static void want(root_list *r, ir_node node, segment_target target, int index) {
+  r->items[r->count++] = (segment_root){node, target, index};
+}
+
+static bool is_of_particle(const symbol *s) {
+  return s->place <= ON_PARTICLE;
+}
+
+static root_list step_roots(family_planner *p) {
+  const law *l = p->plan->law;
+  root_list r = new_roots(p->plan, l->fields.count + 3);
+  for (int k = 0; k < l->fields.count; k++)
+    want(&r, p->step.fields[k],
+         is_of_particle(l->fields.items[k]) ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
+  ir_node f = bond_force(p);
+  for (int d = 0; d < p->plan->dimensions; d++)
+    want(&r, family_sum(p->g, ir_mul(p->g, f, present_direction(p->g, d))), TO_PARTICLE_FORCE, d);
+  return r;
+}
+
+static root_list observe_roots(family_planner *p) {
+  const law *l = p->plan->law;
+  root_list r = new_roots(p->plan, l->outputs.count + 1);
+  want(&r, stored_energy(p), TO_PARTICLE_OBSERVED, 0);
+  for (int k = 0; k < l->outputs.count; k++)
+    want(&r, p->frozen.outputs[k],
+         is_of_particle(l->outputs.items[k]) ? TO_PARTICLE_OBSERVED : TO_NEIGHBOUR_OBSERVED, 1 + k);
+  return r;
+}
+
+/* --- motion ----------------------------------------------------------------------------------- */
+
+enum { MOST_MOTION = 6 };
+
+static program_motion see_motion(family_planner *p) {
+  ir *g = p->g;
+  kernel_plan *plan = p->plan;
+  family_kinematics k = kinematics_family(g, plan->dimensions);
+  bool reference = p->step.along_reference;
+  ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
+  ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
+  int n = 0;
+  from[n] = lower_quantity(g, QUANTITY_STRETCH), to[n++] = k.stretch;
+  from[n] = lower_quantity(g, QUANTITY_STRETCH_RATE), to[n++] = k.stretch_rate;
+  from[n] = lower_quantity(g, QUANTITY_LENGTH), to[n++] = k.length;
+  for (int d = 0; d < plan->dimensions; d++) {
+    from[n] = present_direction(g, d);
+    to[n++] = reference ? k.reference[d] : k.now[d];
+  }
+  return (program_motion){from, to, n};
+}
+
+/* --- the plan --------------------------------------------------------------------------------- */
+
+/* The same reciprocals in all that a step computes. */
+static void share_reciprocals(family_planner *p) {
+  int fields = p->plan->law->fields.count, count = 0;
+  ir_node *all = must_alloc(((size_t)fields + 2) * sizeof *all);
+  all[count++] = p->step.F;
+  all[count++] = p->step.N;
+  memcpy(all + count, p->step.fields, (size_t)fields * sizeof *all);
+  rewrite_reciprocals(p->g, all, count + fields, all);
+  p->step.F = all[0];
+  p->step.N = all[1];
+  memcpy(p->step.fields, all + count, (size_t)fields * sizeof *all);
+  free(all);
+}
+
+static void share_reciprocals_of_roots(ir *g, root_list *r) {
+  ir_node *all = must_alloc(((size_t)r->count + 1) * sizeof *all);
+  for (int k = 0; k < r->count; k++)
+    all[k] = r->items[k].node;
+  rewrite_reciprocals(g, all, r->count, all);
+  for (int k = 0; k < r->count; k++)
+    r->items[k].node = all[k];
+  free(all);
+}
+
+typedef struct shape_search {
+  const kernel_plan *plan;
+  bool reads_shape;
+} shape_search;
+
+static void look_for_shape(void *context, const ir_node *roots, int root_count) {
+  shape_search *c = context;
+  const ir *g = c->plan->graph;
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  ir_mark(g, roots, root_count, needed);
+  for (ir_node n = 0; n < ir_count(g) && !c->reads_shape; n++)
+    c->reads_shape =
+        needed[n] && ir_operation(g, n) == IR_INPUT && ir_input_source(g, n) == IR_FROM_SHAPE;
+  free(needed);
+}
+
+/* Operations of all segments of a step that are done for each neighbour. */
+static void count_cost(kernel_plan *plan) {
+  for (int k = 0; k < plan->step.pass_count; k++)
+    for (int s = 0; s < plan->step.passes[k].segment_count; s++) {
+      const segment *a = &plan->step.passes[k].segments[s];
+      if (a->kind != OVER_NEIGHBOURS) continue;
+      ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+      for (int r = 0; r < a->root_count; r++)
+        nodes[r] = a->roots[r].node;
+      ir_cost cost = ir_count_cost(plan->graph, nodes, a->root_count, ON_BOND);
+      plan->flops_per_bond += cost.additions + cost.multiplications + cost.selects;
+      plan->divisions_per_bond += cost.divisions;
+      free(nodes);
+    }
+}
+
+bool plan_programs(kernel_plan *plan, diagnostics *d) {
+  const law *l = plan->law;
+  family_planner p = {.plan = plan, .g = plan->graph};
+  if (l->tree->law == LAW_MICROPOLAR_BOND) {
+    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
+                "a micropolar law runs on the hexagonal lattice only");
+    return false;
+  }
+  plan->dimensions = plan->dof = l->setting == SETTING_SPACE ? 3 : 2;
+  if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
+      !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))
+    return false;
+  share_reciprocals(&p);
+  root_list step = step_roots(&p), observe = observe_roots(&p);
+  share_reciprocals_of_roots(p.g, &observe);
+  program_motion motion = see_motion(&p);
+  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
+                &plan->link_count);
+  program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
+                &plan->link_count);
+  if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
+    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
+                "values of neighbours of neighbours are needed more than %d deep in one step",
+                PLAN_MOST_PASSES);
+    return false;
+  }
+  shape_search found = {.plan = plan};
+  plan_visit(plan, look_for_shape, &found);
+  plan->reads_shape = found.reads_shape;
+  count_cost(plan);
+  return true;
+}

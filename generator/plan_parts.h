@@ -1,0 +1,24 @@
+/* Inside of the planning of kernels, shared by its parts: passes.c plans strips of bonds, plan_family.c programs of
+   families, plan_dump.c prints. */
+#ifndef PERILAT_GENERATOR_PLAN_PARTS_H
+#define PERILAT_GENERATOR_PLAN_PARTS_H
+
+#include "generator/passes.h"
+
+/* An empty plan. */
+kernel_plan *plan_begin(const law *l);
+/* Bounds of parameters as PASS_BOUNDS. False after a diagnostic. */
+bool plan_bounds(kernel_plan *p, diagnostics *d);
+/* Chooses the uniforms, once all roots are known. */
+void plan_hoist(kernel_plan *p);
+/* Fills in a plan of families. False after a diagnostic. */
+bool plan_programs(kernel_plan *p, diagnostics *d);
+
+/* What the roots of a pass cost for each bond. */
+ir_cost plan_cost(const kernel_plan *p, const pass *a);
+
+/* Every root of the plan that a strip or a segment computes, in order. */
+typedef void (*plan_visitor)(void *context, const ir_node *roots, int root_count);
+void plan_visit(const kernel_plan *p, plan_visitor visit, void *context);
+
+#endif

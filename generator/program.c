@@ -1,0 +1,494 @@
+#include "generator/program.h"
+
+#include <assert.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/builtins.h"
+#include "generator/kinematics.h"
+
+/* Values by node, for a graph that grows while they are found. */
+typedef struct node_map {
+  int *value; /* -1: none yet */
+  int room;
+} node_map;
+
+static int map_get(const node_map *m, ir_node n) {
+  return n < m->room ? m->value[n] : -1;
+}
+
+static void map_set(node_map *m, ir_node n, int value) {
+  if (n >= m->room) {
+    int room = 2 * n + 64;
+    m->value = must_realloc(m->value, (size_t)room * sizeof *m->value);
+    for (int k = m->room; k < room; k++)
+      m->value[k] = -1;
+    m->room = room;
+  }
+  m->value[n] = value;
+}
+
+static void map_clear(node_map *m) {
+  free(m->value);
+  *m = (node_map){0};
+}
+
+enum { MOST_LINKS = 4096 };
+
+typedef struct builder {
+  ir *g;
+  arena *memory;
+  ir_node *link; /* [link_count] what each link holds, in the terms of the particle itself */
+  int link_count;
+  node_map resolved, mirrored, linked, reduced, level;
+} builder;
+
+static bool is_leaf(const ir *g, ir_node n) {
+  return ir_arity(ir_operation(g, n)) == 0;
+}
+
+static bool is_uniform(const ir *g, ir_node n) {
+  return ir_place(g, n) <= ON_BODY;
+}
+
+static bool is_of_particle(const ir *g, ir_node n) {
+  return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
+}
+
+/* The same operation of other operands, with the name of the first. */
+static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {
+  ir_node made = ir_make(g, ir_operation(g, n), operand[0], operand[1], operand[2]);
+  if (made != n && ir_name(g, n) && !is_leaf(g, made))
+    ir_set_name(g, made, ir_name(g, n), ir_where(g, n));
+  return made;
+}
+
+/* n with its operands replaced by what `image` makes of them. */
+static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir_node)) {
+  ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
+  bool changed = false;
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
+    ir_node old = ir_operand(b->g, n, k);
+    operand[k] = image(b, old);
+    changed = changed || operand[k] != old;
+  }
+  return changed ? made_again(b->g, n, operand) : n;
+}
+
+/* --- what belongs to the neighbour ------------------------------------------------------------ */
+
+/* Whether the value goes over a family, so that a neighbour cannot compute it again. */
+static bool goes_over_family(builder *b, ir_node n) {
+  int known = map_get(&b->reduced, n);
+  if (known >= 0) return known != 0;
+  ir_op op = ir_operation(b->g, n);
+  bool does = ir_is_reduction(op);
+  for (int k = 0; k < ir_arity(op) && !does; k++)
+    does = goes_over_family(b, ir_operand(b->g, n, k));
+  map_set(&b->reduced, n, does);
+  return does;
+}
+
+static int link_of(builder *b, ir_node n) {
+  int known = map_get(&b->linked, n);
+  if (known >= 0) return known;
+  assert(b->link_count < MOST_LINKS);
+  b->link[b->link_count] = n;
+  map_set(&b->linked, n, b->link_count);
+  return b->link_count++;
+}
+
+static const char *link_name(builder *b, int link) {
+  const char *name = ir_name(b->g, b->link[link]);
+  return name ? name : arena_printf(b->memory, "link_%d", link);
+}
+
+static ir_node neighbour_link(builder *b, ir_node n) {
+  int link = link_of(b, n);
+  const char *name = arena_printf(b->memory, "%s_j", link_name(b, link));
+  return ir_input(b->g, IR_FROM_NEIGHBOUR_LINK, link, name, ON_BOND);
+}
+
+static ir_node own_link(builder *b, ir_node n) {
+  int link = link_of(b, n);
+  return ir_input(b->g, IR_FROM_LINK, link, link_name(b, link), ON_PARTICLE);
+}
+
+static ir_node mirror_ends(builder *b, ir_node n) {
+  switch ((ends_input)ir_input_index(b->g, n)) {
+  case ENDS_CLASS_CHORD_X:
+  case ENDS_CLASS_CHORD_Y:
+  case ENDS_CLASS_CHORD_Z:
+    return ir_neg(b->g, n);
+  case ENDS_HELD_I:
+    return kinematics_input(b->g, ENDS_HELD_J);
+  case ENDS_HELD_J:
+    return kinematics_input(b->g, ENDS_HELD_I);
+  default:
+    return n; /* the time step; positions appear only after this */
+  }
+}
+
+static ir_node mirror_quantity(builder *b, ir_node n) {
+  builtin_quantity q = (builtin_quantity)ir_input_index(b->g, n);
+  if (q != QUANTITY_M_END_I && q != QUANTITY_M_END_J) return n;
+  builtin_quantity other = q == QUANTITY_M_END_I ? QUANTITY_M_END_J : QUANTITY_M_END_I;
+  return ir_input(b->g, IR_FROM_QUANTITY, (int)other, builtin_quantities[other].name, ON_BODY);
+}
+
+/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can be told from values
+   toward a neighbour. */
+static ir_node mirror_input(builder *b, ir_node n) {
+  ir *g = b->g;
+  int index = ir_input_index(g, n);
+  switch (ir_input_source(g, n)) {
+  case IR_FROM_QUANTITY:
+    return mirror_quantity(b, n);
+  case IR_FROM_ENDS:
+    return mirror_ends(b, n);
+  case IR_FROM_FIELD:
+    if (ir_place(g, n) == ON_BOND) return n; /* both sides keep the same value */
+    return ir_input(g, IR_FROM_NEIGHBOUR_FIELD, index,
+                    arena_printf(b->memory, "%s_j", ir_name(g, n)),
+                    is_of_particle(g, n) ? ON_BOND : ON_NEIGHBOUR);
+  case IR_FROM_NEIGHBOUR_FIELD: {
+    const char *name = ir_name(g, n);
+    return ir_input(g, IR_FROM_FIELD, index,
+                    arena_text(b->memory, name, strlen(name) - strlen("_j")),
+                    ir_place(g, n) == ON_BOND ? ON_PARTICLE : ON_NEIGHBOUR);
+  }
+  case IR_FROM_NEIGHBOUR_LINK:
+    return b->link[index];
+  case IR_FROM_SHAPE:
+    return neighbour_link(b, n);
+  default:
+    return n;
+  }
+}
+
+/* What the neighbour has for a resolved value. */
+static ir_node mirror(builder *b, ir_node n) {
+  int known = map_get(&b->mirrored, n);
+  if (known >= 0) return known;
+  ir_node image;
+  if (ir_operation(b->g, n) == IR_CONSTANT)
+    image = n;
+  else if (is_leaf(b->g, n))
+    image = mirror_input(b, n);
+  else if (is_of_particle(b->g, n) && goes_over_family(b, n))
+    image = neighbour_link(b, n);
+  else
+    image = with_images(b, n, mirror);
+  map_set(&b->mirrored, n, image);
+  return image;
+}
+
+/* The value without IR_NEIGHBOUR. */
+static ir_node resolve(builder *b, ir_node n) {
+  int known = map_get(&b->resolved, n);
+  if (known >= 0) return known;
+  ir_node image = n;
+  if (ir_operation(b->g, n) == IR_NEIGHBOUR)
+    image = mirror(b, resolve(b, ir_operand(b->g, n, 0)));
+  else if (!is_leaf(b->g, n))
+    image = with_images(b, n, resolve);
+  map_set(&b->resolved, n, image);
+  return image;
+}
+
+/* --- passes ----------------------------------------------------------------------------------- */
+
+/* The pass in which a value can be had: one after that of the links of neighbours that it needs. */
+static int level_of(builder *b, ir_node n) {
+  int known = map_get(&b->level, n);
+  if (known >= 0) return known;
+  int level = 0;
+  if (is_leaf(b->g, n)) {
+    if (ir_operation(b->g, n) == IR_INPUT && ir_input_source(b->g, n) == IR_FROM_NEIGHBOUR_LINK)
+      level = level_of(b, b->link[ir_input_index(b->g, n)]) + 1;
+  } else {
+    for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
+      int below = level_of(b, ir_operand(b->g, n, k));
+      level = below > level ? below : level;
+    }
+  }
+  map_set(&b->level, n, level);
+  return level;
+}
+
+/* A value in pass `now`, in which the particle's own values of earlier passes are links. */
+typedef struct pass_view {
+  builder *b;
+  int now;
+  node_map seen;
+} pass_view;
+
+static ir_node seen_in_pass(pass_view *v, ir_node n) {
+  builder *b = v->b;
+  ir *g = b->g;
+  int known = map_get(&v->seen, n);
+  if (known >= 0) return known;
+  ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
+  if (!is_leaf(g, n)) {
+    if (is_of_particle(g, n) && goes_over_family(b, n) && level_of(b, n) < v->now) {
+      image = own_link(b, n);
+    } else {
+      for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+        operand[k] = seen_in_pass(v, ir_operand(g, n, k));
+      image = made_again(g, n, operand);
+    }
+  }
+  map_set(&v->seen, n, image);
+  return image;
+}
+
+/* --- segments --------------------------------------------------------------------------------- */
+
+typedef struct scheduler {
+  ir *g;
+  arena *memory;
+  family_pass *pass;
+  node_map phase, slot, plane;
+  int loop_count;
+} scheduler;
+
+/* Loops over the neighbours that must be done before the value can be had (of a particle), or before the loop in which it
+   can be had (toward a neighbour). */
+static int phase_of(scheduler *s, ir_node n) {
+  int known = map_get(&s->phase, n);
+  if (known >= 0) return known;
+  int phase = 0;
+  ir_op op = ir_operation(s->g, n);
+  for (int k = 0; k < ir_arity(op); k++) {
+    int below = phase_of(s, ir_operand(s->g, n, k));
+    phase = below > phase ? below : phase;
+  }
+  if (ir_is_reduction(op)) phase++;
+  map_set(&s->phase, n, phase);
+  return phase;
+}
+
+/* Segments stand in the order particles 0, neighbours 0, particles 1, ... */
+static segment *particles_after(scheduler *s, int loops) {
+  return &s->pass->segments[2 * loops];
+}
+
+static segment *neighbours_in(scheduler *s, int loop) {
+  return &s->pass->segments[2 * loop + 1];
+}
+
+static void add_root(scheduler *s, segment *to, ir_node node, segment_target target, int index) {
+  if (to->root_count == to->root_capacity) {
+    int capacity = to->root_capacity ? 2 * to->root_capacity : 8;
+    segment_root *roots = arena_alloc(s->memory, (size_t)capacity * sizeof *roots);
+    if (to->root_count) memcpy(roots, to->roots, (size_t)to->root_count * sizeof *roots);
+    to->roots = roots;
+    to->root_capacity = capacity;
+  }
+  to->roots[to->root_count++] = (segment_root){node, target, index};
+}
+
+static segment_target target_of_reduction(ir_op op) {
+  return op == IR_FAMILY_SUM ? TO_SUM : op == IR_FAMILY_MAX ? TO_LARGEST : TO_SMALLEST;
+}
+
+static const char *name_of(scheduler *s, ir_node n, const char *kind, int index) {
+  const char *name = ir_name(s->g, n);
+  return name ? name : arena_printf(s->memory, "%s_%d", kind, index);
+}
+
+/* The particle's value n as an input of later segments; asks the segment that has it. */
+static ir_node slot_of(scheduler *s, ir_node n) {
+  int slot = map_get(&s->slot, n);
+  if (slot < 0) {
+    slot = s->pass->slot_count++;
+    map_set(&s->slot, n, slot);
+    ir_op op = ir_operation(s->g, n);
+    if (ir_is_reduction(op))
+      add_root(s, neighbours_in(s, phase_of(s, n) - 1), ir_operand(s->g, n, 0),
+               target_of_reduction(op), slot);
+    else
+      add_root(s, particles_after(s, phase_of(s, n)), n, TO_SLOT, slot);
+  }
+  return ir_input(s->g, IR_FROM_SLOT, slot, name_of(s, n, "slot", slot), ON_PARTICLE);
+}
+
+static ir_node plane_of(scheduler *s, ir_node n) {
+  int plane = map_get(&s->plane, n);
+  if (plane < 0) {
+    plane = s->pass->plane_count++;
+    map_set(&s->plane, n, plane);
+    add_root(s, neighbours_in(s, phase_of(s, n)), n, TO_PLANE, plane);
+  }
+  return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
+}
+
+/* What a value toward a neighbour costs when it is computed again, in additions. */
+static int cost_again(const ir *g, ir_node n, int most) {
+  if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
+  ir_op op = ir_operation(g, n);
+  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
+               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+  int cost = cheap ? 1 : 10;
+  for (int k = 0; k < ir_arity(op) && cost < most; k++)
+    cost += cost_again(g, ir_operand(g, n, k), most - cost);
+  return cost;
+}
+
+/* A value as a segment sees it: `loop` of the neighbours, or after `loop` loops for the particle. */
+typedef struct segment_view {
+  scheduler *s;
+  segment_kind kind;
+  int loop;
+  node_map seen;
+} segment_view;
+
+static ir_node seen_in_segment(segment_view *v, ir_node n);
+
+static ir_node computed_here(segment_view *v, ir_node n) {
+  ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
+  for (int k = 0; k < ir_arity(ir_operation(v->s->g, n)); k++)
+    operand[k] = seen_in_segment(v, ir_operand(v->s->g, n, k));
+  return made_again(v->s->g, n, operand);
+}
+
+static ir_node seen_in_segment(segment_view *v, ir_node n) {
+  enum { DEAR = 4 }; /* a plane costs a store and a load */
+  scheduler *s = v->s;
+  const ir *g = s->g;
+  int known = map_get(&v->seen, n);
+  if (known >= 0) return known;
+  ir_node image;
+  if (is_leaf(g, n) || is_uniform(g, n))
+    image = n;
+  else if (ir_is_reduction(ir_operation(g, n)))
+    image = slot_of(s, n);
+  else if (is_of_particle(g, n))
+    image = v->kind == OVER_NEIGHBOURS || phase_of(s, n) < v->loop ? slot_of(s, n)
+                                                                   : computed_here(v, n);
+  else
+    image = phase_of(s, n) < v->loop && cost_again(g, n, DEAR) >= DEAR ? plane_of(s, n)
+                                                                       : computed_here(v, n);
+  map_set(&v->seen, n, image);
+  return image;
+}
+
+/* Roots in terms of what the segment can read. A root that is itself kept in a slot or a plane is computed here. */
+static void view_segment(scheduler *s, segment *a, int loop) {
+  segment_view v = {.s = s, .kind = a->kind, .loop = loop};
+  for (int k = 0; k < a->root_count; k++) { /* more may be added to earlier segments only */
+    ir_node n = a->roots[k].node;
+    bool here = !is_leaf(s->g, n) && !is_uniform(s->g, n) &&
+                !ir_is_reduction(ir_operation(s->g, n)) &&
+                (a->kind == OVER_PARTICLES) == is_of_particle(s->g, n) && phase_of(s, n) == loop;
+    a->roots[k].node = here ? computed_here(&v, n) : seen_in_segment(&v, n);
+  }
+  map_clear(&v.seen);
+}
+
+static bool is_over_neighbours(segment_target target) {
+  return target >= TO_SUM;
+}
+
+static void drop_empty_segments(family_pass *p) {
+  int kept = 0;
+  for (int k = 0; k < p->segment_count; k++)
+    if (p->segments[k].root_count) p->segments[kept++] = p->segments[k];
+  p->segment_count = kept;
+}
+
+static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
+                     int root_count) {
+  scheduler s = {.g = g, .memory = memory, .pass = pass};
+  for (int k = 0; k < root_count; k++) {
+    int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
+    s.loop_count = loops > s.loop_count ? loops : s.loop_count;
+  }
+  pass->segment_count = 2 * s.loop_count + 1;
+  pass->segments = arena_alloc(memory, (size_t)pass->segment_count * sizeof *pass->segments);
+  memset(pass->segments, 0, (size_t)pass->segment_count * sizeof *pass->segments);
+  for (int k = 0; k < pass->segment_count; k++)
+    pass->segments[k].kind = k % 2 ? OVER_NEIGHBOURS : OVER_PARTICLES;
+  for (int k = 0; k < root_count; k++) {
+    int phase = phase_of(&s, roots[k].node);
+    add_root(&s,
+             is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
+                                                 : particles_after(&s, phase),
+             roots[k].node, roots[k].target, roots[k].index);
+  }
+  for (int k = pass->segment_count - 1; k >= 0; k--)
+    view_segment(&s, &pass->segments[k], k / 2);
+  drop_empty_segments(pass);
+  map_clear(&s.phase);
+  map_clear(&s.slot);
+  map_clear(&s.plane);
+}
+
+/* --- the whole -------------------------------------------------------------------------------- */
+
+static void substitute_motion(builder *b, segment_root *roots, int root_count,
+                              const program_motion *motion) {
+  int count = root_count + b->link_count;
+  ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
+  for (int k = 0; k < root_count; k++)
+    all[k] = roots[k].node;
+  for (int k = 0; k < b->link_count; k++)
+    all[root_count + k] = b->link[k];
+  ir_substitute(b->g, all, count, motion->from, motion->to, motion->count, all);
+  map_clear(&b->linked);
+  for (int k = 0; k < root_count; k++)
+    roots[k].node = all[k];
+  for (int k = 0; k < b->link_count; k++) {
+    b->link[k] = all[root_count + k];
+    map_set(&b->linked, b->link[k], k);
+  }
+  free(all);
+}
+
+static void build_pass(builder *b, family_pass *pass, int now, const segment_root *roots,
+                       int root_count) {
+  pass_view v = {.b = b, .now = now};
+  segment_root *wanted = must_alloc(((size_t)root_count + MOST_LINKS) * sizeof *wanted);
+  int count = 0, links = b->link_count;
+  for (int k = 0; k < root_count; k++)
+    if (level_of(b, roots[k].node) == now) wanted[count++] = roots[k];
+  for (int k = 0; k < links; k++)
+    if (level_of(b, b->link[k]) == now) wanted[count++] = (segment_root){b->link[k], TO_LINK, k};
+  for (int k = 0; k < count; k++) {
+    bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
+    if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
+  }
+  map_clear(&v.seen);
+  schedule(b->g, b->memory, pass, wanted, count);
+  free(wanted);
+}
+
+void program_build(family_program *out, const char *name, ir *g, arena *memory,
+                   const segment_root *roots, int root_count, const program_motion *motion,
+                   int *link_count) {
+  builder b = {.g = g, .memory = memory};
+  b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
+  segment_root *own = arena_alloc(memory, ((size_t)root_count + 1) * sizeof *own);
+  int last = 0;
+  for (int k = 0; k < root_count; k++) {
+    own[k] = roots[k];
+    own[k].node = resolve(&b, roots[k].node);
+  }
+  substitute_motion(&b, own, root_count, motion);
+  map_clear(&b.reduced);
+  for (int k = 0; k < root_count; k++) {
+    int level = level_of(&b, own[k].node);
+    last = level > last ? level : last;
+  }
+  *out = (family_program){.name = name, .pass_count = last + 1};
+  out->passes = arena_alloc(memory, (size_t)out->pass_count * sizeof *out->passes);
+  memset(out->passes, 0, (size_t)out->pass_count * sizeof *out->passes);
+  for (int p = last; p >= 0; p--) /* a pass may ask earlier ones for more links */
+    build_pass(&b, &out->passes[p], p, own, root_count);
+  if (b.link_count > *link_count) *link_count = b.link_count;
+  map_clear(&b.resolved);
+  map_clear(&b.mirrored);
+  map_clear(&b.linked);
+  map_clear(&b.reduced);
+  map_clear(&b.level);
+}

@@ -1,0 +1,72 @@
+/* A law of families as programs. A program is a row of passes over all particles: what a pass needs of a neighbour's
+   present step, an earlier pass has left as a link, a value of the particle. A pass is a row of segments over a chunk
+   of particles: particle by particle, or neighbour by neighbour with sums into slots. Values of particles that later
+   segments need stand in slots; values toward neighbours that are too dear to be computed twice stand in planes. The
+   emitter writes segments as loops, the interpreter runs them. */
+#ifndef PERILAT_GENERATOR_PROGRAM_H
+#define PERILAT_GENERATOR_PROGRAM_H
+
+#include "dsl/arena.h"
+#include "generator/ir.h"
+
+/* Particles that the segments of a pass take at a time. */
+enum { FAMILY_CHUNK = 64 };
+
+typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS } segment_kind;
+
+/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction, keeps a field, and
+   gives 0 to what is observed. */
+typedef enum segment_target {
+  TO_SLOT,              /* slot[index] = node */
+  TO_LINK,              /* link[index] = node */
+  TO_PARTICLE_FIELD,    /* new_field[index] = node */
+  TO_PARTICLE_FORCE,    /* force[index] = node */
+  TO_PARTICLE_OBSERVED, /* observed[index] = node */
+  TO_SUM,               /* slot[index] += node; the slot begins with 0 */
+  TO_LARGEST,           /* slot[index] = max(slot, node); begins with -inf */
+  TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
+  TO_PLANE,             /* plane[index][neighbour] = node */
+  TO_NEIGHBOUR_FIELD,   /* new_field[index][neighbour] = node */
+  TO_NEIGHBOUR_OBSERVED /* observed[index][neighbour] = node */
+} segment_target;
+
+typedef struct segment_root {
+  ir_node node;
+  segment_target target;
+  int index;
+} segment_root;
+
+typedef struct segment {
+  segment_kind kind;
+  segment_root *roots;
+  int root_count, root_capacity;
+} segment;
+
+typedef struct family_pass {
+  segment *segments;
+  int segment_count;
+  int slot_count, plane_count;
+} family_pass;
+
+typedef struct family_program {
+  const char *name; /* step, observe */
+  family_pass *passes;
+  int pass_count;
+} family_program;
+
+/* Quantities of a bond's motion and what takes their place. */
+typedef struct program_motion {
+  const ir_node *from, *to;
+  int count;
+} program_motion;
+
+/* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
+   targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for
+   x, to the bit: values of particles that go over a family are links, all others are evaluated again with both sides
+   exchanged. Motion is substituted after that, since stretch and length are the same from either side. `memory` holds
+   the program; *link_count is raised to what it needs. */
+void program_build(family_program *out, const char *name, ir *g, arena *memory,
+                   const segment_root *roots, int root_count, const program_motion *motion,
+                   int *link_count);
+
+#endif
