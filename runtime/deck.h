@@ -66,16 +66,37 @@ typedef struct deck_material {
   int varying_count;
 } deck_material;
 
-typedef enum shape_kind { SHAPE_POINT, SHAPE_RECTANGLE, SHAPE_DISC, SHAPE_POLYGON } shape_kind;
+typedef enum shape_kind { /* those of space from the box on; a point is of both */
+                          SHAPE_POINT,
+                          SHAPE_RECTANGLE,
+                          SHAPE_DISC,
+                          SHAPE_POLYGON,
+                          SHAPE_DOG_BONE,
+                          SHAPE_SEGMENT,
+                          SHAPE_BOX,
+                          SHAPE_CYLINDER,
+                          SHAPE_SPHERE,
+                          SHAPE_EXTRUSION,
+                          SHAPE_FACE
+} shape_kind;
 
-typedef struct deck_shape {
+typedef struct deck_shape { /* m */
   shape_kind kind;
   double at[3];              /* point: position; the nearest site within `within` is meant */
-  double within;             /* point: m; default half a spacing (0 here: not given) */
-  double corner[2], size[2]; /* rectangle: lower left, extent; m */
-  double centre[2], radius, inner_radius; /* disc; m */
-  const double *points;                   /* polygon: x1, y1, x2, y2, ...; m */
-  int point_count;                        /* pairs, at least 3 */
+  double within;             /* point; default half a spacing (0 here: not given) */
+  double corner[3], size[3]; /* rectangle, box: the corner of least coordinates, extent */
+  double rotation;           /* rectangle: about its corner; dog-bone: about its centre; rad */
+  double centre[3], radius,
+      inner_radius; /* disc, sphere; cylinder without centre; dog-bone: radius of its arcs */
+  double width, height, neck; /* dog-bone: of the ends, over all, in the middle */
+  double from[3], to[3];      /* segment, cylinder: its ends */
+  double z[2];                /* extrusion: from, to */
+  const double *points;       /* polygon, extrusion: x1, y1, x2, y2, ...; face: x1, y1, z1, ... */
+  int point_count;            /* pairs or triples, at least 3 */
+  const double *
+      bulge; /* polygon, extrusion: rise of the arc above the edge that begins at each point, outward
+                          positive, points counter-clockwise; NULL: straight edges */
+  int bulge_count;
 } deck_shape;
 
 typedef enum field_kind { FIELD_UNIFORM, FIELD_NORMAL, FIELD_LOGNORMAL, FIELD_WEIBULL } field_kind;
@@ -247,8 +268,9 @@ typedef struct deck {
   X(body)                                                                                          \
   X(notch)                                                                                         \
   X(region)                                                                                        \
-  X(support) X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity)  \
-      X(stop) X(monitor)
+  X(support)                                                                                       \
+  X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop)     \
+      X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \
   int group##_count;

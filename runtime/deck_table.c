@@ -10,58 +10,110 @@
 #define REGION_KEY(group, text)                                                                    \
   { .name = "region", .type = DECK_NAME, .required = true, AT(group, region), .doc = text }
 
-#define SHAPE_KEYS(group)                                                                          \
-  {.name = "shape",                                                                                \
-   .type = DECK_CHOICE,                                                                            \
-   .choices = "point|rectangle|disc|polygon",                                                      \
-   .required = true,                                                                               \
-   AT(group, shape.kind),                                                                          \
-   .doc = "decides which of the keys below are needed"},                                           \
-      {.name = "at",                                                                               \
-       .type = DECK_PAIR,                                                                          \
-       .unit = "m",                                                                                \
-       AT(group, shape.at),                                                                        \
-       .doc = "point: position; the nearest site is meant"},                                       \
-      {.name = "within",                                                                           \
-       .type = DECK_REAL,                                                                          \
-       .unit = "m",                                                                                \
-       .bound = BOUND_POSITIVE,                                                                    \
-       .fallback = "= half a spacing",                                                             \
-       AT(group, shape.within),                                                                    \
-       .doc = "point: largest distance of that site"},                                             \
-      {.name = "corner",                                                                           \
-       .type = DECK_PAIR,                                                                          \
-       .unit = "m",                                                                                \
-       AT(group, shape.corner),                                                                    \
-       .doc = "rectangle: lower left corner"},                                                     \
-      {.name = "size",                                                                             \
-       .type = DECK_PAIR,                                                                          \
-       .unit = "m",                                                                                \
-       .bound = BOUND_POSITIVE,                                                                    \
-       AT(group, shape.size),                                                                      \
-       .doc = "rectangle: width, height"},                                                         \
-      {.name = "centre",                                                                           \
-       .type = DECK_PAIR,                                                                          \
-       .unit = "m",                                                                                \
-       AT(group, shape.centre),                                                                    \
-       .doc = "disc: centre"},                                                                     \
-      {.name = "radius",                                                                           \
-       .type = DECK_REAL,                                                                          \
-       .unit = "m",                                                                                \
-       .bound = BOUND_POSITIVE,                                                                    \
-       AT(group, shape.radius),                                                                    \
-       .doc = "disc: outer radius"},                                                               \
-      {.name = "inner_radius",                                                                     \
-       .type = DECK_REAL,                                                                          \
-       .unit = "m",                                                                                \
-       .bound = BOUND_NOT_NEGATIVE,                                                                \
-       .fallback = "0",                                                                            \
-       AT(group, shape.inner_radius),                                                              \
-       .doc = "disc: radius of the hole"},                                                         \
-  {                                                                                                \
-    .name = "points", .type = DECK_REALS, .unit = "m", AT(group, shape.points),                    \
-    COUNT_AT(group, shape.point_count), .doc = "polygon: x1, y1, x2, y2, x3, y3, ..."              \
-  }
+#define SHAPE_KEYS(group)                                                                           \
+  {.name = "shape",                                                                                 \
+   .type = DECK_CHOICE,                                                                             \
+   .choices = "point|rectangle|disc|polygon|dog_bone|segment|box|cylinder|sphere|extrusion|face",   \
+   .required = true,                                                                                \
+   AT(group, shape.kind),                                                                           \
+   .doc = "decides which of the keys below are needed; those from `box` on are "                    \
+          "of space, a point is of both"},                                                          \
+  {.name = "at",                                                                                    \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.at),                                                                             \
+   .doc = "point: position; the nearest site is meant"},                                            \
+  {.name = "within",                                                                                \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   .fallback = "= half a spacing",                                                                  \
+   AT(group, shape.within),                                                                         \
+   .doc = "point: largest distance of that site"},                                                  \
+  {.name = "corner",                                                                                \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.corner),                                                                         \
+   .doc = "rectangle, box: the corner of least coordinates"},                                       \
+  {.name = "size",                                                                                  \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   AT(group, shape.size),                                                                           \
+   .doc = "rectangle, box: extent along x, y, z"},                                                  \
+  {.name = "rotation",                                                                              \
+   .type = DECK_ANGLE,                                                                              \
+   .fallback = "0",                                                                                 \
+   AT(group, shape.rotation),                                                                       \
+   .doc = "rectangle: about its corner; dog-bone: about its centre; a plain "                       \
+          "number is in degrees"},                                                                  \
+  {.name = "centre",                                                                                \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.centre),                                                                         \
+   .doc = "disc, dog-bone, sphere: centre"},                                                        \
+  {.name = "radius",                                                                                \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   AT(group, shape.radius),                                                                         \
+   .doc = "disc, cylinder, sphere: outer radius; dog-bone: of the arcs at its "                     \
+          "neck"},                                                                                  \
+  {.name = "inner_radius",                                                                          \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_NOT_NEGATIVE,                                                                     \
+   .fallback = "0",                                                                                 \
+   AT(group, shape.inner_radius),                                                                   \
+   .doc = "disc, cylinder, sphere: radius of the hole"},                                            \
+  {.name = "width",                                                                                 \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   AT(group, shape.width),                                                                          \
+   .doc = "dog-bone: of its ends"},                                                                 \
+  {.name = "height",                                                                                \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   AT(group, shape.height),                                                                         \
+   .doc = "dog-bone: from end to end"},                                                             \
+  {.name = "neck",                                                                                  \
+   .type = DECK_REAL,                                                                               \
+   .unit = "m",                                                                                     \
+   .bound = BOUND_POSITIVE,                                                                         \
+   AT(group, shape.neck),                                                                           \
+   .doc = "dog-bone: width in the middle, between two arcs"},                                       \
+  {.name = "from",                                                                                  \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.from),                                                                           \
+   .doc = "segment, cylinder: one end, of the cylinder's axis"},                                    \
+  {.name = "to",                                                                                    \
+   .type = DECK_PLACE,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.to),                                                                             \
+   .doc = "segment, cylinder: the other end"},                                                      \
+  {.name = "z",                                                                                     \
+   .type = DECK_PAIR,                                                                               \
+   .unit = "m",                                                                                     \
+   AT(group, shape.z),                                                                              \
+   .doc = "extrusion: from where to where the polygon reaches"},                                    \
+  {.name = "points",                                                                                \
+   .type = DECK_REALS,                                                                              \
+   .unit = "m",                                                                                     \
+   AT(group, shape.points),                                                                         \
+   COUNT_AT(group, shape.point_count),                                                              \
+   .doc = "polygon, extrusion: x1, y1, x2, y2, x3, y3, ...; face: x1, y1, z1, "                     \
+          "... of the corners of a plane polygon in space"},                                        \
+  {.name = "bulge",                                                                                 \
+   .type = DECK_REALS,                                                                              \
+   .unit = "m",                                                                                     \
+   .fallback = "= straight edges",                                                                  \
+   AT(group, shape.bulge),                                                                          \
+   COUNT_AT(group, shape.bulge_count),                                                              \
+   .doc = "polygon, extrusion: for each point, how far the edge that begins "                       \
+          "there rises as an arc above its chord, outward positive, 0: straight"}
 
 #define TIME_KEYS                                                                                  \
   {.name = "history",                                                                              \

@@ -232,10 +232,15 @@ static void number_particles(rows *w) {
   w->depth = upper[2] - lower[2];
 }
 
+/* To the neighbours of a site. */
+static const long *offsets_of(const rows *w, long site) {
+  return w->offset[w->row_class[rows_row(w, site) + w->margin]];
+}
+
 static void join_neighbours(rows *w) {
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
-    const long *offset = w->offset[w->row_class[rows_row(w, site) + w->margin]];
+    const long *offset = offsets_of(w, site);
     for (int k = 0; k < w->directions; k++)
       w->bonds[site] |= (uint64_t)w->present[site + offset[k]] << k;
   }
@@ -460,11 +465,11 @@ rows_bond *rows_bonds(const rows *w) {
   rows_bond *bonds = must_alloc(((size_t)w->bond_count + 1) * sizeof *bonds);
   long next = 0;
   for (long p = 0; p < w->particle_count; p++) {
-    const long site = w->particle_site[p];
+    const long site = w->particle_site[p], *offset = offsets_of(w, site);
     for (int k = 0; k < w->directions; k++) {
       if (!rows_has_bond(w, site, k)) continue;
       bonds[next++] = (rows_bond){.i = (int32_t)p,
-                                  .j = w->site_particle[rows_partner(w, site, k)],
+                                  .j = w->site_particle[site + offset[k]],
                                   .slot = (int64_t)k * w->size + site};
     }
   }

@@ -1,20 +1,26 @@
-/* Plane shapes of a deck: which points lie in them, which chords cross them. Lengths in m. */
+/* Shapes of a deck, in the plane and in space: which points lie in them, which chords cross them. Points are [2] for
+   shapes of the plane and [3] for those of space. Lengths in m. */
 #ifndef PERILAT_RUNTIME_SHAPE_H
 #define PERILAT_RUNTIME_SHAPE_H
 
 #include "runtime/deck.h"
 
-/* Smallest box with sides along x and y that holds the shape; not a number where the shape's numbers are not. */
+/* Smallest box with sides along the axes that holds the shape; not a number where the shape's numbers are not.
+   lower[2] and upper[2] are 0 for shapes of the plane. */
 void shape_box(const deck_shape *shape, double lower[3], double upper[3]);
 
 /* True inside, on the outline, and outside within `tolerance` of the outline. A polygon's inside is where a ray
-   crosses its outline an odd number of times; a disc with an inner radius is a ring; a point is its own outline. */
+   crosses its outline an odd number of times; a disc with an inner radius is a ring; points, segments and faces are
+   their own outlines. */
 bool shape_contains(const deck_shape *shape, const double *point, double tolerance);
 
 /* True when the open chord a-b has a point deeper than `tolerance` inside the shape: touching a corner or running
-   along the outline is no crossing. A shape without area (a rectangle of width 0, a polygon folded flat) is a slit:
-   every chord that has its ends on either side and meets it, its tip included, crosses it. A point is never
-   crossed. */
+   along the outline is no crossing. A shape without area (a segment, a rectangle of width 0, a polygon folded flat) or
+   without volume (a face) is a slit: every chord that has its ends on either side and meets it, its tip included,
+   crosses it. A point is never crossed. */
 bool shape_crossed(const deck_shape *shape, const double *a, const double *b, double tolerance);
+
+/* Largest distance of a face's corners from one plane, in parts of its extent; not a number for a face without area. */
+double shape_unevenness(const deck_shape *face);
 
 #endif

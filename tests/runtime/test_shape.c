@@ -18,7 +18,7 @@ static double uniform(double low, double high) {
 }
 
 static bool contains(const deck_shape *s, double x, double y, double tolerance) {
-  const double p[2] = {x, y};
+  const double p[3] = {x, y, 0};
   return shape_contains(s, p, tolerance);
 }
 
@@ -202,6 +202,123 @@ static void many_crossings(void **unused) {
   assert_true(crossed(&comb, 0.4, 0.9, 1.2, 0.9));
 }
 
+/* --- arcs ------------------------------------------------------------------------------------- */
+
+static const double pi = 3.14159265358979323846;
+
+/* Four corners of a square on the unit circle, each edge an arc of it, begun at any corner. */
+static void four_arcs_are_a_disc(void **unused) {
+  (void)unused;
+  const deck_shape circle = disc(0.3, -0.2, 1, 0);
+  for (int turn = 0; turn < 8; turn++) {
+    double points[8], bulge[4], lower[3], upper[3];
+    for (int k = 0; k < 4; k++) {
+      const double angle = pi / 8 * turn + pi / 2 * k;
+      points[2 * k] = 0.3 + cos(angle);
+      points[2 * k + 1] = -0.2 + sin(angle);
+      bulge[k] = 1 - sqrt(0.5);
+    }
+    deck_shape s = polygon(points, 4);
+    s.bulge = bulge;
+    shape_box(&s, lower, upper);
+    assert_true(fabs(lower[0] + 0.7) < 1e-14 && fabs(upper[0] - 1.3) < 1e-14);
+    assert_true(fabs(lower[1] + 1.2) < 1e-14 && fabs(upper[1] - 0.8) < 1e-14);
+    state = (uint64_t)turn + 3;
+    for (int n = 0; n < 20000; n++) {
+      double x = uniform(-1, 1.6), y = uniform(-1.5, 1.1);
+      if (n % 4 == 0) y = points[2 * (n / 4 % 4) + 1]; /* at a corner's height */
+      if (n % 8 == 1) y = points[1] + (y > 0 ? 1 : -1) * 1e-17;
+      const double outside = hypot(x - 0.3, y + 0.2) - 1;
+      if (fabs(outside) < 1e-12) continue;
+      assert_int_equal(contains(&s, x, y, 0), outside < 0);
+      assert_int_equal(contains(&s, x, y, 0.01), outside < 0.01);
+      const double bx = uniform(-1, 1.6), by = uniform(-1.5, 1.1);
+      assert_int_equal(crossed(&s, x, y, bx, by), crossed(&circle, x, y, bx, by));
+    }
+  }
+}
+
+/* A keyhole: an arc of more than half a circle on one edge, a bite of less on another. */
+static void arcs_reach_out_and_in(void **unused) {
+  (void)unused;
+  static const double points[] = {-1, -2, 1, -2, 1, 0, -1, 0};
+  static const double bulge[] = {-0.5, 0, 3, 0};
+  deck_shape s = polygon(points, 4);
+  s.bulge = bulge;
+  const double R = (1 + 9) / 6.0, r = (1 + 0.25) / 1.0; /* of chords of length 2 */
+  state = 11;
+  long inside[2] = {0, 0};
+  for (int n = 0; n < 100000; n++) {
+    const double x = uniform(-2, 2), y = uniform(-2.5, 3.5);
+    const bool bite = hypot(x, y - (-1.5 - r)) < r && y > -2;
+    const bool head = hypot(x, y - (3 - R)) < R && y > 0;
+    const bool shaft = fabs(x) < 1 && y > -2 && y <= 0;
+    const bool in = head || (shaft && !bite);
+    assert_int_equal(contains(&s, x, y, 0), in);
+    inside[in]++;
+  }
+  assert_true(inside[0] > 20000 && inside[1] > 20000);
+}
+
+/* The dog-bone of van Vliet and van Mier: width D, height 1.5 D, neck 0.6 D, radius 0.725 D; the arcs end 0.25 D from
+   the ends. */
+static void dog_bone_has_its_area(void **unused) {
+  (void)unused;
+  enum { SIDE = 1200 };
+  const deck_shape s = {.kind = SHAPE_DOG_BONE,
+                        .centre = {0.1, 0.2},
+                        .width = 1,
+                        .height = 1.5,
+                        .neck = 0.6,
+                        .radius = 0.725};
+  const double half_chord = 0.5, depth = 0.725 - 0.2;
+  const double segment = 0.725 * 0.725 * acos(depth / 0.725) - depth * half_chord;
+  const double area = 1.5 - 2 * segment;
+  double counted = 0, turned = 0;
+  deck_shape t = s;
+  t.rotation = 0.3;
+  for (int i = 0; i < SIDE; i++)
+    for (int j = 0; j < SIDE; j++) {
+      const double x = -1 + 2 * (i + 0.5) / SIDE, y = -1 + 2 * (j + 0.5) / SIDE;
+      counted += contains(&s, 0.1 + x, 0.2 + y, 0) ? 4.0 / SIDE / SIDE : 0;
+      turned += contains(&t, 0.1 + x, 0.2 + y, 0) ? 4.0 / SIDE / SIDE : 0;
+    }
+  print_message("dog-bone: area %.6f, counted %.6f, turned %.6f\n", area, counted, turned);
+  assert_true(fabs(counted - area) < 3e-4);
+  assert_true(fabs(turned - area) < 3e-4);
+  assert_true(contains(&s, 0.4 - 1e-9, 0.2, 0) && !contains(&s, 0.4 + 1e-9, 0.2, 0));
+  assert_true(contains(&s, 0.6, 0.2 + 0.5, 1e-12) && !contains(&s, 0.6, 0.2 + 0.49, 1e-6));
+  assert_true(crossed(&s, -1, 0.2, 1, 0.2) && !crossed(&s, 0.45, 0.1, 0.45, 0.3));
+}
+
+static void rectangles_turn_about_their_corner(void **unused) {
+  (void)unused;
+  deck_shape s = rectangle(1, 2, 3, 0.5);
+  s.rotation = 0.7;
+  const double c = cos(0.7), d = sin(0.7);
+  const double corners[] = {
+      1,           2,          1 + 3 * c, 2 + 3 * d, 1 + 3 * c - 0.5 * d, 2 + 3 * d + 0.5 * c,
+      1 - 0.5 * d, 2 + 0.5 * c};
+  const deck_shape same = polygon(corners, 4);
+  state = 5;
+  for (int n = 0; n < 5000; n++) {
+    const double ax = uniform(0, 5), ay = uniform(1, 5), bx = uniform(0, 5), by = uniform(1, 5);
+    assert_int_equal(contains(&s, ax, ay, 0), contains(&same, ax, ay, 0));
+    assert_int_equal(crossed(&s, ax, ay, bx, by), crossed(&same, ax, ay, bx, by));
+  }
+}
+
+static void segments_are_slits(void **unused) {
+  (void)unused;
+  const deck_shape s = {.kind = SHAPE_SEGMENT, .from = {0, 0}, .to = {2, 1}};
+  assert_true(contains(&s, 1, 0.5, 1e-12));
+  assert_false(contains(&s, 1, 0.51, 1e-6));
+  assert_true(crossed(&s, 0.5, 1, 1.5, 0));
+  assert_true(crossed(&s, 2, 0, 2, 2)); /* its tip */
+  assert_false(crossed(&s, 3, 0, 2.5, 2));
+  assert_false(crossed(&s, -1, -0.5, 4, 2)); /* along it */
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rectangle_holds_its_outline),
@@ -213,6 +330,11 @@ int main(void) {
       cmocka_unit_test(slits_cut),
       cmocka_unit_test(crossings_agree_with_samples),
       cmocka_unit_test(many_crossings),
+      cmocka_unit_test(four_arcs_are_a_disc),
+      cmocka_unit_test(arcs_reach_out_and_in),
+      cmocka_unit_test(dog_bone_has_its_area),
+      cmocka_unit_test(rectangles_turn_about_their_corner),
+      cmocka_unit_test(segments_are_slits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
