@@ -212,7 +212,9 @@ typedef enum monitor_kind {
   MONITOR_VELOCITY,     /* m/s: mean over the region */
   MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
-  MONITOR_BROKEN        /* count of bonds with damage >= `above` */
+  MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
+  MONITOR_REACTIONS /* N: half the reaction of the second region less that of the first; a reaction
+                           with `between` */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -269,8 +271,8 @@ typedef struct deck {
   X(notch)                                                                                         \
   X(region)                                                                                        \
   X(support)                                                                                       \
-  X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop)     \
-      X(monitor)
+  X(drive)                                                                                         \
+  X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop) X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \
   int group##_count;
