@@ -83,7 +83,8 @@ static bool is_inline_condition(const emitter *e, ir_node n, ir_node user) {
 static bool is_inline(const emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
   if (op == IR_CONSTANT) return true;
-  if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE || emit_is_uniform(e, n))
+  if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE ||
+      emit_is_uniform(e, n))
     return false;
   ir_node user = e->user[n];
   bool chosen = user == IR_NONE || ir_operation(e->graph, user) == IR_SELECT;
@@ -132,12 +133,32 @@ static void choose_names(emitter *e) {
 }
 
 void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count) {
-  static const char *const own[] = {
-      "law",       "uniforms",   "strip",       "count",        "q",
-      "flags",     "i",          "j",           "in",           "out",
-      "bonds",     "present",    "lower",       "upper",        "low_open",
-      "high_open", "parameters", "present_bit", "protected_bit", "family", "first", "lanes",
-      "k", "to", "half", "back"};
+  static const char *const own[] = {"law",
+                                    "uniforms",
+                                    "strip",
+                                    "count",
+                                    "q",
+                                    "flags",
+                                    "i",
+                                    "j",
+                                    "in",
+                                    "out",
+                                    "bonds",
+                                    "present",
+                                    "lower",
+                                    "upper",
+                                    "low_open",
+                                    "high_open",
+                                    "parameters",
+                                    "present_bit",
+                                    "protected_bit",
+                                    "family",
+                                    "first",
+                                    "lanes",
+                                    "k",
+                                    "to",
+                                    "half",
+                                    "back"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -414,11 +435,13 @@ static void write_body_input(emitter *e, ir_node n) {
 
 /* One line for each node that has a name here, in the order of the graph. */
 void emit_lines(emitter *e) {
-  const char *indent = e->scope == IN_NEIGHBOURS ? "        " : e->scope == IN_PARTICLES ? "      "
-                       : in_loop(e)                ? "    "
-                                                   : "  ";
+  const char *indent = e->scope == IN_NEIGHBOURS  ? "        "
+                       : e->scope == IN_PARTICLES ? "      "
+                       : in_loop(e)               ? "    "
+                                                  : "  ";
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) || is_ends_input(e, n, ENDS_TIME_STEP))
+    if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) ||
+        is_ends_input(e, n, ENDS_TIME_STEP))
       continue;
     c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
     if (!emit_is_input(e, n))

@@ -7,9 +7,8 @@
 #include "generator/emit_parts.h"
 #include "generator/kinematics.h"
 
-static const char *const reduction_start[] = {[TO_SUM] = "0.0",
-                                              [TO_LARGEST] = "-__builtin_inf()",
-                                              [TO_SMALLEST] = "__builtin_inf()"};
+static const char *const reduction_start[] = {
+    [TO_SUM] = "0.0", [TO_LARGEST] = "-__builtin_inf()", [TO_SMALLEST] = "__builtin_inf()"};
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
@@ -221,7 +220,7 @@ static void write_neighbours(emitter *e, const segment *a) {
   write_outputs(e, a);
   write_loop(e, "      ");
   emit_lines(e);
-  c_text_add(e->out, "        const int present = (bonds[q] & present_bit) != 0;\n");
+  c_text_add(e->out, "        const int32_t present = (bonds[q] & present_bit) != 0;\n");
   for (int k = 0; k < a->root_count; k++)
     write_store(e, &a->roots[k], k);
   c_text_add(e->out, "      }\n    }\n");
@@ -231,20 +230,20 @@ static void write_neighbours(emitter *e, const segment *a) {
 
 static void write_pass(emitter *e, const family_program *q, int number) {
   const family_pass *p = &q->passes[number];
-  c_text_add(e->out,
-             "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
-             "  const long half = family->neighbours / 2;\n"
-             "  (void)law, (void)uniforms, (void)half;\n",
-             q->name, number);
+  c_text_add(
+      e->out,
+      "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
+      "  const long half = family->neighbours / 2;\n"
+      "  (void)law, (void)uniforms, (void)half;\n",
+      q->name, number);
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double slot_%d[CHUNK];\n", k);
   for (int k = 0; k < p->plane_count; k++)
-    c_text_add(e->out,
-               "  _Alignas(PL_ALIGNMENT) double plane_%d[2*PL_MAX_DIRECTIONS][CHUNK];\n", k);
-  c_text_add(e->out,
-             "  for (long first = 0; first < family->count; first += CHUNK) {\n"
-             "    const long left = family->count - first;\n"
-             "    const long lanes = left < CHUNK ? left / PL_LANES * PL_LANES : CHUNK;\n");
+    c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double plane_%d[2*PL_MAX_DIRECTIONS][CHUNK];\n",
+               k);
+  c_text_add(e->out, "  for (long first = 0; first < family->count; first += CHUNK) {\n"
+                     "    const long left = family->count - first;\n"
+                     "    const long lanes = left < CHUNK ? left / PL_LANES * PL_LANES : CHUNK;\n");
   for (int k = 0; k < p->segment_count; k++) {
     const segment *a = &p->segments[k];
     open_segment(e, a);

@@ -19,7 +19,7 @@ enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKER
 typedef struct worker {
   atomic_flag busy;
   interpreter *run[RUN_COUNT];
-  family_runner *family; /* of a law of families */
+  family_runner *family;     /* of a law of families */
   const double **parameters; /* [parameters + uniforms] */
   const double **fields;     /* [fields] */
   unsigned char *field_stride;

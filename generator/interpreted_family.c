@@ -34,8 +34,7 @@ static int larger(int a, int b) {
   return a > b ? a : b;
 }
 
-static interpreter *segment_interpreter(family_runner *r, const segment *a,
-                                        const ir_node *inputs) {
+static interpreter *segment_interpreter(family_runner *r, const segment *a, const ir_node *inputs) {
   const kernel_plan *p = r->plan;
   ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
   for (int k = 0; k < a->root_count; k++)
@@ -191,8 +190,8 @@ static interpreter_inputs inputs_of(const family_runner *r) {
 
 /* --- outputs ---------------------------------------------------------------------------------- */
 
-static double *target_of(family_runner *r, const segment_root *root, const pl_family *f,
-                         long first, long k) {
+static double *target_of(family_runner *r, const segment_root *root, const pl_family *f, long first,
+                         long k) {
   switch (root->target) {
   case TO_LINK:
     return f->link[root->index] + first;
@@ -279,7 +278,6 @@ void family_runner_run(family_runner *r, bool observe, int number, const double 
   for (long first = 0; first < f->count; first += LANES) {
     const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
     for (int s = 0; s < now->segment_count; s++)
-      run_segment(r, r->run[observe][number][s], now, &now->segments[s], f, first, lanes,
-                  uniforms);
+      run_segment(r, r->run[observe][number][s], now, &now->segments[s], f, first, lanes, uniforms);
   }
 }

@@ -10,7 +10,7 @@ const ends_origin ends_origins[ENDS_COUNT] = {
 
 ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
-  placement on = o->array == FROM_CLASS                       ? ON_BODY
+  placement on = o->array == FROM_CLASS                      ? ON_BODY
                  : o->array == FROM_HELD && o->owner == OF_I ? ON_PARTICLE
                                                              : ON_BOND;
   ir_node n = ir_input(g, IR_FROM_ENDS, (int)which, o->name, on);
@@ -126,7 +126,8 @@ family_kinematics kinematics_family(ir *g, int dimensions) {
                           v_i[] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
                           v_j[] = {ENDS_V_JX, ENDS_V_JY, ENDS_V_JZ},
                           chord_of[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
-  static const char *const d_names[] = {"d_x", "d_y", "d_z"}, *const e_names[] = {"e_x", "e_y", "e_z"};
+  static const char *const d_names[] = {"d_x", "d_y", "d_z"}, *const e_names[] = {"e_x", "e_y",
+                                                                                  "e_z"};
   family_kinematics k = {0};
   ir_node chord[3] = {IR_NONE, IR_NONE, IR_NONE}, d[3] = {IR_NONE, IR_NONE, IR_NONE};
   ir_node dv[3] = {IR_NONE, IR_NONE, IR_NONE}, now[3] = {IR_NONE, IR_NONE, IR_NONE};

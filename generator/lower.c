@@ -219,7 +219,7 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     int f = c->rule_order[k];
     ir_substitute(g, &c->rule[f], 1, from, to, k, &out->fields[f]);
     lower_name_node(g, out->fields[f], c->law->fields.items[f]->name,
-              c->law->fields.items[f]->rule->where);
+                    c->law->fields.items[f]->rule->where);
     from[k] = c->new_value[f];
     to[k] = out->fields[f];
   }

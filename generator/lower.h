@@ -40,11 +40,11 @@ typedef struct lowered_text {
 
 typedef struct lowered_law {
   ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
-  ir_node F;             /* force state in N (the bond force is the mean of both sides), or IR_NONE */
-  bool along_reference;  /* it acts along the reference bond */
-  ir_node W;           /* the law's own `energy`, or IR_NONE */
-  ir_node *fields;     /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
-  ir_node *outputs;    /* [law->outputs.count] */
+  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  bool along_reference; /* it acts along the reference bond */
+  ir_node W;            /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs;     /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
 

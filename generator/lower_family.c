@@ -35,9 +35,8 @@ components lower_direction(lowering *c) {
   ir_node s = lower_quantity(c->graph, QUANTITY_S);
   components v = {3, {0}};
   for (int k = 0; k < 3; k++)
-    v.of[k] = k == 2 && is_plane(c)
-                  ? number(c, 0)
-                  : ir_div(c->graph, kinematics_input(c->graph, chord[k]), s);
+    v.of[k] = k == 2 && is_plane(c) ? number(c, 0)
+                                    : ir_div(c->graph, kinematics_input(c->graph, chord[k]), s);
   return v;
 }
 
@@ -140,12 +139,12 @@ static ir_node plane_principal(lowering *c, components a, int which) {
 static ir_node determinant(lowering *c, components a) {
   ir *g = c->graph;
   const ir_node *m = a.of;
-  ir_node first = ir_sub(g, ir_mul(g, m[TENSOR_YY], m[TENSOR_ZZ]),
-                         ir_mul(g, m[TENSOR_YZ], m[TENSOR_YZ]));
-  ir_node second = ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_ZZ]),
-                          ir_mul(g, m[TENSOR_YZ], m[TENSOR_XZ]));
-  ir_node third = ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_YZ]),
-                         ir_mul(g, m[TENSOR_YY], m[TENSOR_XZ]));
+  ir_node first =
+      ir_sub(g, ir_mul(g, m[TENSOR_YY], m[TENSOR_ZZ]), ir_mul(g, m[TENSOR_YZ], m[TENSOR_YZ]));
+  ir_node second =
+      ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_ZZ]), ir_mul(g, m[TENSOR_YZ], m[TENSOR_XZ]));
+  ir_node third =
+      ir_sub(g, ir_mul(g, m[TENSOR_XY], m[TENSOR_YZ]), ir_mul(g, m[TENSOR_YY], m[TENSOR_XZ]));
   ir_node sum = ir_sub(g, ir_mul(g, m[TENSOR_XX], first), ir_mul(g, m[TENSOR_XY], second));
   return ir_add(g, sum, ir_mul(g, m[TENSOR_XZ], third));
 }
@@ -160,8 +159,8 @@ static ir_node space_principal(lowering *c, components a, int which) {
   ir_node safe = binary(g, IR_MAX, ir_mul(g, number(c, 2), cube), number(c, 1e-290));
   ir_node ratio = ir_div(g, determinant(c, s), safe);
   ir_node cosine = binary(g, IR_MAX, binary(g, IR_MIN, ratio, number(c, 1)), number(c, -1));
-  ir_node sine = root(c, binary(g, IR_MAX, ir_sub(g, number(c, 1), ir_mul(g, cosine, cosine)),
-                                number(c, 0)));
+  ir_node sine =
+      root(c, binary(g, IR_MAX, ir_sub(g, number(c, 1), ir_mul(g, cosine, cosine)), number(c, 0)));
   ir_node angle = ir_div(g, binary(g, IR_ATAN2, sine, cosine), number(c, 3));
   ir_node twice = ir_mul(g, number(c, 2), size);
   ir_node first = ir_add(g, mean, ir_mul(g, twice, unary(g, IR_COS, angle)));
@@ -247,8 +246,8 @@ static components virtual_work(lowering *c, const expr *e, ir_node force) {
   ir_node moment = ir_mul(g, lower_quantity(g, QUANTITY_S), force);
   ir_node twice = ir_mul(g, number(c, 2), V);
   for (int k = 0; k < TENSOR_COUNT; k++)
-    v.of[k] = is_zero(c, n.of[k]) ? n.of[k]
-                                  : ir_div(g, family_sum(c, ir_mul(g, moment, n.of[k])), twice);
+    v.of[k] =
+        is_zero(c, n.of[k]) ? n.of[k] : ir_div(g, family_sum(c, ir_mul(g, moment, n.of[k])), twice);
   if (c->law->setting == SETTING_PLANE_STRAIN)
     v.of[TENSOR_ZZ] = ir_mul(g, poisson(c, e), ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY]));
   return v;
@@ -257,11 +256,10 @@ static components virtual_work(lowering *c, const expr *e, ir_node force) {
 /* Entry (row, column) of the inverse shape matrix, which the runtime keeps for each particle as an
    upper triangle. */
 static ir_node inverse_shape(lowering *c, int row, int column) {
-  static const char *const names[] = {"shape_0",  "shape_1",  "shape_2",  "shape_3",  "shape_4",
-                                      "shape_5",  "shape_6",  "shape_7",  "shape_8",  "shape_9",
-                                      "shape_10", "shape_11", "shape_12", "shape_13", "shape_14",
-                                      "shape_15", "shape_16", "shape_17", "shape_18", "shape_19",
-                                      "shape_20"};
+  static const char *const names[] = {
+      "shape_0",  "shape_1",  "shape_2",  "shape_3",  "shape_4",  "shape_5",  "shape_6",
+      "shape_7",  "shape_8",  "shape_9",  "shape_10", "shape_11", "shape_12", "shape_13",
+      "shape_14", "shape_15", "shape_16", "shape_17", "shape_18", "shape_19", "shape_20"};
   int size = is_plane(c) ? 3 : 6;
   int r = row < column ? row : column, q = row < column ? column : row;
   int at = r * size - r * (r - 1) / 2 + (q - r);
@@ -290,8 +288,7 @@ static components fit(lowering *c, const expr *e, ir_node stretch) {
   if (c->law->setting == SETTING_PLANE_STRESS) {
     ir_node nu = poisson(c, e);
     ir_node ratio = ir_div(g, nu, ir_sub(g, number(c, 1), nu));
-    v.of[TENSOR_ZZ] =
-        ir_neg(g, ir_mul(g, ratio, ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY])));
+    v.of[TENSOR_ZZ] = ir_neg(g, ir_mul(g, ratio, ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY])));
   }
   return v;
 }
@@ -334,8 +331,7 @@ bool lower_family_call(lowering *c, const expr *e, components *out) {
   switch (f) {
   case FUNCTION_MIN:
   case FUNCTION_MAX:
-    *out = scalar(
-        family_extreme(c, a.of[0], f == FUNCTION_MIN ? IR_FAMILY_MIN : IR_FAMILY_MAX));
+    *out = scalar(family_extreme(c, a.of[0], f == FUNCTION_MIN ? IR_FAMILY_MIN : IR_FAMILY_MAX));
     break;
   case FUNCTION_NORM:
     *out = norm(c, a);
@@ -387,8 +383,8 @@ ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
   ir_mark(g, &W, 1, marks);
   for (ir_node n = 0; n < count; n++) {
     ir_op op = ir_operation(g, n);
-    if (!marks[n] || (op != IR_FAMILY_SUM && op != IR_FAMILY_MAX && op != IR_FAMILY_MIN &&
-                      op != IR_NEIGHBOUR))
+    if (!marks[n] ||
+        (op != IR_FAMILY_SUM && op != IR_FAMILY_MAX && op != IR_FAMILY_MIN && op != IR_NEIGHBOUR))
       continue;
     ir_node inside = ir_operand(g, n, 0), by = ir_derivative(g, inside, stretch);
     if (is_zero(c, by)) continue;

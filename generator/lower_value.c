@@ -67,8 +67,7 @@ ir_node lower_field(ir *g, const law *l, int k) {
 
 static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
   if (q == QUANTITY_TWIST) return scalar(ir_constant(c->graph, 0)); /* no bond twists in a plane */
-  if (q == QUANTITY_N_FAMILY && lower_is_state_law(c))
-    return scalar(lower_family_size(c->graph));
+  if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
   if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c);
   if (builtin_quantities[q].shape == SHAPE_VECTOR)
     return lower_failed_value(c, e->where, "vectors cannot be compiled in laws of bonds yet");
@@ -155,7 +154,8 @@ static components lower_name(lowering *c, const expr *e) {
   if (c->frame)
     for (int k = 0; k < c->frame->function->word_count; k++)
       if (strcmp(c->frame->function->words[k], e->name) == 0) return c->frame->arguments[k];
-  if (!e->symbol) return lower_failed_value(c, e->where, "this name has no value that can be compiled");
+  if (!e->symbol)
+    return lower_failed_value(c, e->where, "this name has no value that can be compiled");
   components v = lower_own_name(c, e);
   const bool of_neighbour = e->primed || (e->indexed && e->symbol->place == ON_PARTICLE);
   return of_neighbour ? lower_neighbour(c, v) : v;
@@ -307,8 +307,7 @@ static bool are_same(const components *a, const components *b, int count) {
   return true;
 }
 
-static known_call *find_call(const lowering *c, const stmt *function,
-                             const components *arguments) {
+static known_call *find_call(const lowering *c, const stmt *function, const components *arguments) {
   for (known_call *k = c->calls[call_bucket(function, arguments)]; k; k = k->next)
     if (k->function == function && are_same(k->arguments, arguments, function->word_count))
       return k;
@@ -353,12 +352,13 @@ static ir_node lower_diff(lowering *c, const expr *e) {
   ir_node f = lower_expr(c, e->arguments[0].value), x = lower_expr(c, e->arguments[1].value);
   if (ir_operation(c->graph, x) != IR_INPUT)
     return lower_fail(c, e->arguments[1].value->where,
-                "nothing can be differentiated by this in a plane");
+                      "nothing can be differentiated by this in a plane");
   if (lower_is_state_law(c) && ir_place(c->graph, f) > ON_BODY && ir_place(c->graph, x) > ON_BODY)
     return lower_fail(c, e->where,
                       "in a law of families only a parameter can be differentiated by yet");
   if (ir_count(c->graph) > MOST_NODES) /* derivatives of derivatives grow without another visit */
-    return lower_fail(c, e->where, "with its derivatives written out the law is too large to compile");
+    return lower_fail(c, e->where,
+                      "with its derivatives written out the law is too large to compile");
   return ir_derivative(c->graph, f, x);
 }
 

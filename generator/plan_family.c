@@ -44,8 +44,7 @@ static ir_node stored_energy(family_planner *p) {
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
   if (l->tree->law != LAW_STATE)
-    return ir_mul(g, ir_constant(g, 0.5),
-                  family_sum(g, lower_stored_energy(l, g, &p->frozen)));
+    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(l, g, &p->frozen)));
   ir_node F, W = p->frozen.W;
   if (W != IR_NONE) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);
@@ -157,8 +156,8 @@ static void look_for_shape(void *context, const ir_node *roots, int root_count) 
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   ir_mark(g, roots, root_count, needed);
   for (ir_node n = 0; n < ir_count(g) && !c->reads_shape; n++)
-    c->reads_shape = needed[n] && ir_operation(g, n) == IR_INPUT &&
-                     ir_input_source(g, n) == IR_FROM_SHAPE;
+    c->reads_shape =
+        needed[n] && ir_operation(g, n) == IR_INPUT && ir_input_source(g, n) == IR_FROM_SHAPE;
   free(needed);
 }
 
@@ -196,8 +195,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   program_motion motion = see_motion(&p);
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 &plan->link_count);
-  program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count,
-                &motion, &plan->link_count);
+  program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
+                &plan->link_count);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",

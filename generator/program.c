@@ -365,10 +365,10 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
     image = slot_of(s, n);
   else if (is_of_particle(g, n))
     image = v->kind == OVER_NEIGHBOURS || phase_of(s, n) < v->loop ? slot_of(s, n)
-                                                                  : computed_here(v, n);
+                                                                   : computed_here(v, n);
   else
     image = phase_of(s, n) < v->loop && cost_again(g, n, DEAR) >= DEAR ? plane_of(s, n)
-                                                                      : computed_here(v, n);
+                                                                       : computed_here(v, n);
   map_set(&v->seen, n, image);
   return image;
 }
@@ -380,8 +380,7 @@ static void view_segment(scheduler *s, segment *a, int loop) {
     ir_node n = a->roots[k].node;
     bool here = !is_leaf(s->g, n) && !is_uniform(s->g, n) &&
                 !ir_is_reduction(ir_operation(s->g, n)) &&
-                (a->kind == OVER_PARTICLES) == is_of_particle(s->g, n) &&
-                phase_of(s, n) == loop;
+                (a->kind == OVER_PARTICLES) == is_of_particle(s->g, n) && phase_of(s, n) == loop;
     a->roots[k].node = here ? computed_here(&v, n) : seen_in_segment(&v, n);
   }
   map_clear(&v.seen);
@@ -412,8 +411,9 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
     pass->segments[k].kind = k % 2 ? OVER_NEIGHBOURS : OVER_PARTICLES;
   for (int k = 0; k < root_count; k++) {
     int phase = phase_of(&s, roots[k].node);
-    add_root(&s, is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
-                                                     : particles_after(&s, phase),
+    add_root(&s,
+             is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
+                                                 : particles_after(&s, phase),
              roots[k].node, roots[k].target, roots[k].index);
   }
   for (int k = pass->segment_count - 1; k >= 0; k--)
@@ -453,8 +453,7 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
   for (int k = 0; k < root_count; k++)
     if (level_of(b, roots[k].node) == now) wanted[count++] = roots[k];
   for (int k = 0; k < links; k++)
-    if (level_of(b, b->link[k]) == now)
-      wanted[count++] = (segment_root){b->link[k], TO_LINK, k};
+    if (level_of(b, b->link[k]) == now) wanted[count++] = (segment_root){b->link[k], TO_LINK, k};
   for (int k = 0; k < count; k++) {
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);

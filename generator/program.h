@@ -17,17 +17,17 @@ typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS } segment_kind;
 /* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction, keeps a field, and
    gives 0 to what is observed. */
 typedef enum segment_target {
-  TO_SLOT,             /* slot[index] = node */
-  TO_LINK,             /* link[index] = node */
-  TO_PARTICLE_FIELD,   /* new_field[index] = node */
-  TO_PARTICLE_FORCE,   /* force[index] = node */
-  TO_PARTICLE_OBSERVED,/* observed[index] = node */
-  TO_SUM,              /* slot[index] += node; the slot begins with 0 */
-  TO_LARGEST,          /* slot[index] = max(slot, node); begins with -inf */
-  TO_SMALLEST,         /* slot[index] = min(slot, node); begins with inf */
-  TO_PLANE,            /* plane[index][neighbour] = node */
-  TO_NEIGHBOUR_FIELD,  /* new_field[index][neighbour] = node */
-  TO_NEIGHBOUR_OBSERVED/* observed[index][neighbour] = node */
+  TO_SLOT,              /* slot[index] = node */
+  TO_LINK,              /* link[index] = node */
+  TO_PARTICLE_FIELD,    /* new_field[index] = node */
+  TO_PARTICLE_FORCE,    /* force[index] = node */
+  TO_PARTICLE_OBSERVED, /* observed[index] = node */
+  TO_SUM,               /* slot[index] += node; the slot begins with 0 */
+  TO_LARGEST,           /* slot[index] = max(slot, node); begins with -inf */
+  TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
+  TO_PLANE,             /* plane[index][neighbour] = node */
+  TO_NEIGHBOUR_FIELD,   /* new_field[index][neighbour] = node */
+  TO_NEIGHBOUR_OBSERVED /* observed[index][neighbour] = node */
 } segment_target;
 
 typedef struct segment_root {

@@ -32,7 +32,18 @@ static const char *const c_own_words[] = {"static",
                                           "PL_FIELD_STATE",
                                           "PL_FIELD_DAMAGE",
                                           "PL_FIELD_OUTPUT",
+                                          "PL_ON_BOND",
+                                          "PL_ON_PARTICLE",
+                                          "PL_ON_NEIGHBOUR",
                                           "PL_KERNEL_ABI",
+                                          "PL_ALIGNMENT",
+                                          "PL_MAX_DIRECTIONS",
+                                          "pl_family",
+                                          "pl_family_function",
+                                          "enum",
+                                          "uint64_t",
+                                          "UINT64_C",
+                                          "_Alignas",
                                           "PL_LANES",
                                           "PL_PRESENT",
                                           "PL_PROTECTED",
@@ -55,14 +66,17 @@ static const char *const c_own_words[] = {"static",
                                           "pl_wrap_angle"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
-    "asm",      "auto",   "break",  "case",   "continue", "default", "do",     "else",
-    "enum",     "extern", "float",  "goto",   "if",       "inline",  "int",    "register",
-    "short",    "signed", "sizeof", "struct", "switch",   "typedef", "typeof", "union",
-    "volatile", "while",  "linux",  "unix",   "NULL",     "bool",    "true",   "false"};
+    "asm",    "auto",   "break",  "case",   "continue", "default", "do",       "else",
+    "extern", "float",  "goto",   "if",     "inline",   "int",     "register", "short",
+    "signed", "sizeof", "struct", "switch", "typedef",  "typeof",  "union",    "volatile",
+    "while",  "linux",  "unix",   "NULL",   "bool",     "true",    "false"};
 /* Functions that a kernel defines. */
 static const char *const c_own_functions[] = {
-    "prepare",     "bounds",       "rows",   "rows_ledger", "rows_observe",  "list",
-    "list_ledger", "list_observe", "states", "tangent",     "perilat_kernel"};
+    "prepare",     "bounds",       "rows",      "rows_ledger", "rows_observe",   "list",
+    "list_ledger", "list_observe", "states",    "tangent",     "perilat_kernel", "step_0",
+    "step_1",      "step_2",       "step_3",    "step_4",      "step_5",         "step_6",
+    "step_7",      "observe_0",    "observe_1", "observe_2",   "observe_3",      "observe_4",
+    "observe_5",   "observe_6",    "observe_7"};
 
 static inline bool c_word_in(const char *const *words, size_t count, const char *at,
                              size_t length) {
@@ -117,6 +131,9 @@ static inline size_t c_quoted(const char *at) {
 
 static inline size_t c_comment(const char *at) {
   static const char begins[] = "/* line ";
+  static const char *const whole[] = {"/* particle by particle */", "/* neighbour by neighbour */"};
+  for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
+    if (strncmp(at, whole[k], strlen(whole[k])) == 0) return strlen(whole[k]);
   const size_t head = sizeof begins - 1;
   if (strncmp(at, begins, head) != 0) return 0;
   const size_t digits = strspn(at + head, "0123456789");
