@@ -213,8 +213,8 @@ typedef enum monitor_kind {
   MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
   MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
-  MONITOR_REACTIONS /* N: half the reaction of the second region less that of the first; a reaction
-                           with `between` */
+  MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
+  MONITOR_REACTIONS     /* N, with `between`: half the reaction of the second less that of the first */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -223,6 +223,7 @@ typedef struct deck_monitor {
   monitor_kind kind;
   const char *region;
   const char *between[2];
+  const char *field;
   int component;
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
