@@ -12,7 +12,7 @@
 /* --- springs ---------------------------------------------------------------------------------- */
 
 enum { SPRING_C, SPRING_RHO, SPRING_PARAMETERS };
-enum { UNIFORM_SPRING, UNIFORM_S, UNIFORM_CHORD, UNIFORMS = UNIFORM_CHORD + 3 };
+enum { UNIFORM_SPRING, UNIFORM_LENGTH, UNIFORM_CHORD, UNIFORMS = UNIFORM_CHORD + 3 };
 
 static const pl_parameter spring_parameters[SPRING_PARAMETERS] = {
     {"c", "N", "force over stretch", 1e5, 1}, {"rho", "kg/m^3", "mass density", 2000, 1}};
@@ -21,7 +21,7 @@ static void spring_prepare(const pl_law *law, const double *p, const pl_bond_cla
                            double *uniforms) {
   (void)law;
   uniforms[UNIFORM_SPRING] = p[SPRING_C] * b->weight;
-  uniforms[UNIFORM_S] = b->s;
+  uniforms[UNIFORM_LENGTH] = b->s;
   memcpy(uniforms + UNIFORM_CHORD, b->chord, sizeof b->chord);
 }
 
@@ -46,10 +46,10 @@ static double spring_of(const double *u, const pl_family *f, long k, long q, dou
     c[a] = u[UNIFORM_CHORD + a] + f->displacement[a][j] - f->displacement[a][q];
     square += c[a] * c[a];
   }
-  const double length = sqrt(square), stretch = (length - u[UNIFORM_S]) / u[UNIFORM_S];
+  const double length = sqrt(square), stretch = (length - u[UNIFORM_LENGTH]) / u[UNIFORM_LENGTH];
   for (int a = 0; a < 3; a++)
     force[a] += u[UNIFORM_SPRING] * stretch * c[a] / length;
-  return 0.25 * u[UNIFORM_SPRING] * u[UNIFORM_S] * stretch * stretch;
+  return 0.25 * u[UNIFORM_SPRING] * u[UNIFORM_LENGTH] * stretch * stretch;
 }
 
 static void spring_forces(const pl_law *law, const double *uniforms, const pl_family *f) {
@@ -231,8 +231,8 @@ static void laws_keep_to_their_lattices(void **state) {
       "&body lattice = 'plate' shape = 'disc' centre = 0, 0 radius = 5 /\n";
   char text[1024];
   snprintf(text, sizeof text, plate, "shells = 2");
-  expect(text, &elastic_central, "hexagonal lattice of nearest neighbours");
-  expect(block, &elastic_central, "hexagonal lattice of nearest neighbours");
+  expect(text, &elastic_bar, "hexagonal lattice of nearest neighbours");
+  expect(block, &elastic_bar, "hexagonal lattice of nearest neighbours");
   snprintf(text, sizeof text, plate, "");
   expect(text, &springs, "in space");
 }
