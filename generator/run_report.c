@@ -122,12 +122,35 @@ static void write_bad_bond(const run *r, const bad_state *b) {
     fprintf(stderr, "  %s\n", error);
 }
 
+static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
+  for (int f = 0; f < kernel->field_count; f++)
+    if ((kernel->fields[f].place == PL_ON_PARTICLE) == on_particles)
+      fprintf(stderr, ", %s %.6g", kernel->fields[f].name, values[f]);
+}
+
+/* What the particle's law read: its family. */
+static void print_family(const run *r, const bad_state *b) {
+  const pl_law *kernel = r->laws[0].law;
+  fprintf(stderr, "  the particle has %d bonds", b->family_count);
+  print_fields(kernel, b->own_fields, true);
+  fputc('\n', stderr);
+  for (int k = 0; k < b->family_count; k++) {
+    const bad_neighbour *n = &b->family[k];
+    fprintf(stderr, "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s", n->particle,
+            n->stretch, n->stretch_rate);
+    print_fields(kernel, n->fields, false);
+    print_fields(kernel, n->fields, true);
+    fputc('\n', stderr);
+  }
+}
+
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
   char place_text[ROWS_PLACE_TEXT];
   fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld, %s\n", b.what,
           b.step, 1e3 * b.time, b.particle,
           rows_place_text(simulation_rows(r->simulation, 0), b.place, place_text));
+  if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "

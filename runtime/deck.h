@@ -214,7 +214,8 @@ typedef enum monitor_kind {
   MONITOR_VELOCITY,     /* m/s: mean over the region */
   MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
-  MONITOR_BROKEN        /* count of bonds with damage >= `above` */
+  MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
+  MONITOR_FIELD         /* the law's: mean over the region of a field or an output on particles */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -223,6 +224,7 @@ typedef struct deck_monitor {
   monitor_kind kind;
   const char *region;
   const char *between[2];
+  const char *field;
   int component;
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
@@ -271,8 +273,8 @@ typedef struct deck {
   X(notch)                                                                                         \
   X(region)                                                                                        \
   X(support)                                                                                       \
-  X(drive)                                                                                         \
-  X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop) X(monitor)
+  X(drive) X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop)     \
+      X(monitor)
 #define X(group)                                                                                   \
   deck_##group *group##s;                                                                          \
   int group##_count;

@@ -631,16 +631,18 @@ void deck_check_initial_velocity(deck_reader *r, const namelist_group *from,
 }
 
 enum {
-  OF_REGION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
+  OF_MOTION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
+  OF_FIELD = 1 << MONITOR_FIELD,
   OF_PAIR = 1 << MONITOR_OPENING,
   OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN
 };
-static const char *const monitor_words[] = {"a reaction monitor", "a displacement monitor",
-                                            "a velocity monitor", "an opening monitor",
-                                            "a damaged monitor",  "a broken monitor"};
-static const deck_key_use monitor_uses[] = {{"region", OF_REGION, true},
+static const char *const monitor_words[] = {
+    "a reaction monitor", "a displacement monitor", "a velocity monitor", "an opening monitor",
+    "a damaged monitor",  "a broken monitor",       "a field monitor"};
+static const deck_key_use monitor_uses[] = {{"region", OF_MOTION | OF_FIELD, true},
                                             {"between", OF_PAIR, true},
-                                            {"component", OF_REGION | OF_PAIR, true},
+                                            {"component", OF_MOTION | OF_PAIR, true},
+                                            {"field", OF_FIELD, true},
                                             {"above", OF_DAMAGE, false}};
 
 static bool is_identifier(const char *name) {
@@ -694,7 +696,7 @@ static const char *watched_region(const deck_monitor *item) {
 
 void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   check_monitor_name(r, item);
-  if (!deck_keys_fit(from, monitor_uses, 4, (int)item->kind, monitor_words[item->kind], r->d))
+  if (!deck_keys_fit(from, monitor_uses, 5, (int)item->kind, monitor_words[item->kind], r->d))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);

@@ -189,12 +189,6 @@ static void output_values(sweep *w, int output, double *values) {
   memcpy(values, own(w)->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
 }
 
-double family_bond_value(const sweep *w, const double *field, int direction, long i) {
-  const rows *g = w->lattice;
-  const long j = rows_partner(g, i, direction);
-  return 0.5 * (field[direction * g->size + i] + field[(direction + g->directions) * g->size + j]);
-}
-
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 double *family_uniforms(const pl_law *law, const rows *g, const double *parameters) {

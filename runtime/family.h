@@ -17,7 +17,4 @@ sweep_engine family_engine(sweep *w, const double *parameters);
    freed. */
 double *family_uniforms(const pl_law *law, const rows *w, const double *parameters);
 
-/* Value of a field (or output) on neighbours in a bond that its end i owns in direction k: the mean of both sides. */
-double family_bond_value(const sweep *w, const double *field, int direction, long i);
-
 #endif

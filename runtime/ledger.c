@@ -13,15 +13,14 @@ void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
   loads_observe(l, state, step, &kinetic, &work);
   terms[LEDGER_KINETIC] = t.kinetic + kinetic;
   terms[LEDGER_STORED] = t.stored;
-  terms[LEDGER_DISSIPATED_DAMAGE] = t.dissipated_state;
   terms[LEDGER_DISSIPATED_DAMPING] =
       t.dissipated_rate + t.dissipated_mass + t.dissipated_pending + l->dissipated;
   terms[LEDGER_EXTERNAL] = l->work + work + t.gravity;
   const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
-  if (!g->begun) {
-    g->begun = 1;
-    g->initial = held;
-  }
+  const double lost = t.internal + l->internal - t.stored;
+  if (!g->begun) *g = (ledger){.begun = 1, .initial = held, .lost = lost};
+  terms[LEDGER_DISSIPATED_DAMAGE] =
+      state->law->kind == PL_STATE ? lost - g->lost : t.dissipated_state;
   terms[LEDGER_IMBALANCE] = terms[LEDGER_EXTERNAL] - (held - g->initial) -
                             terms[LEDGER_DISSIPATED_DAMAGE] - terms[LEDGER_DISSIPATED_DAMPING];
 }

@@ -4,7 +4,13 @@
 
    - kinetic: the sum of half m v- v+.
    - external: the sum over the steps of force times (v- + v+)/2 dt; of step n half, with v-.
-   - dissipated: by mass damping in the same way, by the law as the kernel counts it.
+   - dissipated: by mass damping in the same way, by the law as its kernel counts it.
+
+   A law of families states what it stores, not what it loses: dissipated_damage is the work done
+   against the forces of the bonds, -f (v- + v+)/2 dt for each step and half of it for step n, less
+   the change of the stored energy. It holds all that the law takes, its dampers too, and is only as
+   true as that energy; for a law that states none, stored is 0. The imbalance then tests the
+   integration, the loads and the damping, not the law.
 
    For linear springs they balance to rounding whatever the step (summation by parts of the leapfrog
    scheme). */
@@ -36,6 +42,7 @@ extern const char *const ledger_names[LEDGER_COUNT];
 
 typedef struct ledger {
   double initial; /* J: kinetic and stored at the first sample */
+  double lost;    /* J: laws of families: work against the bonds less stored, then */
   int64_t begun;
 } ledger;
 

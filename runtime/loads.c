@@ -415,12 +415,14 @@ void loads_begin(loads *l, sweep *w) {
   if (w->weight) set_gravity(l, w, 0);
 }
 
-/* The sweep has counted the loss to mass damping and the work of gravity over the way of a free
-   particle: the velocity after the step turns out to be larger by `change`. */
-static void correct_free_way(loads *l, const sweep *w, int component, double before,
+/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over
+   the way of a free particle: the velocity after the step turns out to be larger by `change`. */
+static void correct_free_way(loads *l, const sweep *w, int component, int64_t site, double before,
                              double change) {
   if (component < w->dimensions) l->work += w->push_work[component] * change;
   l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
+  if (w->law->kind == PL_STATE)
+    l->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
 
 static void apply_forces(loads *l, const sweep *w) {
@@ -429,7 +431,7 @@ static void apply_forces(loads *l, const sweep *w) {
     const double change = w->time_step / w->mass[f->component] * f->now;
     w->velocity[f->component][f->site] += change;
     w->displacement[f->component][f->site] += w->time_step * change;
-    correct_free_way(l, w, f->component, f->velocity, change);
+    correct_free_way(l, w, f->component, f->site, f->velocity, change);
   }
 }
 
@@ -443,7 +445,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
     const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
     const double prescribed = (target - c->held) / w->time_step;
     c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
-    correct_free_way(l, w, c->component, before, prescribed - *v);
+    correct_free_way(l, w, c->component, c->site, before, prescribed - *v);
     c->held = target;
     *v = prescribed;
     *u = target;

@@ -51,7 +51,9 @@ typedef struct loads {
   applied *forces;
   long force_count;
   double work; /* J: done by applied forces up to now and by reactions up to the last half step */
-  double dissipated; /* J: by mass damping of loaded particles, beyond what the sweep counts */
+  /* J, of loaded particles beyond what the sweep counts: */
+  double dissipated; /* by mass damping */
+  double internal;   /* work done against the forces of the bonds; laws of families */
 } loads;
 
 /* Selects the regions, protects what is to be protected, collects supports, drives and forces. NULL

@@ -2,13 +2,20 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <strings.h>
 
 #include "dsl/arena.h"
+#include "runtime/damage.h"
+#include "runtime/deck_value.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-static bool counts_bonds(const monitor *m) {
+static bool counts_damage(const monitor *m) {
   return m->deck->kind == MONITOR_DAMAGED || m->deck->kind == MONITOR_BROKEN;
+}
+
+static bool has_component(const monitor *m) {
+  return !counts_damage(m) && m->deck->kind != MONITOR_FIELD;
 }
 
 static const char *unit_of(const deck_monitor *m, int dimensions) {
@@ -23,6 +30,7 @@ static const char *unit_of(const deck_monitor *m, int dimensions) {
     return turns ? "rad" : "m";
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
+  case MONITOR_FIELD: /* the law says */
     break;
   }
   return "1";
@@ -45,17 +53,46 @@ static void take_reactions(monitor *m, const monitors *all) {
 }
 
 static bool check_component(const monitor *m, const monitors *all, diagnostics *d) {
-  if (counts_bonds(m) || m->deck->component < all->state->dof) return true;
+  if (!has_component(m) || m->deck->component < all->state->dof) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "component"),
               "the particles of the law `%s` do not rotate", all->state->law->name);
   return false;
 }
 
 static bool check_damage(const monitor *m, const monitors *all, diagnostics *d) {
-  if (!counts_bonds(m) || all->damage_count) return true;
+  const pl_law *law = all->state->law;
+  if (!counts_damage(m) || damage_on_bonds(law) || damage_on_particles(law)) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "kind"),
-              "the law `%s` has no damage to count", all->state->law->name);
+              "the law `%s` has no damage to count", law->name);
   return false;
+}
+
+/* By its place among the law's fields, then outputs. */
+static const pl_field *law_field(const pl_law *law, int k) {
+  return k < law->field_count ? &law->fields[k] : &law->outputs[k - law->field_count];
+}
+
+static bool find_field(monitor *m, const monitors *all, diagnostics *d) {
+  const pl_law *law = all->state->law;
+  const int count = law->field_count + law->output_count;
+  const char **names = must_calloc((size_t)count + 1, sizeof *names);
+  int there = 0;
+  m->field = -1;
+  for (int k = 0; k < count; k++) {
+    const pl_field *f = law_field(law, k);
+    if (f->place != PL_ON_PARTICLE) continue;
+    names[there++] = f->name;
+    if (strcasecmp(f->name, m->deck->field) == 0) m->field = k;
+  }
+  if (m->field < 0) {
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "field"),
+                "the law `%s` has no `%s` on particles", law->name, m->deck->field);
+    deck_suggest(d, m->deck->field, names, there, "a monitor can watch");
+  } else {
+    m->unit = law_field(law, m->field)->unit;
+  }
+  free(names);
+  return m->field >= 0;
 }
 
 static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
@@ -63,7 +100,7 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
   const double dt = all->state->time_step, steps = m->deck->average / dt;
   m->zero_step = m->deck->zero_at >= 0 ? lround(fmin(m->deck->zero_at / dt, 9e15)) : -1;
   m->window = 1;
-  if (counts_bonds(m) || m->deck->average <= 0) return true;
+  if (counts_damage(m) || m->deck->average <= 0) return true;
   if (steps <= most) {
     m->window = steps < 1 ? 1 : lround(steps);
     return true;
@@ -91,25 +128,20 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_VELOCITY:
     take_sites(m, 0, all, m->deck->region);
     break;
+  case MONITOR_FIELD:
+    if (find_field(m, all, d)) take_sites(m, 0, all, m->deck->region);
+    break;
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
   }
 }
 
-static void take_damages(monitors *m, const sweep *state) {
-  m->damages = must_calloc((size_t)state->law->field_count + 1, sizeof *m->damages);
-  for (int f = 0; f < state->law->field_count; f++)
-    if (state->law->fields[f].kind == PL_FIELD_DAMAGE)
-      m->damages[m->damage_count++] = state->field[f];
-}
-
-monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,
+monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
                        diagnostics *d) {
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
   *m = (monitors){.count = k->monitor_count, .deck = k, .state = state, .loads = l, .bonds = bonds};
-  take_damages(m, state);
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   for (int i = 0; i < m->count; i++) {
     new_monitor(m, i, d);
@@ -119,6 +151,7 @@ monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const 
     monitors_free(m);
     return NULL;
   }
+  m->values = must_calloc((size_t)state->lattice->size, sizeof(double));
   m->ring_memory = must_calloc((size_t)m->ring_size + 1, sizeof(double));
   double *at = m->ring_memory;
   for (int i = 0; i < m->count; at += m->items[i].window, i++)
@@ -133,7 +166,7 @@ void monitors_free(monitors *m) {
     free(m->items[i].indices[1]);
   }
   free(m->items);
-  free(m->damages);
+  free(m->values);
   free(m->ring_memory);
   free(m);
 }
@@ -154,21 +187,30 @@ static double reaction_sum(const monitors *all, const monitor *m) {
   return sum;
 }
 
-double monitors_damage(const monitors *all, int64_t slot) {
-  double most = all->damage_count ? all->damages[0][slot] : 0;
-  for (int k = 1; k < all->damage_count; k++)
-    if (all->damages[k][slot] > most) most = all->damages[k][slot];
-  return most;
+static bool is_counted(const monitor *m, double damage) {
+  return m->deck->kind == MONITOR_BROKEN ? damage >= m->deck->above : damage > m->deck->above;
 }
 
+/* Bonds, or particles where the law's damage is on particles alone. */
 static double count_damaged(const monitors *all, const monitor *m) {
-  const bool broken = m->deck->kind == MONITOR_BROKEN;
+  const rows *g = all->state->lattice;
+  const bool bonds = damage_on_bonds(all->state->law);
   long count = 0;
-  for (long b = 0; b < all->state->lattice->bond_count; b++) {
-    const double damage = monitors_damage(all, all->bonds[b].slot);
-    count += broken ? damage >= m->deck->above : damage > m->deck->above;
-  }
+  for (long b = 0; bonds && b < g->bond_count; b++)
+    count += is_counted(m, damage_of_bond(all->state, &all->bonds[b]));
+  for (long p = 0; !bonds && p < g->particle_count; p++)
+    count += is_counted(m, damage_of_site(all->state, g->particle_site[p]));
   return (double)count;
+}
+
+static double field_mean(const monitors *all, const monitor *m) {
+  const pl_law *law = all->state->law;
+  const double *values = all->values;
+  if (m->field < law->field_count)
+    values = all->state->field[m->field];
+  else
+    sweep_output(all->state, m->field - law->field_count, all->values);
+  return mean_at(values, m->indices[0], m->index_count[0]);
 }
 
 static double value_now(const monitors *all, const monitor *m) {
@@ -183,6 +225,8 @@ static double value_now(const monitors *all, const monitor *m) {
   case MONITOR_OPENING:
     return mean_at(all->state->displacement[c], m->indices[1], m->index_count[1]) -
            mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+  case MONITOR_FIELD:
+    return field_mean(all, m);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;

@@ -1,4 +1,4 @@
-/* What is watched: reactions, displacements, openings, counts of damaged bonds; their running
+/* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on particles; their running
    means, zeros and peaks, and the &stop conditions on them. A value belongs to the state after a
    step; a reaction is that of the step just done.
 
@@ -25,6 +25,7 @@ typedef struct monitor {
   monitor_state state;
   int32_t *indices[2]; /* sites (second list: of an opening), or constraints of a reaction */
   long index_count[2];
+  int field;      /* of a field monitor: the law's field, or field_count + output */
   double *ring;   /* [window] the last values, value of push k at k % window */
   long window;    /* steps; 1: no averaging */
   long zero_step; /* -1: never */
@@ -34,22 +35,17 @@ typedef struct monitors {
   monitor *items;
   int count;
   const deck *deck;
-  const sweep *state;
+  sweep *state;
   const loads *loads;
   const rows_bond *bonds; /* [lattice->bond_count], not owned */
-  const double *
-      *damages; /* [damage_count] the law's fields of that kind, [directions * size] each */
-  int damage_count;
-  double *ring_memory; /* all rings in one */
+  double *values;         /* [size] an output while it is looked at */
+  double *ring_memory;    /* all rings in one */
   long ring_size;
 } monitors;
 
-monitors *monitors_new(const deck *k, const sweep *state, const loads *l, const rows_bond *bonds,
+monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
                        diagnostics *d);
 void monitors_free(monitors *m);
-
-/* Damage of the bond in that slot: the largest of the law's damages, 0 without. */
-double monitors_damage(const monitors *m, int64_t slot);
 
 /* After every step (and once at the start): rings and zeros. */
 void monitors_step(monitors *m, long step);

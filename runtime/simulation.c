@@ -174,6 +174,12 @@ static bool set_up(simulation *s, diagnostics *d) {
   s->lattice = rows_build(k, 0, d);
   if (!s->lattice || !lattice_serves(s, d)) return false;
   s->bonds = rows_bonds(s->lattice);
+  if (k->field_count > 0 && s->law->kind == PL_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, k->fields[0].item.where,
+                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
+                s->law->name);
+    return false;
+  }
   if (k->field_count > 0 || s->law->varying_count > 0) {
     s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
     if (!s->fields) return false;
@@ -193,7 +199,9 @@ static bool set_up(simulation *s, diagnostics *d) {
   frames_choose(s);
   new_history(s);
   s->at.last_frame_step = -1;
-  s->bad_fields = must_calloc((size_t)s->law->field_count + 1, sizeof *s->bad_fields);
+  const size_t family = 2 * (size_t)s->lattice->directions;
+  s->bad_fields = must_calloc((1 + family) * (size_t)s->law->field_count + 1, sizeof(double));
+  s->bad_family = must_calloc(family, sizeof *s->bad_family);
   s->bad = (bad_state){.particle = -1, .bond_particle = -1, .what = ""};
   return true;
 }
@@ -222,6 +230,7 @@ void simulation_free(simulation *s) {
   free(s->history);
   free(s->sampled);
   free(s->bad_fields);
+  free(s->bad_family);
   free(s->bad_parameters);
   free(s);
 }

@@ -71,10 +71,16 @@ typedef enum step_status {
  *interrupted (may be NULL) is set. One parallel region. Samples are taken on the way. */
 step_status simulation_advance(simulation *s, long steps, const volatile sig_atomic_t *interrupted);
 
+typedef struct bad_neighbour { /* of a law of families */
+  long particle;
+  double stretch, stretch_rate; /* before the step */
+  const double *fields; /* [law's fields] at its beginning: toward it; those on particles its own */
+} bad_neighbour;
+
 /* When STEP_BAD: the lowest particle whose velocity was no number or took it further than a spacing
    (half a turn) in one step, and its bond that gave such a force, or else the largest. Rows that
    were bad were not moved, so that their state is that before the step; a partner in another row is
-   moved back by its velocity. */
+   moved back by its velocity. With a law of families there is no such bond, but all neighbours. */
 typedef struct bad_state {
   long step;
   double time;
@@ -86,6 +92,9 @@ typedef struct bad_state {
       *fields; /* of that bond after the step's rules, initial values where these gave no number */
   int field_count;          /* 0 without a bond; the values are the simulation's */
   const double *parameters; /* of the law in that bond; NULL without a bond */
+  const bad_neighbour *family; /* of the particle; the values are the simulation's */
+  int family_count;
+  const double *own_fields; /* [law's fields] those on particles: of the particle */
   const char *what;         /* "not a number", "runaway velocity" */
 } bad_state;
 bad_state simulation_bad(const simulation *s);

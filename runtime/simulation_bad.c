@@ -82,6 +82,44 @@ static void keep_fields(simulation *s, const rows_bond *b) {
   s->bad.field_count = law->field_count;
 }
 
+/* Values at a site of fields on particles, and toward neighbour k of those on neighbours. */
+static void fields_at(const simulation *s, long site, long there, int k, double *values) {
+  for (int f = 0; f < s->law->field_count; f++) {
+    const bool own = s->law->fields[f].place == PL_ON_PARTICLE;
+    values[f] = s->state->field[f][own ? there : k * s->lattice->size + site];
+  }
+}
+
+static void look_at_neighbour(simulation *s, long site, int k) {
+  const rows *g = s->lattice;
+  const long there = rows_partner(g, site, k);
+  const pl_bond_class bond = rows_bond_class(g, k);
+  double ui[3], uj[3], vi[3], vj[3], now = 0, growth = 0;
+  ends_before(s, site, ui, vi);
+  ends_before(s, there, uj, vj);
+  for (int d = 0; d < s->law->dimensions; d++) {
+    const double c = bond.chord[d] + uj[d] - ui[d];
+    now += c * c;
+    growth += c * (vj[d] - vi[d]);
+  }
+  now = sqrt(now);
+  bad_neighbour *n = &s->bad_family[s->bad.family_count++];
+  double *fields = s->bad_fields + s->bad.family_count * s->law->field_count;
+  fields_at(s, site, there, k, fields);
+  *n = (bad_neighbour){g->site_particle[there], now / bond.s - 1, growth / (now * bond.s), fields};
+}
+
+static void look_at_family(simulation *s, long site) {
+  const int half = s->lattice->directions;
+  s->bad.family = s->bad_family;
+  s->bad.own_fields = s->bad_fields;
+  fields_at(s, site, site, 0, s->bad_fields);
+  for (int k = 0; k < 2 * half; k++) {
+    const long owner = k < half ? site : rows_partner(s->lattice, site, k);
+    if (rows_has_bond(s->lattice, owner, k % half)) look_at_neighbour(s, site, k);
+  }
+}
+
 void bad_explain(simulation *s) {
   const sweep_block *at = &s->state->blocks[sweep_bad(s->state)];
   const int32_t particle = s->lattice->site_particle[at->bad_site];
@@ -94,6 +132,10 @@ void bad_explain(simulation *s) {
   s->bad.what = !isfinite(at->bad_velocity)                   ? "not a number"
                 : at->bad_component >= s->lattice->dimensions ? "runaway rotation"
                                                               : "runaway velocity";
+  if (s->law->kind == PL_STATE) {
+    look_at_family(s, at->bad_site);
+    return;
+  }
   for (long m = 0; m < s->lattice->bond_count; m++) {
     const rows_bond *b = &s->bonds[m];
     if (b->i != particle && b->j != particle) continue;

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/damage.h"
 #include "runtime/deck_value.h"
 #include "runtime/simulation_parts.h"
 
@@ -17,9 +18,11 @@ bool frames_want(const simulation *s, const char *name) {
 }
 
 static bool has_damage(const pl_law *law) {
-  for (int f = 0; f < law->field_count; f++)
-    if (law->fields[f].kind == PL_FIELD_DAMAGE) return true;
-  return false;
+  return damage_on_bonds(law) || damage_on_particles(law);
+}
+
+static bool on_bonds(const pl_field *f) {
+  return f->place != PL_ON_PARTICLE;
 }
 
 static void offer(simulation *s, bool offered, frame_field field, frame_source from) {
@@ -37,29 +40,34 @@ void frames_choose(simulation *s) {
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
   double *const *u = s->state->displacement, *const *v = s->state->velocity;
   offer(s, all || frames_want(s, "displacement"),
-        (frame_field){"displacement", "m", false, 2, "other"}, (frame_source){FROM_STATE, u, 0});
-  offer(s, all || frames_want(s, "velocity"), (frame_field){"velocity", "m/s", false, 2, "other"},
+        (frame_field){"displacement", "m", false, s->state->dimensions, "other"},
+        (frame_source){FROM_STATE, u, 0});
+  offer(s, all || frames_want(s, "velocity"),
+        (frame_field){"velocity", "m/s", false, s->state->dimensions, "other"},
         (frame_source){FROM_STATE, v, 0});
-  offer(s, law->dof > 2 && (all || frames_want(s, "rotation")),
+  offer(s, law->dof > law->dimensions && (all || frames_want(s, "rotation")),
         (frame_field){"rotation", "rad", false, 1, "other"}, (frame_source){FROM_STATE, u + 2, 0});
-  offer(s, frames_want(s, "force"), (frame_field){"force", "N", false, 2, "other"},
+  offer(s, frames_want(s, "force"),
+        (frame_field){"force", "N", false, s->state->dimensions, "other"},
         (frame_source){FROM_FORCE, s->state->force, 0});
   const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
   offer(s, damage, (frame_field){"damage", "1", false, 1, "damage"},
         (frame_source){FROM_DAMAGE, NULL, 0});
-  offer(s, s->state->ledger && (all || frames_want(s, "dissipated")),
+  offer(s, s->state->dissipated_state && (all || frames_want(s, "dissipated")),
         (frame_field){"dissipated", "J", false, 1, "other"},
         (frame_source){FROM_DISSIPATED, NULL, 0});
   for (int f = 0; f < law->field_count; f++) {
     const char *name = law->fields[f].name;
     const bool damages = law->fields[f].kind == PL_FIELD_DAMAGE;
     offer(s, all || frames_want(s, name) || (damages && damage),
-          (frame_field){name, law->fields[f].unit, true, 1, damages ? "damage" : "state"},
+          (frame_field){name, law->fields[f].unit, on_bonds(&law->fields[f]), 1,
+                        damages ? "damage" : "state"},
           (frame_source){FROM_FIELD, NULL, f});
   }
   for (int o = 0; o < law->output_count; o++)
     offer(s, frames_want(s, law->outputs[o].name),
-          (frame_field){law->outputs[o].name, law->outputs[o].unit, true, 1, "output"},
+          (frame_field){law->outputs[o].name, law->outputs[o].unit, on_bonds(&law->outputs[o]), 1,
+                        "output"},
           (frame_source){FROM_OUTPUT, NULL, o});
   for (int k = 0; k < law->varying_count; k++) {
     const pl_parameter *p = &law->parameters[law->varying[k]];
@@ -70,9 +78,10 @@ void frames_choose(simulation *s) {
 
 /* Known names that this run cannot give. */
 static bool is_absent(const simulation *s, const char *name) {
-  if (strcasecmp(name, "rotation") == 0) return s->law->dof < 3;
+  if (strcasecmp(name, "rotation") == 0) return s->law->dof == s->law->dimensions;
   if (strcasecmp(name, "damage") == 0) return !has_damage(s->law);
-  return strcasecmp(name, "dissipated") == 0 && !s->deck->output.energy;
+  return strcasecmp(name, "dissipated") == 0 &&
+         (!s->deck->output.energy || s->law->kind == PL_STATE);
 }
 
 enum { OWN_FIELDS = 6 };
@@ -167,25 +176,7 @@ static void site_values(const simulation *s, double *const *arrays, int componen
 
 static void bond_values(const simulation *s, const double *array, double *values) {
   for (long b = 0; b < s->lattice->bond_count; b++)
-    values[b] = array[s->bonds[b].slot];
-}
-
-/* Mean over the reference bonds of a particle that exist, of the largest of each one's damages. */
-static void particle_damage(const simulation *s, double *values) {
-  const rows *w = s->lattice;
-  int32_t *bonds = must_calloc((size_t)w->particle_count, sizeof *bonds);
-  memset(values, 0, (size_t)w->particle_count * sizeof *values);
-  for (long b = 0; b < w->bond_count; b++) {
-    const int32_t ends[2] = {s->bonds[b].i, s->bonds[b].j};
-    const double damage = monitors_damage(s->monitors, s->bonds[b].slot);
-    for (int e = 0; e < 2; e++) {
-      values[ends[e]] += damage;
-      bonds[ends[e]]++;
-    }
-  }
-  for (long p = 0; p < w->particle_count; p++)
-    if (bonds[p]) values[p] /= bonds[p];
-  free(bonds);
+    values[b] = sweep_bond_value(s->state, array, &s->bonds[b]);
 }
 
 /* Energy lost in the bonds that a particle owns (those to the right and above). */
@@ -196,11 +187,20 @@ static void particle_dissipated(const simulation *s, double *values) {
   }
 }
 
+/* Of the law, on particles or on bonds. */
+static void law_values(const simulation *s, const pl_field *field, double *array, double *values) {
+  if (on_bonds(field))
+    bond_values(s, array, values);
+  else
+    site_values(s, &array, 1, values);
+}
+
 static void output_values(simulation *s, int output, double *values) {
-  double *array =
-      must_calloc((size_t)s->lattice->directions * (size_t)s->lattice->size, sizeof *array);
+  const pl_field *field = &s->law->outputs[output];
+  const size_t planes = (size_t)sweep_planes(s->state, field->place);
+  double *array = must_calloc(planes * (size_t)s->lattice->size, sizeof *array);
   sweep_output(s->state, output, array);
-  bond_values(s, array, values);
+  law_values(s, field, array, values);
   free(array);
 }
 
@@ -210,19 +210,19 @@ void simulation_frame_values(simulation *s, int field, double *values) {
   switch (from->kind) {
   case FROM_FORCE:
     sweep_observe(s->state);
-    site_values(s, from->arrays, 2, values);
+    site_values(s, from->arrays, s->frame_fields[field].components, values);
     break;
   case FROM_STATE:
     site_values(s, from->arrays, s->frame_fields[field].components, values);
     break;
   case FROM_DAMAGE:
-    particle_damage(s, values);
+    damage_of_particles(s->state, s->bonds, values);
     break;
   case FROM_DISSIPATED:
     particle_dissipated(s, values);
     break;
   case FROM_FIELD:
-    bond_values(s, s->state->field[from->index], values);
+    law_values(s, &s->law->fields[from->index], s->state->field[from->index], values);
     break;
   case FROM_OUTPUT:
     output_values(s, from->index, values);

@@ -59,7 +59,8 @@ struct simulation {
   int frame_field_count;
   bad_state bad;
   double *bad_parameters; /* of the bad bond */
-  double *bad_fields;     /* [law's fields], of the bad bond */
+  double *bad_fields;     /* [law's fields], of the bad bond; families: [1 + neighbours] of these */
+  bad_neighbour *bad_family;
   progress_state at;
   bool observe, go_on;         /* set by one thread for all */
   const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */

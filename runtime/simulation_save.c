@@ -24,8 +24,9 @@ static void add_state(part_list *l, const simulation *s) {
     add_part(l, "velocity", w->velocity[d], site);
   }
   for (int f = 0; f < w->law->field_count; f++)
-    add_part(l, w->law->fields[f].name, w->field[f], site * (size_t)s->lattice->directions);
-  if (w->ledger) {
+    add_part(l, w->law->fields[f].name, w->field[f],
+             site * (size_t)sweep_planes(w, w->law->fields[f].place));
+  if (w->dissipated_state) {
     add_part(l, "dissipated_state", w->dissipated_state, site);
     add_part(l, "dissipated_rate", w->dissipated_rate, site);
   }
@@ -35,6 +36,7 @@ static void add_state(part_list *l, const simulation *s) {
     add_part(l, "push_work", s->state->push_work, sizeof s->state->push_work);
   }
   add_part(l, "dissipated_mass", w->row_mass, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "internal", w->row_internal, (size_t)s->lattice->row_count * sizeof(double));
 }
 
 /* One list serves saving and restoring; `head` comes first. */
@@ -49,6 +51,7 @@ static part_list parts_of(const simulation *s, progress_state *head) {
   add_part(&l, "forces", s->loads->forces, (size_t)s->loads->force_count * sizeof(applied));
   add_part(&l, "work", &s->loads->work, sizeof(double));
   add_part(&l, "dissipated", &s->loads->dissipated, sizeof(double));
+  add_part(&l, "internal", &s->loads->internal, sizeof(double));
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
   add_part(&l, "rings", s->monitors->ring_memory, (size_t)s->monitors->ring_size * sizeof(double));

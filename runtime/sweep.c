@@ -298,6 +298,13 @@ void sweep_output(sweep *w, int output, double *values) {
   w->engine.output(w, output, values);
 }
 
+double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond) {
+  const rows *g = w->lattice;
+  if (w->law->kind != PL_STATE) return values[bond->slot];
+  const long back = bond->slot / g->size + g->directions;
+  return 0.5 * (values[bond->slot] + values[back * g->size + g->particle_site[bond->j]]);
+}
+
 static double sum_of(const double *values, long count) {
   double sum = 0;
   for (long k = 0; k < count; k++)

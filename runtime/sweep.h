@@ -107,6 +107,9 @@ bool sweep_step(sweep *w);
 void sweep_observe(sweep *w);
 /* Sums in row order; call after all was observed. */
 sweep_totals sweep_sum(const sweep *w);
+/* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a law
+   of families the mean of both sides. */
+double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
 /* An output of the law in the present state: values[sweep_planes * size], defined where bonds or
  * particles are. */
 void sweep_output(sweep *w, int output, double *values);

@@ -363,9 +363,7 @@ static void fields_follow_their_rules(void **state) {
       assert_true(sweep_step(b.w));
     }
     for (long m = 0; m < g->bond_count; m++) {
-      const long i = g->particle_site[bonds[m].i];
-      const int k = (int)(bonds[m].slot / g->size);
-      const double kept = family_bond_value(b.w, b.w->field[1], k, i);
+      const double kept = sweep_bond_value(b.w, b.w->field[1], &bonds[m]);
       assert_true(fabs(kept - most[m]) < 1e-13);
       assert_true(b.w->field[1][bonds[m].slot] == kept); /* both sides saw the same */
     }
