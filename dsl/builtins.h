@@ -24,6 +24,8 @@ enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 
   X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, "mass of particle j")                              \
   X(AREA, "area", "m^2", SCALAR, BODY, IN_PAIR, "cross-section of a bar")                          \
   X(SHELL, "shell", "1", SCALAR, BOND, IN_ANY, "shell of the neighbour: 1 nearest, 2 second, ...") \
+  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, "distance up to which particles are neighbours")   \
+  X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes") \
   X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, "number of bonds of the particle")               \
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, "unit vector along the reference bond")
 

@@ -263,28 +263,39 @@ typedef struct frame_context {
   double *reference[2], *time[2];
   int32_t *bonds;
   long particles[2], bond_count, frames[2];
+  int dimensions[2];
 } frame_context;
 
 static bool same_particles(const frame_context *x) {
-  if (!x->reference[0] || !x->reference[1] || x->particles[0] != x->particles[1]) return false;
+  if (!x->reference[0] || !x->reference[1] || x->particles[0] != x->particles[1] ||
+      x->dimensions[0] != x->dimensions[1])
+    return false;
   double extent = 0, apart = 0;
-  for (long n = 0; n < 2 * x->particles[0]; n++) {
+  for (long n = 0; n < x->dimensions[0] * x->particles[0]; n++) {
     extent = fmax(extent, fabs(x->reference[0][n]));
     apart = fmax(apart, fabs(x->reference[0][n] - x->reference[1][n]));
   }
   return apart <= 1e-9 * extent;
 }
 
+/* Half way between two particles, or where one stands. */
+static void print_middle(const frame_context *x, long i, long j) {
+  const int n = x->dimensions[0];
+  for (int c = 0; c < n; c++)
+    printf("%s%.6g", c ? ", " : "(",
+           500 * (x->reference[0][n * i + c] + x->reference[0][n * j + c]));
+  fputs(") mm", stdout);
+}
+
 static void print_place(const frame_context *x, const char *field, const gap *g) {
-  const double *at = x->reference[0];
   printf("  frame %ld, t = %.6g ms, ", g->frame, 1e3 * x->time[0][g->frame]);
-  if (!table_on_bonds(field))
-    printf("particle %ld at (%.6g, %.6g) mm", g->row, 1e3 * at[2 * g->row],
-           1e3 * at[2 * g->row + 1]);
-  else if (x->bonds && g->row < x->bond_count) {
+  if (!table_on_bonds(field)) {
+    printf("particle %ld at ", g->row);
+    print_middle(x, g->row, g->row);
+  } else if (x->bonds && g->row < x->bond_count) {
     const int32_t *ends = &x->bonds[2 * g->row];
-    printf("bond %ld at (%.6g, %.6g) mm", g->row, 500 * (at[2 * ends[0]] + at[2 * ends[1]]),
-           500 * (at[2 * ends[0] + 1] + at[2 * ends[1] + 1]));
+    printf("bond %ld at ", g->row);
+    print_middle(x, ends[0], ends[1]);
   }
 }
 
@@ -340,7 +351,7 @@ static void compare_frame_times(comparison_run *c, const frame_context *x) {
 static void compare_frames(comparison_run *c) {
   frame_context x = {.bond_count = 0};
   for (int k = 0; k < 2; k++) {
-    x.reference[k] = result_read_reference(c->files[k], &x.particles[k]);
+    x.reference[k] = result_read_reference(c->files[k], &x.particles[k], &x.dimensions[k]);
     x.time[k] = result_read_frame_times(c->files[k], &x.frames[k]);
     x.frames[k] = x.time[k] ? x.frames[k] : 0;
   }

@@ -111,7 +111,7 @@ static bool read_input(driving *r) {
 static int open_law(driving *r) {
   char error[ERROR_LENGTH];
   const char *note;
-  bool good = run_open_material(&r->in->material, r->options->path, &r->model, &r->said);
+  bool good = run_open_material(&r->in->material, NULL, r->options->path, &r->model, &r->said);
   r->opened = r->model.memory != NULL;
   if (r->opened) diag_print(&r->model.said, stderr);
   if (!good) return INPUT_WRONG;

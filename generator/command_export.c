@@ -107,13 +107,17 @@ static bool export_history(result_file *f, FILE *out) {
 /* What a row of a frame is about, before its fields: a particle and its place, or a bond and its
  * ends. */
 typedef struct frame_rows {
-  double *reference; /* [particles][2] m */
-  int32_t *bonds;    /* [rows][2]; NULL: rows are particles */
+  double *reference; /* [particles][dimensions] m */
+  int dimensions;
+  int32_t *bonds; /* [rows][2]; NULL: rows are particles */
   long count;
 } frame_rows;
 
 static void write_frame(FILE *out, const frame_rows *rows, const table_values *columns, int count) {
-  fputs(rows->bonds ? "bond,i,j,x_i [m],y_i [m],x_j [m],y_j [m]" : "particle,x [m],y [m]", out);
+  const int n = rows->dimensions, places = (rows->bonds ? 2 : 1) * n;
+  fputs(rows->bonds ? "bond,i,j" : "particle", out);
+  for (int c = 0; c < places; c++)
+    fprintf(out, ",%c%s [m]", "xyz"[c % n], !rows->bonds ? "" : c < n ? "_i" : "_j");
   putc(count ? ',' : '\n', out);
   write_titles(out, columns, count);
   putc('\n', out);
@@ -122,9 +126,9 @@ static void write_frame(FILE *out, const frame_rows *rows, const table_values *c
     fprintf(out, "%ld", row);
     for (int e = 0; rows->bonds && e < 2; e++)
       fprintf(out, ",%d", (int)ends[e]);
-    for (int c = 0; c < (rows->bonds ? 4 : 2); c++) {
+    for (int c = 0; c < places; c++) {
       putc(',', out);
-      write_number(out, rows->reference[2 * ends[c / 2] + c % 2]);
+      write_number(out, rows->reference[n * ends[c / n] + c % n]);
     }
     if (count) putc(',', out);
     write_row(out, columns, count, row);
@@ -141,7 +145,8 @@ static bool export_frame(result_file *f, const export_request *q, FILE *out) {
             q->result, frames, q->frame);
     return false;
   }
-  frame_rows rows = {.reference = result_read_reference(f, &particles)};
+  frame_rows rows = {.reference = NULL};
+  rows.reference = result_read_reference(f, &particles, &rows.dimensions);
   if (q->bonds) rows.bonds = result_read_bonds(f, NULL, &bonds);
   rows.count = q->bonds ? bonds : particles;
   bool good = rows.reference && (rows.bonds || !q->bonds);

@@ -74,10 +74,12 @@ static int info_result(const char *path) {
     return 1;
   }
   long particles = 0, bonds = 0, frames = 0;
-  free(result_read_reference(f, &particles));
+  int dimensions;
+  free(result_read_reference(f, &particles, &dimensions));
   free(result_read_bonds(f, NULL, &bonds));
   free(result_read_frame_times(f, &frames));
-  printf("%s: %ld particles, %ld bonds, %ld frames\n", path, particles, bonds, frames);
+  printf("%s: %ld particles%s, %ld bonds, %ld frames\n", path, particles,
+         dimensions == 3 ? " in space" : "", bonds, frames);
   char *overrides = result_read_text(f, "/input/set");
   if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/units.h"
 #include "generator/commands.h"
 #include "generator/model.h"
 #include "runtime/plot.h"
@@ -34,6 +35,32 @@ static bool read_whole(const char *name, const char *text, long *value) {
   *value = strtol(text, &end, 10);
   if (!*end && end != text && !errno && labs(*value) < INT_MAX) return true;
   fprintf(stderr, "perilat: error: %s needs a whole number, not `%s`\n", name, text);
+  return false;
+}
+
+/* "z=0.05" or "x=5 mm". */
+static bool read_slice(const char *text, plot_map_options *o) {
+  const char *axis = strchr("xyz", text[0]), *bad;
+  char *end;
+  size_t bad_length;
+  unit metre, in;
+  unit_parse("m", 1, &metre, &bad, &bad_length);
+  in = metre;
+  if (text[0] && axis && text[1] == '=') {
+    o->slice_axis = (int)(axis - "xyz");
+    o->slice_at = strtod(text + 2, &end);
+    const bool number = end != text + 2 && isfinite(o->slice_at);
+    end += strspn(end, " ");
+    if (number && (!*end || unit_parse(end, strlen(end), &in, &bad, &bad_length)) &&
+        dim_equal(in.dim, metre.dim)) {
+      o->slice_at *= in.factor;
+      return true;
+    }
+  }
+  fprintf(stderr,
+          "perilat: error: --slice needs an axis and a place in m or with a unit, e.g. z=0.05 or "
+          "'x=5 mm', not `%s`\n",
+          text);
   return false;
 }
 
@@ -85,7 +112,9 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
     bad = bad || !read_whole("--component", v, &whole);
     q->map.component = (int)whole;
-  } else if (argv[*at][0] == '-')
+  } else if ((v = special_value(argc, argv, at, "--slice", &q->of_maps, &bad)))
+    bad = bad || !read_slice(v, &q->map);
+  else if (argv[*at][0] == '-')
     bad = option_unknown("plot", argv[*at]);
   else
     q->results[q->result_count++] = argv[(*at)++];
@@ -161,8 +190,9 @@ static bool spares_results(const plot_request *q) {
 }
 
 int command_plot(int argc, char **argv) {
-  plot_request q = {.curve = {.output = NULL},
-                    .map = {.frame = -1, .component = -1, .factor = -1, .field = "damage"}};
+  plot_request q = {
+      .curve = {.output = NULL},
+      .map = {.frame = -1, .component = -1, .factor = -1, .field = "damage", .slice_axis = -1}};
   q.results = must_calloc((size_t)argc + 1, sizeof *q.results);
   q.labels = must_calloc((size_t)argc + 1, sizeof *q.labels);
   q.ys = must_calloc((size_t)argc + 1, sizeof *q.ys);

@@ -56,8 +56,9 @@
   X(plot, "--label", "TEXT", "name of a result's curve, one for each result")                                          \
   X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")                             \
   X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                                        \
-  X(plot, "--component", "K", "component of a vector: 0 is x, 1 is y; its size if not given")                          \
+  X(plot, "--component", "K", "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                  \
   X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given")                     \
+  X(plot, "--slice", "z=0.05", "a slice of a body in space, half a spacing to either side; its surface if not given") \
   X(compare, "--tolerance", "R", "largest relative difference that counts as the same (0)")                            \
   X(compare, "--history", "NAME", "compare this history only; may be given several times")                             \
   X(compare, "--field", "NAME", "compare this field only; may be given several times")                                 \

@@ -62,7 +62,7 @@ static bool open_law(facts *f, const info_law_options *o) {
     f->material.item.where = (span){0, 0, UINT16_MAX};
     good = settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
                          &f->said) &&
-           run_open_material(&f->material, NULL, &f->model, &f->said);
+           run_open_material(&f->material, NULL, NULL, &f->model, &f->said);
   } else {
     good = model_open(&f->model, path ? path : o->law, NULL, 0) &&
            (f->model.law->tree->law == LAW_STATE || model_plan(&f->model));

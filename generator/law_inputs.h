@@ -23,6 +23,8 @@ int law_motion_place(builtin_quantity q);
   X(M_END_J, bonds->mass_j)                                                                        \
   X(AREA, bonds->area)                                                                             \
   X(SHELL, bonds->shell)                                                                           \
+  X(HORIZON, bonds->horizon)                                                                       \
+  X(WEIGHT, bonds->weight)                                                                         \
   X(N_FAMILY, bonds->n)
 
 /* Their values; those of all other quantities stay as they are. */

@@ -9,15 +9,17 @@
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
-/* Not 0 where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held
-   with either of its particles. */
-static ir_node held_flag(lowering *c, placement on) {
+/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with either of its
+   particles. */
+static ir_node held_where(lowering *c, placement on) {
   ir *g = c->graph;
-  if (c->mode == LOWER_PROTECTABLE) return kinematics_input(g, ENDS_PROTECTED);
+  ir_node zero = ir_constant(g, 0);
+  if (c->mode == LOWER_PROTECTABLE)
+    return binary(g, IR_LT, zero, kinematics_input(g, ENDS_PROTECTED));
   if (c->mode != LOWER_HELD) return IR_NONE;
-  ir_node mine = kinematics_input(g, ENDS_HELD_I);
+  ir_node mine = binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_I));
   if (on == ON_PARTICLE) return mine;
-  return binary(g, IR_MAX, mine, kinematics_input(g, ENDS_HELD_J));
+  return binary(g, IR_OR, mine, binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_J)));
 }
 
 /* min(max(old, rule), 1) in a form in which a rule that is not a number stays so, and is found. */
@@ -26,9 +28,8 @@ static ir_node clamp_damage(lowering *c, placement on, ir_node old, ir_node rule
   ir_node one = ir_constant(g, 1);
   ir_node grown = ir_select(g, binary(g, IR_LT, rule, old), old, rule);
   ir_node clamped = ir_select(g, binary(g, IR_LT, one, grown), one, grown);
-  ir_node held = held_flag(c, on);
-  if (held == IR_NONE) return clamped;
-  return ir_select(g, binary(g, IR_LT, ir_constant(g, 0), held), old, clamped);
+  ir_node held = held_where(c, on);
+  return held == IR_NONE ? clamped : ir_select(g, held, old, clamped);
 }
 
 /* a - b of a guard a >= b or a > b. */

@@ -223,9 +223,7 @@ bool model_plan(model *m) {
   return model_plan_varying(m, NULL, 0);
 }
 
-bool model_plan_varying(model *m, const int *varying, int varying_count) {
-  double begun = monotonic_seconds();
-  m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
+static bool emit_plan(model *m, double begun) {
   if (!m->plan) return false;
   char *unkeyed = emit_kernel(m->plan, "");
   m->key = toolchain_key(unkeyed);
@@ -233,6 +231,18 @@ bool model_plan_varying(model *m, const int *varying, int varying_count) {
   m->c_text = emit_kernel(m->plan, m->key);
   m->seconds_front += monotonic_seconds() - begun;
   return true;
+}
+
+bool model_plan_varying(model *m, const int *varying, int varying_count) {
+  double begun = monotonic_seconds();
+  m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
+  return emit_plan(m, begun);
+}
+
+bool model_plan_of_families(model *m) {
+  double begun = monotonic_seconds();
+  m->plan = plan_kernel_of_families(m->law, &m->said);
+  return emit_plan(m, begun);
 }
 
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size) {

@@ -42,6 +42,8 @@ bool model_open_text(model *m, const char *path, const char *text, const law_cho
 bool model_plan(model *m);
 /* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */
 bool model_plan_varying(model *m, const int *varying, int varying_count);
+/* The same for a central law of bonds as a law of families. */
+bool model_plan_of_families(model *m);
 /* Kernel for the runtime: compiled; without a C compiler interpreted, and *note says so. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);

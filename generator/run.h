@@ -37,9 +37,9 @@ typedef struct run_options {
 int run_deck(const run_options *o);
 
 /* Opens the law of a material with the options that the deck chooses (these are taken out of its assignments); the
-   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The model must be closed when
-   out->memory is set. */
-bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said);
+   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The law takes the setting of
+   the lattice (NULL: its first), and is planned for it. The model must be closed when out->memory is set. */
+bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out, diagnostics *said);
 
 /* main() of a stand-alone solver. */
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,

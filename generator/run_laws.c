@@ -114,7 +114,42 @@ static bool plan_material(const deck_material *m, model *out, diagnostics *said)
   return good;
 }
 
-bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said) {
+static law_setting setting_of(const deck_lattice *l) {
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
+    if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
+  return SETTING_PLANE_STRESS;
+}
+
+/* The law takes the setting of its lattice. */
+static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
+                         diagnostics *said) {
+  out->law->setting = setting_of(l);
+  if (law_allows(out->law, out->law->setting)) return true;
+  const tree *t = out->law->tree;
+  char meant[96] = "";
+  for (int k = 0; k < t->setting_count; k++) {
+    size_t used = strlen(meant);
+    snprintf(meant + used, sizeof meant - used, "%s%s", k ? ", " : "", t->settings[k]);
+  }
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` is meant for %s, but the lattice '%s' is in %s", t->name, meant,
+              l->name, law_setting_name(out->law->setting));
+  diag_hint(said,
+            "take another law or setting; where the equations hold in %s, too, add it to the "
+            "law's line `for`",
+            law_setting_name(out->law->setting));
+  return false;
+}
+
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a central law runs as one of
+   families. */
+static bool needs_families(const deck_lattice *l, const law *of) {
+  const bool hexagon = strcmp(l->kind, "hexagonal") == 0 && l->horizon <= 1 && l->shells <= 1;
+  return of->tree->law == LAW_CENTRAL_BOND && !hexagon;
+}
+
+bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
+                       diagnostics *said) {
   char *path = model_find(m->model, deck_path);
   if (!path) {
     diag_report(said, DIAG_FILE, deck_where(&m->item, "model"), "there is no model `%s`", m->model);
@@ -124,7 +159,11 @@ bool run_open_material(deck_material *m, const char *deck_path, model *out, diag
   }
   bool good = model_open(out, path, NULL, 0);
   if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
-  good = good && plan_material(m, out, said);
+  if (good && l) good = take_setting(m, l, out, said);
+  if (good && l && needs_families(l, out->law) && m->varying_count == 0)
+    good = model_plan_of_families(out);
+  else
+    good = good && plan_material(m, out, said);
   free(path);
   return good;
 }
@@ -162,15 +201,6 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
-/* Kernels are compiled for plane stress only. */
-static bool setting_is_supported(run *r, const deck_lattice *l) {
-  if (strcmp(l->setting, "plane_strain") != 0) return true;
-  diag_report(&r->said, DIAG_NOT_SUPPORTED, deck_where(&l->item, "setting"),
-              "laws cannot be compiled for plane strain yet");
-  diag_hint(&r->said, "write setting = 'plane_stress', or leave it out");
-  return false;
-}
-
 /* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
 static bool obeys_mechanics(run *r, int lattice, model *opened) {
   const deck_lattice *d = &r->deck->lattices[lattice];
@@ -201,7 +231,6 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
 int load_law(run *r, int lattice) {
   deck_material *m =
       &r->deck->materials[deck_find_material(r->deck, r->deck->lattices[lattice].name)];
-  if (!setting_is_supported(r, &r->deck->lattices[lattice])) return INPUT_WRONG;
   const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;
   if (r->options->laws) {
     if (!b) {
@@ -214,7 +243,8 @@ int load_law(run *r, int lattice) {
     r->built_in[lattice] = b;
   } else {
     model *opened = &r->models[r->open_models];
-    bool good = run_open_material(m, r->options->deck_path, opened, &r->said);
+    bool good =
+        run_open_material(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
     if (opened->memory) tell(r, &opened->said);
     r->open_models += opened->memory != NULL;
     if (!good) return INPUT_WRONG;

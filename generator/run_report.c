@@ -58,10 +58,15 @@ static void announce_fields(const run *r) {
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
-  printf("  lattice    %s: %s, spacing %.6g mm, %ld particles, %ld bonds, %.5g x %.5g mm between "
-         "outermost sites\n",
-         k->name, k->kind, 1e3 * w->spacing, w->particle_count, w->bond_count, 1e3 * w->width,
-         1e3 * w->height);
+  char depth[32] = "", family[64] = "";
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  if (w->shell[w->directions - 1] > 1)
+    snprintf(family, sizeof family, ", %d neighbours", 2 * w->directions);
+  printf(
+      "  lattice    %s: %s, spacing %.6g mm%s, %ld particles, %ld bonds, %.5g x %.5g%s mm between "
+      "outermost sites\n",
+      k->name, k->kind, 1e3 * w->spacing, family, w->particle_count, w->bond_count, 1e3 * w->width,
+      1e3 * w->height, depth);
 }
 
 void announce(const run *r) {
@@ -141,8 +146,10 @@ static void print_family(const run *r, const bad_state *b) {
 
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
-  fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld (%.6g, %.6g mm)\n",
-          b.what, b.step, 1e3 * b.time, b.particle, 1e3 * b.x, 1e3 * b.y);
+  char place_text[ROWS_PLACE_TEXT];
+  fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld, %s\n", b.what,
+          b.step, 1e3 * b.time, b.particle,
+          rows_place_text(simulation_rows(r->simulation, 0), b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,

@@ -108,15 +108,18 @@ static result_text *collect_texts(run *r, bool c_text, int *count) {
 
 static void particle_table(run *r, const rows *w, result_header *h) {
   size_t n = (size_t)w->particle_count;
-  double *reference = arena_alloc(r->memory, 2 * n * sizeof *reference);
+  const size_t dimensions = (size_t)w->dimensions;
+  double *reference = arena_alloc(r->memory, dimensions * n * sizeof *reference);
   double *volume = arena_alloc(r->memory, n * sizeof *volume);
   int32_t *body = arena_alloc(r->memory, n * sizeof *body);
   for (size_t p = 0; p < n; p++) {
-    reference[2 * p] = w->x[w->particle_site[p]];
-    reference[2 * p + 1] = w->y[w->particle_site[p]];
+    double at[3];
+    rows_place(w, w->particle_site[p], at);
+    memcpy(reference + dimensions * p, at, dimensions * sizeof *at);
     volume[p] = w->volume;
   }
   rows_bodies(w, r->deck, 0, body);
+  h->dimensions = w->dimensions;
   h->particle_count = w->particle_count;
   h->reference = reference;
   h->volume = volume;

@@ -27,7 +27,10 @@ FIND(lattice, name)
 FIND(monitor, name)
 FIND(material, lattice)
 
-const char *const deck_component_names[3] = {"x", "y", "rotation"};
+const char *deck_component_name(int dimensions, int component) {
+  static const char *const names[] = {"x", "y", "rotation", "z"};
+  return names[dimensions == 3 && component == 2 ? 3 : component];
+}
 
 /* --- one group -------------------------------------------------------------------------------- */
 

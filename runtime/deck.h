@@ -139,7 +139,9 @@ typedef struct deck_region {
   deck_shape shape;
 } deck_region;
 
-enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4 };
+/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in space 0 x, 1 y, 2 z.
+   Bits of `fix` are 1 << component. */
+enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
 
 typedef struct deck_support {
   deck_item item;
@@ -150,7 +152,7 @@ typedef struct deck_support {
 typedef struct deck_drive { /* prescribed motion: velocity or displacement; free before `start` */
   deck_item item;
   const char *region;
-  int component; /* 0 x, 1 y, 2 rotation */
+  int component;
   bool is_displacement;
   time_function motion; /* m/s or m (rad/s, rad) */
 } deck_drive;
@@ -158,7 +160,7 @@ typedef struct deck_drive { /* prescribed motion: velocity or displacement; free
 typedef struct deck_force { /* total force on the region, shared equally by its particles */
   deck_item item;
   const char *region;
-  int component;       /* 0, 1; 2: moment in N*m */
+  int component;       /* a rotation: moment in N*m */
   time_function force; /* N */
 } deck_force;
 
@@ -184,15 +186,15 @@ typedef struct deck_damping { /* kind 'mass': force -rate * mass * velocity on e
 
 typedef struct deck_gravity { /* force mass * acceleration on every particle */
   deck_item item;
-  double acceleration[2]; /* m/s^2 */
+  double acceleration[3]; /* m/s^2 */
   time_function factor;   /* 1: full */
 } deck_gravity;
 
 typedef struct deck_initial_velocity { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
-  int component; /* 0, 1; 2: rotation */
-  double value;  /* m/s, rad/s */
+  int component;
+  double value; /* m/s, rad/s */
 } deck_initial_velocity;
 
 typedef struct deck_stop {
@@ -303,7 +305,7 @@ int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 
-/* Names of the components 0, 1, 2 of a motion: "x", "y", "rotation". */
-extern const char *const deck_component_names[3];
+/* "x", "y", and "rotation" in the plane or "z" in space. */
+const char *deck_component_name(int dimensions, int component);
 
 #endif

@@ -265,6 +265,43 @@ static void check_shape(deck_reader *r, const namelist_group *from, const deck_i
   if (r->d->errors == errors) check_numbers(r, item, shape);
 }
 
+/* --- components ------------------------------------------------------------------------------- */
+
+enum { WRITTEN_Z = 2, WRITTEN_ROTATION = 3 }; /* positions among "x|y|z|rotation" */
+
+static int dimensions_of_region(const deck_reader *r, const char *name) {
+  const int k = name ? deck_find_region(r->k, name) : -1;
+  return k < 0 ? 0 : dimensions_of(r, r->k->regions[k].lattice);
+}
+
+/* The degree of freedom of a direction as written. -1 after a message: it is none of the region's particles. */
+static int component_of(deck_reader *r, span where, const char *region, int written) {
+  const int dimensions = dimensions_of_region(r, region);
+  if (written < WRITTEN_Z) return written;
+  if (dimensions == 2 && written == WRITTEN_Z)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "there is no direction z in the plane");
+  else if (dimensions == 3 && written == WRITTEN_ROTATION)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "particles of a lattice in space have no rotation");
+  else
+    return 2;
+  return -1;
+}
+
+static bool take_component(deck_reader *r, const deck_item *item, const char *region,
+                           int *component) {
+  const int found = component_of(r, deck_where(item, "component"), region, *component);
+  if (found >= 0) *component = found;
+  return found >= 0;
+}
+
+static bool is_rotation(const deck_reader *r, const char *region, int component) {
+  return component == 2 && dimensions_of_region(r, region) != 3;
+}
+
+static const char *component_name(const deck_reader *r, const char *region, int component) {
+  return deck_component_name(dimensions_of_region(r, region), component);
+}
+
 /* --- groups, in the order of DECK_GROUPS ------------------------------------------------------ */
 
 void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simulation *item) {
@@ -458,7 +495,14 @@ void deck_check_region(deck_reader *r, const namelist_group *from, deck_region *
 
 void deck_check_support(deck_reader *r, const namelist_group *from, deck_support *item) {
   (void)from;
+  int fix = 0;
   item_region_known(r, &item->item, item->region);
+  for (int k = 0; k <= WRITTEN_ROTATION; k++) {
+    if (!(item->fix & 1 << k)) continue;
+    const int component = component_of(r, deck_where(&item->item, "fix"), item->region, k);
+    if (component >= 0) fix |= 1 << component;
+  }
+  item->fix = fix;
 }
 
 /* A particle cannot follow two motions; regions that overlap are found when their particles are
@@ -478,7 +522,7 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
     other = deck_where(&k->drives[i].item, "component");
   }
   if (!conflict) return;
-  const char *component = deck_component_names[item->component];
+  const char *component = component_name(r, item->region, item->component);
   diag_report(r->d, DIAG_CONFLICT, where, "`%s` of region `%s` has two motions", component,
               deck_shown(r->memory, item->region));
   diag_note(r->d, other, "the other one");
@@ -500,8 +544,9 @@ static const namelist_key *either(deck_reader *r, const namelist_group *from, co
 }
 
 void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
-  bool rotates = item->component == 2;
   item_region_known(r, &item->item, item->region);
+  if (!take_component(r, &item->item, item->region, &item->component)) return;
+  const bool rotates = is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
   const namelist_key *key = either(r, from, "velocity", "displacement");
   if (!key) return;
@@ -524,17 +569,19 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
   const namelist_key *component = namelist_find(from, "component");
   if (!key) return;
   bool rotates = key == namelist_find(from, "moment");
-  item->component = rotates ? 2 : 0;
-  if (component) item->component = deck_choice_read(r->memory, component, "x|y|rotation", r->d);
-  if (item->component < 0) return;
+  item->component = rotates ? WRITTEN_ROTATION : 0;
+  if (component) item->component = deck_choice_read(r->memory, component, "x|y|z|rotation", r->d);
+  if (item->component < 0 || !take_component(r, &item->item, item->region, &item->component))
+    return;
   if (!component && !rotates) {
     diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
-    diag_hint(r->d, "component = 'x' or 'y'");
+    diag_hint(r->d, dimensions_of_region(r, item->region) == 3 ? "component = 'x', 'y' or 'z'"
+                                                               : "component = 'x' or 'y'");
     return;
   }
-  if (rotates != (item->component == 2)) {
+  if (rotates != is_rotation(r, item->region, item->component)) {
     diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
-                key->name, deck_component_names[item->component]);
+                key->name, component_name(r, item->region, item->component));
     diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
     return;
   }
@@ -564,16 +611,18 @@ void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping
 void deck_check_gravity(deck_reader *r, const namelist_group *from, deck_gravity *item) {
   if (deck_factor_read(r->memory, from, &item->factor, r->d))
     warn_late(r, &item->item, "start", item->factor.start);
-  if (item->acceleration[0] == 0 && item->acceleration[1] == 0)
+  if (dimensions_of(r, NULL)) check_place(r, from, "acceleration", dimensions_of(r, NULL));
+  if (item->acceleration[0] == 0 && item->acceleration[1] == 0 && item->acceleration[2] == 0)
     diag_report(r->d, DIAG_DECK_WARNING, deck_where(&item->item, "acceleration"),
                 "this gravity is zero");
 }
 
 void deck_check_initial_velocity(deck_reader *r, const namelist_group *from,
                                  deck_initial_velocity *item) {
-  const bool rotates = item->component == 2;
   const namelist_key *key = namelist_find(from, "value");
   item_region_known(r, &item->item, item->region);
+  if (!take_component(r, &item->item, item->region, &item->component)) return;
+  const bool rotates = is_rotation(r, item->region, item->component);
   if (!deck_values_counted(key, 1, r->d) ||
       deck_real_read(&key->values[0], "value", rotates ? "1/s" : "m/s", BOUND_NONE, &item->value,
                      r->d))
@@ -633,7 +682,7 @@ static void check_reaction(deck_reader *r, const deck_monitor *item) {
   if (found || !r->names_known) return;
   diag_report(r->d, DIAG_CONFLICT, item->item.where,
               "this reaction is always 0: no `&support` or `&drive` acts on `%s`",
-              deck_component_names[item->component]);
+              component_name(r, item->region, item->component));
 }
 
 static void check_broken(deck_reader *r, const namelist_group *from, deck_monitor *item) {
@@ -641,6 +690,10 @@ static void check_broken(deck_reader *r, const namelist_group *from, deck_monito
   if (item->above > 0 && item->above <= 1) return;
   diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "above"),
               "`above` of a broken monitor must be greater than 0 and at most 1");
+}
+
+static const char *watched_region(const deck_monitor *item) {
+  return item->region ? item->region : item->between[0];
 }
 
 void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor *item) {
@@ -653,14 +706,15 @@ void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
   warn_late(r, &item->item, "zero_at", item->zero_at);
   if (item->region) item_region_known(r, &item->item, item->region);
-  if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
   for (int i = 0; between && i < 2; i++)
     region_known(r, between->values[i].where, item->between[i]);
+  if (!take_component(r, &item->item, watched_region(item), &item->component)) return;
+  if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
 
 /* Unit of a monitor's values. */
-static const char *monitor_unit(const deck_monitor *m) {
-  bool rotates = m->component == 2;
+static const char *monitor_unit(const deck_reader *r, const deck_monitor *m) {
+  const bool rotates = is_rotation(r, watched_region(m), m->component);
   switch (m->kind) {
   case MONITOR_REACTION:
   case MONITOR_REACTIONS:
@@ -701,7 +755,7 @@ void deck_check_stop(deck_reader *r, const namelist_group *from, deck_stop *item
     return;
   }
   const deck_monitor *m = &r->k->monitors[deck_find_monitor(r->k, item->monitor)];
-  if (!m->item.faulty) check_level(r, key, item, of ? "1" : monitor_unit(m));
+  if (!m->item.faulty) check_level(r, key, item, of ? "1" : monitor_unit(r, m));
 }
 
 /* Which fields a law has is known later only. */

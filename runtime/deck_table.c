@@ -389,17 +389,18 @@ static const deck_key_info support_keys[] = {
     REGION_KEY(support, "what is held"),
     {.name = "fix",
      .type = DECK_FIXED,
-     .choices = "x|y|xy|rotation",
+     .choices = "x|y|z|xy|xz|yz|xyz|rotation",
      .required = true,
      AT(support, fix),
-     .doc = "directions that are held; several: `fix = 'x', 'rotation'`"},
+     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` is for lattices in "
+            "space, `rotation` for those in the plane"},
 };
 
 static const deck_key_info drive_keys[] = {
     REGION_KEY(drive, "what is moved"),
     {.name = "component",
      .type = DECK_CHOICE,
-     .choices = "x|y|rotation",
+     .choices = "x|y|z|rotation",
      .required = true,
      AT(drive, component),
      .doc = "direction of the motion"},
@@ -420,7 +421,7 @@ static const deck_key_info force_keys[] = {
     REGION_KEY(force, "what is loaded"),
     {.name = "component",
      .type = DECK_LATER,
-     .choices = "x|y|rotation",
+     .choices = "x|y|z|rotation",
      .fallback = "= 'rotation' with a moment; else required",
      NOT_KEPT,
      .doc = "direction of the load"},
@@ -428,7 +429,7 @@ static const deck_key_info force_keys[] = {
      .type = DECK_LATER,
      .unit = "N",
      NOT_KEPT,
-     .doc = "full force, of all particles together (`x`, `y`)"},
+     .doc = "full force, of all particles together (`x`, `y`, `z`)"},
     {.name = "moment",
      .type = DECK_LATER,
      .unit = "N*m",
@@ -491,11 +492,11 @@ static const deck_key_info damping_keys[] = {
 
 static const deck_key_info gravity_keys[] = {
     {.name = "acceleration",
-     .type = DECK_PAIR,
+     .type = DECK_PLACE,
      .unit = "m/s^2",
      .required = true,
      AT(gravity, acceleration),
-     .doc = "full acceleration along x, y; e.g. 0, '-9.81 m/s^2'"},
+     .doc = "full acceleration along x, y and, in space, z; e.g. 0, '-9.81 m/s^2'"},
     TIME_KEYS,
 };
 
@@ -503,7 +504,7 @@ static const deck_key_info initial_velocity_keys[] = {
     REGION_KEY(initial_velocity, "what moves"),
     {.name = "component",
      .type = DECK_CHOICE,
-     .choices = "x|y|rotation",
+     .choices = "x|y|z|rotation",
      .required = true,
      AT(initial_velocity, component),
      .doc = "direction of the motion"},
@@ -540,7 +541,7 @@ static const deck_key_info monitor_keys[] = {
             "first, what the two ends of a specimen carry in the mean"},
     {.name = "component",
      .type = DECK_CHOICE,
-     .choices = "x|y|rotation",
+     .choices = "x|y|z|rotation",
      AT(monitor, component),
      .doc = "reaction, displacement, velocity, opening: direction"},
     {.name = "field",

@@ -46,6 +46,7 @@ typedef struct pl_bond_class {
   double n;              /* bonds of a full family */
   double
       chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists carry their own) */
+  double horizon; /* m: how far neighbours may be */
   double weight; /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
 } pl_bond_class;
 

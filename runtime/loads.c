@@ -9,33 +9,37 @@
 /* --- regions ---------------------------------------------------------------------------------- */
 
 /* A point says how far away the nearest particle is, other shapes where the body is. */
-static void hint_nearest(const double at[2], const rows *w, diagnostics *d) {
-  double best = INFINITY, x = 0, y = 0;
+static void hint_nearest(const double at[3], const rows *w, diagnostics *d) {
+  double best = INFINITY, nearest[3] = {0, 0, 0};
+  char text[ROWS_PLACE_TEXT];
   for (long p = 0; p < w->particle_count; p++) {
-    const int64_t site = w->particle_site[p];
-    const double distance = hypot(w->x[site] - at[0], w->y[site] - at[1]);
+    double here[3];
+    rows_place(w, w->particle_site[p], here);
+    const double distance = bravais_distance(here, at);
     if (distance >= best) continue;
     best = distance;
-    x = w->x[site];
-    y = w->y[site];
+    memcpy(nearest, here, sizeof nearest);
   }
   diag_hint(d,
-            "the nearest particle stands %.4g mm away at (%.6g, %.6g) mm; `within` says how far is "
-            "near enough",
-            1e3 * best, 1e3 * x, 1e3 * y);
+            "the nearest particle stands %.4g mm away at %s; `within` says how far is near enough",
+            1e3 * best, rows_place_text(w, nearest, text));
 }
 
 static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  char above[64] = "";
   for (long p = 0; p < w->particle_count; p++) {
-    const double at[2] = {w->x[w->particle_site[p]], w->y[w->particle_site[p]]};
-    for (int c = 0; c < 2; c++) {
+    double at[3];
+    rows_place(w, w->particle_site[p], at);
+    for (int c = 0; c < 3; c++) {
       low[c] = fmin(low[c], at[c]);
       high[c] = fmax(high[c], at[c]);
     }
   }
-  diag_hint(d, "the particles of `%s` lie in x = %.6g .. %.6g mm, y = %.6g .. %.6g mm", lattice,
-            1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]);
+  if (w->dimensions == 3)
+    snprintf(above, sizeof above, ", z = %.6g .. %.6g mm", 1e3 * low[2], 1e3 * high[2]);
+  diag_hint(d, "the particles of `%s` lie in x = %.6g .. %.6g mm, y = %.6g .. %.6g mm%s", lattice,
+            1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1], above);
 }
 
 static void report_empty(const deck *k, const deck_region *region, const rows *w, diagnostics *d) {
@@ -101,6 +105,12 @@ static span motion_where(const deck *k, const constraint *c, const int *supports
                        : deck_where(&k->supports[supports[index]].item, "region");
 }
 
+static const char *place_of(const loads *l, int64_t site, char text[ROWS_PLACE_TEXT]) {
+  double at[3];
+  rows_place(l->lattice, site, at);
+  return rows_place_text(l->lattice, at, text);
+}
+
 /* Two supports may share a particle: both hold it where it is. Anything else is two motions at
  * once. */
 static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, int component,
@@ -111,11 +121,11 @@ static bool add_motion(loads *l, motions *m, int **supports, int32_t particle, i
     if (drive < 0 && first->drive < 0) return true;
     const deck_item *item =
         drive >= 0 ? &l->deck->drives[drive].item : &l->deck->supports[support].item;
-    const int64_t site = l->lattice->particle_site[particle];
+    char text[ROWS_PLACE_TEXT];
     diag_report(m->said, DIAG_CONFLICT, deck_where(item, "region"),
-                "the particle at (%.6g, %.6g) mm has its motion in %s prescribed twice",
-                1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site],
-                deck_component_names[component]);
+                "the particle at %s has its motion in %s prescribed twice",
+                place_of(l, l->lattice->particle_site[particle], text),
+                deck_component_name(l->lattice->dimensions, component));
     diag_note(m->said, motion_where(l->deck, first, *supports, *holder - 1),
               "first prescribed here");
     return false;
@@ -295,7 +305,7 @@ static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnost
   if (fabs(v->value) >= w->limit[v->component]) {
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),
                 "this velocity takes a particle further than %s in one step",
-                v->component < 2 ? "a spacing" : "half a turn");
+                v->component < w->dimensions ? "a spacing" : "half a turn");
     return false;
   }
   for (long p = 0; at && p < at->count; p++) {
@@ -303,10 +313,10 @@ static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnost
     int *given = &set[(long)v->component * l->lattice->size + site];
     if (*given) {
       const bool held = *given == HELD;
-      diag_report(d, DIAG_CONFLICT, where, "the particle at (%.6g, %.6g) mm %s %s",
-                  1e3 * l->lattice->x[site], 1e3 * l->lattice->y[site],
+      char text[ROWS_PLACE_TEXT];
+      diag_report(d, DIAG_CONFLICT, where, "the particle at %s %s %s", place_of(l, site, text),
                   held ? "is held from the start in" : "is given two initial velocities in",
-                  deck_component_names[v->component]);
+                  deck_component_name(l->lattice->dimensions, v->component));
       if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
       return false;
     }

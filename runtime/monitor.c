@@ -18,8 +18,8 @@ static bool has_component(const monitor *m) {
   return !counts_damage(m) && m->deck->kind != MONITOR_FIELD;
 }
 
-static const char *unit_of(const deck_monitor *m) {
-  const bool turns = m->component == 2;
+static const char *unit_of(const deck_monitor *m, int dimensions) {
+  const bool turns = m->component >= dimensions;
   switch (m->kind) {
   case MONITOR_REACTION:
   case MONITOR_REACTIONS:
@@ -115,7 +115,7 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
 static void new_monitor(monitors *all, int index, diagnostics *d) {
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
-  m->unit = unit_of(m->deck);
+  m->unit = unit_of(m->deck, all->state->dimensions);
   m->window = 1;
   if (!check_component(m, all, d) || !check_damage(m, all, d) || !find_steps(m, all, d)) return;
   switch (m->deck->kind) {

@@ -1,4 +1,4 @@
-/* Pictures through Cairo: curves of histories and maps of a 2D frame, as PNG, SVG or PDF by the path's ending. */
+/* Pictures through Cairo: curves of histories and maps of a frame, as PNG, SVG or PDF by the path's ending. */
 #ifndef PERILAT_RUNTIME_PLOT_H
 #define PERILAT_RUNTIME_PLOT_H
 
@@ -22,6 +22,8 @@ typedef struct plot_map_options {
       field; /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
   int component; /* of a vector field; -1: magnitude */
   double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
+  int slice_axis; /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
+  double slice_at; /* m */
   const char *title;
 } plot_map_options;
 

@@ -160,12 +160,13 @@ void result_close(result *r) {
 /* --- the HDF5 file ---------------------------------------------------------------------------- */
 
 static bool write_particles(hid_t file, const result_header *h) {
-  hsize_t pairs[2] = {(hsize_t)h->particle_count, 2}, one[1] = {(hsize_t)h->particle_count};
+  hsize_t places[2] = {(hsize_t)h->particle_count, (hsize_t)h->dimensions};
+  hsize_t one[1] = {(hsize_t)h->particle_count};
   hsize_t bonds[2] = {(hsize_t)h->bond_count, 2};
   char name[256];
   snprintf(name, sizeof name, "/bonds/%s", h->interaction);
   return h5_make_group(file, "/particles") && h5_make_group(file, "/bonds") &&
-         h5_write_doubles(file, "/particles/reference", h->reference, 2, pairs, "m") &&
+         h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
          h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
          h5_write_integers(file, "/particles/body", h->body, 1, one) &&
          h5_write_integers(file, name, h->bonds, 2, bonds);

@@ -4,7 +4,7 @@
 
      /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
      /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
-     /particles/reference   [N, 2] m; /particles/body [N]; /particles/volume [N] m^3
+     /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
      /bonds/<interaction>   [M, 2] particle indices
      /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
      /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
@@ -42,8 +42,9 @@ typedef struct result_header {
   const char *overrides; /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
   int model_count, kernel_count;
+  int dimensions; /* 2 or 3 */
   long particle_count;
-  const double *reference; /* [N][2] */
+  const double *reference; /* [N][dimensions] */
   const int32_t *body;     /* [N] number of the body in the deck, from 0 */
   const double *volume;    /* [N] */
   const char *interaction; /* name of the bonds: the lattice's name */
@@ -81,7 +82,8 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
                            size_t size); /* "time", "load", "energy/kinetic" */
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit, size_t unit_size, char *error, size_t size);
-double *result_read_reference(result_file *f, long *particles); /* [N][2] */
+double *result_read_reference(result_file *f, long *particles,
+                              int *dimensions); /* [N][2] or [N][3] */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: the first */
 /* The name under which result_read_frame knows a field: `given` itself, or of a bond's field without its interaction when

@@ -279,22 +279,26 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
   return most;
 }
 
-static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int rank,
-                        long *rows_read) {
+/* A table of as many columns as there may be; how many there are goes into *columns. */
+static void *read_table(result_file *f, const char *path, hid_t type, size_t width, int least,
+                        int most, long *rows_read, int *columns) {
+  const int rank = most > 1 ? 2 : 1;
   hid_t set = open_set(f, path);
   hsize_t shape[3] = {0, 0, 0};
   void *values = set >= 0 ? read_whole(set, type, width, rank, shape) : NULL;
-  if (values && rank == 2 && shape[1] != 2) {
+  if (values && rank == 2 && (shape[1] < (hsize_t)least || shape[1] > (hsize_t)most)) {
     free(values);
     values = NULL;
   }
   *rows_read = values ? (long)shape[0] : 0;
+  *columns = values && rank == 2 ? (int)shape[1] : 1;
   if (set >= 0) H5Dclose(set);
   return values;
 }
 
-double *result_read_reference(result_file *f, long *particles) {
-  return read_table(f, "/particles/reference", H5T_NATIVE_DOUBLE, sizeof(double), 2, particles);
+double *result_read_reference(result_file *f, long *particles, int *dimensions) {
+  return read_table(f, "/particles/reference", H5T_NATIVE_DOUBLE, sizeof(double), 2, 3, particles,
+                    dimensions);
 }
 
 /* Pairs that name particles which do not exist make the table unusable. */
@@ -304,9 +308,10 @@ int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds)
   const char *name = interaction ? interaction : names ? names : "";
   snprintf(path, sizeof path, "/bonds/%.*s", (int)strcspn(name, ","), name);
   free(names);
-  int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, bonds);
+  int columns;
+  int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, 2, bonds, &columns);
   long particles;
-  free(result_read_reference(f, &particles));
+  free(result_read_reference(f, &particles, &columns));
   for (long m = 0; pairs && m < 2 * *bonds; m++)
     if (pairs[m] < 0 || pairs[m] >= particles) {
       free(pairs);
@@ -317,7 +322,8 @@ int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds)
 }
 
 double *result_read_frame_times(result_file *f, long *frames) {
-  return read_table(f, "/frames/time", H5T_NATIVE_DOUBLE, sizeof(double), 1, frames);
+  int columns;
+  return read_table(f, "/frames/time", H5T_NATIVE_DOUBLE, sizeof(double), 1, 1, frames, &columns);
 }
 
 char *result_read_text(result_file *f, const char *path) {

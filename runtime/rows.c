@@ -107,16 +107,22 @@ static long pitch_for(long columns) {
   return pitch % 512 == 0 ? pitch + PL_LANES : pitch;
 }
 
+/* In spacings: as the deck says, or the distance of the last shell. */
+static double horizon_of(const builder *b) {
+  return b->lattice->horizon > 0 ? b->lattice->horizon
+                                 : sqrt(b->family[b->directions - 1].square);
+}
+
 /* Part of a neighbour's volume that lies within the horizon when its extent of a spacing along the bond counts. */
 static double weight_of(const builder *b, double length) {
-  const double last = sqrt(b->family[b->directions - 1].square);
-  const double horizon = b->lattice->horizon > 0 ? b->lattice->horizon : last;
+  const double horizon = horizon_of(b);
   if (b->lattice->volume_correction == VOLUME_WHOLE) return 1;
   return fmin(fmax(horizon + 0.5 - length, 0), 1);
 }
 
 static void set_directions(rows *w, const builder *b) {
   w->directions = b->directions;
+  w->horizon = horizon_of(b) * w->spacing;
   for (int k = 0; k < w->directions; k++) {
     const bravais_neighbour n = b->family[k], pair[2] = {n, opposite(n)};
     const double length = sqrt(n.square);
@@ -349,6 +355,7 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
       .shell = w->shell[k],
       .n = 2 * w->directions,
       .chord = {sign * w->chord[k][0], sign * w->chord[k][1], sign * w->chord[k][2]},
+      .horizon = w->horizon,
       .weight = w->weight[k]};
 }
 

@@ -37,6 +37,7 @@ typedef struct rows {
   double length[PL_MAX_DIRECTIONS];   /* m */
   double weight[PL_MAX_DIRECTIONS];   /* part of the partner's volume that lies in the horizon */
   int shell[PL_MAX_DIRECTIONS];       /* 1: of the nearest neighbours */
+  double horizon;                     /* m */
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space */

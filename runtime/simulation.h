@@ -85,7 +85,7 @@ typedef struct bad_state {
   long step;
   double time;
   long particle;
-  double x, y;
+  double place[3];                                /* m; in the plane [2] is 0 */
   long bond_particle;                             /* partner of the first bad bond, or -1 */
   double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
   const double

@@ -127,12 +127,11 @@ void bad_explain(simulation *s) {
   s->bad = (bad_state){.step = (long)s->at.step,
                        .time = simulation_time(s),
                        .particle = particle,
-                       .bond_particle = -1,
-                       .x = s->lattice->x[at->bad_site],
-                       .y = s->lattice->y[at->bad_site]};
-  s->bad.what = !isfinite(at->bad_velocity)               ? "not a number"
-                : at->bad_component >= s->law->dimensions ? "runaway rotation"
-                                                          : "runaway velocity";
+                       .bond_particle = -1};
+  rows_place(s->lattice, at->bad_site, s->bad.place);
+  s->bad.what = !isfinite(at->bad_velocity)                   ? "not a number"
+                : at->bad_component >= s->lattice->dimensions ? "runaway rotation"
+                                                              : "runaway velocity";
   if (s->law->kind == PL_STATE) {
     look_at_family(s, at->bad_site);
     return;

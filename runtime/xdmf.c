@@ -44,8 +44,9 @@ static void print_place(FILE *out, const char *file, const char *set) {
 static void print_slab(FILE *out, const char *file, const char *set, long frames, long frame,
                        const result_field *f, int first, int width) {
   bool flat = f->interaction != NULL;
-  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%ld%s\" Type=\"HyperSlab\">",
-          f->count, flat || width == 1 ? "" : " 2");
+  fprintf(out, "<DataItem ItemType=\"HyperSlab\" Dimensions=\"%ld", f->count);
+  if (!flat && width > 1) fprintf(out, " %d", width);
+  fputs("\" Type=\"HyperSlab\">", out);
   if (flat)
     fprintf(out, "<DataItem Dimensions=\"3 2\" Format=\"XML\">%ld 0 1 1 1 %ld</DataItem>", frame,
             f->count);
@@ -68,11 +69,11 @@ static void print_attribute(FILE *out, const char *file, long frames, long frame
     snprintf(set, sizeof set, "/frames/%s/%s", f->interaction, f->name);
   else
     snprintf(set, sizeof set, "/frames/%s", f->name);
-  if (f->components == 1) {
-    fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"Scalar\" Center=\"%s\">", f->name, centre);
-    print_slab(out, file, set, frames, frame, f, 0, 1);
+  fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", f->name,
+          f->components == 1 ? "Scalar" : "Vector", centre);
+  if (f->components != 2) {
+    print_slab(out, file, set, frames, frame, f, 0, f->components);
   } else { /* vectors have three components there */
-    fprintf(out, "<Attribute Name=\"%s\" AttributeType=\"Vector\" Center=\"%s\">", f->name, centre);
     fprintf(
         out,
         "<DataItem ItemType=\"Function\" Function=\"JOIN($0, $1, 0*$0)\" Dimensions=\"%ld 3\">\n",
@@ -87,9 +88,9 @@ static void print_attribute(FILE *out, const char *file, long frames, long frame
 static void print_geometry(FILE *out, const char *file, const result_header *h) {
   fprintf(
       out,
-      "<Geometry GeometryType=\"XY\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
-      "Dimensions=\"%ld 2\">",
-      h->particle_count);
+      "<Geometry GeometryType=\"%s\"><DataItem Format=\"HDF\" NumberType=\"Float\" Precision=\"8\" "
+      "Dimensions=\"%ld %d\">",
+      h->dimensions == 2 ? "XY" : "XYZ", h->particle_count, h->dimensions);
   print_place(out, file, "/particles/reference");
   fputs("</DataItem></Geometry>\n", out);
 }

@@ -57,6 +57,7 @@ static void write_right(const char *path) {
                            .kernels = texts,
                            .kernel_count = 1,
                            .particle_count = PARTICLES,
+                           .dimensions = 2,
                            .reference = reference,
                            .body = body,
                            .volume = volume,
@@ -330,9 +331,10 @@ static void read_all(result_file *f) {
   double *damage = result_read_damage(f, -1, &count, error, sizeof error);
   sum_doubles(damage, damage ? count : 0);
   free(damage);
-  double *places_read = result_read_reference(f, &count);
+  int dimensions;
+  double *places_read = result_read_reference(f, &count, &dimensions);
   const long particles = places_read ? count : 0;
-  sum_doubles(places_read, 2 * particles);
+  sum_doubles(places_read, dimensions * particles);
   free(places_read);
   int32_t *pairs = result_read_bonds(f, NULL, &count);
   for (long k = 0; pairs && k < 2 * count; k++)
@@ -350,8 +352,12 @@ static void draw(void) {
   char path[80];
   snprintf(path, sizeof path, "/tmp/perilat_fuzz_%d.svg", (int)getpid());
   const plot_curve_options curve = {.output = path, .x = "time", .y = "load"};
-  const plot_map_options map = {
-      .output = path, .frame = -1, .field = "damage", .component = -1, .factor = -1};
+  const plot_map_options map = {.output = path,
+                                .frame = -1,
+                                .field = "damage",
+                                .component = -1,
+                                .factor = -1,
+                                .slice_axis = -1};
   *error = 0;
   MUST(plot_curve(results, 1, &curve, error, sizeof error) || *error);
   *error = 0;

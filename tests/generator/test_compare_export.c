@@ -49,6 +49,7 @@ static void make_result(const char *path, variant v) {
                            .kernel_key = "k",
                            .deck_text = "&simulation /",
                            .particle_count = PARTICLES,
+                           .dimensions = 2,
                            .reference = reference,
                            .body = body,
                            .volume = volume,

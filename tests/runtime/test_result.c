@@ -42,6 +42,7 @@ static result_header header(const char *path) {
                          .kernels = kernels,
                          .kernel_count = 1,
                          .particle_count = PARTICLES,
+                         .dimensions = 2,
                          .reference = reference,
                          .body = body,
                          .volume = volume,
@@ -291,7 +292,8 @@ static void pictures(void **state) {
     plot_curve_options curve = {.output = curves[k], .x = "time", .y = "load", .y_unit = "kN"};
     assert_true(plot_curve(results, 2, &curve, error, sizeof error));
     assert_true(size_of(curves[k]) > 1000);
-    plot_map_options map = {.output = maps[k],
+    plot_map_options map = {.slice_axis = -1,
+                            .output = maps[k],
                             .frame = -1,
                             .field = k ? "displacement" : "damage",
                             .component = -1,
@@ -304,8 +306,12 @@ static void pictures(void **state) {
   assert_non_null(strstr(error, "`load` is in N"));
   wrong = (plot_curve_options){.output = "curve_f.jpg", .x = "time", .y = "load"};
   assert_false(plot_curve(results, 1, &wrong, error, sizeof error));
-  plot_map_options none = {
-      .output = "map_f.png", .frame = 7, .field = "damage", .component = -1, .factor = -1};
+  plot_map_options none = {.slice_axis = -1,
+                           .output = "map_f.png",
+                           .frame = 7,
+                           .field = "damage",
+                           .component = -1,
+                           .factor = -1};
   assert_false(plot_map("result_f.h5", &none, error, sizeof error));
   assert_non_null(strstr(error, "2 frames"));
 }
@@ -502,8 +508,12 @@ static const colour yellow = {0.95, 0.80, 0.10}, black = {0, 0, 0}, lowest = {0.
                     highest = {0.99, 0.91, 0.14};
 
 static bool map_of(const char *path, const char *field) {
-  const plot_map_options o = {
-      .output = "map_k.png", .frame = -1, .field = field, .component = -1, .factor = 1};
+  const plot_map_options o = {.output = "map_k.png",
+                              .frame = -1,
+                              .field = field,
+                              .component = -1,
+                              .factor = 1,
+                              .slice_axis = -1};
   return plot_map(path, &o, error, sizeof error);
 }
 
@@ -532,6 +542,117 @@ static void maps_show_their_field(void **state) {
   write_kinds("result_n.h5", 1, 4);
   assert_false(map_of("result_n.h5", "damage"));
   assert_non_null(strstr(error, "add 'displacement' to `fields` in &output"));
+}
+
+/* --- in space ----------------------------------------------------------------------------------- */
+
+enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE, LINKS = 3 * SIDE * SIDE * (SIDE - 1) };
+
+/* A cube of particles 1 mm apart, joined to their nearest neighbours; bonds along z from the layer 1 to 2 mm have a
+   damage of 0.5, from 2 to 3 mm of 1. Displacements are along z, as large as the place. */
+static void write_cube(const char *path) {
+  static double places[3 * CUBE], volumes[CUBE], u[3 * CUBE], omega[LINKS];
+  static int32_t bodies[CUBE], pairs[2 * LINKS];
+  int links = 0;
+  for (int p = 0; p < CUBE; p++) {
+    const int at[3] = {p % SIDE, p / SIDE % SIDE, p / SIDE / SIDE},
+              ahead[3] = {1, SIDE, SIDE * SIDE};
+    for (int c = 0; c < 3; c++) {
+      places[3 * p + c] = 1e-3 * at[c];
+      u[3 * p + c] = c == 2 ? 1e-3 * at[2] : 0;
+      if (at[c] + 1 == SIDE) continue;
+      omega[links] = c == 2 ? 0.5 * at[2] : 0;
+      pairs[2 * links] = p;
+      pairs[2 * links++ + 1] = p + ahead[c];
+    }
+  }
+  assert_int_equal(links, LINKS);
+  static const result_field of_cube[] = {{"displacement", "m", NULL, 3, CUBE, "other"},
+                                         {"omega", "1", "concrete", 1, LINKS, "damage"}};
+  result_header h = header(path);
+  h.dimensions = 3;
+  h.particle_count = CUBE;
+  h.reference = places;
+  h.volume = volumes;
+  h.body = bodies;
+  h.bond_count = LINKS;
+  h.bonds = pairs;
+  h.fields = of_cube;
+  result *r = result_open(&h, -1, error, sizeof error);
+  const double *values[] = {u, omega};
+  assert_non_null(r);
+  assert_true(result_frame(r, 0, values, error, sizeof error));
+  finish(r);
+}
+
+static void bodies_in_space_are_written_and_read(void **state) {
+  (void)state;
+  write_cube("cube.h5");
+  result_file *f = result_read("cube.h5", error, sizeof error);
+  long count;
+  int dimensions, components;
+  char unit_text[16], text[16384];
+  double *places = result_read_reference(f, &count, &dimensions);
+  assert_int_equal(count, CUBE);
+  assert_int_equal(dimensions, 3);
+  assert_true(places[3 * (CUBE - 1) + 2] == 1e-3 * (SIDE - 1) && places[3 * SIDE + 1] == 1e-3);
+  int32_t *pairs = result_read_bonds(f, NULL, &count);
+  assert_true(pairs && count == LINKS);
+  double *u = result_read_frame(f, "displacement", 0, &count, &components, unit_text,
+                                sizeof unit_text, error, sizeof error);
+  assert_true(u && components == 3 && u[3 * (CUBE - 1) + 2] == 1e-3 * (SIDE - 1));
+  free(places);
+  free(pairs);
+  free(u);
+  result_read_close(f);
+  FILE *in = fopen("cube.xdmf", "r");
+  assert_non_null(in);
+  text[fread(text, 1, sizeof text - 1, in)] = 0;
+  fclose(in);
+  /* either grid of the frame: itself, topology, geometry 2, displacement 1 + 3; bonds: their pairs, damage 1 + 3 */
+  assert_int_equal(count_elements(text), 3 + 2 + 2 * (1 + 1 + 2 + 4) + 1 + 4);
+  assert_non_null(strstr(text, "GeometryType=\"XYZ\""));
+  assert_non_null(strstr(text, "Dimensions=\"64 3\">cube.h5:/particles/reference</DataItem>"));
+  assert_non_null(strstr(text, "0 0 0 1 1 1 1 64 3</DataItem>"));
+}
+
+static bool view_of_cube(const char *field, int component, int axis, double at) {
+  const plot_map_options o = {.output = "cube.png",
+                              .frame = -1,
+                              .field = field,
+                              .component = component,
+                              .factor = 0,
+                              .slice_axis = axis,
+                              .slice_at = at};
+  return plot_map("cube.h5", &o, error, sizeof error);
+}
+
+static void bodies_in_space_are_seen_in_slices_and_from_outside(void **state) {
+  static const colour orange = {0.95, 0.50, 0.05}, sound = {0.80, 0.82, 0.85},
+                      red = {0.85, 0.05, 0.05};
+  (void)state;
+  write_cube("cube.h5");
+  assert_true(view_of_cube("damage", -1, 0,
+                           1.4e-3)); /* x = 1 mm: damaged and separated layers, seen edge-on */
+  assert_true(pixels("cube.png", orange) > 500 && pixels("cube.png", black) > 500);
+  assert_true(view_of_cube("damage", -1, 2, 0)); /* no damage along the layers */
+  assert_true(pixels("cube.png", orange) == 0 && pixels("cube.png", black) == 0);
+  assert_true(pixels("cube.png", sound) > 500);
+  assert_true(view_of_cube("displacement", 2, 2, 2.5e-3)); /* one layer: one value, the lowest */
+  assert_true(pixels("cube.png", lowest) > 5000 && pixels("cube.png", highest) == 0);
+  assert_false(view_of_cube("damage", -1, 2, 3.6e-3));
+  assert_non_null(strstr(error, "the body reaches from 0 to 3 mm"));
+  /* from outside, means of bonds: 0 below, 0.1 to 0.125 (yellow), 0.25 to 0.375, 0.2 to 0.25 */
+  assert_true(view_of_cube("damage", -1, -1, 0));
+  assert_true(pixels("cube.png", yellow) > 2000 && pixels("cube.png", orange) > 2000);
+  assert_true(pixels("cube.png", sound) > 2000 && pixels("cube.png", red) == 0);
+  assert_true(view_of_cube("displacement", 2, -1, 0));
+  assert_true(pixels("cube.png", lowest) > 2000 && pixels("cube.png", highest) > 2000);
+  assert_false(map_of("result_k.h5", "nothing"));
+  const plot_map_options flat = {
+      .output = "cube.png", .frame = -1, .field = "damage", .component = -1};
+  assert_false(plot_map("result_k.h5", &flat, error, sizeof error)); /* slice_axis is 0: x */
+  assert_non_null(strstr(error, "this one is in the plane"));
 }
 
 static void several_histories_are_several_curves(void **state) {
@@ -594,6 +715,8 @@ int main(void) {
       cmocka_unit_test(damaged_heaps_of_texts_do_no_harm),
       cmocka_unit_test(texts_of_fixed_length_are_read),
       cmocka_unit_test(maps_show_their_field),
+      cmocka_unit_test(bodies_in_space_are_written_and_read),
+      cmocka_unit_test(bodies_in_space_are_seen_in_slices_and_from_outside),
       cmocka_unit_test(several_histories_are_several_curves),
       cmocka_unit_test(an_axis_gets_no_step_for_what_cannot_be_seen)};
   return cmocka_run_group_tests_name("result", tests, NULL, NULL);

@@ -69,7 +69,8 @@ static void fracture_costs_what_the_law_says(double spacing, const char *softeni
   free(program("run models_strip.nml"));
   result_file *f = result_read("models_strip.h5", error, sizeof error);
   assert_non_null(f);
-  free(result_read_reference(f, &particles));
+  int dimensions;
+  free(result_read_reference(f, &particles, &dimensions));
   double *load = result_read_series(f, "load", &samples, unit, sizeof unit, error, sizeof error);
   double *lost = result_read_series(f, "energy/dissipated_damage", &samples, unit, sizeof unit,
                                     error, sizeof error);

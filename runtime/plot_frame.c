@@ -1,0 +1,330 @@
+#include "runtime/plot_frame.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "runtime/canvas.h"
+#include "runtime/result.h"
+
+/* --- reading ---------------------------------------------------------------------------------- */
+
+void plot_frame_free(plot_frame *m) {
+  free(m->reference);
+  free(m->moved);
+  free(m->values);
+  free(m->damage);
+  free(m->pairs);
+}
+
+static double bond_length(const plot_frame *m, long b) {
+  const int n = m->dimensions;
+  const double *i = &m->reference[n * m->pairs[2 * b]], *j = &m->reference[n * m->pairs[2 * b + 1]];
+  const double plane = hypot(j[0] - i[0], j[1] - i[1]);
+  return n == 2 ? plane : hypot(plane, j[2] - i[2]);
+}
+
+/* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of the body. */
+static void move_particles(plot_frame *m, const double *displacement, double wanted) {
+  const int n = m->dimensions;
+  double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+  double mean[3] = {0, 0, 0}, largest = 0, extent = 0;
+  for (long p = 0; p < m->particles; p++)
+    for (int c = 0; c < n; c++) {
+      low[c] = fmin(low[c], m->reference[n * p + c]);
+      high[c] = fmax(high[c], m->reference[n * p + c]);
+      mean[c] += displacement[n * p + c] / (double)m->particles;
+    }
+  for (long p = 0; p < n * m->particles; p++)
+    largest = fmax(largest, fabs(displacement[p] - mean[p % n]));
+  for (int c = 0; c < n; c++)
+    extent = fmax(extent, high[c] - low[c]);
+  m->factor = wanted;
+  if (wanted < 0) {
+    double raw = largest > 0 ? 0.05 * extent / largest : 1;
+    m->factor = raw < 1 ? 1 : fmin(nice_step(raw, 1), 1e4);
+  }
+  m->moved = must_calloc((size_t)(m->particles * n) + 1, sizeof *m->moved);
+  for (long p = 0; p < n * m->particles; p++)
+    m->moved[p] = m->reference[p] + m->factor * displacement[p];
+}
+
+static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                        size_t size) {
+  char name[512];
+  result_find_field(f, o->field, name, sizeof name);
+  m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
+                                sizeof m->unit_text, error, size);
+  if (!m->values) return false;
+  m->of_bonds = strchr(name, '/') != NULL;
+  if (m->value_count != (m->of_bonds ? m->bonds : m->particles)) {
+    snprintf(error, size, "`%s` does not have a value for each %s", name,
+             m->of_bonds ? "bond" : "particle");
+    return false;
+  }
+  if (o->component >= m->components) {
+    snprintf(error, size, "`%s` has %d component%s, numbered from 0; there is no component %d",
+             o->field, m->components, m->components == 1 ? "" : "s", o->component);
+    return false;
+  }
+  return true;
+}
+
+/* Maps of other fields show separated bonds, too, where the result knows them. */
+static bool read_damage(result_file *f, plot_frame *m, const char *path, const plot_map_options *o,
+                        char *error, size_t size) {
+  long count = 0;
+  m->damage = result_read_damage(f, o->frame, &count, error, size);
+  if (m->damage && count == m->bonds) return true;
+  free(m->damage);
+  m->damage = NULL;
+  if (strcmp(o->field, "damage") != 0) return true;
+  if (!error[0])
+    snprintf(error, size,
+             "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
+             "and run again "
+             "(a law without a damage has none to store)",
+             path);
+  return false;
+}
+
+/* NULL with a sentence that says how to store them when they are not there. */
+static double *read_displacements(result_file *f, const plot_frame *m, const char *path, long frame,
+                                  char *error, size_t size) {
+  char unit_text[64], name[64];
+  long count = 0;
+  int components = 0;
+  if (!result_find_field(f, "displacement", name, sizeof name)) {
+    snprintf(error, size,
+             "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in "
+             "&output and run again",
+             path);
+    return NULL;
+  }
+  double *u = result_read_frame(f, "displacement", frame, &count, &components, unit_text,
+                                sizeof unit_text, error, size);
+  if (u && count == m->particles && components == m->dimensions) return u;
+  if (u) snprintf(error, size, "the displacements in `%s` are not those of its particles", path);
+  free(u);
+  return NULL;
+}
+
+static bool read_frame(result_file *f, const char *path, plot_frame *m, const plot_map_options *o,
+                       char *error, size_t size) {
+  m->reference = result_read_reference(f, &m->particles, &m->dimensions);
+  m->pairs = result_read_bonds(f, NULL, &m->bonds);
+  if (!m->reference || !m->pairs || m->particles == 0) {
+    snprintf(error, size, "the result holds no particles and bonds to draw");
+    return false;
+  }
+  double *u = read_displacements(f, m, path, o->frame, error, size);
+  if (!u) return false;
+  move_particles(m, u, o->factor);
+  free(u);
+  long frames = 0;
+  double *times = result_read_frame_times(f, &frames);
+  long k = o->frame < 0 ? frames + o->frame : o->frame;
+  m->time = times && k >= 0 && k < frames ? times[k] : NAN;
+  free(times);
+  for (long b = 0; b < m->bonds; b++)
+    m->spacing = b == 0 ? bond_length(m, 0) : fmin(m->spacing, bond_length(m, b));
+  char *title = result_read_title(f);
+  snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
+  free(title);
+  m->of_damage = strcmp(o->field, "damage") == 0;
+  return read_damage(f, m, path, o, error, size) &&
+         (m->of_damage || read_values(f, m, o, error, size));
+}
+
+double plot_frame_value(const plot_frame *m, long k, int component) {
+  const double *v = &m->values[k * m->components];
+  if (m->components == 1) return v[0];
+  if (component >= 0) return v[component];
+  double sum = 0;
+  for (int c = 0; c < m->components; c++)
+    sum += v[c] * v[c];
+  return sqrt(sum);
+}
+
+/* --- what is shown of a body in space --------------------------------------------------------- */
+
+/* Takes row k of a table from row order[k], in place; rows of `width` doubles. */
+static void take_rows(double **table, const long *order, long count, int width) {
+  if (!*table) return;
+  double *taken = must_calloc((size_t)(count * width) + 1, sizeof *taken);
+  for (long k = 0; k < count; k++)
+    memcpy(taken + k * width, *table + order[k] * width, (size_t)width * sizeof *taken);
+  free(*table);
+  *table = taken;
+}
+
+/* The particles in `order`, and the bonds between them. */
+static void take_particles(plot_frame *m, const long *order, long count) {
+  int32_t *now = must_alloc(((size_t)m->particles + 1) * sizeof *now);
+  long *bonds = must_alloc(((size_t)m->bonds + 1) * sizeof *bonds), kept = 0;
+  for (long p = 0; p < m->particles; p++)
+    now[p] = -1;
+  for (long k = 0; k < count; k++)
+    now[order[k]] = (int32_t)k;
+  for (long b = 0; b < m->bonds; b++) {
+    const int32_t i = now[m->pairs[2 * b]], j = now[m->pairs[2 * b + 1]];
+    if (i < 0 || j < 0) continue;
+    m->pairs[2 * kept] = i;
+    m->pairs[2 * kept + 1] = j;
+    bonds[kept++] = b;
+  }
+  take_rows(&m->reference, order, count, m->dimensions);
+  take_rows(&m->moved, order, count, m->dimensions);
+  take_rows(&m->damage, bonds, kept, 1);
+  if (m->of_bonds)
+    take_rows(&m->values, bonds, kept, m->components);
+  else
+    take_rows(&m->values, order, count, m->components);
+  m->particles = count;
+  m->bonds = kept;
+  m->value_count = m->of_bonds ? kept : count;
+  free(now);
+  free(bonds);
+}
+
+/* Places in the picture: two rows of coefficients. */
+static void project(plot_frame *m, const double across[3], const double up[3]) {
+  double *places[2] = {m->reference, m->moved};
+  for (int t = 0; t < 2; t++)
+    for (long p = 0; p < m->particles; p++) {
+      const double *at = places[t] + 3 * p;
+      const double x = across[0] * at[0] + across[1] * at[1] + across[2] * at[2];
+      const double y = up[0] * at[0] + up[1] * at[1] + up[2] * at[2];
+      places[t][2 * p] = x;
+      places[t][2 * p + 1] = y;
+    }
+}
+
+/* Particles up to half a spacing from the plane; on the far side that distance itself counts, too. */
+static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, size_t size) {
+  static const double unit_vectors[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  static const int sides[3][2] = {{1, 2}, {0, 2}, {0, 1}};
+  const int across = sides[o->slice_axis][0], up = sides[o->slice_axis][1];
+  const double half = 0.5 * m->spacing, rounding = 1e-6 * m->spacing;
+  long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order), count = 0;
+  double low = INFINITY, high = -INFINITY;
+  for (long p = 0; p < m->particles; p++) {
+    const double at = m->reference[3 * p + o->slice_axis];
+    low = fmin(low, at);
+    high = fmax(high, at);
+    if (at > o->slice_at - half + rounding && at <= o->slice_at + half + rounding)
+      order[count++] = p;
+  }
+  if (count) take_particles(m, order, count);
+  free(order);
+  snprintf(m->view, sizeof m->view, "%c = %.5g mm, seen along %c (%c to the right), ",
+           "xyz"[o->slice_axis], 1e3 * o -> slice_at, "xyz"[o->slice_axis], "xyz"[across]);
+  if (count) project(m, unit_vectors[across], unit_vectors[up]);
+  if (!count)
+    snprintf(
+        error, size,
+        "no particle lies within half a spacing of %c = %.6g mm; the body reaches from %.6g to "
+        "%.6g mm",
+        "xyz"[o->slice_axis], 1e3 * o -> slice_at, 1e3 * low, 1e3 * high);
+  return count > 0;
+}
+
+/* Means of the bonds' values over the bonds of each particle; sizes of vectors. */
+static double *means_of_bonds(const plot_frame *m, const double *values, int component) {
+  double *means = must_calloc((size_t)m->particles + 1, sizeof *means);
+  int32_t *bonds = must_calloc((size_t)m->particles + 1, sizeof *bonds);
+  for (long b = 0; b < m->bonds; b++)
+    for (int e = 0; e < 2; e++) {
+      const int32_t p = m->pairs[2 * b + e];
+      means[p] += values ? values[b] : plot_frame_value(m, b, component);
+      bonds[p]++;
+    }
+  for (long p = 0; p < m->particles; p++)
+    if (bonds[p]) means[p] /= bonds[p];
+  free(bonds);
+  return means;
+}
+
+/* A view of the surface shows particles alone. */
+static void put_values_on_particles(plot_frame *m, int component) {
+  if (!m->of_damage && !m->of_bonds) return;
+  double *means = means_of_bonds(m, m->of_damage ? m->damage : NULL, component);
+  free(m->values);
+  m->values = means;
+  m->components = 1;
+  m->value_count = m->particles;
+  m->of_bonds = false;
+}
+
+/* Those with fewer bonds than others have: all others are hidden by them. */
+static long surface_particles(const plot_frame *m, long *order) {
+  int32_t *bonds = must_calloc((size_t)m->particles + 1, sizeof *bonds), most = 0;
+  for (long k = 0; k < 2 * m->bonds; k++) {
+    bonds[m->pairs[k]]++;
+    if (bonds[m->pairs[k]] > most) most = bonds[m->pairs[k]];
+  }
+  long count = 0;
+  for (long p = 0; p < m->particles; p++)
+    if (bonds[p] < most) order[count++] = p;
+  for (long p = 0; count == 0 && p < m->particles; p++)
+    order[p] = p;
+  free(bonds);
+  return count ? count : m->particles;
+}
+
+typedef struct seen {
+  double depth;
+  long particle;
+} seen;
+
+static int farthest_first(const void *p, const void *q) {
+  const seen *a = p, *b = q;
+  if (a->depth != b->depth) return a->depth > b->depth ? -1 : 1;
+  return (a->particle > b->particle) - (a->particle < b->particle);
+}
+
+/* Sides toward +x, -y and +z are seen; parallel lines stay parallel. */
+static void take_surface(plot_frame *m, int component) {
+  const double turn = acos(-1) / 6, tilt = acos(-1) / 7;
+  const double across[3] = {cos(turn), sin(turn), 0};
+  const double up[3] = {-sin(turn) * sin(tilt), cos(turn) * sin(tilt), cos(tilt)};
+  const double away[3] = {-sin(turn) * cos(tilt), cos(turn) * cos(tilt), -sin(tilt)};
+  long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order);
+  put_values_on_particles(m, component);
+  const long count = surface_particles(m, order);
+  seen *all = must_alloc(((size_t)count + 1) * sizeof *all);
+  for (long k = 0; k < count; k++) {
+    const double *at = m->moved + 3 * order[k];
+    all[k] = (seen){away[0] * at[0] + away[1] * at[1] + away[2] * at[2], order[k]};
+  }
+  qsort(all, (size_t)count, sizeof *all, farthest_first);
+  for (long k = 0; k < count; k++)
+    order[k] = all[k].particle;
+  take_particles(m, order, count);
+  project(m, across, up);
+  free(m->damage);
+  m->damage = NULL;
+  m->bonds = 0;
+  m->surface = true;
+  free(all);
+  free(order);
+}
+
+bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
+                     size_t size) {
+  *m = (plot_frame){.factor = 1};
+  result_file *f = result_read(path, error, size);
+  if (!f) return false;
+  bool good = read_frame(f, path, m, o, error, size);
+  result_read_close(f);
+  if (good && m->dimensions == 2 && o->slice_axis >= 0) {
+    snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");
+    good = false;
+  }
+  if (!good || m->dimensions == 2) return good;
+  if (o->slice_axis >= 0) return take_slice(m, o, error, size);
+  take_surface(m, o->component);
+  return true;
+}

@@ -1,0 +1,34 @@
+/* A frame of a result as a map shows it: places in the plane of the picture. A body in the plane is shown as it is; of
+   a body in space a slice, or what is seen of its surface. */
+#ifndef PERILAT_RUNTIME_PLOT_FRAME_H
+#define PERILAT_RUNTIME_PLOT_FRAME_H
+
+#include <stdint.h>
+
+#include "runtime/plot.h"
+
+typedef struct plot_frame {
+  int dimensions; /* of the result; from plot_frame_read on, places have two coordinates */
+  long particles, bonds;
+  double *reference, *moved; /* [particles][2] m */
+  double *damage;            /* [bonds] NULL without */
+  int32_t *pairs;            /* [bonds][2] */
+  double *values;            /* of the particles, or of the bonds; NULL: a map of damage */
+  long value_count;
+  bool of_bonds, of_damage; /* the values are damages, to be shown in their classes */
+  bool surface;             /* particles alone, from the farthest to the nearest */
+  int components;
+  char unit_text[64], title[512];
+  char view[80]; /* of a body in space: what is shown, for the picture's head */
+  double time, factor, spacing;
+} plot_frame;
+
+/* False with a sentence in `error`. To be freed in either case. */
+bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
+                     size_t size);
+void plot_frame_free(plot_frame *m);
+
+/* Component of value k, or its size for component -1. */
+double plot_frame_value(const plot_frame *m, long k, int component);
+
+#endif
