@@ -54,7 +54,7 @@ static void move_particles(plot_frame *m, const double *displacement, double wan
 static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
                         size_t size) {
   char name[512];
-  result_find_field(f, o->field, name, sizeof name);
+  if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
                                 sizeof m->unit_text, error, size);
   if (!m->values) return false;
@@ -72,6 +72,23 @@ static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o
   return true;
 }
 
+static bool is_stored(result_file *f, const char *field) {
+  result_names fields = result_members(f, "/frames");
+  const bool stored = result_names_find(&fields, field) >= 0;
+  result_names_free(&fields);
+  return stored;
+}
+
+/* A law may have its damage on particles. */
+static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_map_options *o) {
+  char none[256];
+  if (!is_stored(f, "damage")) return false;
+  m->values = result_read_frame(f, "damage", o->frame, &m->value_count, &m->components,
+                                m->unit_text, sizeof m->unit_text, none, sizeof none);
+  m->damage_of = "damage of particles:";
+  return m->values && m->value_count == m->particles && m->components == 1;
+}
+
 /* Maps of other fields show separated bonds, too, where the result knows them. */
 static bool read_damage(result_file *f, plot_frame *m, const char *path, const plot_map_options *o,
                         char *error, size_t size) {
@@ -80,7 +97,7 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
   if (m->damage && count == m->bonds) return true;
   free(m->damage);
   m->damage = NULL;
-  if (strcmp(o->field, "damage") != 0) return true;
+  if (!m->of_damage || read_damage_of_particles(f, m, o)) return true;
   if (!error[0])
     snprintf(error, size,
              "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
@@ -93,10 +110,10 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
 /* NULL with a sentence that says how to store them when they are not there. */
 static double *read_displacements(result_file *f, const plot_frame *m, const char *path, long frame,
                                   char *error, size_t size) {
-  char unit_text[64], name[64];
+  char unit_text[64];
   long count = 0;
   int components = 0;
-  if (!result_find_field(f, "displacement", name, sizeof name)) {
+  if (!is_stored(f, "displacement")) {
     snprintf(error, size,
              "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in "
              "&output and run again",
@@ -116,7 +133,7 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   m->reference = result_read_reference(f, &m->particles, &m->dimensions);
   m->pairs = result_read_bonds(f, NULL, &m->bonds);
   if (!m->reference || !m->pairs || m->particles == 0) {
-    snprintf(error, size, "the result holds no particles and bonds to draw");
+    snprintf(error, size, "`%s` holds no lattice (particles and bonds) to draw", path);
     return false;
   }
   double *u = read_displacements(f, m, path, o->frame, error, size);
@@ -247,15 +264,25 @@ static double *means_of_bonds(const plot_frame *m, const double *values, int com
   return means;
 }
 
-/* A view of the surface shows particles alone. */
-static void put_values_on_particles(plot_frame *m, int component) {
-  if (!m->of_damage && !m->of_bonds) return;
+/* Bonds that reach past the nearest neighbours hide each other when all are drawn. */
+static bool has_crowded_bonds(const plot_frame *m) {
+  for (long b = 0; b < m->bonds; b++)
+    if (bond_length(m, b) > 1.5 * m->spacing) return true;
+  return false;
+}
+
+/* What bonds have, as means on particles. */
+static void show_on_particles(plot_frame *m, int component) {
+  if (!m->of_bonds && (!m->of_damage || m->values)) return;
   double *means = means_of_bonds(m, m->of_damage ? m->damage : NULL, component);
   free(m->values);
   m->values = means;
   m->components = 1;
   m->value_count = m->particles;
+  m->damage_of = "mean damage of a particle's bonds:";
   m->of_bonds = false;
+  free(m->damage);
+  m->damage = NULL;
 }
 
 /* Those with fewer bonds than others have: all others are hidden by them. */
@@ -292,7 +319,7 @@ static void take_surface(plot_frame *m, int component) {
   const double up[3] = {-sin(turn) * sin(tilt), cos(turn) * sin(tilt), cos(tilt)};
   const double away[3] = {-sin(turn) * cos(tilt), cos(turn) * cos(tilt), -sin(tilt)};
   long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order);
-  put_values_on_particles(m, component);
+  show_on_particles(m, component);
   const long count = surface_particles(m, order);
   seen *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (long k = 0; k < count; k++) {
@@ -306,7 +333,6 @@ static void take_surface(plot_frame *m, int component) {
   project(m, across, up);
   free(m->damage);
   m->damage = NULL;
-  m->bonds = 0;
   m->surface = true;
   free(all);
   free(order);
@@ -314,7 +340,7 @@ static void take_surface(plot_frame *m, int component) {
 
 bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
                      size_t size) {
-  *m = (plot_frame){.factor = 1};
+  *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
   result_file *f = result_read(path, error, size);
   if (!f) return false;
   bool good = read_frame(f, path, m, o, error, size);
@@ -323,8 +349,11 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
     snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");
     good = false;
   }
-  if (!good || m->dimensions == 2) return good;
-  if (o->slice_axis >= 0) return take_slice(m, o, error, size);
-  take_surface(m, o->component);
-  return true;
+  if (!good) return false;
+  const bool crowded = m->of_damage && has_crowded_bonds(m);
+  if (crowded) show_on_particles(m, -1);
+  if (m->dimensions == 3 && o->slice_axis < 0) take_surface(m, o->component);
+  if (m->dimensions == 3 && o->slice_axis >= 0) good = take_slice(m, o, error, size);
+  if (crowded || m->surface) m->bonds = 0;
+  return good;
 }
