@@ -67,8 +67,9 @@ int main(int argc, char **argv) {
   bool good = path && model_open(&m, path, NULL, 0) && model_plan(&m);
   result_file *f = good ? result_read(argv[2], error, sizeof error) : NULL;
   long particles = 0;
+  int dimensions;
   if (f)
-    free(result_read_reference(f, &particles));
+    free(result_read_reference(f, &particles, &dimensions));
   printf("%s has %d parameters; %ld particles\n", good ? m.law->tree->name : "?", good ? m.law->parameters.count : 0,
          particles);
   return f && particles > 0 ? 0 : 1;
