@@ -215,7 +215,8 @@ typedef enum monitor_kind {
   MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
   MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
-  MONITOR_FIELD         /* the law's: mean over the region of a field or an output on particles */
+  MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
+  MONITOR_REACTIONS     /* N, with `between`: half the reaction of the second less that of the first */
 } monitor_kind;
 
 typedef struct deck_monitor {

@@ -643,12 +643,14 @@ void deck_check_initial_velocity(deck_reader *r, const namelist_group *from,
 enum {
   OF_MOTION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
   OF_FIELD = 1 << MONITOR_FIELD,
-  OF_PAIR = 1 << MONITOR_OPENING,
+  OF_PAIR = 1 << MONITOR_OPENING | 1 << MONITOR_REACTIONS,
   OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN
 };
 static const char *const monitor_words[] = {
-    "a reaction monitor", "a displacement monitor", "a velocity monitor", "an opening monitor",
-    "a damaged monitor",  "a broken monitor",       "a field monitor"};
+    "a reaction monitor", "a displacement monitor",
+    "a velocity monitor", "an opening monitor",
+    "a damaged monitor",  "a broken monitor",
+    "a field monitor",    "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {{"region", OF_MOTION | OF_FIELD, true},
                                             {"between", OF_PAIR, true},
                                             {"component", OF_MOTION | OF_PAIR, true},
@@ -705,18 +707,19 @@ static const char *watched_region(const deck_monitor *item) {
 }
 
 void deck_check_monitor(deck_reader *r, const namelist_group *from, deck_monitor *item) {
+  const namelist_key *between = namelist_find(from, "between");
   check_monitor_name(r, item);
+  if (item->kind == MONITOR_REACTION && between) item->kind = MONITOR_REACTIONS;
   if (!deck_keys_fit(from, monitor_uses, 5, (int)item->kind, monitor_words[item->kind], r->d))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
   warn_late(r, &item->item, "zero_at", item->zero_at);
   if (item->region) item_region_known(r, &item->item, item->region);
-  const namelist_key *between = namelist_find(from, "between");
   for (int i = 0; between && i < 2; i++)
     region_known(r, between->values[i].where, item->between[i]);
   if (!take_component(r, &item->item, watched_region(item), &item->component)) return;
-  if (item->kind == MONITOR_REACTION) check_reaction(r, item);
+  if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
 
 /* Unit of a monitor's values. */
@@ -724,6 +727,7 @@ static const char *monitor_unit(const deck_reader *r, const deck_monitor *m) {
   const bool rotates = is_rotation(r, watched_region(m), m->component);
   switch (m->kind) {
   case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
     return rotates ? "N*m" : "N";
   case MONITOR_DISPLACEMENT:
   case MONITOR_OPENING:

@@ -558,7 +558,9 @@ static const deck_key_info monitor_keys[] = {
     {.name = "between",
      .type = DECK_NAMES,
      AT(monitor, between),
-     .doc = "opening: two regions; mean displacement of the second less that of the first"},
+     .doc = "two regions; opening: mean displacement of the second less that of the first; "
+            "reaction, in place of `region`: half the reaction of the second less that of the "
+            "first, what the two ends of a specimen carry in the mean"},
     {.name = "component",
      .type = DECK_CHOICE,
      .choices = "x|y|z|rotation",

@@ -22,6 +22,7 @@ static const char *unit_of(const deck_monitor *m, int dimensions) {
   const bool turns = m->component >= dimensions;
   switch (m->kind) {
   case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
     return turns ? "N*m" : "N";
   case MONITOR_VELOCITY:
     return turns ? "rad/s" : "m/s";
@@ -46,10 +47,11 @@ static void take_sites(monitor *m, int list, const monitors *all, const char *na
     m->indices[list][p] = all->state->lattice->particle_site[at->particles[p]];
 }
 
-static void take_reactions(monitor *m, const monitors *all) {
-  const int r = m->deck->region ? deck_find_region(all->deck, m->deck->region) : -1;
+static void take_reactions(monitor *m, int list, const monitors *all, const char *name) {
+  const int r = name ? deck_find_region(all->deck, name) : -1;
   if (r >= 0)
-    m->index_count[0] = loads_constraints_of(all->loads, r, m->deck->component, &m->indices[0]);
+    m->index_count[list] =
+        loads_constraints_of(all->loads, r, m->deck->component, &m->indices[list]);
 }
 
 static bool check_component(const monitor *m, const monitors *all, diagnostics *d) {
@@ -118,7 +120,11 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   if (!check_component(m, all, d) || !check_damage(m, all, d) || !find_steps(m, all, d)) return;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
-    take_reactions(m, all);
+    take_reactions(m, 0, all, m->deck->region);
+    break;
+  case MONITOR_REACTIONS:
+    take_reactions(m, 0, all, m->deck->between[0]);
+    take_reactions(m, 1, all, m->deck->between[1]);
     break;
   case MONITOR_OPENING:
     take_sites(m, 0, all, m->deck->between[0]);
@@ -185,10 +191,10 @@ static double mean_at(const double *values, const int32_t *sites, long count) {
   return count ? sum / (double)count : 0;
 }
 
-static double reaction_sum(const monitors *all, const monitor *m) {
+static double reaction_sum(const monitors *all, const monitor *m, int list) {
   double sum = 0;
-  for (long c = 0; c < m->index_count[0]; c++)
-    sum += all->loads->constraints[m->indices[0][c]].reaction;
+  for (long c = 0; c < m->index_count[list]; c++)
+    sum += all->loads->constraints[m->indices[list][c]].reaction;
   return sum;
 }
 
@@ -222,7 +228,9 @@ static double value_now(const monitors *all, const monitor *m) {
   const int c = m->deck->component;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
-    return reaction_sum(all, m);
+    return reaction_sum(all, m, 0);
+  case MONITOR_REACTIONS:
+    return 0.5 * (reaction_sum(all, m, 1) - reaction_sum(all, m, 0));
   case MONITOR_DISPLACEMENT:
     return mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
   case MONITOR_VELOCITY:

@@ -23,7 +23,7 @@ typedef struct monitor {
   const deck_monitor *deck;
   const char *unit;
   monitor_state state;
-  int32_t *indices[2]; /* sites (second list: of an opening), or constraints of a reaction */
+  int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
   long index_count[2];
   int field;      /* of a field monitor: the law's field, or field_count + output */
   double *ring;   /* [window] the last values, value of push k at k % window */

@@ -197,8 +197,7 @@ static void draw_damage_legend(canvas *c, const map *m) {
     x -= 22;
   }
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text(c, x, y, 18, ANCHOR_RIGHT,
-              m->frame.surface ? "mean damage of a particle's bonds:" : "damage of bonds:");
+  canvas_text(c, x, y, 18, ANCHOR_RIGHT, m->frame.damage_of);
 }
 
 static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o, double low,

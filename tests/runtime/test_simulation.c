@@ -377,6 +377,42 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   small_close(&r);
 }
 
+/* A chain stretched from both ends, unevenly so that it also speeds up: the ends carry differently. */
+static void the_reaction_between_two_regions_is_the_mean_of_both_ends(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(
+      text, sizeof text,
+      "&simulation end_time = 1e-4 step_safety = 0.5 /\n" CHAIN
+      "&material lattice = 'c' model = 'm' /\n" POINT("left", "0", "0") POINT(
+          "right", "0.05",
+          "0") "&drive region = 'left' component = 'x' displacement = '-2 um' rise = '0.1 ms' /\n"
+               "&drive region = 'right' component = 'x' displacement = '6 um' rise = '0.1 ms' /\n"
+               "&monitor name = 'left' kind = 'reaction' region = 'left' component = 'x' /\n"
+               "&monitor name = 'right' kind = 'reaction' region = 'right' component = 'x' /\n"
+               "&monitor name = 'load' kind = 'reaction' between = 'left', 'right' component = 'x' "
+               "scale = 3 /\n"
+               "&output frames = 0 sample = 1e-5 /\n",
+      5 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *left, *right, *load;
+  const char *symbol;
+  simulation_series(r.simulation, small_series(&r, "left"), NULL, &left);
+  simulation_series(r.simulation, small_series(&r, "right"), NULL, &right);
+  simulation_series(r.simulation, small_series(&r, "load"), &symbol, &load);
+  assert_string_equal(symbol, "N");
+  double uneven = 0;
+  for (long k = 0; k < simulation_history(r.simulation, NULL); k++) {
+    assert_true(fabs(load[k] - 3 * 0.5 * (right[k] - left[k])) < 1e-12 * rigidity_axial(0.2));
+    uneven = fmax(uneven, fabs(right[k] + left[k]));
+  }
+  assert_true(small_last(&r, "left") < 0 && small_last(&r, "right") > 0);
+  assert_true(uneven > 1e-2 * small_last(&r, "right"));
+  small_close(&r);
+}
+
 static void a_stop_ends_the_run_at_its_sample(void **state) {
   (void)state;
   char text[2048];
@@ -678,6 +714,7 @@ int main(void) {
       cmocka_unit_test(the_ledger_closes_for_an_elastic_block),
       cmocka_unit_test(the_ledger_closes_with_dissipation),
       cmocka_unit_test(means_zeros_and_scales_are_as_defined),
+      cmocka_unit_test(the_reaction_between_two_regions_is_the_mean_of_both_ends),
       cmocka_unit_test(a_stop_ends_the_run_at_its_sample),
       cmocka_unit_test(an_interrupt_ends_an_advance_at_a_step),
       cmocka_unit_test(damage_is_counted_and_protection_kept),
