@@ -49,10 +49,66 @@ static void note_flow(lowering *c, const stmt *rule, ir_node when) {
       (lowered_flow){rule, rule->symbol->index, when, overstress_of(c, rule->when)};
 }
 
+/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how many. */
+static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **stand_in) {
+  ir *g = c->graph;
+  const int nodes = ir_count(g), fields = c->law->fields.count;
+  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
+  int count = 0;
+  ir_mark(g, n, 1, marks);
+  for (ir_node k = 0; k < nodes; k++)
+    count += marks[k] && ir_operation(g, k) == IR_NEIGHBOUR;
+  *what = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **what);
+  *stand_in = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **stand_in);
+  count = 0;
+  for (ir_node k = 0; k < nodes; k++) {
+    if (!marks[k] || ir_operation(g, k) != IR_NEIGHBOUR) continue;
+    (*what)[count] = k;
+    (*stand_in)[count] = ir_input(g, IR_FROM_FIELD, 2 * fields + 1 + k, "frozen", ir_place(g, k));
+    count++;
+  }
+  free(marks);
+  ir_substitute(g, n, 1, *what, *stand_in, count, n);
+  return count;
+}
+
+/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what neighbours have being
+   frozen. Newton's method from lambda = 0 in a fixed number of steps: the returns of the usual convex yield functions
+   have converged to rounding long before; the `flow` check of a law says so where one has not. */
+static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node direction) {
+  enum { NEWTON_STEPS = 8 };
+  ir *g = c->graph;
+  ir_node over = overstress_of(c, rule->when);
+  if (over == IR_NONE)
+    return lower_fail(c, rule->where,
+                      "a returned flow goes back to where its guard is an equality: write "
+                      "`returned when f >= 0`");
+  ir_node when = lower_expr(c, rule->when), *what, *stand_in;
+  note_flow(c, rule, when);
+  const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
+  ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
+                            ir_place(g, over) > ON_BODY ? ir_place(g, over) : ON_BOND);
+  ir_node moved = ir_add(g, old, ir_mul(g, lambda, direction));
+  ir_substitute(g, &over, 1, &old, &moved, 1, &over);
+  ir_node slope = ir_derivative(g, over, lambda);
+  ir_node falls = binary(g, IR_LT, slope, ir_constant(g, 0));
+  ir_node safe = ir_select(g, falls, slope, ir_constant(g, -1));
+  ir_node next = ir_sub(g, lambda, ir_div(g, over, safe));
+  next = ir_select(g, falls, next, lambda);
+  ir_node found = ir_constant(g, 0);
+  for (int k = 0; k < NEWTON_STEPS && !c->failed; k++) {
+    ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
+    if (ir_count(g) > MOST_NODES)
+      return lower_fail(c, rule->where,
+                        "with its return written out the law is too large to compile");
+  }
+  ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
+  return ir_select(g, when, ir_add(g, old, ir_mul(g, found, direction)), old);
+}
+
 /* `flow x by expr when guard`: one increment a step. */
 static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node increment) {
-  if (rule->returned)
-    return lower_fail(c, rule->where, "`flow ... along ... returned` cannot be compiled yet");
+  if (rule->returned) return flow_returned(c, rule, old, increment);
   ir_node flown = ir_add(c->graph, old, increment);
   ir_node when = rule->when ? lower_expr(c, rule->when) : IR_NONE;
   note_flow(c, rule, when);

@@ -207,12 +207,33 @@ static void bending_norm_is_the_size(void **state) {
   close_law(t);
 }
 
+/* A slider with nonlinear hardening is returned to its limit within one step: N = k (stretch - p) and
+   |N| = N_y (1 + (p/p_0)^2), whatever the overshoot. */
+static void a_returned_flow_ends_on_the_limit(void **state) {
+  (void)state;
+  tested_law *t = must_open(CENTRAL("  state p on bond = 0\n  N_t = k*(stretch - p)\n"
+                                    "  yield f = abs(N_t)/(0.001*k*(1 + (p/0.01)**2)) - 1\n"
+                                    "  flow p along sign(N_t) returned when f >= 0\n"
+                                    "  force N = k*(stretch - p)\n"));
+  const double stretches[] = {0.0011, 0.002, 0.01, -0.004, 0.05};
+  for (size_t q = 0; q < sizeof stretches / sizeof *stretches; q++) {
+    tested_state x = {.stretch = stretches[q]};
+    evaluate_law(t, &x, 0);
+    const double limit = 0.001 * (1 + pow(x.new_field[0] / 0.01, 2));
+    const double elastic = fabs(stretches[q] - x.new_field[0]);
+    if (!(fabs(elastic / limit - 1) < 1e-12))
+      fail_msg("at stretch %g the limit is missed by %.3g", stretches[q], elastic / limit - 1);
+  }
+  tested_state below = {.stretch = 0.0005};
+  evaluate_law(t, &below, 0);
+  assert_true(below.new_field[0] == 0);
+  close_law(t);
+}
+
 static void what_is_not_compiled_yet_is_said(void **state) {
   (void)state;
-  tested_law *t = open_law("model m\n  law state\n  parameter a = 1 [N] in (0, inf)\n"
-                           "  state p on neighbour = 0\n  yield f = sum(stretch[j]) - 1\n"
-                           "  flow p[j] along stretch[j] returned when f >= 0\n"
-                           "  force state F[j] = a*(stretch[j] - p[j])\nend model\n");
+  tested_law *t = open_law("model m\n  law central bond\n  parameter a = 1 [N] in (0, inf)\n"
+                           "  force N = a*stretch*norm(direction)\nend model\n");
   assert_non_null(t->law);
   assert_null(t->plan);
   assert_int_equal(t->said.items[t->said.count - 1].code, DIAG_NOT_SUPPORTED);
@@ -361,6 +382,7 @@ int main(void) {
       cmocka_unit_test(a_shear_force_gives_equal_moments),
       cmocka_unit_test(diff_is_the_derivative),
       cmocka_unit_test(bending_norm_is_the_size),
+      cmocka_unit_test(a_returned_flow_ends_on_the_limit),
       cmocka_unit_test(what_is_not_compiled_yet_is_said),
       cmocka_unit_test(a_bound_that_cannot_be_compiled_is_said),
       cmocka_unit_test(repeated_calls_are_expanded_once),

@@ -21,12 +21,19 @@ typedef struct law_case {
   double *parameters;
 } law_case;
 
-static inline bool law_case_open(law_case *c, const char *name) {
-  char path[4096], error[4096];
-  const char *note;
+static inline bool law_case_read(law_case *c, const char *name) {
+  char path[4096];
   snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
   memset(c, 0, sizeof *c);
-  if (!model_open(&c->model, path, NULL, 0) || !model_plan(&c->model)) {
+  if (model_open(&c->model, path, NULL, 0)) return true;
+  diag_print(&c->model.said, stderr);
+  return false;
+}
+
+static inline bool law_case_compile(law_case *c) {
+  char error[4096];
+  const char *note;
+  if (!model_plan(&c->model)) {
     diag_print(&c->model.said, stderr);
     return false;
   }
@@ -37,6 +44,17 @@ static inline bool law_case_open(law_case *c, const char *name) {
   for (int p = 0; p < c->interpreted->parameter_count; p++)
     c->parameters[p] = c->interpreted->parameters[p].initial;
   return c->compiled != NULL && note == NULL;
+}
+
+static inline bool law_case_open(law_case *c, const char *name) {
+  return law_case_read(c, name) && law_case_compile(c);
+}
+
+/* The same for a lattice in this setting. */
+static inline bool law_case_open_in(law_case *c, const char *name, law_setting setting) {
+  if (!law_case_read(c, name)) return false;
+  c->model.law->setting = setting;
+  return law_case_compile(c);
 }
 
 static inline void law_case_close(law_case *c) {
