@@ -72,6 +72,16 @@ static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o
   return true;
 }
 
+/* A law may have its damage on particles. */
+static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_map_options *o) {
+  char none[256], name[64];
+  if (!result_find_field(f, "damage", name, sizeof name)) return false;
+  m->values = result_read_frame(f, "damage", o->frame, &m->value_count, &m->components,
+                                m->unit_text, sizeof m->unit_text, none, sizeof none);
+  m->damage_of = "damage of particles:";
+  return m->values && m->value_count == m->particles && m->components == 1;
+}
+
 /* Maps of other fields show separated bonds, too, where the result knows them. */
 static bool read_damage(result_file *f, plot_frame *m, const char *path, const plot_map_options *o,
                         char *error, size_t size) {
@@ -80,7 +90,7 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
   if (m->damage && count == m->bonds) return true;
   free(m->damage);
   m->damage = NULL;
-  if (strcmp(o->field, "damage") != 0) return true;
+  if (!m->of_damage || read_damage_of_particles(f, m, o)) return true;
   if (!error[0])
     snprintf(error, size,
              "`%s` holds no damage of bonds: write fields = 'displacement', 'damage' in &output "
@@ -247,15 +257,25 @@ static double *means_of_bonds(const plot_frame *m, const double *values, int com
   return means;
 }
 
-/* A view of the surface shows particles alone. */
-static void put_values_on_particles(plot_frame *m, int component) {
-  if (!m->of_damage && !m->of_bonds) return;
+/* Bonds that reach past the nearest neighbours hide each other when all are drawn. */
+static bool has_crowded_bonds(const plot_frame *m) {
+  for (long b = 0; b < m->bonds; b++)
+    if (bond_length(m, b) > 1.5 * m->spacing) return true;
+  return false;
+}
+
+/* What bonds have, as means on particles. */
+static void show_on_particles(plot_frame *m, int component) {
+  if (!m->of_bonds && (!m->of_damage || m->values)) return;
   double *means = means_of_bonds(m, m->of_damage ? m->damage : NULL, component);
   free(m->values);
   m->values = means;
   m->components = 1;
   m->value_count = m->particles;
+  m->damage_of = "mean damage of a particle's bonds:";
   m->of_bonds = false;
+  free(m->damage);
+  m->damage = NULL;
 }
 
 /* Those with fewer bonds than others have: all others are hidden by them. */
@@ -292,7 +312,7 @@ static void take_surface(plot_frame *m, int component) {
   const double up[3] = {-sin(turn) * sin(tilt), cos(turn) * sin(tilt), cos(tilt)};
   const double away[3] = {-sin(turn) * cos(tilt), cos(turn) * cos(tilt), -sin(tilt)};
   long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order);
-  put_values_on_particles(m, component);
+  show_on_particles(m, component);
   const long count = surface_particles(m, order);
   seen *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (long k = 0; k < count; k++) {
@@ -306,7 +326,6 @@ static void take_surface(plot_frame *m, int component) {
   project(m, across, up);
   free(m->damage);
   m->damage = NULL;
-  m->bonds = 0;
   m->surface = true;
   free(all);
   free(order);
@@ -314,7 +333,7 @@ static void take_surface(plot_frame *m, int component) {
 
 bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
                      size_t size) {
-  *m = (plot_frame){.factor = 1};
+  *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
   result_file *f = result_read(path, error, size);
   if (!f) return false;
   bool good = read_frame(f, path, m, o, error, size);
@@ -323,8 +342,11 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
     snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");
     good = false;
   }
-  if (!good || m->dimensions == 2) return good;
-  if (o->slice_axis >= 0) return take_slice(m, o, error, size);
-  take_surface(m, o->component);
-  return true;
+  if (!good) return false;
+  const bool crowded = m->of_damage && has_crowded_bonds(m);
+  if (crowded) show_on_particles(m, -1);
+  if (m->dimensions == 3 && o->slice_axis < 0) take_surface(m, o->component);
+  if (m->dimensions == 3 && o->slice_axis >= 0) good = take_slice(m, o, error, size);
+  if (crowded || m->surface) m->bonds = 0;
+  return good;
 }

@@ -15,11 +15,14 @@ typedef struct plot_frame {
   int32_t *pairs;            /* [bonds][2] */
   double *values;            /* of the particles, or of the bonds; NULL: a map of damage */
   long value_count;
-  bool of_bonds, of_damage; /* the values are damages, to be shown in their classes */
-  bool surface;             /* particles alone, from the farthest to the nearest */
+  bool of_bonds; /* the values are those of bonds */
+  bool
+      of_damage; /* damages, to be shown in their classes: of bonds, or the values as means on particles */
+  bool surface; /* particles alone, from the farthest to the nearest */
   int components;
   char unit_text[64], title[512];
-  char view[80]; /* of a body in space: what is shown, for the picture's head */
+  const char *damage_of; /* what the damages shown are those of */
+  char view[80];         /* of a body in space: what is shown, for the picture's head */
   double time, factor, spacing;
 } plot_frame;
 

@@ -125,10 +125,10 @@ static colour particle_colour(const map *m, long p, int component, double low, d
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  cairo_new_path(c->cr);
   for (long p = 0; p < m->frame.particles; p++) {
     canvas_colour(c, coloured ? particle_colour(m, p, component, low, high)
                               : (colour){0.45, 0.48, 0.52});
-    cairo_new_path(c->cr);
     cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
               2 * M_PI);
     cairo_fill_preserve(c->cr);
@@ -137,6 +137,7 @@ static void draw_particles(canvas *c, const map *m, int component, double low, d
       cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
       cairo_stroke(c->cr);
     }
+    cairo_new_path(c->cr);
   }
 }
 
@@ -196,8 +197,7 @@ static void draw_damage_legend(canvas *c, const map *m) {
     x -= 22;
   }
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text(c, x, y, 18, ANCHOR_RIGHT,
-              m->frame.surface ? "mean damage of a particle's bonds:" : "damage of bonds:");
+  canvas_text(c, x, y, 18, ANCHOR_RIGHT, m->frame.damage_of);
 }
 
 static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o, double low,

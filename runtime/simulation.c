@@ -142,11 +142,20 @@ static void new_history(simulation *s) {
   s->sampled = must_calloc((size_t)s->series_count + 1, sizeof(double));
 }
 
-/* Laws of bonds run on the hexagonal lattice of nearest neighbours. */
+/* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest neighbours. */
 static bool lattice_serves(const simulation *s, diagnostics *d) {
   const deck_lattice *l = &s->deck->lattices[0];
   const bool hexagonal = strcmp(l->kind, "hexagonal") == 0;
-  if (s->law->kind == PL_STATE || (hexagonal && s->lattice->directions == 3)) return true;
+  const bool nearest = hexagonal && s->lattice->directions == 3;
+  if (s->law->dimensions == s->lattice->dimensions && (s->law->kind == PL_STATE || nearest))
+    return true;
+  if (s->law->dimensions != s->lattice->dimensions) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+                "the law `%s` is of %s, the lattice is in %s", s->law->name,
+                s->law->dimensions == 2 ? "the plane" : "space",
+                s->law->dimensions == 2 ? "space" : "the plane");
+    return false;
+  }
   const char *key = !hexagonal ? "kind" : l->horizon > 0 ? "horizon" : "shells";
   diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, key),
               "`%s` is a law of bonds: it runs on a hexagonal lattice of nearest neighbours",

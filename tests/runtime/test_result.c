@@ -533,10 +533,13 @@ static void maps_show_their_field(void **state) {
   assert_non_null(strstr(
       error,
       "fields of particles: damage, displacement; of bonds: concrete/alpha, concrete/omega_c"));
-  write_kinds("result_n.h5", 0, 3);
+  write_kinds("result_n.h5", 0, 1);
   assert_false(map_of("result_n.h5", "damage"));
   assert_non_null(strstr(
       error, "holds no damage of bonds: write fields = 'displacement', 'damage' in &output"));
+  write_kinds("result_n.h5", 0, 3); /* damage on particles alone: 0.2, 0.6, 1 */
+  assert_true(map_of("result_n.h5", "damage"));
+  assert_true(pixels("map_k.png", yellow) > 500 && pixels("map_k.png", black) > 500);
   assert_true(map_of("result_n.h5", "alpha"));
   assert_int_equal(pixels("map_k.png", black), 0); /* no damage, no cracks */
   write_kinds("result_n.h5", 1, 4);

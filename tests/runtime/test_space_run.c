@@ -12,7 +12,7 @@
 /* --- springs ---------------------------------------------------------------------------------- */
 
 enum { SPRING_C, SPRING_RHO, SPRING_PARAMETERS };
-enum { UNIFORM_SPRING, UNIFORM_LENGTH, UNIFORM_CHORD, UNIFORMS = UNIFORM_CHORD + 3 };
+enum { IS_SPRING, IS_LENGTH, IS_CHORD, SPRING_UNIFORMS = IS_CHORD + 3 };
 
 static const pl_parameter spring_parameters[SPRING_PARAMETERS] = {
     {"c", "N", "force over stretch", 1e5, 1}, {"rho", "kg/m^3", "mass density", 2000, 1}};
@@ -20,9 +20,9 @@ static const pl_parameter spring_parameters[SPRING_PARAMETERS] = {
 static void spring_prepare(const pl_law *law, const double *p, const pl_bond_class *b,
                            double *uniforms) {
   (void)law;
-  uniforms[UNIFORM_SPRING] = p[SPRING_C] * b->weight;
-  uniforms[UNIFORM_LENGTH] = b->s;
-  memcpy(uniforms + UNIFORM_CHORD, b->chord, sizeof b->chord);
+  uniforms[IS_SPRING] = p[SPRING_C] * b->weight;
+  uniforms[IS_LENGTH] = b->s;
+  memcpy(uniforms + IS_CHORD, b->chord, sizeof b->chord);
 }
 
 static void spring_bounds(const pl_law *law, const double *p, double *lower, double *upper,
@@ -43,13 +43,13 @@ static double spring_of(const double *u, const pl_family *f, long k, long q, dou
   if (!(bonds & 1)) return 0;
   double c[3], square = 0;
   for (int a = 0; a < 3; a++) {
-    c[a] = u[UNIFORM_CHORD + a] + f->displacement[a][j] - f->displacement[a][q];
+    c[a] = u[IS_CHORD + a] + f->displacement[a][j] - f->displacement[a][q];
     square += c[a] * c[a];
   }
-  const double length = sqrt(square), stretch = (length - u[UNIFORM_LENGTH]) / u[UNIFORM_LENGTH];
+  const double length = sqrt(square), stretch = (length - u[IS_LENGTH]) / u[IS_LENGTH];
   for (int a = 0; a < 3; a++)
-    force[a] += u[UNIFORM_SPRING] * stretch * c[a] / length;
-  return 0.25 * u[UNIFORM_SPRING] * u[UNIFORM_LENGTH] * stretch * stretch;
+    force[a] += u[IS_SPRING] * stretch * c[a] / length;
+  return 0.25 * u[IS_SPRING] * u[IS_LENGTH] * stretch * stretch;
 }
 
 static void spring_forces(const pl_law *law, const double *uniforms, const pl_family *f) {
@@ -57,7 +57,7 @@ static void spring_forces(const pl_law *law, const double *uniforms, const pl_fa
   for (long q = 0; q < f->count; q++) {
     double force[3] = {0, 0, 0};
     for (long k = 0; k < f->neighbours; k++)
-      spring_of(uniforms + k * UNIFORMS, f, k, q, force);
+      spring_of(uniforms + k * SPRING_UNIFORMS, f, k, q, force);
     for (int a = 0; a < 3; a++)
       f->force[a][q] = force[a];
   }
@@ -69,7 +69,7 @@ static void spring_energy(const pl_law *law, const double *uniforms, const pl_fa
     double force[3] = {0, 0, 0};
     f->observed[0][q] = 0;
     for (long k = 0; k < f->neighbours; k++)
-      f->observed[0][q] += spring_of(uniforms + k * UNIFORMS, f, k, q, force);
+      f->observed[0][q] += spring_of(uniforms + k * SPRING_UNIFORMS, f, k, q, force);
   }
 }
 
@@ -83,7 +83,7 @@ static const pl_law springs = {.abi = PL_KERNEL_ABI,
                                .key = "springs",
                                .parameter_count = SPRING_PARAMETERS,
                                .parameters = spring_parameters,
-                               .uniform_count = UNIFORMS,
+                               .uniform_count = SPRING_UNIFORMS,
                                .prepare = spring_prepare,
                                .bounds = spring_bounds,
                                .step = {1, spring_step},
@@ -110,13 +110,15 @@ static small_run run_of(const char *text) {
 /* Nothing but velocity and weight: every particle flies alike. */
 static void a_free_body_flies(void **state) {
   (void)state;
-  small_run r = run_of(HEAD("'fcc' shells = 2", "") "&body lattice = 'block' shape = 'box' corner = 0, 0, 0 "
-                       "size = '60 mm', '50 mm', '40 mm' /\n"
-                       "&gravity acceleration = '1 m/s^2', 0, '-9.81 m/s^2' /\n"
-                       "&initial_velocity region = 'all' component = 'z' value = '2 m/s' /\n"
-                       "&monitor name = 'w' kind = 'displacement' region = 'all' component = 'z' /\n"
-                       "&monitor name = 'u' kind = 'displacement' region = 'all' component = 'x' /\n"
-                       "&monitor name = 'fall' kind = 'velocity' region = 'all' component = 'z' /\n");
+  small_run r = run_of(
+      HEAD("'fcc' shells = 2",
+           "") "&body lattice = 'block' shape = 'box' corner = 0, 0, 0 "
+               "size = '60 mm', '50 mm', '40 mm' /\n"
+               "&gravity acceleration = '1 m/s^2', 0, '-9.81 m/s^2' /\n"
+               "&initial_velocity region = 'all' component = 'z' value = '2 m/s' /\n"
+               "&monitor name = 'w' kind = 'displacement' region = 'all' component = 'z' /\n"
+               "&monitor name = 'u' kind = 'displacement' region = 'all' component = 'x' /\n"
+               "&monitor name = 'fall' kind = 'velocity' region = 'all' component = 'z' /\n");
   const double t = 2e-3, dt = 5e-6;
   assert_true(fabs(small_last(&r, "w") - (2 * t - 0.5 * 9.81 * t * (t + dt))) < 1e-12);
   assert_true(fabs(small_last(&r, "u") - 0.5 * t * (t + dt)) < 1e-12);
@@ -153,7 +155,8 @@ static void a_block_is_pulled_along_z(void **state) {
                   small_last(&r, "energy/imbalance"));
     assert_true(fabs(small_last(&r, "lift") - 1e-4) < 1e-9);
     assert_true(up > 10 && fabs(up + down) < 0.05 * up);
-    assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-3 * small_last(&r, "energy/external"));
+    assert_true(fabs(small_last(&r, "energy/imbalance")) <
+                1e-3 * small_last(&r, "energy/external"));
     small_close(&r);
   }
 }
@@ -201,7 +204,8 @@ static void frames_have_three_components(void **state) {
 
 static void threads_do_not_change_bits(void **state) {
   (void)state;
-  small_run one = run_of(PULLED("'fcc'", "threads = 1")), three = run_of(PULLED("'fcc'", "threads = 3"));
+  small_run one = run_of(PULLED("'fcc'", "threads = 1")),
+            three = run_of(PULLED("'fcc'", "threads = 3"));
   const sweep *a = simulation_state(one.simulation), *b = simulation_state(three.simulation);
   const size_t bytes = (size_t)simulation_rows(one.simulation, 0)->size * sizeof(double);
   for (int c = 0; c < 3; c++)
@@ -222,8 +226,9 @@ static void expect(const char *text, const pl_law *law, const char *part) {
 
 static void laws_keep_to_their_lattices(void **state) {
   (void)state;
-  static const char block[] = HEAD("'cubic'", "")
-      "&body lattice = 'block' shape = 'sphere' centre = 0, 0, 0 radius = '30 mm' /\n";
+  static const char block[] =
+      HEAD("'cubic'",
+           "") "&body lattice = 'block' shape = 'sphere' centre = 0, 0, 0 radius = '30 mm' /\n";
   static const char plate[] =
       "&simulation end_time = 1 /\n"
       "&lattice name = 'plate' kind = 'hexagonal' spacing = 1 thickness = 1 %s /\n"
@@ -231,10 +236,10 @@ static void laws_keep_to_their_lattices(void **state) {
       "&body lattice = 'plate' shape = 'disc' centre = 0, 0 radius = 5 /\n";
   char text[1024];
   snprintf(text, sizeof text, plate, "shells = 2");
-  expect(text, &elastic_bar, "hexagonal lattice of nearest neighbours");
-  expect(block, &elastic_bar, "hexagonal lattice of nearest neighbours");
+  expect(text, &elastic_beam, "hexagonal lattice of nearest neighbours");
+  expect(block, &elastic_beam, "is of the plane, the lattice is in space");
   snprintf(text, sizeof text, plate, "");
-  expect(text, &springs, "in space");
+  expect(text, &springs, "is of space, the lattice is in the plane");
 }
 
 int main(void) {
