@@ -33,7 +33,7 @@ done
 "$perilat" drive "$prefix/share/perilat/models/drives/elastic_central.nml" | grep -q 'expectations hold'
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
-sed "s/NAME/cohesive_central/g" "$source/generator/templates/deck.nml" >deck.nml
+sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" run deck.nml --set "simulation.end_time=0.1 ms" --set output.result=run.h5 2>&1 | grep -q 'written'
 "$perilat" info run.h5 | grep -q elongation
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
