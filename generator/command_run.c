@@ -128,21 +128,19 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
   model m;
   bool good = model_open(&m, path, NULL, 0);
   int status = good ? 0 : 1;
-  bool pairwise = good && m.law->tree->law != LAW_STATE;
   if (good && dump)
     status = dump_stage(&m, dump);
-  else if (pairwise && !model_plan(&m))
+  else if (good && !model_plan(&m))
     status = 1;
-  else if (pairwise && !o->no_physics && !check_values(&m, &found))
+  else if (good && !o->no_physics && !check_values(&m, &found))
     status = 1;
   if (report)
     diag_json_add(report, &m.said);
   else
     diag_print(&m.said, stderr);
   if (!status && !dump && !report)
-    printf("%s: %s, no errors, %d warning%s (%.1f ms)%s\n", path, m.law->tree->name, m.said.count,
-           m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front,
-           pairwise ? "" : "; state laws can be checked but not yet compiled");
+    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, m.law->tree->name, m.said.count,
+           m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front);
   if (!status && !dump && !report && found.states > 0) print_physics(&found);
   model_close(&m);
   return status;

@@ -5,6 +5,7 @@
 
 #include "dsl/arena.h"
 #include "generator/guard_watch.h"
+#include "generator/kernel_check_families.h"
 #include "generator/kernel_check_strips.h"
 #include "generator/random_values.h"
 
@@ -84,11 +85,12 @@ static void check_states(const law_readers *l, law_inputs *inputs, long wanted, 
 /* --- prepare and bounds ----------------------------------------------------------------------- */
 
 static void check_prepare(const law_readers *l, const double *parameters, comparison *c) {
-  const int count = l->law[0]->uniform_count;
-  planes_poison(l->uniforms, 2, count);
+  const long count = l->law[0]->uniform_count;
+  planes_poison(l->uniforms, 2, l->classes * count);
   for (int side = 0; side < 2; side++)
-    l->law[side]->prepare(l->law[side], parameters, l->bonds, l->uniforms[side]);
-  comparison_add(c, "prepare", "uniforms", -1, l->uniforms[0], l->uniforms[1], count);
+    for (int k = 0; k < l->classes; k++)
+      l->law[side]->prepare(l->law[side], parameters, &l->bonds[k], l->uniforms[side] + k * count);
+  comparison_add(c, "prepare", "uniforms", -1, l->uniforms[0], l->uniforms[1], l->classes * count);
 }
 
 static void check_bounds(const law_readers *l, const double *parameters, comparison *c) {
@@ -116,30 +118,41 @@ static void check_bounds(const law_readers *l, const double *parameters, compari
 
 /* --- all of it -------------------------------------------------------------------------------- */
 
-static void check_set(kernel_check *c, const law *of, law_readers *l, const double *parameters,
-                      long states, guard_watch *guards, uint64_t *seed) {
-  l->parameters = parameters;
-  check_prepare(l, parameters, &c->outputs);
-  check_bounds(l, parameters, &c->outputs);
+static void check_bonds(kernel_check *c, const law *of, const law_readers *l, long states,
+                        guard_watch *guards, uint64_t *seed) {
   law_inputs inputs;
-  law_inputs_open(&inputs, of, parameters, l->bonds);
+  law_inputs_open(&inputs, of, l->parameters, l->bonds);
   check_states(l, &inputs, states, seed, guards, &c->outputs);
   law_inputs_close(&inputs);
   c->states += states;
   c->bonds += kernel_check_strips(l, states / STATES_PER_BOND, seed, &c->outputs);
 }
 
+static void check_families(kernel_check *c, const law_readers *l, long states, uint64_t *seed) {
+  c->passes = l->law[0]->step.pass_count + l->law[0]->observe.pass_count;
+  c->bonds += kernel_check_families(l, states / STATES_PER_BOND, seed, &c->outputs);
+}
+
 kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
                               const double *const *parameters, int sets, const pl_bond_class *bonds,
-                              long states, uint64_t seed) {
+                              int classes, long states, uint64_t seed) {
   kernel_check c = {.states = 0};
   pl_law *interpreted = plan_interpreted(p, "");
-  double **uniforms = planes_new(2, kernel->uniform_count);
-  law_readers l = {
-      .law = {kernel, interpreted}, .uniforms = {uniforms[0], uniforms[1]}, .bonds = bonds};
+  double **uniforms = planes_new(2, (long)classes * kernel->uniform_count);
+  law_readers l = {.law = {kernel, interpreted},
+                   .uniforms = {uniforms[0], uniforms[1]},
+                   .bonds = bonds,
+                   .classes = classes};
   guard_watch *guards = guard_watch_new(p, BATCH);
-  for (int k = 0; k < sets; k++)
-    check_set(&c, p->law, &l, parameters[k], states / sets, guards, &seed);
+  for (int k = 0; k < sets; k++) {
+    l.parameters = parameters[k];
+    check_prepare(&l, parameters[k], &c.outputs);
+    check_bounds(&l, parameters[k], &c.outputs);
+    if (kernel->kind == PL_STATE)
+      check_families(&c, &l, states / sets, &seed);
+    else
+      check_bonds(&c, p->law, &l, states / sets, guards, &seed);
+  }
   c.guards = guard_watch_count(guards);
   c.guards_both = guard_watch_both(guards);
   guard_watch_free(guards);
@@ -169,10 +182,13 @@ void kernel_check_report(const kernel_check *c, const char *name, FILE *out) {
     report_fault(c, name, out);
     return;
   }
-  fprintf(out,
-          "kernel check: %s and its interpreter give the same bits (%ld random states, %ld random "
-          "bonds in each of 6 strip functions, %ld values)",
-          name, c->states, c->bonds, c->outputs.values);
+  fprintf(out, "kernel check: %s and its interpreter give the same bits (", name);
+  if (c->passes)
+    fprintf(out, "%ld random bonds of families in each of %d passes", c->bonds, c->passes);
+  else
+    fprintf(out, "%ld random states, %ld random bonds in each of 6 strip functions", c->states,
+            c->bonds);
+  fprintf(out, ", %ld values)", c->outputs.values);
   if (c->guards)
     fprintf(out, "; %d of %d conditions were seen both true and false", c->guards_both, c->guards);
   fputs("\n", out);

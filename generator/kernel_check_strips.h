@@ -9,8 +9,9 @@
 /* One law read twice: the compiled kernel, then the interpreter. */
 typedef struct law_readers {
   const pl_law *law[2];
-  double *uniforms[2]; /* of `prepare` */
-  const pl_bond_class *bonds;
+  double *uniforms[2];        /* of `prepare`: [classes][uniform_count] */
+  const pl_bond_class *bonds; /* [classes] one; in laws of families one for each neighbour */
+  int classes;
   const double *parameters; /* those that differ from bond to bond are drawn around these */
 } law_readers;
 

@@ -67,17 +67,23 @@ static void dump_pass(const kernel_plan *p, const pass *a, FILE *out) {
 }
 
 void plan_dump(const kernel_plan *p, FILE *out) {
-  fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, %d force planes\n",
-          p->law->tree->name, p->kind == PL_MICROPOLAR ? "micropolar bond" : "central bond",
-          p->dimensions, p->dof, p->force_planes);
+  static const char *const kinds[] = {
+      [PL_CENTRAL] = "central bond", [PL_MICROPOLAR] = "micropolar bond", [PL_STATE] = "family"};
+  fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, ", p->law->tree->name,
+          kinds[p->kind], p->dimensions, p->dof);
+  if (p->kind == PL_STATE)
+    fprintf(out, "%d links\n", p->link_count);
+  else
+    fprintf(out, "%d force planes\n", p->force_planes);
   fprintf(out, "computed once for each bond class: %d values\n", p->uniform_count);
   for (int k = 0; k < p->uniform_count; k++) {
     ir_node n = p->uniforms[k];
     fprintf(out, "  uniform %-3d %%%d %s %s\n", k, n, ir_op_name(ir_operation(p->graph, n)),
             ir_name(p->graph, n) ? ir_name(p->graph, n) : "");
   }
+  plan_dump_programs(p, out);
   for (int k = 0; k < PASS_COUNT; k++)
-    dump_pass(p, &p->passes[k], out);
+    if (p->passes[k].root_count) dump_pass(p, &p->passes[k], out);
 }
 
 static void dump_pass_nodes(const kernel_plan *p, const pass *a, FILE *out) {
@@ -97,6 +103,7 @@ static void dump_pass_nodes(const kernel_plan *p, const pass *a, FILE *out) {
 }
 
 void plan_dump_ir(const kernel_plan *p, FILE *out) {
+  plan_dump_programs_ir(p, out);
   for (int k = 0; k < PASS_COUNT; k++)
-    dump_pass_nodes(p, &p->passes[k], out);
+    if (p->passes[k].root_count) dump_pass_nodes(p, &p->passes[k], out);
 }

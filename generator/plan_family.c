@@ -18,23 +18,30 @@ static ir_node present_direction(ir *g, int d) {
   return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + d, "e", ON_BOND);
 }
 
+static ir_node family_sum(ir *g, ir_node n) {
+  return ir_make(g, IR_FAMILY_SUM, n, IR_NONE, IR_NONE);
+}
+
 /* --- results ---------------------------------------------------------------------------------- */
 
 /* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the same on both. */
-static ir_node bond_force(family_planner *p) {
-  const law *l = p->plan->law;
-  ir *g = p->g;
-  ir_node f = p->step.N;
-  if (l->tree->law == LAW_STATE) {
-    ir_node other = ir_make(g, IR_NEIGHBOUR, p->step.F, IR_NONE, IR_NONE);
-    f = ir_mul(g, ir_constant(g, 0.5), ir_add(g, p->step.F, other));
+static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
+  ir *g = plan->graph;
+  ir_node f = of->N;
+  if (plan->law->tree->law == LAW_STATE) {
+    ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
+    f = ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
 }
 
-static ir_node family_sum(ir *g, ir_node n) {
-  return ir_make(g, IR_FAMILY_SUM, n, IR_NONE, IR_NONE);
+void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots) {
+  ir *g = plan->graph;
+  ir_node f = bond_force(plan, of);
+  for (int d = 0; d < plan->dimensions; d++)
+    roots[d] =
+        (segment_root){family_sum(g, ir_mul(g, f, present_direction(g, d))), TO_PARTICLE_FORCE, d};
 }
 
 /* The particle's share of what its bonds store, J. */
@@ -81,9 +88,8 @@ static root_list step_roots(family_planner *p) {
   for (int k = 0; k < l->fields.count; k++)
     want(&r, p->step.fields[k],
          is_of_particle(l->fields.items[k]) ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
-  ir_node f = bond_force(p);
-  for (int d = 0; d < p->plan->dimensions; d++)
-    want(&r, family_sum(p->g, ir_mul(p->g, f, present_direction(p->g, d))), TO_PARTICLE_FORCE, d);
+  plan_forces(p->plan, &p->step, r.items + r.count);
+  r.count += p->plan->dimensions;
   return r;
 }
 
@@ -101,11 +107,9 @@ static root_list observe_roots(family_planner *p) {
 
 enum { MOST_MOTION = 6 };
 
-static program_motion see_motion(family_planner *p) {
-  ir *g = p->g;
-  kernel_plan *plan = p->plan;
+program_motion plan_motion(const kernel_plan *plan, bool reference) {
+  ir *g = plan->graph;
   family_kinematics k = kinematics_family(g, plan->dimensions);
-  bool reference = p->step.along_reference;
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;
@@ -192,7 +196,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
   share_reciprocals_of_roots(p.g, &observe);
-  program_motion motion = see_motion(&p);
+  program_motion motion = plan_motion(plan, p.step.along_reference);
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 &plan->link_count);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,

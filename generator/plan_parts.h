@@ -1,5 +1,5 @@
 /* Inside of the planning of kernels, shared by its parts: passes.c plans strips of bonds, plan_family.c programs of
-   families, plan_dump.c prints. */
+   families, plan_dump.c and plan_dump_family.c print. */
 #ifndef PERILAT_GENERATOR_PLAN_PARTS_H
 #define PERILAT_GENERATOR_PLAN_PARTS_H
 
@@ -14,8 +14,17 @@ void plan_hoist(kernel_plan *p);
 /* Fills in a plan of families. False after a diagnostic. */
 bool plan_programs(kernel_plan *p, diagnostics *d);
 
+/* For programs of families: the components of the force on a particle (roots[dimensions]), and what
+   takes the place of stretch, rate, length and direction. */
+void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
+program_motion plan_motion(const kernel_plan *plan, bool along_reference);
+
 /* What the roots of a pass cost for each bond. */
 ir_cost plan_cost(const kernel_plan *p, const pass *a);
+
+/* The programs of families, as text: what each segment reads, writes and costs; its nodes. */
+void plan_dump_programs(const kernel_plan *p, FILE *out);
+void plan_dump_programs_ir(const kernel_plan *p, FILE *out);
 
 /* Every root of the plan that a strip or a segment computes, in order. */
 typedef void (*plan_visitor)(void *context, const ir_node *roots, int root_count);

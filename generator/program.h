@@ -14,8 +14,8 @@ enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS } segment_kind;
 
-/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction, keeps a field, and
-   gives 0 to what is observed. */
+/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction and
+   gives 0 to a field and to what is observed. */
 typedef enum segment_target {
   TO_SLOT,              /* slot[index] = node */
   TO_LINK,              /* link[index] = node */

@@ -238,9 +238,14 @@ static bool check_kernels(const run *r) {
                              : "a stand-alone solver has no interpreter");
       continue;
     }
-    pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, k), 0);
+    const rows *w = simulation_rows(r->simulation, k);
+    const int classes = l->law->kind == PL_STATE ? 2 * w->directions : 1;
+    pl_bond_class bonds[ROWS_MAX_NEIGHBOURS];
+    for (int n = 0; n < classes; n++)
+      bonds[n] = rows_bond_class(w, n);
     const double *parameters = l->parameters;
-    kernel_check c = kernel_check_run(r->models[k].plan, l->law, &parameters, 1, &bonds, STATES, 1);
+    kernel_check c =
+        kernel_check_run(r->models[k].plan, l->law, &parameters, 1, bonds, classes, STATES, 1);
     kernel_check_report(&c, l->law->name, kernel_check_agrees(&c) ? stdout : stderr);
     fflush(stdout);
     good = good && kernel_check_agrees(&c);

@@ -212,18 +212,15 @@ double implied_strength(const pl_law *law, const double *parameters, const rows 
 
 /* --- one bond --------------------------------------------------------------------------------- */
 
-rows *implied_lattice(double spacing, double thickness, double rho) {
-  deck_lattice lattice = {.name = "lattice",
-                          .kind = "hexagonal",
-                          .spacing = spacing,
-                          .thickness = thickness,
-                          .stiffness_thickness = thickness,
-                          .mass_thickness = thickness,
-                          .setting = "plane_stress"};
-  deck_body body = {.lattice = lattice.name,
-                    .shape = {.kind = SHAPE_RECTANGLE,
-                              .corner = {-2.5 * spacing, -2.5 * spacing},
-                              .size = {5 * spacing, 5 * spacing}}};
+rows *implied_lattice_like(const deck_lattice *l, double rho) {
+  const double s = l->spacing;
+  deck_lattice lattice = *l;
+  lattice.name = "lattice";
+  deck_body body = {
+      .lattice = lattice.name,
+      .shape = {.kind = bravais_dimensions(l->kind) == 3 ? SHAPE_BOX : SHAPE_RECTANGLE,
+                .corner = {-2.5 * s, -2.5 * s, -2.5 * s},
+                .size = {5 * s, 5 * s, 5 * s}}};
   const deck k = {
       .name = "", .lattices = &lattice, .lattice_count = 1, .bodys = &body, .body_count = 1};
   source_set sources = {NULL, 0};
@@ -233,8 +230,18 @@ rows *implied_lattice(double spacing, double thickness, double rho) {
   diag_clear(&said);
   if (!w) return NULL;
   w->mass = rho * w->volume;
-  w->inertia = 0.4 * w->mass * (spacing / 2) * (spacing / 2);
+  w->inertia = 0.4 * w->mass * (s / 2) * (s / 2);
   return w;
+}
+
+rows *implied_lattice(double spacing, double thickness, double rho) {
+  return implied_lattice_like(&(deck_lattice){.kind = "hexagonal",
+                                              .spacing = spacing,
+                                              .thickness = thickness,
+                                              .stiffness_thickness = thickness,
+                                              .mass_thickness = thickness,
+                                              .setting = "plane_stress"},
+                              rho);
 }
 
 enum { CURVE_POINTS = 24000, PEAK_POINTS = 400, PEAK_ROUNDS = 3 };

@@ -26,8 +26,11 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
                         double *strain);
 
-/* A perfect hexagonal lattice to ask about: spacing and thickness in m (rows along x), particle
-   mass from rho (kg/m^3; 0: none). Freed with rows_free. */
+/* A piece of a perfect lattice to ask about: kind, spacing, horizon or shells, rotation, thicknesses and setting of `l`;
+   masses from rho (kg/m^3; 0: none). NULL when there is no such lattice. Freed with rows_free. */
+rows *implied_lattice_like(const deck_lattice *l, double rho);
+
+/* The hexagonal one in plane stress with rows along x; spacing and thickness in m. */
 rows *implied_lattice(double spacing, double thickness, double rho);
 
 /* One bond of direction `direction`, drawn out slowly without rotation from the virgin state. */

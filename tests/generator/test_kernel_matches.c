@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
+#include "generator/emit.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
 
@@ -32,10 +33,13 @@ static const pl_bond_class bonds = {.s = 6.35e-3,
                                     .n = 6,
                                     .chord = {6.35e-3 * 0.5, 6.35e-3 * 0.8660254037844386, 0}};
 
-static const pl_law *open_kernel(model *m, const char *path, const law_choice *choice) {
+static const pl_law *open_kernel_for(model *m, const char *path, const law_choice *choice,
+                                     const law_setting *setting) {
   char error[2000] = "";
   const char *note;
-  if (!model_open(m, path, choice, choice ? 1 : 0) || !model_plan(m)) {
+  bool good = model_open(m, path, choice, choice ? 1 : 0);
+  if (good && setting) m->law->setting = *setting;
+  if (!good || !model_plan(m)) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
   }
@@ -43,6 +47,10 @@ static const pl_law *open_kernel(model *m, const char *path, const law_choice *c
   if (!kernel) fail_msg("%s", error);
   assert_null(note);
   return kernel;
+}
+
+static const pl_law *open_kernel(model *m, const char *path, const law_choice *choice) {
+  return open_kernel_for(m, path, choice, NULL);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -69,7 +77,7 @@ static double **parameter_sets(const pl_law *k) {
 static kernel_check check(const model *m, const pl_law *kernel, long states) {
   double **sets = parameter_sets(kernel);
   kernel_check c = kernel_check_run(m->plan, kernel, (const double *const *)sets, PARAMETER_SETS,
-                                    &bonds, states, 20);
+                                    &bonds, 1, states, 20);
   planes_free(sets, PARAMETER_SETS);
   return c;
 }
@@ -127,18 +135,96 @@ static void check_kernel(const model *m, const pl_law *kernel, long states) {
   assert_same_bits(m, kernel, states);
 }
 
+/* --- families --------------------------------------------------------------------------------- */
+
+/* Bonds of many lengths in all directions, in opposite pairs. */
+static void family_of(pl_bond_class *family, int dimensions, int neighbours) {
+  const int half = neighbours / 2;
+  for (int k = 0; k < half; k++) {
+    const double turn = 2.399963 * k, up = dimensions == 3 ? (k + 0.5) / half : 0;
+    const double s = bonds.s * (1 + 0.5 * (k % 4)), flat = s * sqrt(1 - up * up);
+    family[k] = bonds;
+    family[k].s = s;
+    family[k].shell = 1 + k % 4;
+    family[k].n = neighbours;
+    family[k].chord[0] = flat * cos(turn);
+    family[k].chord[1] = flat * sin(turn);
+    family[k].chord[2] = s * up;
+    family[k + half] = family[k];
+    for (int d = 0; d < 3; d++)
+      family[k + half].chord[d] = -family[k].chord[d];
+  }
+}
+
+static kernel_check check_family(const kernel_plan *p, const pl_law *kernel, int neighbours,
+                                 long states) {
+  pl_bond_class family[2 * PL_MAX_DIRECTIONS];
+  double **sets = parameter_sets(kernel);
+  family_of(family, kernel->dimensions, neighbours);
+  kernel_check c = kernel_check_run(p, kernel, (const double *const *)sets, PARAMETER_SETS, family,
+                                    neighbours, states, 20);
+  planes_free(sets, PARAMETER_SETS);
+  return c;
+}
+
+static void assert_same_families(const kernel_plan *p, const pl_law *kernel, long states) {
+  static const int neighbours[] = {6, 18, 122};
+  for (size_t k = 0; k < sizeof neighbours / sizeof *neighbours; k++) {
+    kernel_check c = check_family(p, kernel, neighbours[k], states);
+    printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);
+    kernel_check_report(&c, kernel->name, stdout);
+    fflush(stdout);
+    assert_int_equal(c.passes, kernel->step.pass_count + kernel->observe.pass_count);
+    assert_true(c.bonds > 0);
+    assert_true(kernel_check_agrees(&c));
+  }
+}
+
+static void assert_text_is_clean(const model *m) {
+  free(compiler_says(m, "gcc", "-Wall -Wextra -Werror"));
+  free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
+}
+
+/* In every setting that the law names. */
+static void check_family_law(const char *path, const law_choice *choice, long states) {
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++) {
+    law_setting setting = (law_setting)k;
+    model m;
+    assert_true(model_open(&m, path, choice, choice ? 1 : 0));
+    const bool allowed = law_allows(m.law, setting);
+    model_close(&m);
+    if (!allowed) continue;
+    const pl_law *kernel = open_kernel_for(&m, path, choice, &setting);
+    if (choice) printf("%s = %s, ", choice->option, choice->choice);
+    assert_text_is_clean(&m);
+    assert_same_families(m.plan, kernel, states);
+    model_close(&m);
+  }
+}
+
+static void check_law(const char *path, const law_choice *choice) {
+  const long states = getenv("PERILAT_DEEP") ? 1000000 : 120000;
+  model m;
+  bool good = model_open(&m, path, choice, choice ? 1 : 0);
+  const bool of_families = good && m.law->tree->law == LAW_STATE;
+  model_close(&m);
+  if (of_families) {
+    check_family_law(path, choice, states);
+    return;
+  }
+  check_kernel(&m, open_kernel(&m, path, choice), states);
+  model_close(&m);
+}
+
 /* Each choice of each option once, the other options at their first. */
 static void check_model(const char *path) {
-  const long states = getenv("PERILAT_DEEP") ? 1000000 : 120000;
-  model m, chosen;
-  check_kernel(&m, open_kernel(&m, path, NULL), states);
+  model m;
+  check_law(path, NULL);
+  assert_true(model_open(&m, path, NULL, 0));
   for (int k = 0; k < m.law->options.count; k++) {
     const symbol *option = m.law->options.items[k];
-    for (int w = 1; w < option->declared->word_count; w++) {
-      law_choice choice = {option->name, option->declared->words[w]};
-      check_kernel(&chosen, open_kernel(&chosen, path, &choice), states);
-      model_close(&chosen);
-    }
+    for (int w = 1; w < option->declared->word_count; w++)
+      check_law(path, &(law_choice){option->name, option->declared->words[w]});
   }
   model_close(&m);
 }
@@ -161,6 +247,35 @@ static void kernels_of_the_models_match(void **state) {
 static void kernels_of_the_test_laws_match(void **state) {
   (void)state;
   check_folder(SOURCE_DIR "/tests/generator/laws/*.plm");
+}
+
+/* Damage, slip, energies and values of neighbours of neighbours, in the plane and in space. */
+static void kernels_of_the_family_laws_match(void **state) {
+  (void)state;
+  check_folder(SOURCE_DIR "/tests/generator/families/*.plm");
+}
+
+/* A law of bonds compiled for lattices that are no hexagon. */
+static void laws_of_bonds_match_as_laws_of_families(void **state) {
+  (void)state;
+  static const char *const names[] = {SOURCE_DIR "/models/cohesive_central.plm",
+                                      SOURCE_DIR "/tests/generator/laws/exponential.plm"};
+  for (size_t k = 0; k < sizeof names / sizeof *names; k++)
+    for (int space = 0; space < 2; space++) {
+      model m;
+      char error[2000];
+      assert_true(model_open(&m, names[k], NULL, 0));
+      m.law->setting = space ? SETTING_SPACE : SETTING_PLANE_STRESS;
+      m.plan = plan_kernel_of_families(m.law, &m.said);
+      assert_non_null(m.plan);
+      char *unkeyed = emit_kernel(m.plan, "");
+      m.key = toolchain_key(unkeyed);
+      free(unkeyed);
+      m.c_text = emit_kernel(m.plan, m.key);
+      if (!toolchain_load(m.c_text, m.key, &m.loaded, error, sizeof error)) fail_msg("%s", error);
+      assert_same_families(m.plan, m.loaded.law, 60000);
+      model_close(&m);
+    }
 }
 
 /* More fields and parameters than any law has needed yet. */
@@ -262,6 +377,55 @@ static void faults_are_caught(void **state) {
   model_close(&m);
 }
 
+static void family_one_ulp_off(const pl_law *faulty, const double *uniforms, const pl_family *f) {
+  good(faulty)->step.pass[1](good(faulty), uniforms, f);
+  for (long q = 0; q < f->count; q++)
+    if (f->force[0][q] != 0) {
+      f->force[0][q] = nextafter(f->force[0][q], INFINITY);
+      return;
+    }
+}
+
+static void family_without_forces(const pl_law *faulty, const double *uniforms,
+                                  const pl_family *f) {
+  (void)faulty, (void)uniforms, (void)f;
+}
+
+static void family_that_breaks_what_is_held(const pl_law *faulty, const double *uniforms,
+                                            const pl_family *f) {
+  good(faulty)->step.pass[0](good(faulty), uniforms, f);
+  for (long q = 0; q < f->count; q++)
+    if (f->held[q]) f->new_field[0][q] = 0.123;
+}
+
+static kernel_check check_faulty_family(const model *m, pl_law faulty, const pl_law *kernel,
+                                        int number, pl_family_function fault) {
+  pl_family_function passes[PLAN_MOST_PASSES];
+  memcpy(passes, kernel->step.pass, (size_t)kernel->step.pass_count * sizeof *passes);
+  for (int k = 0; k < kernel->step.pass_count; k++)
+    assert_non_null(passes[k]);
+  passes[number] = fault;
+  faulty.step.pass = passes;
+  faulty.context = kernel;
+  return check_family(m->plan, &faulty, 6, 4000);
+}
+
+static void faults_of_families_are_caught(void **state) {
+  (void)state;
+  model m;
+  const pl_law *kernel = open_kernel(&m, SOURCE_DIR "/tests/generator/families/brittle.plm", NULL);
+  assert_int_equal(kernel->step.pass_count, 2);
+  assert_string_equal(kernel->fields[0].name, "w");
+  kernel_check c = check_faulty_family(&m, *kernel, kernel, 1, family_one_ulp_off);
+  assert_true(c.outputs.largest_ulps == 1);
+  assert_string_equal(c.outputs.worst, "step: force 0");
+  c = check_faulty_family(&m, *kernel, kernel, 1, family_without_forces);
+  assert_true(c.outputs.unwritten > 1000 && !kernel_check_agrees(&c));
+  c = check_faulty_family(&m, *kernel, kernel, 0, family_that_breaks_what_is_held);
+  assert_true(c.outputs.misplaced > 40 && !kernel_check_agrees(&c));
+  model_close(&m);
+}
+
 static void ulps_are_counted(void **state) {
   (void)state;
   assert_true(ulps_between(1, nextafter(1, 2)) == 1 && ulps_between(nextafter(1, 0), 1) == 1);
@@ -271,9 +435,13 @@ static void ulps_are_counted(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(kernels_of_the_models_match),
-      cmocka_unit_test(kernels_of_the_test_laws_match), cmocka_unit_test(many_fields_match),
-      cmocka_unit_test(faults_are_caught), cmocka_unit_test(ulps_are_counted)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_of_the_models_match),
+                                     cmocka_unit_test(kernels_of_the_test_laws_match),
+                                     cmocka_unit_test(kernels_of_the_family_laws_match),
+                                     cmocka_unit_test(laws_of_bonds_match_as_laws_of_families),
+                                     cmocka_unit_test(many_fields_match),
+                                     cmocka_unit_test(faults_are_caught),
+                                     cmocka_unit_test(faults_of_families_are_caught),
+                                     cmocka_unit_test(ulps_are_counted)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

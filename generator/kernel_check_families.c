@@ -1,0 +1,297 @@
+#include "generator/kernel_check_families.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+#include "generator/random_values.h"
+
+/* Sites lie in one array; neighbours are up to MARGIN away. */
+enum { SITES = 200, CUT = 104, MARGIN = 96, SIZE = MARGIN + SITES + MARGIN };
+
+/* --- arrays ----------------------------------------------------------------------------------- */
+
+/* What the passes read, and twice, for either reader, what they write. Planes toward neighbours stand in one piece. */
+typedef struct body {
+  const pl_law *law;
+  int neighbours;
+  double **motion; /* [2 * dimensions][SIZE] displacements, velocities */
+  double **shape;  /* [PL_SHAPE_VALUES][SIZE] */
+  double **before; /* [fields] */
+  double **after[2], **link[2], **force[2], **observed[2];
+  uint64_t *bonds, *held; /* [SIZE] */
+  long offset[2 * PL_MAX_DIRECTIONS];
+} body;
+
+static long planes_of(const body *b, const pl_field *f) {
+  return f->place == PL_ON_PARTICLE ? 1 : b->neighbours;
+}
+
+static double **values_new(const body *b, const pl_field *fields, int count) {
+  double **v = must_calloc((size_t)count + 1, sizeof *v);
+  for (int k = 0; k < count; k++) {
+    double **one = planes_new(1, planes_of(b, &fields[k]) * SIZE);
+    v[k] = one[0];
+    free(one);
+  }
+  return v;
+}
+
+/* The stored energy, then the outputs. */
+static double **observed_new(const body *b) {
+  double **outputs = values_new(b, b->law->outputs, b->law->output_count);
+  double **v = must_calloc((size_t)b->law->output_count + 1, sizeof *v);
+  double **energy = planes_new(1, SIZE);
+  v[0] = energy[0];
+  memcpy(v + 1, outputs, (size_t)b->law->output_count * sizeof *v);
+  free(energy);
+  free(outputs);
+  return v;
+}
+
+static body body_new(const pl_law *law, int neighbours) {
+  body b = {.law = law, .neighbours = neighbours};
+  b.motion = planes_new(2 * law->dimensions, SIZE);
+  b.shape = planes_new(PL_SHAPE_VALUES(law->dimensions), SIZE);
+  b.before = values_new(&b, law->fields, law->field_count);
+  for (int side = 0; side < 2; side++) {
+    b.after[side] = values_new(&b, law->fields, law->field_count);
+    b.link[side] = planes_new(law->link_count, SIZE);
+    b.force[side] = planes_new(law->dimensions, SIZE);
+    b.observed[side] = observed_new(&b);
+  }
+  b.bonds = must_calloc(SIZE, sizeof *b.bonds);
+  b.held = must_calloc(SIZE, sizeof *b.held);
+  return b;
+}
+
+static void body_free(body *b) {
+  planes_free(b->motion, 2 * b->law->dimensions);
+  planes_free(b->shape, PL_SHAPE_VALUES(b->law->dimensions));
+  planes_free(b->before, b->law->field_count);
+  for (int side = 0; side < 2; side++) {
+    planes_free(b->after[side], b->law->field_count);
+    planes_free(b->link[side], b->law->link_count);
+    planes_free(b->force[side], b->law->dimensions);
+    planes_free(b->observed[side], 1 + b->law->output_count);
+  }
+  free(b->bonds);
+  free(b->held);
+}
+
+/* --- a random body ---------------------------------------------------------------------------- */
+
+/* Displacements are of one order in a body, so that a family is nearly at rest or torn as a whole. */
+static void draw_motion(body *b, double s, uint64_t *seed) {
+  const double order = draw_uniform(seed, -9, 0);
+  for (int d = 0; d < b->law->dimensions; d++)
+    for (int q = 0; q < SIZE; q++) {
+      b->motion[d][q] = s * draw_size(seed, order - 1, order);
+      b->motion[b->law->dimensions + d][q] = draw_size(seed, -6, 3);
+    }
+}
+
+/* Some particles are whole, some have lost bonds, some all; some are held. */
+static void draw_bonds(body *b, uint64_t *seed) {
+  for (int q = 0; q < SIZE; q++) {
+    const uint64_t kind = draw_bits(seed) % 4;
+    b->bonds[q] = kind == 0 ? 0 : kind == 1 ? draw_bits(seed) : UINT64_MAX;
+    b->held[q] = draw_bits(seed) % 8 == 0;
+  }
+}
+
+static void draw_body(body *b, double s, uint64_t *seed) {
+  const int half = b->neighbours / 2;
+  for (int k = 0; k < half; k++) {
+    b->offset[k] = 1 + (long)(draw_bits(seed) % MARGIN);
+    b->offset[k + half] = -b->offset[k];
+  }
+  draw_motion(b, s, seed);
+  draw_bonds(b, seed);
+  for (int v = 0; v < PL_SHAPE_VALUES(b->law->dimensions); v++)
+    for (int q = 0; q < SIZE; q++)
+      b->shape[v][q] = draw_uniform(seed, -1, 1);
+  for (int f = 0; f < b->law->field_count; f++)
+    for (long q = 0; q < planes_of(b, &b->law->fields[f]) * SIZE; q++)
+      b->before[f][q] = draw_field(seed, &b->law->fields[f]);
+  for (int k = 0; k < b->law->link_count; k++)
+    for (int q = 0; q < SIZE; q++)
+      b->link[0][k][q] = b->link[1][k][q] = draw_size(seed, -6, 0);
+}
+
+static bool has_bond(const body *b, int k, long q) {
+  const int half = b->neighbours / 2;
+  return k < half ? b->bonds[q] >> k & 1 : b->bonds[q + b->offset[k]] >> (k - half) & 1;
+}
+
+/* --- the programs ----------------------------------------------------------------------------- */
+
+static void poison_values(double *const *v, const body *b, const pl_field *fields, int count) {
+  for (int k = 0; k < count; k++)
+    planes_poison(&v[k], 1, planes_of(b, &fields[k]) * SIZE);
+}
+
+static void poison(const body *b, int side) {
+  poison_values(b->after[side], b, b->law->fields, b->law->field_count);
+  planes_poison(b->force[side], b->law->dimensions, SIZE);
+  planes_poison(b->observed[side], 1, SIZE);
+  poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
+}
+
+enum { MOST_ARRAYS = 8 };
+
+/* Arrays that begin at a site. */
+typedef struct site_arrays {
+  double **lists[MOST_ARRAYS];
+  int count;
+} site_arrays;
+
+static double *const *from_site(site_arrays *s, double *const *arrays, int count, long site) {
+  double **list = must_calloc((size_t)count + 1, sizeof *list);
+  for (int k = 0; k < count; k++)
+    list[k] = arrays[k] + site;
+  s->lists[s->count++] = list;
+  return list;
+}
+
+static void run_part(const law_readers *l, const body *b, int side, pl_family_function pass,
+                     long first, long count) {
+  const pl_law *law = b->law;
+  const long site = MARGIN + first;
+  site_arrays s = {.count = 0};
+  pl_family f = {.count = count,
+                 .neighbours = b->neighbours,
+                 .plane = SIZE,
+                 .offset = b->offset,
+                 .bonds = b->bonds + site,
+                 .held = b->held + site,
+                 .new_field = from_site(&s, b->after[side], law->field_count, site),
+                 .link = from_site(&s, b->link[side], law->link_count, site),
+                 .force = from_site(&s, b->force[side], law->dimensions, site),
+                 .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
+                 .time_step = 1.7e-7};
+  f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_VALUES(law->dimensions), site);
+  f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
+  for (int d = 0; d < law->dimensions; d++) {
+    f.displacement[d] = b->motion[d] + site;
+    f.velocity[d] = b->motion[law->dimensions + d] + site;
+  }
+  pass(l->law[side], l->uniforms[side], &f);
+  for (int k = 0; k < s.count; k++)
+    free(s.lists[k]);
+}
+
+static void run_program(const law_readers *l, const body *b, int side, bool observe) {
+  const pl_program *p = observe ? &l->law[side]->observe : &l->law[side]->step;
+  poison(b, side);
+  for (int k = 0; k < p->pass_count; k++)
+    if (side == 0) {
+      run_part(l, b, side, p->pass[k], 0, CUT);
+      run_part(l, b, side, p->pass[k], CUT, SITES - CUT);
+    } else {
+      run_part(l, b, side, p->pass[k], 0, SITES);
+    }
+}
+
+/* --- what they wrote -------------------------------------------------------------------------- */
+
+static void compare_values(comparison *c, const body *b, const char *program, const pl_field *f,
+                           const double *kernel, const double *interpreter) {
+  for (long k = 0; k < planes_of(b, f); k++)
+    comparison_add(c, program, f->name, -1, kernel + k * SIZE + MARGIN,
+                   interpreter + k * SIZE + MARGIN, SITES);
+}
+
+static void compare_links(comparison *c, const body *b, const char *program) {
+  for (int k = 0; k < b->law->link_count; k++)
+    comparison_add(c, program, "link", k, b->link[0][k], b->link[1][k], SIZE);
+}
+
+static void compare_step(comparison *c, const body *b) {
+  const pl_law *law = b->law;
+  compare_links(c, b, "step");
+  for (int f = 0; f < law->field_count; f++)
+    compare_values(c, b, "step", &law->fields[f], b->after[0][f], b->after[1][f]);
+  for (int d = 0; d < law->dimensions; d++)
+    comparison_add(c, "step", "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
+}
+
+static void compare_observe(comparison *c, const body *b) {
+  static const pl_field energy = {.name = "stored energy", .place = PL_ON_PARTICLE};
+  const pl_law *law = b->law;
+  compare_links(c, b, "observe");
+  for (int k = 0; k <= law->output_count; k++)
+    compare_values(c, b, "observe", k ? &law->outputs[k - 1] : &energy, b->observed[0][k],
+                   b->observed[1][k]);
+}
+
+/* Both readers share one graph, so what it means to be absent or held is checked on its own. */
+
+/* Values toward neighbours that are not there: 0. */
+static long written_for_absent(const body *b, const pl_field *f, const double *values) {
+  long count = 0;
+  for (int k = 0; k < b->neighbours && f->place != PL_ON_PARTICLE; k++)
+    for (long q = MARGIN; q < MARGIN + SITES; q++)
+      count += !has_bond(b, k, q) && values[k * SIZE + q] != 0;
+  return count;
+}
+
+/* A damage stays with its particle; on a bond with either. */
+static long changed_where_held(const body *b, int field) {
+  const pl_field *f = &b->law->fields[field];
+  const double *before = b->before[field], *after = b->after[0][field];
+  long count = 0;
+  if (f->kind != PL_FIELD_DAMAGE) return 0;
+  for (long k = 0; k < planes_of(b, f); k++)
+    for (long q = MARGIN; q < MARGIN + SITES; q++) {
+      const bool toward = f->place != PL_ON_PARTICLE;
+      const bool held = b->held[q] || (toward && b->held[q + b->offset[k]]);
+      if (!held || (toward && !has_bond(b, (int)k, q))) continue;
+      count += memcmp(&before[k * SIZE + q], &after[k * SIZE + q], sizeof *before) != 0;
+    }
+  return count;
+}
+
+static long loaded_without_bonds(const body *b) {
+  long count = 0;
+  for (long q = MARGIN; q < MARGIN + SITES; q++) {
+    bool any = false;
+    for (int k = 0; k < b->neighbours && !any; k++)
+      any = has_bond(b, k, q);
+    for (int d = 0; d < b->law->dimensions; d++)
+      count += !any && b->force[0][d][q] != 0;
+  }
+  return count;
+}
+
+static void find_misplaced_step(comparison *c, const body *b) {
+  for (int f = 0; f < b->law->field_count; f++)
+    c->misplaced +=
+        written_for_absent(b, &b->law->fields[f], b->after[0][f]) + changed_where_held(b, f);
+  c->misplaced += loaded_without_bonds(b);
+}
+
+static void find_misplaced_observe(comparison *c, const body *b) {
+  for (int k = 0; k < b->law->output_count; k++)
+    c->misplaced += written_for_absent(b, &b->law->outputs[k], b->observed[0][1 + k]);
+}
+
+long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, comparison *c) {
+  body b = body_new(l->law[0], l->classes);
+  long done = 0;
+  for (; done < wanted; done += (long)SITES * l->classes) {
+    draw_body(&b, l->bonds->s, seed);
+    for (int side = 0; side < 2; side++)
+      run_program(l, &b, side, false);
+    compare_step(c, &b);
+    find_misplaced_step(c, &b);
+    for (int side = 0; side < 2; side++)
+      run_program(l, &b, side, true);
+    compare_observe(c, &b);
+    find_misplaced_observe(c, &b);
+  }
+  body_free(&b);
+  return done;
+}
