@@ -270,7 +270,7 @@ static void bad_paths_are_explained(void **state) {
       {"&material model = 'elastic_central' EE = 1 /\n" TO_MICRO, "has no parameter `EE`"},
       {"&material model = 'elastic_central' E = -1 /\n" TO_MICRO, "is not in (0, inf)"},
       {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
-      {"&material model = 'cohesive_central' softening = 'liner' /\n" TO_MICRO,
+      {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO,
        "has no choice `liner`"},
       {"&material model = 'mplm_bilinear' /\n&initial omega = 2 /\n" TO_MICRO,
        "is between 0 and 1"},
@@ -478,7 +478,7 @@ static void info_says_what_a_law_implies(void **state) {
   expect("info mplm_bilinear --spacing='3.175 mm' --set S_t=1.5e-4", 0,
          "65.919 N/m on its share of a crack");
   expect("info elastic_central --json", 0, "\"separates\": false");
-  expect("info cohesive_central --set softening=exponential --json", 0,
+  expect("info cohesive --set softening=exponential --json", 0,
          "\"chosen\": \"exponential\"");
   expect("info elastic_central", 0, "none: a bond never separates");
 }

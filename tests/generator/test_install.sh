@@ -43,7 +43,7 @@ done < <(find "$prefix/share/doc/perilat" -name '*.md')
 [ "$pages" -gt 60 ] || fail "only $pages pages of documentation"
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
-sed "s/NAME/cohesive_central/g" "$source/generator/templates/deck.nml" >deck.nml
+sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" run deck.nml --set "simulation.end_time=0.1 ms" --set output.result=run.h5 2>&1 | grep -q 'written'
 "$perilat" info run.h5 | grep -q opening
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
