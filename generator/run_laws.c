@@ -114,6 +114,24 @@ static bool plan_material(const deck_material *m, model *out, diagnostics *said)
   return good;
 }
 
+/* Kernels are compiled for plane stress only: a law that is meant for other settings is refused. */
+static bool setting_fits(const deck_material *m, const model *opened, diagnostics *said) {
+  char meant[64];
+  if (model_suits(opened, "plane_stress", meant, sizeof meant)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` is meant for %s, but lattices are computed in plane_stress",
+              opened->law->tree->name, meant);
+  diag_hint(said, "take another law; where the equations hold in plane stress, too, add "
+                  "`plane_stress` to the law's line `for`");
+  return false;
+}
+
+bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said) {
+  bool good = model_open(out, path, NULL, 0);
+  if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
+  return good;
+}
+
 bool run_open_material(deck_material *m, const char *deck_path, model *out, diagnostics *said) {
   char *path = model_find(m->model, deck_path);
   if (!path) {
@@ -122,9 +140,8 @@ bool run_open_material(deck_material *m, const char *deck_path, model *out, diag
                     "`models`; PERILAT_MODELS may name another folder");
     return false;
   }
-  bool good = model_open(out, path, NULL, 0);
-  if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
-  good = good && plan_material(m, out, said);
+  bool good =
+      run_open_law(m, path, out, said) && setting_fits(m, out, said) && plan_material(m, out, said);
   free(path);
   return good;
 }

@@ -579,6 +579,8 @@ const deck_group_info deck_groups[DECK_GROUP_COUNT] = {
 #undef X
 };
 
+const deck_grammar deck_grammar_of_decks = {"deck", deck_groups, DECK_GROUP_COUNT};
+
 #define X(group, key, once, more, text)                                                            \
   _Static_assert(sizeof(group##_keys) / sizeof(group##_keys[0]) <= DECK_MOST_KEYS, "too many "     \
                                                                                    "keys");

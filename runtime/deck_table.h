@@ -103,6 +103,14 @@ typedef enum deck_group_kind {
 
 extern const deck_group_info deck_groups[DECK_GROUP_COUNT];
 
+/* The groups that a kind of file may hold. */
+typedef struct deck_grammar {
+  const char *file; /* what such a file is called: "deck" */
+  const deck_group_info *groups;
+  int group_count;
+} deck_grammar;
+extern const deck_grammar deck_grammar_of_decks;
+
 /* Position of the group or key of that name (without regard to case), or -1. */
 int deck_group_find(const char *name);
 int deck_key_find(const deck_group_info *g, const char *name);

@@ -21,7 +21,9 @@ void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
   if (!g->begun) {
     g->begun = 1;
     g->initial = held;
+    g->pending = terms[LEDGER_DISSIPATED_DAMPING];
   }
+  terms[LEDGER_DISSIPATED_DAMPING] -= g->pending;
   terms[LEDGER_IMBALANCE] = terms[LEDGER_EXTERNAL] - (held - g->initial) -
                             terms[LEDGER_DISSIPATED_DAMAGE] - terms[LEDGER_DISSIPATED_DAMPING];
 }

@@ -36,6 +36,7 @@ extern const char *const ledger_names[LEDGER_COUNT];
 
 typedef struct ledger {
   double initial; /* J: kinetic and stored at the first sample */
+  double pending; /* J: damping of the half step before the first sample, which is before the run */
   int64_t begun;
 } ledger;
 

@@ -38,13 +38,14 @@ static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
             1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1]);
 }
 
-static void report_empty(const deck *k, const deck_region *region, const rows *w, diagnostics *d) {
+static void report_empty(const char *lattice, const deck_region *region, const rows *w,
+                         diagnostics *d) {
   diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no particle",
               region->name);
   if (region->shape.kind == SHAPE_POINT)
     hint_nearest(region->shape.at, w, d);
   else
-    hint_extent(k->lattices[0].name, w, d);
+    hint_extent(lattice, w, d);
 }
 
 static bool names_region(const char *name, const char *region) {
@@ -68,13 +69,13 @@ static bool region_is_used(const deck *k, const char *name) {
   return false;
 }
 
-static void select_regions(loads *l, const deck *k, diagnostics *d) {
+static void select_regions(loads *l, const deck *k, const char *lattice, diagnostics *d) {
   l->regions = must_calloc((size_t)k->region_count + 1, sizeof *l->regions);
   for (int r = 0; r < k->region_count; r++) {
     const deck_region *region = &k->regions[r];
     l->regions[r].count = rows_select(l->lattice, &region->shape, &l->regions[r].particles);
     if (l->regions[r].count == 0)
-      report_empty(k, region, l->lattice, d);
+      report_empty(lattice, region, l->lattice, d);
     else if (!region_is_used(k, region->name))
       diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);
@@ -231,12 +232,11 @@ static void protect(loads *l, rows *w) {
 }
 
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d) {
-  (void)lattice;
   const int before = d->errors;
   loads *l = must_calloc(1, sizeof *l);
   l->deck = k;
   l->lattice = w;
-  select_regions(l, k, d);
+  select_regions(l, k, k->lattices[lattice].name, d);
   motions m = {.dof = dof, .law = law, .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
   add_motions(l, &m);

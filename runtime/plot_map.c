@@ -73,7 +73,7 @@ static void move_particles(map *m, const double *displacement, double wanted) {
 static bool read_values(result_file *f, map *m, const plot_map_options *o, char *error,
                         size_t size) {
   char name[512];
-  result_find_field(f, o->field, name, sizeof name);
+  if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
                                 sizeof m->unit_text, error, size);
   if (!m->values) return false;
@@ -112,10 +112,13 @@ static bool read_damage(result_file *f, map *m, const char *path, const plot_map
 /* NULL with a sentence that says how to store them when they are not there. */
 static double *read_displacements(result_file *f, const map *m, const char *path, long frame,
                                   char *error, size_t size) {
-  char unit_text[64], name[64];
+  char unit_text[64];
   long count = 0;
   int components = 0;
-  if (!result_find_field(f, "displacement", name, sizeof name)) {
+  result_names fields = result_members(f, "/frames");
+  const bool stored = result_names_find(&fields, "displacement") >= 0;
+  result_names_free(&fields);
+  if (!stored) {
     snprintf(error, size,
              "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in "
              "&output and run again",
@@ -135,7 +138,7 @@ static bool read_map(result_file *f, const char *path, map *m, const plot_map_op
   m->reference = result_read_reference(f, &m->particles);
   m->pairs = result_read_bonds(f, NULL, &m->bonds);
   if (!m->reference || !m->pairs || m->particles == 0) {
-    snprintf(error, size, "the result holds no particles and bonds to draw");
+    snprintf(error, size, "`%s` holds no lattice (particles and bonds) to draw", path);
     return false;
   }
   double *u = read_displacements(f, m, path, o->frame, error, size);
@@ -192,6 +195,10 @@ static int class_of(double damage) {
   return k;
 }
 
+static int class_of_bond(const map *m, long b) {
+  return m->damage ? class_of(m->damage[b]) : 0;
+}
+
 static void stroke_bond(canvas *c, const map *m, long b) {
   const double *i = &m->moved[2 * m->pairs[2 * b]], *j = &m->moved[2 * m->pairs[2 * b + 1]];
   cairo_move_to(c->cr, at_x(m, i[0]), at_y(m, i[1]));
@@ -215,7 +222,7 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
     cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
     cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
     for (long b = 0; b < m->bonds; b++) {
-      if ((m->damage ? class_of(m->damage[b]) : 0) != k) continue;
+      if (class_of_bond(m, b) != k) continue;
       if (k == SEPARATED)
         stroke_crack(c, m, b);
       else
@@ -308,9 +315,14 @@ static void draw_scale_bar(canvas *c, const map *m) {
   canvas_text(c, MARGIN, y + 24, 18, ANCHOR_LEFT, text);
 }
 
+/* The classes that occur. */
 static void draw_damage_legend(canvas *c, const map *m) {
   double x = WIDTH - MARGIN, y = m->height - 30;
+  bool occurs[CLASSES] = {m->bonds == 0};
+  for (long b = 0; b < m->bonds; b++)
+    occurs[class_of_bond(m, b)] = true;
   for (int k = CLASSES - 1; k >= 0; k--) {
+    if (!occurs[k]) continue;
     x -= canvas_text_width(c, 18, classes[k].text);
     canvas_colour(c, (colour){0.1, 0.1, 0.1});
     canvas_text(c, x, y, 18, ANCHOR_LEFT, classes[k].text);

@@ -470,6 +470,24 @@ static void cut_notches(rows *w, const builder *b, const range *r, const long *r
   }
 }
 
+/* Points may stand alone; another body without a bond is a slip. */
+static bool has_bonds(const rows *w, const builder *b) {
+  bool extended = false;
+  for (int k = 0; k < b->deck->body_count; k++)
+    extended = extended || (of_lattice(b, b->deck->bodys[k].lattice) &&
+                            b->deck->bodys[k].shape.kind != SHAPE_POINT);
+  if (!extended) return true;
+  for (long p = 0; p < w->particle_count; p++)
+    if (w->flags[w->particle_site[p]]) return true;
+  diag_report(
+      b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
+      "no two particles of lattice '%s' are neighbours: its spacing of %.6g mm is too large "
+      "for its bodies",
+      b->lattice->name, 1e3 * w->spacing);
+  diag_hint(b->d, "a number without a unit is in m; millimetres are written '6.35 mm'");
+  return false;
+}
+
 static rows *build(builder *b, long *removed) {
   range r = {{0, 0}, {0, 0}};
   if (!mark_bodies(b)) return NULL;
@@ -480,6 +498,10 @@ static rows *build(builder *b, long *removed) {
   place_sites(w, b, &r);
   number_particles(w);
   join_neighbours(w);
+  if (!has_bonds(w, b)) {
+    rows_free(w);
+    return NULL;
+  }
   cut_notches(w, b, &r, removed);
   count_bonds(w);
   return w;
