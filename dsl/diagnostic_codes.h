@@ -42,6 +42,7 @@ X(STIFFNESS, "stiffness", SEVERITY_ERROR)
 X(TANGENT, "tangent", SEVERITY_ERROR)
 X(CONTINUITY, "continuity", SEVERITY_WARNING)
 X(FLOW, "flow", SEVERITY_ERROR)
+X(PATCH, "patch", SEVERITY_WARNING)
 X(ENERGY_FORCE, "energy-force", SEVERITY_ERROR)
 X(NOT_FINITE, "not-finite", SEVERITY_WARNING)
 /* ranges: what a value can be within the declared bounds */

@@ -155,7 +155,6 @@ static int check_as_law(checking *c, const run_options *o, const char *path, con
       !run_open_law(&c->material, path, &c->model, &c->said))
     return 1;
   if (dump) return dump_stage(&c->model, dump);
-  if (c->model.law->tree->law == LAW_STATE) return 0;
   double *values;
   if (!model_plan(&c->model) || !take_values(c, &values)) return 1;
   return o->no_physics || check_values(c, values) ? 0 : 1;
@@ -175,10 +174,8 @@ static int check_law(const run_options *o, const char *path, const char *dump) {
   say(o, &c.said);
   if (c.model.memory) say(o, &c.model.said);
   if (!status && !dump && !o->report)
-    printf("%s: %s, no errors, %d warning%s (%.1f ms)%s\n", path, c.model.law->tree->name,
-           c.model.said.count, c.model.said.count == 1 ? "" : "s", 1e3 * c.model.seconds_front,
-           c.model.law->tree->law == LAW_STATE ? "; state laws can be checked but not yet compiled"
-                                               : "");
+    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, c.model.law->tree->name,
+           c.model.said.count, c.model.said.count == 1 ? "" : "s", 1e3 * c.model.seconds_front);
   if (!status && !dump && !o->report && c.physics.states > 0) print_physics(&c.physics);
   if (c.model.memory) model_close(&c.model);
   diag_clear(&c.said);

@@ -4,6 +4,7 @@
 
 #include "dsl/arena.h"
 #include "generator/clock.h"
+#include "generator/physics_family.h"
 #include "generator/physics_parts.h"
 
 /* What a more telling check has found already is not said again as net work out of a cycle. */
@@ -72,7 +73,7 @@ bool physics_check(const law *l, const physics_options *o, diagnostics *d, physi
   physics_report unwanted;
   report = report ? report : &unwanted;
   *report = (physics_report){0};
-  if (l->tree->law == LAW_STATE) return true;
+  if (l->tree->law == LAW_STATE) return physics_check_family(l, o ? o : &usual, d, report);
   physics *p = must_calloc(1, sizeof *p);
   p->said = d;
   if (bench_open(&p->b, l, o ? o : &usual, d)) {

@@ -1,4 +1,4 @@
-/* Does a law obey mechanics? Drives a pairwise law on the interpreter through many states, seeded,
+/* Does a law obey mechanics? Drives a law on the interpreter through many states, seeded,
    and reports each breach with the state that shows it. */
 #ifndef PERILAT_GENERATOR_PHYSICS_H
 #define PERILAT_GENERATOR_PHYSICS_H
@@ -9,8 +9,10 @@
 typedef struct physics_options {
   const double *parameters;   /* SI, in the law's order: only these; NULL: around the defaults */
   const pl_bond_class *bonds; /* NULL: hexagonal lattices of a few millimetres to centimetres */
-  double effort;              /* share of the usual number of states; 0: 1 */
-  uint64_t seed;              /* 0: the usual one */
+  const struct deck_lattice *lattice; /* laws of families; NULL: hexagonal, in space fcc with second
+                                         neighbours, spacing 10 mm */
+  double effort;                      /* share of the usual number of states; 0: 1 */
+  uint64_t seed;                      /* 0: the usual one */
 } physics_options;
 
 typedef struct physics_report {
@@ -20,7 +22,7 @@ typedef struct physics_report {
   double seconds;
 } physics_report;
 
-/* Checks that cannot be made (laws of a family) are left out. Everything found goes to `d`, one
+/* Everything found goes to `d`, one
    diagnostic a check. Returns false when there were errors among them. `report` may be NULL. */
 bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report);
 

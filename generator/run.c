@@ -132,9 +132,8 @@ static long next_stride(long stride, double seconds) {
 
 /* Time loop with frames and checkpoints. */
 static step_status march(run *r, bool *written) {
-  const long total = simulation_step_count(r->simulation);
   progress bar;
-  progress_begin(&bar, (double)simulation_step_done(r->simulation) / (double)total);
+  progress_begin(&bar, simulation_progress(r->simulation));
   double last_checkpoint = monotonic_seconds();
   bool first_checkpoint = true;
   long stride = 16;
@@ -147,7 +146,7 @@ static step_status march(run *r, bool *written) {
     stride = next_stride(stride, monotonic_seconds() - entered);
     char detail[256];
     describe_monitors(r, detail, sizeof detail);
-    progress_show(&bar, (double)simulation_step_done(r->simulation) / (double)total, detail);
+    progress_show(&bar, simulation_progress(r->simulation), detail);
     double interval = r->deck->checkpoint.interval;
     if (first_checkpoint && interval > EARLY_CHECKPOINT) interval = EARLY_CHECKPOINT;
     if (interval > 0 && status == STEP_OK && monotonic_seconds() - last_checkpoint > interval) {

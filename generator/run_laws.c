@@ -221,7 +221,8 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
   diagnostics found;
   diag_begin(&found, &opened->sources);
   bool good = physics_check(
-      opened->law, &(physics_options){.parameters = parameters, .bonds = &bonds, .effort = 0.5},
+      opened->law,
+      &(physics_options){.parameters = parameters, .bonds = &bonds, .lattice = d, .effort = 0.5},
       &found, NULL);
   tell(r, &found);
   diag_clear(&found);

@@ -79,10 +79,16 @@ void announce(const run *r) {
     announce_law(r, k);
   }
   announce_fields(r);
-  printf("  time       %.6g ms in %ld steps of %.4g us: %.3g of the stable step %.4g us (%s mode "
+  const int increments = r->deck->relaxation.increments;
+  char parts[64];
+  if (increments > 0)
+    snprintf(parts, sizeof parts, "%d quasi-static increments, steps", increments);
+  else
+    snprintf(parts, sizeof parts, "%ld steps", simulation_step_count(r->simulation));
+  printf("  time       %.6g ms in %s of %.4g us: %.3g of the stable step %.4g us (%s mode "
          "rules)\n",
-         1e3 * s->end_time, simulation_step_count(r->simulation), 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+         1e3 * s->end_time, parts, 1e6 * limit->step, limit->step / limit->limit,
+         1e6 * limit->limit, limit->mode);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
@@ -276,6 +282,11 @@ void conclude(const run *r, double seconds, long steps) {
   double rate = (double)steps / fmax(seconds, 1e-9);
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
          1e-6 * rate * (double)w->bond_count);
+  long unbalanced;
+  const long increments = simulation_increments(r->simulation, &unbalanced);
+  if (increments > 0)
+    printf("  increments %ld, %ld of them without balance after most_steps\n", increments,
+           unbalanced);
   for (int k = 0; k < r->deck->monitor_count; k++) {
     const char *unit_name;
     const double *values;

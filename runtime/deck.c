@@ -170,6 +170,7 @@ static void report_second(deck_reader *r, const namelist_group *second,
 }
 
 READ_SINGLE(simulation)
+READ_SINGLE(relaxation)
 READ_SINGLE(output)
 READ_SINGLE(checkpoint)
 
@@ -201,6 +202,8 @@ static void set_computed_defaults(deck_reader *r) {
   const char *name = without_ending(r->memory, k->name, ".nml");
   if (!k->simulation.title) k->simulation.title = name;
   if (!k->output.result) k->output.result = arena_printf(r->memory, "%s.h5", name);
+  if (k->simulation.step_safety <= 0)
+    k->simulation.step_safety = k->relaxation.increments > 0 ? 0.9 : 0.25;
   if (k->output.sample <= 0) k->output.sample = k->simulation.end_time / 2000;
 }
 

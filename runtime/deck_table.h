@@ -63,6 +63,9 @@ typedef struct deck_group_info {
  * single, open, doc) */
 #define DECK_GROUPS(X)                                                                             \
   X(simulation, NULL, true, false, "The run as a whole. Required, once.")                          \
+  X(relaxation, NULL, true, false,                                                                 \
+    "Makes the run quasi-static: the loads come in increments, and after each the body comes to "  \
+    "rest by damped motion.")                                                                      \
   X(lattice, "name", false, false,                                                                 \
     "A lattice of particles that bodies are cut from. At least one.")                              \
   X(material, "lattice", false, true,                                                              \

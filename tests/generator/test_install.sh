@@ -43,7 +43,7 @@ done < <(find "$prefix/share/doc/perilat" -name '*.md')
 [ "$pages" -gt 60 ] || fail "only $pages pages of documentation"
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
-sed "s/NAME/cohesive_central/g" "$source/generator/templates/deck.nml" >deck.nml
+sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" run deck.nml --set "simulation.end_time=0.1 ms" --set output.result=run.h5 2>&1 | grep -q 'written'
 "$perilat" info run.h5 | grep -q opening
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
@@ -67,8 +67,9 @@ int main(int argc, char **argv) {
   bool good = path && model_open(&m, path, NULL, 0) && model_plan(&m);
   result_file *f = good ? result_read(argv[2], error, sizeof error) : NULL;
   long particles = 0;
+  int dimensions;
   if (f)
-    free(result_read_reference(f, &particles));
+    free(result_read_reference(f, &particles, &dimensions));
   printf("%s has %d parameters; %ld particles\n", good ? m.law->tree->name : "?", good ? m.law->parameters.count : 0,
          particles);
   return f && particles > 0 ? 0 : 1;

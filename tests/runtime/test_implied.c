@@ -97,7 +97,7 @@ static void cohesive_work_of_fracture(void **state) {
     probe p;
     implied_bond b;
     double s = k & 1 ? 10e-3 : 2.5e-3;
-    open_law(&p, "cohesive_central", &exponential, k & 2 ? 1 : 0, s);
+    open_law(&p, "cohesive", &exponential, k & 2 ? 1 : 0, s);
     implied_bond_curve(p.law, p.parameters, p.lattice, 0, &b);
     assert_true(b.separates);
     near(b.energy, 80.0 * s * 0.1524 / 2, 2e-6);
@@ -215,7 +215,7 @@ static void strength_along_the_rows(void **state) {
   (void)state;
   probe p;
   double at;
-  open_law(&p, "cohesive_central", NULL, 0, 5e-3);
+  open_law(&p, "cohesive", NULL, 0, 5e-3);
   double strength = implied_strength(p.law, p.parameters, p.lattice, 0, &at);
   near(at, 4e-4, 1e-3);
   double s = 5e-3, w_1 = 2 * 80 / (sqrt(3) * 3e6), left = (w_1 - 4e-4 * s) / (w_1 - 1e-4 * s);

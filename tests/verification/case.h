@@ -110,7 +110,7 @@ static inline bool deck_case_start(deck_case *c, const char *path) {
   const char *note;
   char error[4096];
   deck_material *m = &c->deck->materials[0];
-  if (!run_open_material(m, NULL, path, &c->model, &c->said)) return false;
+  if (!run_open_material(m, &c->deck->lattices[0], path, &c->model, &c->said)) return false;
   c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->law.law) return false;
   c->law.parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof(double));

@@ -1,5 +1,5 @@
 /* Laws of models/ against their closed forms, through decks and the program: work of fracture and
-   strength of cohesive_central at two spacings and with both kinds of softening; elastic constants
+   strength of cohesive at two spacings and with both kinds of softening; elastic constants
    of the elastic laws. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +22,7 @@ static const double f_t = 3e6, G_f = 80, thickness = 0.1; /* Pa, N/m, m */
 static const char strip[] =
     "&simulation end_time = '%g ms' /\n"
     "&lattice name = 'c' kind = 'hexagonal' spacing = %.17g thickness = '100 mm' /\n"
-    "&material lattice = 'c' model = 'cohesive_central' softening = '%s' f_t = '3 MPa' G_f = '80 "
+    "&material lattice = 'c' model = 'cohesive' softening = '%s' f_t = '3 MPa' G_f = '80 "
     "N/m' /\n"
     "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '50 mm', %.17g /\n"
     "&region name = 'low' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '52 mm', '2 mm' /\n"
@@ -124,7 +124,7 @@ static void assert_elastic(const char *model, const char *settings, const char *
 static void elastic_constants_are_those_asked_for(void **state) {
   (void)state;
   assert_elastic("elastic_central", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
-  assert_elastic("cohesive_central", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
+  assert_elastic("cohesive", "E = '25 GPa'", "E = 25 GPa, nu = 0.3333");
   assert_elastic("elastic_micropolar", "E = '25 GPa' nu = 0.15", "E = 25 GPa, nu = 0.1500");
   assert_elastic("mplm_bilinear", "E = '25 GPa' nu = 0.1", "E = 25 GPa, nu = 0.1000");
 }

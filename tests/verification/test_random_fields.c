@@ -63,7 +63,7 @@ static void remove_all(const char *const *names, int count) {
 static const char chain[] =
     "&simulation end_time = '60 ms' threads = 1 /\n"
     "&lattice name = 'c' kind = 'hexagonal' spacing = '5 mm' thickness = '100 mm' /\n"
-    "&material lattice = 'c' model = 'cohesive_central' /\n"
+    "&material lattice = 'c' model = 'cohesive' /\n"
     "&field parameter = 'f_t' distribution = 'weibull' mean = '3 MPa' cv = 0.2 seed = %d /\n"
     "&body lattice = 'c' shape = 'rectangle' corner = 0, '-1 mm' size = '50 mm', '2 mm' /\n"
     "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
