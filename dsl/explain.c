@@ -5,12 +5,23 @@
 
 #include "dsl/explain_math.h"
 #include "dsl/json.h"
+#include "dsl/resolve.h"
 
 typedef struct page {
   const law *law;
+  const law_choice *choices; /* options that are decided */
+  int choice_count;
   bool latex;
   FILE *out;
 } page;
+
+static const expr *resolved(const page *p, const expr *e) {
+  return resolve_options(p->law, e, p->choices, p->choice_count);
+}
+
+static void put_math(const page *p, const expr *e) {
+  math_expr(p->law, resolved(p, e), p->out);
+}
 
 /* --- text ------------------------------------------------------------------------------------- */
 
@@ -139,12 +150,12 @@ static void put_bounds(const page *p, const bounds *b) {
   if (!b->given) return;
   fputs(b->lower_open ? "$(" : "$[", p->out);
   if (b->lower)
-    math_expr(p->law, b->lower, p->out);
+    put_math(p, b->lower);
   else
     fputs("-\\infty", p->out);
   fputs(",\\, ", p->out);
   if (b->upper)
-    math_expr(p->law, b->upper, p->out);
+    put_math(p, b->upper);
   else
     fputs("\\infty", p->out);
   fputs(b->upper_open ? ")$" : "]$", p->out);
@@ -156,7 +167,7 @@ static void put_default(const page *p, const stmt *s) {
     return;
   }
   fputc('$', p->out);
-  math_expr(p->law, s->value, p->out);
+  put_math(p, s->value);
   fputc('$', p->out);
 }
 
@@ -180,8 +191,15 @@ static void put_parameters(const page *p) {
   end_table(p);
 }
 
+static bool is_chosen(const page *p, const char *option) {
+  for (int k = 0; k < p->choice_count; k++)
+    if (strcmp(p->choices[k].option, option) == 0) return true;
+  return false;
+}
+
 static void put_options(const page *p) {
-  static const char *const titles[] = {"option", "choices", "here", "meaning"};
+  const char *const titles[] = {"option", "choices", p->choice_count ? "chosen" : "default",
+                                "meaning"};
   const symbol_list *list = &p->law->options;
   if (list->count == 0) return;
   put_heading(p, "Options");
@@ -196,7 +214,7 @@ static void put_options(const page *p) {
       put_code(p, s->words[k]);
     }
     next_cell(p);
-    put_code(p, p->law->chosen[i]);
+    if (!p->choice_count || is_chosen(p, s->name)) put_code(p, p->law->chosen[i]);
     next_cell(p);
     if (list->items[i]->doc) put_text(p, list->items[i]->doc);
     end_row(p);
@@ -246,8 +264,8 @@ static void put_quantities(const page *p) {
   static const char *const titles[] = {"symbol", "name", "unit", "meaning"};
   bool read[QUANTITY_COUNT] = {false}, any = false;
   for (const stmt *s = p->law->tree->first; s; s = s->next) {
-    find_quantities(s->value, read);
-    find_quantities(s->when, read);
+    find_quantities(resolved(p, s->value), read);
+    find_quantities(resolved(p, s->when), read);
   }
   for (int q = 0; q < QUANTITY_COUNT; q++)
     any |= read[q];
@@ -285,7 +303,7 @@ static void put_function(const page *p, const stmt *s) {
     math_symbol(p->law, s->words[i], NO_STEP, false, false, p->out);
   }
   fputs("\\right) = ", p->out);
-  math_expr(p->law, s->value, p->out);
+  put_math(p, s->value);
 }
 
 /* What the compiler makes of a damage rule: it never decreases and stays in [0, 1]. */
@@ -294,7 +312,7 @@ static void put_damage(const page *p, const stmt *s) {
   fputs(" = \\max\\left(", p->out);
   put_letters(p, s, STEP_OLD);
   fputs(",\\, \\min\\left(1,\\, \\hat{d}\\right)\\right), \\qquad \\hat{d} = ", p->out);
-  math_expr(p->law, s->value, p->out);
+  put_math(p, s->value);
 }
 
 /* One increment a step where the guard is true. */
@@ -303,10 +321,10 @@ static void put_flow(const page *p, const stmt *s) {
   fputs(" = ", p->out);
   put_letters(p, s, STEP_OLD);
   fputs(s->returned ? " + \\begin{cases} \\Delta\\left(" : " + \\begin{cases} ", p->out);
-  math_expr(p->law, s->value, p->out);
+  put_math(p, s->value);
   fputs(s->returned ? "\\right) \\text{ back to the limit} & \\text{when } " : " & \\text{when } ",
         p->out);
-  math_expr(p->law, s->when, p->out);
+  put_math(p, s->when);
   fputs(" \\\\ 0 & \\text{otherwise} \\end{cases}", p->out);
 }
 
@@ -321,7 +339,7 @@ static void put_equation(const page *p, const stmt *s) {
   } else {
     put_letters(p, s, math_has_step(target) ? STEP_NEW : NO_STEP);
     fputs(" = ", p->out);
-    math_expr(p->law, s->value, p->out);
+    put_math(p, s->value);
   }
 }
 
@@ -409,8 +427,9 @@ static void put_steps(const page *p) {
         p->out);
 }
 
-void explain_law(const law *l, explain_form form, FILE *out) {
-  page p = {l, form == EXPLAIN_LATEX, out};
+void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,
+                 FILE *out) {
+  page p = {l, choices, choice_count, form == EXPLAIN_LATEX, out};
   put_head(&p);
   put_parameters(&p);
   put_options(&p);

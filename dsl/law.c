@@ -523,13 +523,6 @@ const char *law_setting_name(law_setting setting) {
   return setting_names[setting];
 }
 
-bool law_allows(const law *l, law_setting setting) {
-  const tree *t = l->tree;
-  for (int k = 0; k < t->setting_count; k++)
-    if (strcmp(t->settings[k], setting_names[setting]) == 0) return true;
-  return t->setting_count == 0;
-}
-
 static law_setting first_setting(const law *l) {
   for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (l->tree->setting_count && strcmp(l->tree->settings[0], setting_names[k]) == 0)

@@ -87,8 +87,6 @@ typedef struct law {
 law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
                int choice_count, diagnostics *d);
 
-/* Whether the law names the setting after `for`, or none at all. */
-bool law_allows(const law *l, law_setting setting);
 const char *law_setting_name(law_setting setting);
 
 /* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of

@@ -549,6 +549,13 @@ static bool context_allows(checker *ck, const expr *e, const symbol *s) {
   case IN_BOUNDS:
     if (s->kind == SYMBOL_PARAMETER) return true;
     complain(ck, DIAG_BOUNDS, e->name_where, "bounds are made of numbers and parameters");
+    if (s->kind == SYMBOL_QUANTITY)
+      diag_hint(ck->d,
+                "`%s` is not known yet when parameters are read: let the parameter be the ratio to "
+                "it, and write `constant x = ratio*%s`",
+                s->name, s->name);
+    else
+      diag_hint(ck->d, "write out what `%s` is, in numbers and parameters", s->name);
     return false;
   case IN_CONSTANT:
     if (s->kind <= SYMBOL_CONSTANT || s->kind == SYMBOL_CHOICE || s->kind == SYMBOL_OPTION)

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/check.h"
+#include "dsl/unit_hint.h"
 
 /* --- units ------------------------------------------------------------------------------------ */
 
@@ -11,20 +12,6 @@ static bool is_whole_unit(const char *text, size_t length) {
   const char *bad;
   size_t bad_length;
   return length > 0 && unit_parse(text, length, &u, &bad, &bad_length);
-}
-
-static void hint_unit_slip(checker *ck, const char *part, size_t length) {
-  size_t letters = length;
-  while (letters > 0 && part[letters - 1] >= '0' && part[letters - 1] <= '9')
-    letters--;
-  if (letters > 0 && letters < length && is_whole_unit(part, letters)) {
-    diag_hint(ck->d, "write `%.*s^%s`", (int)letters, part,
-              arena_text(ck->memory, part + letters, length - letters));
-    return;
-  }
-  int count;
-  const char *const *symbols = unit_symbols(&count);
-  diag_suggest(ck->d, arena_text(ck->memory, part, length), symbols, count);
 }
 
 bool read_unit(checker *ck, const char *text, span where, unit *result) {
@@ -45,7 +32,7 @@ bool read_unit(checker *ck, const char *text, span where, unit *result) {
     diag_hint(ck->d, "write `*`, or put the divisor in parentheses: `J/(kg*K)`");
   } else {
     complain(ck, DIAG_UNKNOWN_UNIT, part, "there is no unit `%.*s`", (int)length, bad);
-    hint_unit_slip(ck, bad, length);
+    unit_hint(ck->d, bad, length);
   }
   return false;
 }

@@ -299,6 +299,13 @@ static bool two_values(parsing *p, const trouble *t) {
   return true;
 }
 
+static bool begins_line(const parsing *p, span where) {
+  uint32_t at = where.begin;
+  while (at > 0 && (p->lex.text[at - 1] == ' ' || p->lex.text[at - 1] == '\t'))
+    at--;
+  return at == 0 || p->lex.text[at - 1] == '\n';
+}
+
 static bool value_missing(parsing *p, const trouble *t) {
   const lexing *l = &p->lex;
   if (!value_expected(t)) return false;
@@ -314,7 +321,10 @@ static bool value_missing(parsing *p, const trouble *t) {
   if (t->token == T_NEWLINE && !is_word_of_language(l->before_last) && l->before_last != '=')
     hint(p, "a line that goes on ends with `&`");
   else if (t->token == '|' && l->before_last != '|')
-    hint(p, "a line that begins with `|` continues the one above");
+    hint(p, begins_line(p, t->where)
+                ? "a line that begins with `|` continues the one above"
+                : "cases inside an expression stand in round brackets of their own: max((| a when "
+                  "guard | b otherwise), c)");
   else if (t->token == T_NOT)
     hint(p, "`not` and what it denies stand in brackets here: (not a)");
   else if (t->token == '*' && l->before_last == '/')

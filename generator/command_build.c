@@ -6,6 +6,7 @@
 
 #include "generator/c_text.h"
 #include "generator/commands.h"
+#include "generator/drive.h"
 #include "generator/model.h"
 #include "generator/physics.h"
 #include "generator/run.h"
@@ -173,12 +174,9 @@ int command_build(int argc, char **argv) {
     fputs("perilat: error: `perilat build` needs a law or a deck\n", stderr);
     return 1;
   }
-  file_kind kind = kind_of_file(path);
-  if (kind == FILE_RESULT) {
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat build` needs a law or a deck\n",
-            path);
-    return 1;
-  }
+  const file_kind kind = kind_of_file(path);
+  if (!file_suits(path, FILES(LAW) | FILES(DECK), "perilat build", "a law or a deck")) return 1;
+  if (kind == FILE_DECK && drive_refuse_path("build", path)) return 1;
   if (kind == FILE_DECK) return build_solver(path, output, no_physics);
   char *found = model_find(path, NULL);
   int status = build_law(found ? found : path, output, no_physics);

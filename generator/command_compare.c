@@ -8,7 +8,6 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "dsl/diagnostics.h"
 #include "generator/commands.h"
 #include "generator/result_table.h"
 
@@ -132,7 +131,7 @@ static double largest_energy(const comparison_run *c) {
   double most = 0;
   char error[1024];
   for (int k = 0; k < 2; k++) {
-    table_names names = table_names_of(c->files[k], "/history");
+    result_names names = result_members(c->files[k], "/history");
     for (int n = 0; n < names.count; n++) {
       table_values v;
       if (!is_energy(names.items[n]) ||
@@ -142,7 +141,7 @@ static double largest_energy(const comparison_run *c) {
         if (isfinite(v.values[i])) most = fmax(most, fabs(v.values[i]));
       free(v.values);
     }
-    table_names_free(&names);
+    result_names_free(&names);
   }
   return most;
 }
@@ -183,54 +182,54 @@ static void compare_ends(comparison_run *c, const time_axis *x) {
          x->count[0], 1e3 * x->time[0][last[0]], x->count[1], 1e3 * x->time[1][last[1]]);
 }
 
-/* Names that both have; what only one has is reported. Those asked for must be in both. */
 typedef void compare_one(comparison_run *c, const char *name, void *context);
 
-static bool is_asked(const char *name, const char *const *asked, int count) {
-  for (int k = 0; k < count; k++)
-    if (strcmp(asked[k], name) == 0) return true;
-  return count == 0;
-}
-
-static bool asked_are_there(comparison_run *c, const table_names names[2], const char *kind,
-                            const char *const *asked, int count) {
-  bool good = true;
-  for (int k = 0; k < count; k++)
-    for (int n = 0; n < 2; n++) {
-      if (table_names_find(&names[n], asked[k]) >= 0) continue;
-      fprintf(stderr, "perilat: error: `%s` has no %s `%s`", c->request->results[n], kind,
-              asked[k]);
-      const char *near =
-          nearest_name(asked[k], (const char *const *)names[n].items, names[n].count);
-      fprintf(stderr, near ? "; did you mean `%s`?\n" : "\n", near);
-      good = false;
-    }
+/* The full name of what is asked for, which must be the same in both. False after a message. */
+static bool find_in_both(comparison_run *c, const char *group, const char *asked, char *name,
+                         size_t size) {
+  char other[256], error[1024];
+  bool good = result_find(c->files[0], group, asked, name, size, error, sizeof error) &&
+              result_find(c->files[1], group, asked, other, sizeof other, error, sizeof error);
+  if (good && strcmp(name, other) != 0) {
+    snprintf(error, sizeof error, "`%.250s` is `%s` in the first result and `%s` in the second",
+             asked, name, other);
+    good = false;
+  }
+  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
   return good;
 }
 
-static void each_name(comparison_run *c, const char *group, const char *kind,
-                      const char *const *asked, int count, compare_one *compare, void *context) {
-  table_names names[2];
-  for (int n = 0; n < 2; n++)
-    names[n] = table_names_of(c->files[n], group);
-  if (!asked_are_there(c, names, kind, asked, count)) {
-    c->wrong = true;
-  } else {
-    for (int k = 0; k < names[0].count; k++) {
-      const char *name = names[0].items[k];
-      if (!is_asked(name, asked, count)) continue;
-      if (table_names_find(&names[1], name) >= 0)
-        compare(c, name, context);
-      else
-        only_in_one(c, name, 0);
-    }
-    for (int k = 0; k < names[1].count; k++)
-      if (is_asked(names[1].items[k], asked, count) &&
-          table_names_find(&names[0], names[1].items[k]) < 0)
-        only_in_one(c, names[1].items[k], 1);
+static void each_asked(comparison_run *c, const char *group, const char *const *asked, int count,
+                       compare_one *compare, void *context) {
+  for (int k = 0; k < count; k++) {
+    char name[256];
+    if (find_in_both(c, group, asked[k], name, sizeof name))
+      compare(c, name, context);
+    else
+      c->wrong = true;
   }
+}
+
+static bool has_name(const result_names *n, const char *name) {
+  for (int k = 0; k < n->count; k++)
+    if (strcmp(n->items[k], name) == 0) return true;
+  return false;
+}
+
+/* Names that both have; what only one has is reported. */
+static void each_name(comparison_run *c, const char *group, compare_one *compare, void *context) {
+  result_names names[2];
   for (int n = 0; n < 2; n++)
-    table_names_free(&names[n]);
+    names[n] = result_members(c->files[n], group);
+  for (int k = 0; k < names[0].count; k++)
+    if (has_name(&names[1], names[0].items[k]))
+      compare(c, names[0].items[k], context);
+    else
+      only_in_one(c, names[0].items[k], 0);
+  for (int k = 0; k < names[1].count; k++)
+    if (!has_name(&names[0], names[1].items[k])) only_in_one(c, names[1].items[k], 1);
+  for (int n = 0; n < 2; n++)
+    result_names_free(&names[n]);
 }
 
 typedef struct history_context {
@@ -249,8 +248,11 @@ static void compare_histories(comparison_run *c) {
     h.energy = largest_energy(c);
     printf("  %-34s %12s %12s  where\n", "history", "largest gap", "relative");
     compare_ends(c, &h.axis);
-    each_name(c, "/history", "history", c->request->histories, c->request->history_count,
-              compare_one_history, &h);
+    if (c->request->history_count)
+      each_asked(c, "/history", c->request->histories, c->request->history_count,
+                 compare_one_history, &h);
+    else
+      each_name(c, "/history", compare_one_history, &h);
   } else
     c->wrong = true;
   for (int k = 0; k < 2; k++)
@@ -359,8 +361,10 @@ static void compare_frames(comparison_run *c) {
   printf("  %-34s %12s %12s  where\n", "field of frames", "largest gap", "relative");
   if (same_particles(&x)) {
     compare_frame_times(c, &x);
-    each_name(c, "/frames", "field", c->request->fields, c->request->field_count, compare_field,
-              &x);
+    if (c->request->field_count)
+      each_asked(c, "/frames", c->request->fields, c->request->field_count, compare_field, &x);
+    else
+      each_name(c, "/frames", compare_field, &x);
   } else {
     printf("* %-34s %ld and %ld, or at other places: no frames are compared\n", "particles",
            x.particles[0], x.particles[1]);

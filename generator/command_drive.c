@@ -18,9 +18,11 @@ enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
 typedef struct drive_options {
   const char *law, *path;
   const char *csv, *hdf5, *picture;
-  const char **settings;
+  const char *const *settings;
   int setting_count;
   bool compiled;
+  bool check_only;
+  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
 } drive_options;
 
 /* Everything a drive holds. */
@@ -34,16 +36,28 @@ typedef struct driving {
   bool opened;
   const pl_law *law;
   double *parameters, *initial;
+  drive_table columns; /* without rows, for the expectations */
+  drive_expectations *expectations;
   drive_table table;
 } driving;
+
+static void tell(const driving *r, const diagnostics *d) {
+  if (r->options->report)
+    diag_json_add(r->options->report, d);
+  else
+    diag_print(d, stderr);
+}
 
 /* --- options ---------------------------------------------------------------------------------- */
 
 static bool take_file(drive_options *o, const char *file) {
   file_kind kind = kind_of_file(file);
-  if (kind == FILE_RESULT) {
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat drive` needs a law and a path\n",
-            file);
+  if (!file_suits(file, FILES(LAW) | FILES(DECK), "perilat drive", "a law and a path"))
+    return false;
+  if (kind == FILE_DECK && drive_is_deck(file) && !drive_is_path(file)) {
+    fprintf(stderr,
+            "perilat: error: `%s` is a deck, not a path that drives one bond\n  perilat run %s\n",
+            file, file);
     return false;
   }
   const char **slot = kind == FILE_DECK ? &o->path : &o->law;
@@ -56,14 +70,14 @@ static bool take_file(drive_options *o, const char *file) {
   return true;
 }
 
-static bool read_options(int argc, char **argv, drive_options *o) {
+static bool read_options(int argc, char **argv, drive_options *o, const char **settings) {
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
     const char *value;
     if (option_flag(argv, &at, "--compiled"))
       o->compiled = true;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
-      o->settings[o->setting_count++] = value;
+      settings[o->setting_count++] = value;
     else if ((value = option_value(argc, argv, &at, "--csv", &bad)))
       o->csv = value;
     else if ((value = option_value(argc, argv, &at, "--hdf5", &bad)))
@@ -81,6 +95,12 @@ static bool read_options(int argc, char **argv, drive_options *o) {
   return !bad && o->path;
 }
 
+/* "group.key=value", as decks are changed; anything else sets a value of the law. */
+static bool is_of_path(const char *setting) {
+  const char first = setting[strcspn(setting, ".=[")];
+  return first == '.' || first == '[';
+}
+
 /* --- what is driven --------------------------------------------------------------------------- */
 
 static bool read_input(driving *r) {
@@ -89,20 +109,29 @@ static bool read_input(driving *r) {
   size_t length;
   char *text = read_text_file(o->path, PATH_LIMIT_BYTES, &length, error, sizeof error);
   if (!text) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error);
     return false;
   }
+  const size_t most = (size_t)o->setting_count + 1;
+  deck_override *of_path = arena_alloc(r->memory, most * sizeof *of_path);
+  const char **of_law = arena_alloc(r->memory, most * sizeof *of_law);
+  int path_count = 0, law_count = 0;
+  for (int k = 0; k < o->setting_count; k++)
+    if (is_of_path(o->settings[k]))
+      of_path[path_count++].text = o->settings[k];
+    else
+      of_law[law_count++] = o->settings[k];
   int file = source_add(&r->sources, o->path, text, length);
   free(text);
-  r->in = drive_read(r->memory, &r->sources, file, &r->said);
-  if (!r->in || !settings_read(r->memory, &r->sources, o->settings, o->setting_count,
-                               &r->in->material, &r->said))
+  r->in = drive_read(r->memory, &r->sources, file, of_path, path_count, &r->said);
+  if (!r->in ||
+      !settings_read(r->memory, &r->sources, of_law, law_count, &r->in->material, &r->said))
     return false;
   r->in->output.csv = o->csv ? o->csv : r->in->output.csv;
   r->in->output.hdf5 = o->hdf5 ? o->hdf5 : r->in->output.hdf5;
   r->in->output.picture = o->picture ? o->picture : r->in->output.picture;
   r->in->material.model = o->law ? o->law : r->in->material.model;
-  if (r->in->material.model) return true;
+  if (r->in->material.model || o->check_only) return true;
   diag_report(&r->said, DIAG_MISSING_KEY, r->in->material.item.where, "no law is named");
   diag_hint(&r->said, "perilat drive law.plm path.nml, or &material model = 'name' / in the path");
   return false;
@@ -113,7 +142,7 @@ static int open_law(driving *r) {
   const char *note;
   bool good = run_open_material(&r->in->material, NULL, r->options->path, &r->model, &r->said);
   r->opened = r->model.memory != NULL;
-  if (r->opened) diag_print(&r->model.said, stderr);
+  if (r->opened) tell(r, &r->model.said);
   if (!good) return INPUT_WRONG;
   r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
@@ -211,7 +240,39 @@ static void describe(const driving *r) {
          1e3 * b->spacing, 1e3 * b->thickness, t->rows,
          t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
          r->law->context ? "interpreter" : "compiled");
-  drive_print(t, r->in->output.rows, stdout);
+  drive_print(r->in, t, stdout);
+}
+
+/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0 where
+   it does not fall by more than a coarse path explains. */
+static long largest_fall(const drive_table *t) {
+  const drive_column *energy = &t->columns[t->column_count - DRIVE_ENERGY_COUNT];
+  const double *lost = energy[DRIVE_ENERGY_DISSIPATED_DAMAGE].values;
+  double most = 0, scale = 0, fall = 0;
+  long row = 0;
+  for (long k = 0; k < t->rows; k++) {
+    scale = fmax(scale, fabs(energy[DRIVE_ENERGY_STORED].values[k]) + fabs(lost[k]));
+    most = fmax(most, lost[k]);
+    if (most - lost[k] <= fall) continue;
+    fall = most - lost[k];
+    row = k;
+  }
+  return fall > 1e-3 * scale ? row : 0;
+}
+
+static void note_fall(const driving *r) {
+  const drive_table *t = &r->table;
+  const long row = t->bad_row < 0 ? largest_fall(t) : 0;
+  if (row == 0) return;
+  printf("note: `dissipated_damage` falls, by most up to %.6g s, stretch %.6g\n",
+         t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[DRIVE_COLUMN_STRETCH].values[row]);
+  if (r->model.law->results[RESULT_W])
+    puts("  the law gives back more than its `energy W` says that it has stored: it makes energy");
+  else
+    puts(
+        "  without `energy W` the stored energy is the work of the force at the states at hand: a\n"
+        "  law whose states lock energy in should give W (`perilat help energy`), any other makes "
+        "energy");
 }
 
 static bool spares_inputs(const driving *r) {
@@ -255,13 +316,16 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
   else
     printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, stretch %.6g)\n", v->expected,
            fabs(v->found - v->expected), v->allowed, v->time, v->stretch);
+  if (!v->passed && v->extreme)
+    printf("      the rows beside it are at %.6g s and %.6g s; an extreme between them is found by "
+           "more steps: --set simulation.steps=%d\n",
+           v->beside[0], v->beside[1], 10 * r->in->simulation.steps);
 }
 
 static int judge(driving *r) {
   const int count = r->in->expect_count;
   drive_verdict *verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *verdicts);
-  if (!drive_judge(r->in, &r->model, r->parameters, &r->table, verdicts, &r->said))
-    return INPUT_WRONG;
+  drive_judge(r->expectations, r->parameters, &r->table, verdicts);
   int passed = 0;
   for (int k = 0; k < count; k++) {
     print_verdict(r, &r->in->expects[k], &verdicts[k]);
@@ -271,15 +335,25 @@ static int judge(driving *r) {
   return passed == count ? 0 : DRIVE_FAILED;
 }
 
-/* 0, or an exit status. */
-static int drive(driving *r) {
+/* Everything that can be wrong before the bond moves. 0, or an exit status. */
+static int prepare(driving *r) {
   if (!read_input(r)) return INPUT_WRONG;
+  if (!r->in->material.model) return 0;
   int status = open_law(r);
   if (status) return status;
-  if (!set_values(r) || !spares_inputs(r) ||
-      !drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said))
-    return INPUT_WRONG;
+  if (!set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
+  drive_columns(r->law, &r->columns);
+  r->expectations = drive_expectations_read(r->in, &r->model, &r->columns, &r->said);
+  return r->expectations ? 0 : INPUT_WRONG;
+}
+
+/* 0, or an exit status. */
+static int drive(driving *r) {
+  int status = prepare(r);
+  if (status || r->options->check_only) return status;
+  if (!drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said)) return INPUT_WRONG;
   describe(r);
+  note_fall(r);
   bool written = write_files(r);
   if (r->table.bad_row >= 0) {
     report_bad(r);
@@ -289,18 +363,51 @@ static int drive(driving *r) {
   return status ? status : written ? 0 : DRIVE_FAILED;
 }
 
-int command_drive(int argc, char **argv) {
-  drive_options o = {.settings = must_calloc((size_t)argc + 1, sizeof(char *))};
-  driving r = {.options = &o, .memory = arena_new()};
+static void close_drive(driving *r) {
+  if (r->expectations) drive_expectations_free(r->expectations);
+  if (r->columns.memory) drive_table_free(&r->columns);
+  if (r->table.memory) drive_table_free(&r->table);
+  if (r->opened) model_close(&r->model);
+  diag_clear(&r->said);
+  source_clear(&r->sources);
+  arena_free(r->memory);
+}
+
+static void print_checked(const driving *r) {
+  const char *path = r->options->path;
+  if (r->law)
+    printf("%s: no errors; a path that drives one bond of `%s`, with %d expectation%s\n  perilat "
+           "drive %s\n",
+           path, r->law->name, r->in->expect_count, r->in->expect_count == 1 ? "" : "s", path);
+  else
+    printf("%s: no errors; a path that names no law, so that its expectations are not checked\n"
+           "  perilat drive law.plm %s\n",
+           path, path);
+}
+
+static int drive_as_asked(const drive_options *o) {
+  driving r = {.options = o, .memory = arena_new()};
   diag_begin(&r.said, &r.sources);
-  int status = read_options(argc, argv, &o) ? drive(&r) : INPUT_WRONG;
+  int status = drive(&r);
+  if (!status && o->check_only && !o->report) print_checked(&r);
   fflush(stdout);
-  diag_print(&r.said, stderr);
-  if (r.table.memory) drive_table_free(&r.table);
-  if (r.opened) model_close(&r.model);
-  diag_clear(&r.said);
-  source_clear(&r.sources);
-  arena_free(r.memory);
-  free(o.settings);
+  tell(&r, &r.said);
+  close_drive(&r);
+  return status;
+}
+
+int drive_check(const char *path, const char *const *settings, int count, diag_json *report) {
+  return drive_as_asked(&(drive_options){.path = path,
+                                         .settings = settings,
+                                         .setting_count = count,
+                                         .check_only = true,
+                                         .report = report});
+}
+
+int command_drive(int argc, char **argv) {
+  const char **settings = must_calloc((size_t)argc + 1, sizeof *settings);
+  drive_options o = {.settings = settings};
+  int status = read_options(argc, argv, &o, settings) ? drive_as_asked(&o) : INPUT_WRONG;
+  free(settings);
   return status;
 }

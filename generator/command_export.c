@@ -9,12 +9,17 @@
 #include "generator/commands.h"
 #include "generator/model.h"
 #include "generator/result_table.h"
+#include "runtime/whole_file.h"
 
 static const char program[] = "perilat export";
 
 typedef struct export_request {
   const char *result, *output; /* output NULL: standard output */
-  bool history, bonds, framed;
+  const char **names;          /* the only histories or fields to write; none given: all */
+  int name_count;
+  const char *of_histories,
+      *of_frames; /* an option that only this table knows, when one was given */
+  bool bonds, framed;
   long frame;
 } export_request;
 
@@ -61,46 +66,85 @@ static void write_row(FILE *out, const table_values *columns, int count, long ro
 
 /* --- tables ----------------------------------------------------------------------------------- */
 
-/* Reads the named columns; all have `rows` values. False after a message. */
-static bool read_columns(result_file *f, const table_names *names, long frame, bool bonds,
-                         long rows, table_values *columns, int *count) {
-  char error[1024];
-  for (int k = 0; k < names->count; k++) {
-    if (frame >= 0 && table_on_bonds(names->items[k]) != bonds) continue;
-    table_values *v = &columns[*count];
-    if (!table_read(f, names->items[k], frame, v, error, sizeof error)) {
-      fprintf(stderr, "perilat: error: %s\n", error);
-      return false;
-    }
-    ++*count;
-    if (v->count != rows) {
-      fprintf(stderr, "perilat: error: `%s` has %ld values where %ld are expected\n", v->name,
-              v->count, rows);
-      return false;
-    }
-  }
-  return true;
+/* Columns of a table, and the names that they stand under. */
+typedef struct table {
+  result_names names;
+  table_values *columns;
+  int count;
+  long rows, frame; /* frame -1: histories */
+} table;
+
+static table table_new(result_file *f, const export_request *q, long frame) {
+  table t = {.names = result_members(f, frame < 0 ? "/history" : "/frames"), .frame = frame};
+  t.columns = must_calloc((size_t)(t.names.count + q->name_count) + 1, sizeof *t.columns);
+  return t;
 }
 
-static bool export_history(result_file *f, FILE *out) {
+static void table_free(table *t) {
+  for (int k = 0; k < t->count; k++)
+    free(t->columns[k].values);
+  free(t->columns);
+  result_names_free(&t->names);
+}
+
+/* False after a message. */
+static bool add_column(table *t, result_file *f, const char *name) {
   char error[1024];
-  table_names names = table_names_of(f, "/history");
-  table_values *columns = must_calloc((size_t)names.count + 1, sizeof *columns);
-  int count = 1;
-  bool good = table_read(f, "time", -1, &columns[0], error, sizeof error);
+  table_values *v = &t->columns[t->count];
+  const bool good = table_read(f, name, t->frame, v, error, sizeof error);
+  t->count += good;
+  if (!good)
+    fprintf(stderr, "perilat: error: %s\n", error);
+  else if (v->count != t->rows)
+    fprintf(stderr, "perilat: error: `%s` has %ld values where %ld are expected\n", v->name,
+            v->count, t->rows);
+  return good && v->count == t->rows;
+}
+
+static bool add_all(table *t, result_file *f, bool bonds) {
+  bool good = true;
+  for (int k = 0; good && k < t->names.count; k++)
+    if (t->frame < 0 || table_on_bonds(t->names.items[k]) == bonds)
+      good = add_column(t, f, t->names.items[k]);
+  return good;
+}
+
+/* Those asked for, in that order; they stand under their full names. */
+static bool add_asked(table *t, result_file *f, const export_request *q) {
+  bool good = true;
+  for (int k = 0; good && k < q->name_count; k++) {
+    const int n = result_names_find(&t->names, q->names[k]);
+    const char *name = n < 0 ? q->names[k] : t->names.items[n];
+    if (n >= 0 && t->frame >= 0 && table_on_bonds(name) != q->bonds) {
+      fprintf(stderr, "perilat: error: `%s` is a field of %s; %s --bonds\n", name,
+              q->bonds ? "particles" : "bonds", q->bonds ? "leave out" : "add");
+      good = false;
+    } else
+      good = add_column(t, f, name);
+  }
+  return good;
+}
+
+static bool add_columns(table *t, result_file *f, const export_request *q) {
+  return q->name_count ? add_asked(t, f, q) : add_all(t, f, q->bonds);
+}
+
+static bool export_history(result_file *f, const export_request *q, FILE *out) {
+  char error[1024];
+  table t = table_new(f, q, -1);
+  bool good = table_read(f, "time", -1, &t.columns[0], error, sizeof error);
   if (!good) fprintf(stderr, "perilat: error: %s\n", error);
-  if (good && !*columns[0].unit) strcpy(columns[0].unit, "s");
-  good = good && read_columns(f, &names, -1, false, columns[0].count, columns, &count);
-  if (good) write_titles(out, columns, count);
-  for (long row = 0; good && row < columns[0].count; row++) {
+  if (good && !*t.columns[0].unit) strcpy(t.columns[0].unit, "s");
+  t.count = good;
+  t.rows = t.columns[0].count;
+  good = good && add_columns(&t, f, q);
+  if (good) write_titles(out, t.columns, t.count);
+  for (long row = 0; good && row < t.rows; row++) {
     putc('\n', out);
-    write_row(out, columns, count, row);
+    write_row(out, t.columns, t.count, row);
   }
   if (good) putc('\n', out);
-  for (int k = 0; k < count; k++)
-    free(columns[k].values);
-  free(columns);
-  table_names_free(&names);
+  table_free(&t);
   return good;
 }
 
@@ -153,15 +197,11 @@ static bool export_frame(result_file *f, const export_request *q, FILE *out) {
   if (!good)
     fprintf(stderr, "perilat: error: `%s` does not say where its %s are\n", q->result,
             q->bonds ? "bonds" : "particles");
-  table_names names = table_names_of(f, "/frames");
-  table_values *columns = must_calloc((size_t)names.count + 1, sizeof *columns);
-  int count = 0;
-  good = good && read_columns(f, &names, frame, q->bonds, rows.count, columns, &count);
-  if (good) write_frame(out, &rows, columns, count);
-  for (int k = 0; k < count; k++)
-    free(columns[k].values);
-  free(columns);
-  table_names_free(&names);
+  table t = table_new(f, q, frame);
+  t.rows = rows.count;
+  good = good && add_columns(&t, f, q);
+  if (good) write_frame(out, &rows, t.columns, t.count);
+  table_free(&t);
   free(rows.reference);
   free(rows.bonds);
   return good;
@@ -176,8 +216,10 @@ static bool read_request(int argc, char **argv, export_request *q) {
     char *end;
     if ((v = option_value(argc, argv, &at, "-o", &bad)))
       q->output = v;
-    else if (option_flag(argv, &at, "--history"))
-      q->history = true;
+    else if ((v = option_value(argc, argv, &at, "--history", &bad)))
+      q->names[q->name_count++] = q->of_histories = v;
+    else if ((v = option_value(argc, argv, &at, "--field", &bad)))
+      q->names[q->name_count++] = q->of_frames = v;
     else if (option_flag(argv, &at, "--bonds"))
       q->bonds = true;
     else if ((v = option_value(argc, argv, &at, "--frame", &bad))) {
@@ -205,8 +247,12 @@ static bool complete(const export_request *q) {
     fputs("perilat: error: `perilat export` needs a result file\n  perilat export result.h5 -o "
           "history.csv\n",
           stderr);
-  else if (q->history && q->framed)
-    fputs("perilat: error: --history and --frame are two tables; export one at a time\n", stderr);
+  else if (q->of_histories && (q->framed || q->of_frames))
+    fputs("perilat: error: histories and a frame are two tables; export one at a time\n", stderr);
+  else if (q->of_frames && !q->framed)
+    fputs(
+        "perilat: error: --field belongs to frames; add --frame N, e.g. --frame -1 for the last\n",
+        stderr);
   else if (q->bonds && !q->framed)
     fputs(
         "perilat: error: --bonds belongs to frames; add --frame N, e.g. --frame -1 for the last\n",
@@ -222,30 +268,41 @@ static bool complete(const export_request *q) {
 
 /* 0, or the exit status 2 after a message. */
 static int write_table(const char *text, size_t length, const char *path) {
-  FILE *out = path ? fopen(path, "w") : stdout;
-  bool good = out && fwrite(text, 1, length, out) == length;
-  if (path && out) good = fclose(out) == 0 && good;
-  if (good && path) printf("written %s\n", path);
-  if (!good)
-    fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path ? path : "standard output",
-            strerror(errno));
+  if (!path) return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
+  whole_file file;
+  bool good = whole_file_begin(&file, path);
+  if (good) {
+    FILE *out = fopen(file.working, "w");
+    good = out && fwrite(text, 1, length, out) == length;
+    good = out && fclose(out) == 0 && good;
+    good = whole_file_end(&file, good);
+  }
+  if (good)
+    printf("written %s\n", path);
+  else
+    fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
   return good ? 0 : 2;
 }
 
-/* The table is made whole before a file of that name is touched. */
-int command_export(int argc, char **argv) {
-  export_request q = {0};
-  if (!read_request(argc, argv, &q) || !complete(&q)) return 1;
-  result_file *f = table_open(program, q.result);
+/* The table is made whole before anything is written. */
+static int export_result(const export_request *q) {
+  result_file *f = table_open(program, q->result);
   if (!f) return 1;
   char *text = NULL;
   size_t length = 0;
-  FILE *table = open_memstream(&text, &length);
-  bool good = table && (q.framed ? export_frame(f, &q, table) : export_history(f, table));
-  const bool whole = table && fclose(table) == 0;
+  FILE *out = open_memstream(&text, &length);
+  bool good = out && (q->framed ? export_frame(f, q, out) : export_history(f, q, out));
+  const bool whole = out && fclose(out) == 0;
   result_read_close(f);
   if (good && !whole) fputs("perilat: error: not enough memory for the table\n", stderr);
-  const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q.output);
+  const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q->output);
   free(text);
+  return status;
+}
+
+int command_export(int argc, char **argv) {
+  export_request q = {.names = must_calloc((size_t)argc + 1, sizeof *q.names)};
+  const int status = read_request(argc, argv, &q) && complete(&q) ? export_result(&q) : 1;
+  free(q.names);
   return status;
 }

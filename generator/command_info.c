@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/drive.h"
 #include "generator/info_law.h"
 #include "generator/model.h"
 #include "generator/run.h"
@@ -38,9 +39,10 @@ static int info_builtins(void) {
 /* --- results ---------------------------------------------------------------------------------- */
 
 static void print_history(result_file *f, const char *name) {
-  char unit_text[64] = "", error[512];
+  char unit_text[64] = "", error[1024];
   long count = 0;
   double *v = result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
+  if (!v) fprintf(stderr, "perilat: warning: %s\n", error);
   if (!v || count == 0) {
     free(v);
     return;
@@ -50,20 +52,9 @@ static void print_history(result_file *f, const char *name) {
     low = fmin(low, v[k]);
     high = fmax(high, v[k]);
   }
-  printf("  %-24s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
+  printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
          v[count - 1] + 0.0); /* no minus before zeros */
   free(v);
-}
-
-/* Each name of a comma-separated list through `show`. */
-static void for_each_name(result_file *f, char *names, const char *prefix,
-                          void (*show)(result_file *, const char *)) {
-  char *rest = names;
-  for (char *name = strtok_r(names, ",", &rest); name; name = strtok_r(NULL, ",", &rest)) {
-    char full[256];
-    snprintf(full, sizeof full, "%s%s", prefix, name);
-    if (strcmp(name, "energy") != 0) show(f, full);
-  }
 }
 
 static int info_result(const char *path) {
@@ -84,14 +75,16 @@ static int info_result(const char *path) {
   if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);
   puts("Histories:");
-  char *names = result_list(f, "/history"), *energies = result_list(f, "/history/energy");
-  if (names) for_each_name(f, names, "", print_history);
-  if (energies) for_each_name(f, energies, "energy/", print_history);
-  char *fields = result_members(f, "/frames");
-  printf("Frames hold: %s\n", fields);
-  free(names);
-  free(energies);
-  free(fields);
+  print_history(f, "time");
+  result_names histories = result_members(f, "/history"), fields = result_members(f, "/frames");
+  for (int k = 0; k < histories.count; k++)
+    print_history(f, histories.items[k]);
+  printf("Frames hold:");
+  for (int k = 0; k < fields.count; k++)
+    printf("%s %s", k ? "," : "", fields.items[k]);
+  puts(fields.count ? "" : " nothing");
+  result_names_free(&histories);
+  result_names_free(&fields);
   result_read_close(f);
   return 0;
 }
@@ -150,7 +143,11 @@ static int info_file(const info_options *o) {
         o->file, kind == FILE_DECK ? "deck" : "result");
     return 1;
   }
+  if (!file_suits(o->file, FILES(LAW) | FILES(DECK) | FILES(RESULT), "perilat info",
+                  "a law, a deck or a result"))
+    return 1;
   if (kind == FILE_RESULT) return info_result(o->file);
+  if (kind == FILE_DECK && drive_refuse_path("info", o->file)) return 1;
   if (kind == FILE_DECK) return run_deck(&(run_options){.deck_path = o->file, .check_only = true});
   info_law_options law_options = o->law;
   law_options.law = o->file;

@@ -52,10 +52,14 @@ static bool is_name(const char *name) {
 }
 
 /* The language has words that no law can be named after; its own front end knows them. */
-static bool is_law(const new_file *f) {
+static bool is_law(const new_file *f, const char *name) {
   model m;
   bool good = model_open_text(&m, f->path, f->text, NULL, 0);
-  if (!good) diag_print(&m.said, stderr);
+  if (!good)
+    fprintf(
+        stderr,
+        "perilat: error: `%s` cannot be the name of a law: %s\n  take another name, e.g. my_%s\n",
+        name, m.said.count ? m.said.items[0].message : "its template is not a law", name);
   model_close(&m);
   return good;
 }
@@ -70,6 +74,17 @@ static bool spares_all(const new_file *files) {
       return false;
     }
   return true;
+}
+
+/* A law found by name in this folder goes before one that comes along. */
+static void warn_of_hidden(const char *name) {
+  char *found = model_find(name, NULL);
+  if (found)
+    fprintf(stderr,
+            "perilat: warning: there is a law `%s` already (%s); decks in this folder that name it "
+            "get the new one\n",
+            name, found);
+  free(found);
 }
 
 /* All files or none. */
@@ -95,12 +110,14 @@ static int make_new(const char *name, const char *law_text) {
   static const char *const endings[FILE_COUNT] = {".plm", "_drive.nml", ".nml"};
   for (int k = 0; k < FILE_COUNT; k++)
     snprintf(files[k].path, sizeof files[k].path, "%s%s", name, endings[k]);
-  int status = is_law(&files[0]) && spares_all(files) ? 0 : INPUT_WRONG;
+  int status = is_law(&files[0], name) && spares_all(files) ? 0 : INPUT_WRONG;
+  if (!status) warn_of_hidden(name);
   if (!status && !write_all(files)) status = NEW_FAILED;
   if (!status)
-    printf("written %s, %s, %s\n  perilat check %s\n  perilat drive %s\n  perilat run %s\n",
-           files[0].path, files[1].path, files[2].path, files[0].path, files[1].path,
-           files[2].path);
+    printf("written %s, %s, %s\n  perilat check %s\n  perilat drive %s\n  perilat run %s\n"
+           "  perilat plot %s.h5 --x opening --y load\n",
+           files[0].path, files[1].path, files[2].path, files[0].path, files[1].path, files[2].path,
+           name);
   for (int k = 0; k < FILE_COUNT; k++)
     free(files[k].text);
   return status;

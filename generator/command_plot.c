@@ -140,15 +140,10 @@ static bool draw(plot_request *q) {
 }
 
 static bool are_results(const plot_request *q) {
-  for (int k = 0; k < q->result_count; k++) {
-    file_kind kind = kind_of_file(q->results[k]);
-    if (kind != FILE_LAW && kind != FILE_DECK) continue;
-    fprintf(
-        stderr,
-        "perilat: error: `%s` is a %s; `perilat plot` needs a result, which `perilat run` makes\n",
-        q->results[k], kind == FILE_LAW ? "law" : "deck");
-    return false;
-  }
+  for (int k = 0; k < q->result_count; k++)
+    if (!file_suits(q->results[k], FILES(RESULT), "perilat plot",
+                    "a result, which `perilat run` makes"))
+      return false;
   return true;
 }
 
@@ -189,6 +184,19 @@ static bool spares_results(const plot_request *q) {
   return true;
 }
 
+/* "beam_load.png", in the working folder: after the first result and what is drawn, so that pictures of other results stay. */
+static void name_output(plot_request *q, char *name, size_t size) {
+  const char *drawn = q->is_map ? q->map.field : q->y_count ? q->ys[0] : "load";
+  const char *slash = strrchr(q->results[0], '/');
+  const char *result = slash ? slash + 1 : q->results[0], *dot = strrchr(result, '.');
+  const size_t stem = dot && dot > result ? (size_t)(dot - result) : strlen(result);
+  const int head = snprintf(name, size, "%.*s_", (int)stem, result);
+  snprintf(name + head, size - (size_t)head, "%.100s.png", drawn);
+  for (char *c = name + head; *c; c++)
+    if (*c == '/') *c = '_';
+  q->curve.output = q->map.output = name;
+}
+
 int command_plot(int argc, char **argv) {
   plot_request q = {
       .curve = {.output = NULL},
@@ -200,8 +208,10 @@ int command_plot(int argc, char **argv) {
   for (int at = 0; at < argc && good;)
     good = read_one(argc, argv, &at, &q);
   good = good && complete(&q);
-  if (good && !q.curve.output) q.curve.output = q.map.output = q.is_map ? "map.png" : "curve.png";
+  char *name = good ? must_calloc(strlen(q.results[0]) + 128, 1) : NULL;
+  if (good && !q.curve.output) name_output(&q, name, strlen(q.results[0]) + 128);
   good = good && spares_results(&q) && draw(&q);
+  free(name);
   free(q.results);
   free(q.labels);
   free(q.ys);

@@ -5,11 +5,14 @@
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/drive.h"
 #include "generator/interval.h"
 #include "generator/model.h"
 #include "generator/physics.h"
 #include "generator/run.h"
+#include "generator/settings.h"
 #include "generator/version.h"
+#include "runtime/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
 typedef enum option_reader { RUN, CHECK, SOLVER } option_reader;
@@ -71,18 +74,13 @@ static bool read_run_options(option_reader reader, const char *program, int argc
 }
 
 int command_run(int argc, char **argv) {
-  run_options o = {0};
+  run_options o = {.program = "perilat run"};
   bool good = read_run_options(RUN, "perilat run", argc, argv, &o, NULL);
   int status = 1;
-  file_kind kind = o.deck_path ? kind_of_file(o.deck_path) : FILE_UNKNOWN;
   if (good && !o.deck_path)
     fputs("perilat: error: `perilat run` needs a deck\n  perilat run deck.nml\n", stderr);
-  else if (good && kind == FILE_LAW)
-    fprintf(stderr, "perilat: error: `%s` is a law; `perilat run` needs a deck that uses it\n",
-            o.deck_path);
-  else if (good && kind == FILE_RESULT)
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat run` needs a deck\n", o.deck_path);
-  else if (good)
+  else if (good && file_suits(o.deck_path, FILES(DECK), "perilat run", "a deck") &&
+           !drive_refuse_path("run", o.deck_path))
     status = run_deck(&o);
   free(o.overrides);
   return status;
@@ -115,34 +113,85 @@ static void print_physics(const physics_report *p) {
   putchar('\n');
 }
 
-/* Mechanics and ranges of a law that is right otherwise. */
-static bool check_values(model *m, physics_report *found) {
-  bool good = physics_check(m->law, NULL, &m->said, found);
-  interval_check(m->law, &m->said);
+/* --- a law ------------------------------------------------------------------------------------ */
+
+/* A law with the values that --set gives, name=value. */
+typedef struct checking {
+  arena *memory;
+  source_set sources;
+  diagnostics said; /* about what is set; the model has its own */
+  deck_material material;
+  model model;
+  physics_report physics;
+} checking;
+
+/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none. False after messages. */
+static bool take_values(checking *c, double **values) {
+  const symbol_list *list = &c->model.law->parameters;
+  *values = NULL;
+  if (c->material.assignment_count == 0) return true;
+  *values = arena_alloc(c->memory, ((size_t)list->count + 1) * sizeof **values);
+  pl_law *kernel = plan_interpreted(c->model.plan, "");
+  bool good = material_parameters(&c->material, kernel, *values, &c->said);
+  plan_interpreted_free(kernel);
   return good;
 }
 
-static int check_law(const run_options *o, const char *path, const char *dump) {
-  diag_json *report = o->report;
-  physics_report found = {0};
-  model m;
-  bool good = model_open(&m, path, NULL, 0);
-  int status = good ? 0 : 1;
-  if (good && dump)
-    status = dump_stage(&m, dump);
-  else if (good && !model_plan(&m))
-    status = 1;
-  else if (good && !o->no_physics && !check_values(&m, &found))
-    status = 1;
-  if (report)
-    diag_json_add(report, &m.said);
+/* Mechanics and ranges of a law that is right otherwise. */
+static bool check_values(checking *c, const double *values) {
+  bool good = physics_check(c->model.law, &(physics_options){.parameters = values}, &c->model.said,
+                            &c->physics);
+  interval_check(c->model.law, &c->model.said);
+  return good;
+}
+
+/* 0, or an exit status. */
+static int check_as_law(checking *c, const run_options *o, const char *path, const char *dump) {
+  const char **settings =
+      arena_alloc(c->memory, ((size_t)o->override_count + 1) * sizeof *settings);
+  for (int k = 0; k < o->override_count; k++)
+    settings[k] = o->overrides[k].text;
+  if (!settings_read(c->memory, &c->sources, settings, o->override_count, &c->material, &c->said) ||
+      !run_open_law(&c->material, path, &c->model, &c->said))
+    return 1;
+  if (dump) return dump_stage(&c->model, dump);
+  double *values;
+  if (!model_plan(&c->model) || !take_values(c, &values)) return 1;
+  return o->no_physics || check_values(c, values) ? 0 : 1;
+}
+
+static void say(const run_options *o, const diagnostics *d) {
+  if (o->report)
+    diag_json_add(o->report, d);
   else
-    diag_print(&m.said, stderr);
-  if (!status && !dump && !report)
-    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, m.law->tree->name, m.said.count,
-           m.said.count == 1 ? "" : "s", 1e3 * m.seconds_front);
-  if (!status && !dump && !report && found.states > 0) print_physics(&found);
-  model_close(&m);
+    diag_print(d, stderr);
+}
+
+static int check_law(const run_options *o, const char *path, const char *dump) {
+  checking c = {.memory = arena_new(), .material = {.item = {.where = {0, 0, UINT16_MAX}}}};
+  diag_begin(&c.said, &c.sources);
+  int status = check_as_law(&c, o, path, dump);
+  say(o, &c.said);
+  if (c.model.memory) say(o, &c.model.said);
+  if (!status && !dump && !o->report)
+    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, c.model.law->tree->name,
+           c.model.said.count, c.model.said.count == 1 ? "" : "s", 1e3 * c.model.seconds_front);
+  if (!status && !dump && !o->report && c.physics.states > 0) print_physics(&c.physics);
+  if (c.model.memory) model_close(&c.model);
+  diag_clear(&c.said);
+  source_clear(&c.sources);
+  arena_free(c.memory);
+  return status;
+}
+
+/* --- any file --------------------------------------------------------------------------------- */
+
+static int check_path(const run_options *o) {
+  const char **settings = must_calloc((size_t)o->override_count + 1, sizeof *settings);
+  for (int k = 0; k < o->override_count; k++)
+    settings[k] = o->overrides[k].text;
+  int status = drive_check(o->deck_path, settings, o->override_count, o->report);
+  free(settings);
   return status;
 }
 
@@ -151,15 +200,14 @@ static int check_file(const run_options *o, const char *dump) {
   file_kind kind = kind_of_file(o->deck_path);
   if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL))) kind = FILE_LAW;
   int status = 1;
-  if (kind == FILE_RESULT)
-    fprintf(stderr, "perilat: error: `%s` is a result; `perilat check` needs a law or a deck\n",
-            o->deck_path);
-  else if (kind == FILE_LAW && o->override_count)
-    fputs("perilat: error: --set changes a deck; a law has nothing to set\n", stderr);
-  else if (kind == FILE_LAW)
+  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
+    return 1;
+  if (kind == FILE_LAW)
     status = check_law(o, found ? found : o->deck_path, dump);
   else if (dump)
     fputs("perilat: error: --dump shows a law; give the law's file\n", stderr);
+  else if (drive_is_path(o->deck_path))
+    status = check_path(o);
   else if (!(status = run_deck(o)) && !o->report)
     printf("%s: no errors\n", o->deck_path);
   free(found);
@@ -206,8 +254,11 @@ int command_check(int argc, char **argv) {
 
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
                         const built_in_law *laws, int law_count) {
-  run_options o = {
-      .deck_path = deck_name, .deck_text = deck_text, .laws = laws, .law_count = law_count};
+  run_options o = {.program = argv[0],
+                   .deck_path = deck_name,
+                   .deck_text = deck_text,
+                   .laws = laws,
+                   .law_count = law_count};
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {

@@ -56,9 +56,21 @@ static int put_formatted(const char *path, const char *before, const char *after
   return INPUT_WRONG;
 }
 
+/* What is formatted in place is a law without errors: a slip is not moved about. */
+static bool is_law(const char *path) {
+  model m;
+  bool good = model_open(&m, path, NULL, 0);
+  if (!good) diag_print(&m.said, stderr);
+  model_close(&m);
+  return good;
+}
+
 static int format_file(const char *path, format_mode mode) {
   char error[ERROR_LENGTH];
   size_t length;
+  if (!file_suits(path, FILES(LAW), "perilat format", "a law") ||
+      (mode == FORMAT_IN_PLACE && !is_law(path)))
+    return INPUT_WRONG;
   char *text = read_text_file(path, LAW_LIMIT, &length, error, sizeof error);
   if (!text) {
     fprintf(stderr, "perilat: error: %s\n", error);
@@ -106,7 +118,7 @@ static int explain_file(const char *path, explain_form form, const law_choice *c
   model m;
   bool good = model_open(&m, path, choices, count);
   diag_print(&m.said, stderr);
-  if (good) explain_law(m.law, form, stdout);
+  if (good) explain_law(m.law, form, choices, count, stdout);
   model_close(&m);
   return good ? 0 : INPUT_WRONG;
 }
@@ -149,6 +161,7 @@ int command_explain(int argc, char **argv) {
     fputs("perilat: error: `perilat explain` needs a law\n", stderr);
     bad = 1;
   }
+  bad = bad || !file_suits(path, FILES(LAW), "perilat explain", "a law");
   char *found = bad ? NULL : model_find(path, NULL);
   int status = bad ? INPUT_WRONG : explain_file(found ? found : path, form, choices, count);
   free(found);
@@ -206,20 +219,35 @@ static int show_topic(const char *topic) {
   return shown;
 }
 
+static void list_names(const char *title, const char *const *names, int count) {
+  enum { WIDTH = 100 };
+  int column = fprintf(stderr, "  %s:", title);
+  for (int k = 0; k < count; k++) {
+    if (column + (int)strlen(names[k]) + 1 > WIDTH) column = fprintf(stderr, "\n   ") - 1;
+    column += fprintf(stderr, " %s", names[k]);
+  }
+  fputc('\n', stderr);
+}
+
 static int unknown_topic(const char *topic) {
-  int written = help_topic_count();
+  const int written = help_topic_count(), pages = help_page_count;
   const char **names =
       must_calloc((size_t)(written + DECK_GROUP_COUNT + command_count), sizeof *names);
   help_topics(names);
-  int count = written + deck_group_names(names + written);
+  int codes = 0;
+  while (codes < pages && help_pages[codes].section == HELP_CODES)
+    codes++;
+  const int groups = deck_group_names(names + written), all = written + groups + command_count;
   for (int k = 0; k < command_count; k++)
-    names[count++] = command_table[k].name;
-  const char *near = nearest_name(topic, names, count);
+    names[written + groups + k] = command_table[k].name;
+  const char *near = nearest_name(topic, names, all);
   fprintf(stderr, "perilat: error: there is no help on `%s`", topic);
-  if (near) fprintf(stderr, "; did you mean `%s`?", near);
-  fputs("\n  topics are commands, codes of messages, words and names of the language, groups of "
-        "decks, units\n",
-        stderr);
+  fprintf(stderr, near ? "; did you mean `%s`?\n" : "\n", near);
+  list_names("commands", names + written + groups, command_count);
+  list_names("groups of decks", names + written, groups);
+  list_names("words of the language", names + codes, pages - codes);
+  list_names("quantities, functions, units", names + pages, written - pages);
+  list_names("codes of messages", names, codes);
   free(names);
   return INPUT_WRONG;
 }

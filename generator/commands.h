@@ -7,15 +7,18 @@
 #include <stdio.h>
 
 #define COMMAND_STATUS "0 done, 1 the input is wrong, 2 the run failed"
+#define RUN_STATUS                                                                                                      \
+  COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far and a checkpoint"
 #define DRIVE_STATUS                                                                                                    \
   "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no number"
 /* X(name, files, endings, what it does, exit status): `endings` are those of the files that shells offer, blanks between. */
 #define COMMANDS(X)                                                                                                    \
   X(new, "NAME", "", "a commented law to start from, its drive path and the deck of a small specimen", COMMAND_STATUS) \
-  X(check, "law.plm | deck.nml", "plm nml", "report all errors, run nothing", COMMAND_STATUS)                          \
+  X(check, "law.plm | deck.nml | path.nml", "plm nml", "report all errors, run nothing", COMMAND_STATUS)               \
   X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS) \
-  X(run, "deck.nml", "nml", "run a deck", COMMAND_STATUS)                                                              \
-  X(drive, "law.plm path.nml", "plm nml", "one bond along a path: table, picture, expectations", DRIVE_STATUS) \
+  X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                                                  \
+  X(drive, "[law.plm] path.nml", "plm nml", "one bond along a path, of the law that it names: table, picture, expectations", \
+    DRIVE_STATUS)                                                                                                      \
   X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)    \
   X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most", "0 the same, 1 an input is wrong, 2 different")  \
   X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values", COMMAND_STATUS)                  \
@@ -29,25 +32,25 @@
 #define OPTIONS_OF_SOLVERS(X, command)                                                                                 \
   X(command, "--threads", "N", "number of threads; the results are the same for any number")                           \
   X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                                      \
-  X(command, "--set", "group.key=value", "set a value of the deck; may be given several times")
+  X(command, "--set", "group.key=value", "set a value of the deck, `group.key=` its default; may be given several times")
 #define COMMAND_OPTIONS(X)                                                                                             \
   X(new, "--kind", "central|micropolar", "whether ends of bonds can turn (micropolar) or not (central, the default)")  \
   X(check, "--dump", "tree|ir|passes|c", "show what becomes of a law at this stage")                                   \
   X(check, "--diagnostics", "text|json", "the form of messages; json is one document on the standard output")          \
   X(check, "--no-physics", "", "leave out the checks of mechanics")                                                    \
-  X(check, "--set", "group.key=value", "set a value of the deck; may be given several times")                          \
+  X(check, "--set", "key=value", "set group.key of a deck or a path, or a parameter or an option of a law; may be given several times") \
   X(build, "-o", "FILE", "name of the kernel (of a law, otherwise NAME.so) or of the solver (of a deck)")              \
   X(build, "--no-physics", "", "leave out the checks of mechanics")                                                    \
   OPTIONS_OF_SOLVERS(X, run)                                                                                           \
   X(run, "--check-kernel", "", "compare the compiled kernel with the interpreter first")                               \
   X(run, "--interpret", "", "run on the interpreter: no C compiler, many times slower, the same results")              \
   X(run, "--no-physics", "", "leave out the checks of mechanics")                                                      \
-  X(drive, "--set", "name=value", "set a parameter or an option of the law; may be given several times")               \
+  X(drive, "--set", "key=value", "set a parameter or an option of the law, or group.key of the path; may be given several times") \
   X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                                         \
   X(drive, "--csv", "FILE", "write the table as comma-separated values")                                               \
   X(drive, "--hdf5", "FILE", "write the table as a result")                                                            \
   X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")                                \
-  X(plot, "-o", "FILE", "the picture: PNG, SVG or PDF by the name's ending (curve.png, map.png)")                      \
+  X(plot, "-o", "FILE", "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
   X(plot, "--title", "TEXT", "title of the picture")                                                                   \
   X(plot, "--x", "NAME", "history along x")                                                                            \
   X(plot, "--y", "NAME", "history along y; several give several curves")                                               \
@@ -63,8 +66,9 @@
   X(compare, "--history", "NAME", "compare this history only; may be given several times")                             \
   X(compare, "--field", "NAME", "compare this field only; may be given several times")                                 \
   X(export, "-o", "FILE", "file of the table; the standard output if not given")                                       \
-  X(export, "--history", "", "all histories (default)")                                                                \
+  X(export, "--history", "NAME", "this history only, not all; may be given several times")                             \
   X(export, "--frame", "N", "the particles of a frame, from 0; -1 is the last")                                        \
+  X(export, "--field", "NAME", "this field of the frame only, not all; may be given several times")                    \
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                                                \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                                     \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                                            \

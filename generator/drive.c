@@ -203,6 +203,10 @@ static void table_open(drive_table *t, const pl_law *kernel, long rows) {
     add_column(t, last_names[k], "J", rows);
 }
 
+void drive_columns(const pl_law *kernel, drive_table *out) {
+  table_open(out, kernel, 0);
+}
+
 void drive_table_free(drive_table *t) {
   arena_free(t->memory);
   *t = (drive_table){.memory = NULL};

@@ -8,6 +8,7 @@
 #ifndef PERILAT_GENERATOR_DRIVE_H
 #define PERILAT_GENERATOR_DRIVE_H
 
+#include "dsl/diagnostics_json.h"
 #include "generator/model.h"
 #include "runtime/deck.h"
 #include "runtime/namelist.h"
@@ -85,18 +86,28 @@ typedef struct drive_input {
   int expect_count;
 } drive_input;
 
-/* Reads sources->items[file]; a table in a &path is read from its file beside it. NULL on errors.
- */
-drive_input *drive_read(arena *a, source_set *sources, int file, diagnostics *d);
+/* Reads sources->items[file], changed by overrides "group.key=value" as those of a deck; a table in a &path is
+   read from its file beside it. NULL on errors. */
+drive_input *drive_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                        int override_count, diagnostics *d);
 /* Every group and key, as Markdown. */
 void drive_reference(FILE *out);
 /* The group of paths with that name (without &), or NULL. */
 const struct deck_group_info *drive_group(const char *name);
 
+/* True when `file` has a group that only paths have; that only decks have. */
+bool drive_is_path(const char *file);
+bool drive_is_deck(const char *file);
+/* True, after a sentence on the standard error stream, when `file` is a path for `perilat drive` and
+   not the deck that `perilat COMMAND` needs. */
+bool drive_refuse_path(const char *command, const char *file);
+
 /* Value at a time, and the slope there, which is taken at a time between two steps. */
 double drive_at(const drive_input *in, drive_quantity q, double time);
 double drive_slope(const drive_input *in, drive_quantity q, double time);
 bool drive_prescribes(const drive_input *in, drive_quantity q);
+/* Times within the path at which one of its pieces begins, ends or has a corner, ascending; malloc'ed. */
+double *drive_corners(const drive_input *in, long *count);
 /* Times from 0 to the end at which the bond is evaluated, ascending: even steps, the corners of the
    path and the times that expectations name; malloc'ed. */
 double *drive_times(const drive_input *in, long *count);
@@ -110,15 +121,16 @@ double drive_time_of_stretch(const drive_input *in, double stretch, double after
 #define DRIVE_FIRST_COLUMNS(X)                                                                     \
   X(TIME, "time", "s")                                                                             \
   X(STRETCH, "stretch", "1")                                                                       \
-  X(STRETCH_RATE, "stretch_rate", "1/s") X(THETA_I, "theta_i", "1") X(THETA_J, "theta_j", "1")     \
-      X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
+  X(STRETCH_RATE, "stretch_rate", "1/s")                                                           \
+  X(THETA_I, "theta_i", "1") X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m")        \
+      X(M_J, "M_j", "N*m")
 /* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
    row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \
   X(STORED, "stored")                                                                              \
   X(DISSIPATED_DAMAGE, "dissipated_damage")                                                        \
-  X(DISSIPATED_DAMPING, "dissipated_damping") X(DISSIPATED, "dissipated") X(EXTERNAL, "external")  \
-      X(IMBALANCE, "imbalance")
+  X(DISSIPATED_DAMPING, "dissipated_damping")                                                      \
+  X(DISSIPATED, "dissipated") X(EXTERNAL, "external") X(IMBALANCE, "imbalance")
 
 enum {
 #define X(code, name, unit) DRIVE_COLUMN_##code,
@@ -147,6 +159,8 @@ typedef struct drive_table {
   arena *memory; /* owns all */
 } drive_table;
 
+/* A table without rows: the columns that a drive of `kernel` will have. To be freed. */
+void drive_columns(const pl_law *kernel, drive_table *out);
 /* Drives `kernel`. `initial` [fields] is where state and damage begin. The table must be freed.
    False, with a message, when the path leaves what a bond can do (a stretch of -1). */
 bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
@@ -168,17 +182,30 @@ typedef struct drive_verdict {
   double found, expected, allowed;
   const char *unit;
   double time, stretch; /* of the row */
+  bool extreme;         /* the row was chosen for a largest or smallest value */
+  double beside[2];     /* times of the rows before and after it */
 } drive_verdict;
 
-/* Judges every &expect; verdicts[expect_count]. `m` is the law as it was driven: closed forms are
-   compiled as further outputs of it. False, with messages, when one cannot be understood. */
-bool drive_judge(const drive_input *in, const model *m, const double *parameters,
-                 const drive_table *t, drive_verdict *verdicts, diagnostics *d);
+/* What every &expect asks for, before anything is driven: names, units and times are checked against `columns` (of
+   drive_columns, which must stay), closed forms are compiled as further outputs of `m`, the law as it will be driven.
+   NULL, with messages, when one cannot be understood. */
+typedef struct drive_expectations drive_expectations;
+drive_expectations *drive_expectations_read(const drive_input *in, const model *m,
+                                            const drive_table *columns, diagnostics *d);
+/* Judges every &expect by the rows of `t`; verdicts[expect_count]. */
+void drive_judge(const drive_expectations *x, const double *parameters, const drive_table *t,
+                 drive_verdict *verdicts);
+void drive_expectations_free(drive_expectations *x);
+
+/* --- checking (command_drive.c) --------------------------------------------------------------- */
+
+/* `perilat check path.nml`: everything of a drive but the driving. `report` as in run_options. Exit status. */
+int drive_check(const char *path, const char *const *settings, int count, diag_json *report);
 
 /* --- what is written (drive_write.c) ---------------------------------------------------------- */
 
-/* At most `most` rows, evenly spread. */
-void drive_print(const drive_table *t, long most, FILE *out);
+/* About in->output.rows rows: both ends, the largest force, the corners of the path, and others evenly between. */
+void drive_print(const drive_input *in, const drive_table *t, FILE *out);
 bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size);
 /* As a result file of two particles: `perilat plot` and `perilat info` read it. */
 bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,

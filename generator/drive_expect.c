@@ -10,27 +10,44 @@
 
 #define CLOSED_FORM "closed_form_of_expectation_"
 
-typedef struct judge {
+/* What one &expect asks for. */
+typedef struct asked {
+  int column;
+  int extreme_of; /* the column that is largest (sign 1) or smallest (-1) then; -1: at `time` */
+  double sign;
+  double time;            /* s; infinite: the end */
+  double value, absolute; /* in the column's unit; value: not of a closed form */
+  int output;             /* of the closed form in the law, or -1 */
+} asked;
+
+/* The law with one more output for each closed form, and where each stands in its text. */
+typedef struct closed_forms {
+  model model;
+  bool opened;
+  const pl_law *law;
+  char *text;
+  uint32_t *begin; /* [expect_count] */
+} closed_forms;
+
+struct drive_expectations {
   const drive_input *in;
   const model *model;
-  const drive_table *table;
+  const drive_table *columns;
   arena *memory;
   diagnostics *d;
-} judge;
+  closed_forms forms;
+  asked *asked; /* [expect_count] */
+};
+typedef drive_expectations judge;
 
 /* --- which number ----------------------------------------------------------------------------- */
-
-typedef struct chosen {
-  int column;
-  long row;
-} chosen;
 
 static span quantity_where(const drive_expect *e) {
   return deck_where(&e->item, "quantity");
 }
 
 static int find_column(const judge *j, const drive_expect *e, const char *name) {
-  const drive_table *t = j->table;
+  const drive_table *t = j->columns;
   int c = drive_column_find(t, name);
   if (c >= 0) return c;
   const char **names = arena_alloc(j->memory, (size_t)t->column_count * sizeof *names);
@@ -51,22 +68,24 @@ static long extreme(const drive_table *t, int column, double sign) {
   return best;
 }
 
-static long row_at(const judge *j, const drive_expect *e) {
-  const drive_table *t = j->table;
-  if (isnan(e->at_time) && isnan(e->at_stretch)) return t->rows - 1;
-  double time =
-      isnan(e->at_time) ? drive_time_of_stretch(j->in, e->at_stretch, e->after) : e->at_time;
-  if (isnan(time)) {
-    diag_report(j->d, DIAG_OUT_OF_BOUNDS, deck_where(&e->item, "at_stretch"),
-                "the stretch never is %.6g%s", e->at_stretch,
-                e->after > 0 ? " after that time" : "");
-    return -1;
-  }
-  long best = 0; /* the time is one of the rows */
+/* The time is one of the rows. */
+static long row_at(const drive_table *t, double time) {
+  long best = 0;
   const double *times = t->columns[DRIVE_COLUMN_TIME].values;
+  if (isinf(time)) return t->rows - 1;
   for (long k = 1; k < t->rows; k++)
     if (fabs(times[k] - time) < fabs(times[best] - time)) best = k;
   return best;
+}
+
+static bool find_time(const judge *j, const drive_expect *e, double *time) {
+  *time = isnan(e->at_time) ? INFINITY : e->at_time;
+  if (isnan(e->at_stretch)) return true;
+  *time = drive_time_of_stretch(j->in, e->at_stretch, e->after);
+  if (!isnan(*time)) return true;
+  diag_report(j->d, DIAG_OUT_OF_BOUNDS, deck_where(&e->item, "at_stretch"),
+              "the stretch never is %.6g%s", e->at_stretch, e->after > 0 ? " after that time" : "");
+  return false;
 }
 
 typedef struct phrase {
@@ -98,7 +117,7 @@ static bool refuse(const judge *j, const drive_expect *e) {
 }
 
 /* "N", "final N", "peak N", "stretch at peak", "stretch at peak N". */
-static bool choose(const judge *j, const drive_expect *e, chosen *c) {
+static bool choose(const judge *j, const drive_expect *e, asked *c) {
   phrase p;
   if (!split(e->quantity, &p)) return refuse(j, e);
   bool at_extreme = p.count >= 3 && strcmp(p.words[1], "at") == 0 && sign_of(p.words[2]) != 0;
@@ -107,32 +126,21 @@ static bool choose(const judge *j, const drive_expect *e, chosen *c) {
   if (p.count > 1 && !at_extreme && !of_extreme && !final) return refuse(j, e);
   c->column = find_column(j, e, at_extreme ? p.words[0] : p.words[p.count - 1]);
   if (c->column < 0) return false;
-  if (p.count == 1) return (c->row = row_at(j, e)) >= 0;
+  if (p.count == 1) return find_time(j, e, &c->time);
   if (!isnan(e->at_time) || !isnan(e->at_stretch)) {
     diag_report(j->d, DIAG_CONFLICT, quantity_where(e), "`%s` says itself when", e->quantity);
     diag_hint(j->d, "leave out `at_time` and `at_stretch`");
     return false;
   }
-  if (final) {
-    c->row = j->table->rows - 1;
-    return true;
-  }
-  int of = at_extreme ? p.count == 4 ? find_column(j, e, p.words[3]) : DRIVE_COLUMN_N : c->column;
-  if (of < 0) return false;
-  c->row = extreme(j->table, of, sign_of(p.words[at_extreme ? 2 : 0]));
-  return true;
+  c->time = INFINITY;
+  if (final) return true;
+  c->extreme_of =
+      at_extreme ? p.count == 4 ? find_column(j, e, p.words[3]) : DRIVE_COLUMN_N : c->column;
+  c->sign = sign_of(p.words[at_extreme ? 2 : 0]);
+  return c->extreme_of >= 0;
 }
 
 /* --- closed forms ----------------------------------------------------------------------------- */
-
-/* The law with one more output for each closed form, and where each stands in its text. */
-typedef struct closed_forms {
-  model model;
-  bool opened;
-  const pl_law *law;
-  char *text;
-  uint32_t *begin; /* [expect_count] */
-} closed_forms;
 
 /* Offset of the line `end model`: the last line that begins with that word. */
 static size_t end_line(const char *text) {
@@ -211,7 +219,6 @@ static bool open_forms(const judge *j, closed_forms *f) {
 }
 
 static bool closed_forms_open(const judge *j, closed_forms *f) {
-  *f = (closed_forms){.opened = false};
   bool any = false;
   for (int k = 0; k < j->in->expect_count; k++)
     any = any || j->in->expects[k].formula;
@@ -256,19 +263,7 @@ static bool units_agree(const judge *j, const drive_expect *e, dimension form,
   return false;
 }
 
-static bool form_value(const judge *j, const closed_forms *f, const double *parameters, int k,
-                       chosen c, double *value) {
-  int o = form_output(f, k);
-  const symbol *s = f->model.law->outputs.items[o];
-  if (!units_agree(j, &j->in->expects[k], s->dim, j->table->columns[c.column].unit)) return false;
-  double *outputs = must_calloc((size_t)f->law->output_count, sizeof *outputs);
-  drive_observe(j->in, f->law, parameters, j->table, c.row, outputs);
-  *value = outputs[o];
-  free(outputs);
-  return true;
-}
-
-/* --- verdicts --------------------------------------------------------------------------------- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 static bool plain_value(const judge *j, const namelist_key *key, const char *unit_text,
                         deck_bound bound, double *value) {
@@ -277,33 +272,69 @@ static bool plain_value(const judge *j, const namelist_key *key, const char *uni
          deck_real_read(&key->values[0], key->name, unit_text, bound, value, j->d);
 }
 
-static bool judge_one(const judge *j, const closed_forms *f, const double *parameters, int k,
-                      drive_verdict *v) {
+static bool read_one(const judge *j, int k, asked *a) {
   const drive_expect *e = &j->in->expects[k];
-  const drive_table *t = j->table;
-  chosen c = {0, 0};
-  double absolute = 0;
-  if (!choose(j, e, &c)) return false;
-  *v = (drive_verdict){.found = t->columns[c.column].values[c.row],
-                       .unit = t->columns[c.column].unit,
-                       .time = t->columns[DRIVE_COLUMN_TIME].values[c.row],
-                       .stretch = t->columns[DRIVE_COLUMN_STRETCH].values[c.row]};
-  bool good = e->formula ? form_value(j, f, parameters, k, c, &v->expected)
-                         : plain_value(j, e->value, v->unit, BOUND_NONE, &v->expected);
-  if (!good || !plain_value(j, e->absolute, v->unit, BOUND_NOT_NEGATIVE, &absolute)) return false;
-  v->allowed = fmax(e->tolerance * fabs(v->expected), absolute);
-  v->passed = fabs(v->found - v->expected) <= v->allowed; /* NaN does not */
-  return true;
+  *a = (asked){.extreme_of = -1, .output = -1};
+  if (!choose(j, e, a)) return false;
+  const char *unit_text = j->columns->columns[a->column].unit;
+  if (e->formula) a->output = form_output(&j->forms, k);
+  bool good = e->formula
+                  ? units_agree(j, e, j->forms.model.law->outputs.items[a->output]->dim, unit_text)
+                  : plain_value(j, e->value, unit_text, BOUND_NONE, &a->value);
+  return plain_value(j, e->absolute, unit_text, BOUND_NOT_NEGATIVE, &a->absolute) && good;
 }
 
-bool drive_judge(const drive_input *in, const model *m, const double *parameters,
-                 const drive_table *t, drive_verdict *verdicts, diagnostics *d) {
-  judge j = {in, m, t, t->memory, d};
-  closed_forms f;
-  bool good = closed_forms_open(&j, &f);
+drive_expectations *drive_expectations_read(const drive_input *in, const model *m,
+                                            const drive_table *columns, diagnostics *d) {
+  arena *memory = arena_new();
+  drive_expectations *j = arena_alloc(memory, sizeof *j);
+  *j = (drive_expectations){.in = in, .model = m, .columns = columns, .memory = memory, .d = d};
+  j->asked = arena_alloc(memory, ((size_t)in->expect_count + 1) * sizeof *j->asked);
+  const bool formed = closed_forms_open(j, &j->forms);
+  bool good = formed;
   for (int k = 0; k < in->expect_count; k++)
-    if (good || !in->expects[k].formula)
-      good = judge_one(&j, &f, parameters, k, &verdicts[k]) && good;
-  closed_forms_close(&f);
-  return good;
+    if (formed || !in->expects[k].formula) good = read_one(j, k, &j->asked[k]) && good;
+  if (good) return j;
+  drive_expectations_free(j);
+  return NULL;
+}
+
+void drive_expectations_free(drive_expectations *x) {
+  closed_forms_close(&x->forms);
+  arena_free(x->memory);
+}
+
+/* --- judging ---------------------------------------------------------------------------------- */
+
+static double form_value(const judge *j, const double *parameters, const drive_table *t, int output,
+                         long row) {
+  const pl_law *kernel = j->forms.law;
+  double *outputs = must_calloc((size_t)kernel->output_count, sizeof *outputs);
+  drive_observe(j->in, kernel, parameters, t, row, outputs);
+  const double value = outputs[output];
+  free(outputs);
+  return value;
+}
+
+static drive_verdict judge_one(const judge *j, const double *parameters, const drive_table *t,
+                               const drive_expect *e, const asked *a) {
+  const double *time = t->columns[DRIVE_COLUMN_TIME].values;
+  const bool at_extreme = a->extreme_of >= 0;
+  const long row = at_extreme ? extreme(t, a->extreme_of, a->sign) : row_at(t, a->time);
+  drive_verdict v = {.found = t->columns[a->column].values[row],
+                     .unit = t->columns[a->column].unit,
+                     .time = time[row],
+                     .stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+                     .extreme = at_extreme,
+                     .beside = {time[row ? row - 1 : 0], time[row < t->rows - 1 ? row + 1 : row]}};
+  v.expected = e->formula ? form_value(j, parameters, t, a->output, row) : a->value;
+  v.allowed = fmax(e->tolerance * fabs(v.expected), a->absolute);
+  v.passed = fabs(v.found - v.expected) <= v.allowed; /* NaN does not */
+  return v;
+}
+
+void drive_judge(const drive_expectations *x, const double *parameters, const drive_table *t,
+                 drive_verdict *verdicts) {
+  for (int k = 0; k < x->in->expect_count; k++)
+    verdicts[k] = judge_one(x, parameters, t, &x->in->expects[k], &x->asked[k]);
 }

@@ -8,6 +8,7 @@
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
+#include "runtime/deck_set.h"
 #include "runtime/deck_value.h"
 
 enum { MOST_STEPS = 1000000, MOST_CYCLES = 10000, MOST_ERRORS = 50 };
@@ -220,6 +221,48 @@ const deck_group_info *drive_group(const char *name) {
   for (int g = 0; g < GROUP_COUNT; g++)
     if (strcmp(groups[g].name, name) == 0) return &groups[g];
   return NULL;
+}
+
+/* `path`, `bond`, ...: groups that paths have and decks do not; or the other way round. */
+static bool has_own_group(const char *file, bool of_paths) {
+  char said[512];
+  size_t length;
+  char *text = read_text_file(file, NAMELIST_LARGEST_TEXT, &length, said, sizeof said);
+  if (!text) return false;
+  arena *memory = arena_new();
+  source_set sources = {NULL, 0};
+  diagnostics unsaid;
+  diag_begin(&unsaid, &sources);
+  const namelist *n =
+      namelist_read(memory, &sources, source_add(&sources, file, text, length), &unsaid);
+  bool found = false;
+  for (int k = 0; k < n->group_count && !found; k++) {
+    const bool in_paths = drive_group(n->groups[k].name),
+               in_decks = deck_group_find(n->groups[k].name) >= 0;
+    found = of_paths ? in_paths && !in_decks : in_decks && !in_paths;
+  }
+  diag_clear(&unsaid);
+  source_clear(&sources);
+  arena_free(memory);
+  free(text);
+  return found;
+}
+
+bool drive_is_path(const char *file) {
+  return has_own_group(file, true);
+}
+
+bool drive_is_deck(const char *file) {
+  return has_own_group(file, false);
+}
+
+bool drive_refuse_path(const char *command, const char *file) {
+  if (!drive_is_path(file)) return false;
+  fprintf(stderr,
+          "perilat: error: `%s` is a path that drives one bond, not a deck for `perilat %s`\n"
+          "  perilat drive %s\n",
+          file, command, file);
+  return true;
 }
 
 static const char *value_words(const deck_key_info *key) {
@@ -595,9 +638,12 @@ static void check_whole(const reader *r, int file) {
     }
 }
 
-drive_input *drive_read(arena *a, source_set *sources, int file, diagnostics *d) {
+drive_input *drive_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                        int override_count, diagnostics *d) {
+  static const deck_grammar of_paths = {"path", groups, GROUP_COUNT};
   int errors = d->errors;
   namelist *n = namelist_read(a, sources, file, d);
+  deck_set(a, sources, n, &of_paths, overrides, override_count, d);
   drive_input *in = arena_alloc(a, sizeof *in);
   reader r = {a, sources, d, in};
   size_t most = (size_t)n->group_count + 1;
@@ -723,17 +769,26 @@ static long clean(double *t, long count, double end) {
   return kept;
 }
 
-double *drive_times(const drive_input *in, long *count) {
-  const double end = drive_end(in);
-  long most = in->simulation.steps + in->expect_count + 2L, n = 0;
+double *drive_corners(const drive_input *in, long *count) {
+  long most = 0, n = 0;
   for (int k = 0; k < in->piece_count; k++)
     most += corner_count(&in->pieces[k]);
-  double *t = must_alloc((size_t)most * sizeof *t);
-  for (int k = 0; k <= in->simulation.steps; k++)
-    t[n++] = end * k / in->simulation.steps;
+  double *t = must_alloc((size_t)(most + 1) * sizeof *t);
   for (int k = 0; k < in->piece_count; k++)
     for (long c = 0; c < corner_count(&in->pieces[k]); c++)
       t[n++] = corner(&in->pieces[k], c);
+  *count = clean(t, n, drive_end(in));
+  return t;
+}
+
+double *drive_times(const drive_input *in, long *count) {
+  const double end = drive_end(in);
+  long n;
+  double *corners = drive_corners(in, &n);
+  double *t =
+      must_realloc(corners, (size_t)(n + in->simulation.steps + in->expect_count + 1L) * sizeof *t);
+  for (int k = 0; k <= in->simulation.steps; k++)
+    t[n++] = end * k / in->simulation.steps;
   for (int k = 0; k < in->expect_count; k++) {
     const drive_expect *e = &in->expects[k];
     double at =

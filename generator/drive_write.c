@@ -2,13 +2,14 @@
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "generator/drive.h"
 #include "generator/version.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/plot.h"
+#include "runtime/whole_file.h"
 
 static bool is_pure(const char *unit_text) {
   return !*unit_text || strcmp(unit_text, "1") == 0;
@@ -29,27 +30,77 @@ static bool is_worth_showing(const drive_table *t, int column) {
   return false;
 }
 
-void drive_print(const drive_table *t, long most, FILE *out) {
-  enum { WIDTH = 13 };
+enum { WIDTH = 13 };
+
+static void print_row(const drive_table *t, long row, FILE *out) {
   char text[128];
+  for (int c = 0; c < t->column_count; c++) {
+    if (!is_worth_showing(t, c)) continue;
+    heading(&t->columns[c], text, sizeof text);
+    int width = (int)strlen(text) > WIDTH ? (int)strlen(text) : WIDTH;
+    fprintf(out, " %*.6g", width, t->columns[c].values[row]);
+  }
+  fputc('\n', out);
+}
+
+static long row_of_largest_force(const drive_table *t) {
+  const double *N = t->columns[DRIVE_COLUMN_N].values;
+  long row = 0;
+  for (long k = 1; k < t->rows; k++)
+    if (fabs(N[k]) > fabs(N[row])) row = k;
+  return row;
+}
+
+/* Marks the rows at corners of the path: every n-th, so that at most `most` are. */
+static void mark_corners(const drive_input *in, const drive_table *t, long most, bool *shown) {
+  const double *time = t->columns[DRIVE_COLUMN_TIME].values;
+  long corners, row = 0;
+  if (most < 1) return;
+  double *at = drive_corners(in, &corners);
+  for (long k = 0; k < corners; k += (corners + most - 1) / most) {
+    while (row < t->rows - 1 && time[row] < at[k])
+      row++;
+    shown[row] = true;
+  }
+  free(at);
+}
+
+/* Marks `more` rows, evenly spread between those that are marked; both ends are. */
+static void mark_between(const drive_table *t, long more, bool *shown) {
+  double share = (double)more / (double)(t->rows > 1 ? t->rows - 1 : 1), due = 0;
+  for (long row = 0, next; row < t->rows - 1; row = next) {
+    for (next = row + 1; !shown[next];)
+      next++;
+    due += share * (double)(next - row);
+    const long here = (long)(due + 0.5) < next - row - 1 ? (long)(due + 0.5) : next - row - 1;
+    for (long k = 1; k <= here; k++)
+      shown[row + k * (next - row) / (here + 1)] = true;
+    due -= (double)here;
+  }
+}
+
+void drive_print(const drive_input *in, const drive_table *t, FILE *out) {
+  char text[128];
+  const long most = in->output.rows;
   if (most < 1 || t->rows < 1) return;
+  bool *shown = must_calloc((size_t)t->rows, sizeof *shown);
+  shown[t->rows - 1] = true;
+  if (most > 1) shown[0] = true;
+  if (most > 2) shown[row_of_largest_force(t)] = true;
+  mark_corners(in, t, most - 3, shown);
+  long marked = 0;
+  for (long k = 0; k < t->rows; k++)
+    marked += shown[k];
+  if (marked < most) mark_between(t, most - marked, shown);
   for (int c = 0; c < t->column_count; c++) {
     if (!is_worth_showing(t, c)) continue;
     heading(&t->columns[c], text, sizeof text);
     fprintf(out, " %*s", WIDTH, text);
   }
   fputc('\n', out);
-  long shown = most < t->rows ? most : t->rows;
-  for (long k = 0; k < shown; k++) {
-    long row = shown > 1 ? k * (t->rows - 1) / (shown - 1) : t->rows - 1;
-    for (int c = 0; c < t->column_count; c++) {
-      if (!is_worth_showing(t, c)) continue;
-      heading(&t->columns[c], text, sizeof text);
-      int width = (int)strlen(text) > WIDTH ? (int)strlen(text) : WIDTH;
-      fprintf(out, " %*.6g", width, t->columns[c].values[row]);
-    }
-    fputc('\n', out);
-  }
+  for (long k = 0; k < t->rows; k++)
+    if (shown[k]) print_row(t, k, out);
+  free(shown);
 }
 
 static bool write_rows(const drive_table *t, FILE *out) {
@@ -64,17 +115,20 @@ static bool write_rows(const drive_table *t, FILE *out) {
   return fputc('\n', out) != EOF && !ferror(out);
 }
 
+static bool cannot_write(const char *path, char *error, size_t size) {
+  const int reason = errno;
+  snprintf(error, size, "cannot write `%s`: %s", path,
+           reason ? strerror(reason) : "the HDF5 library refused");
+  return false;
+}
+
 bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size) {
-  char working[4200];
-  snprintf(working, sizeof working, "%.4096s.part", path);
-  FILE *out = fopen(working, "w");
+  whole_file whole;
+  if (!whole_file_begin(&whole, path)) return cannot_write(path, error, size);
+  FILE *out = fopen(whole.working, "w");
   bool good = out && write_rows(t, out);
   good = out && fclose(out) == 0 && good;
-  good = good && rename(working, path) == 0;
-  if (good) return true;
-  snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
-  unlink(working);
-  return false;
+  return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 
 static bool write_particles(const drive_input *in, hid_t file) {
@@ -104,18 +158,14 @@ static bool write_file(const drive_input *in, const drive_table *t, hid_t file) 
 
 bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
                       size_t size) {
-  char working[4200];
-  snprintf(working, sizeof working, "%.4096s.part", path);
+  whole_file whole;
+  if (!whole_file_begin(&whole, path)) return cannot_write(path, error, size);
   h5_quiet();
-  hid_t file = h5_create(working);
+  errno = 0;
+  hid_t file = h5_create(whole.working);
   bool good = file >= 0 && write_file(in, t, file);
   good = file >= 0 && H5Fclose(file) >= 0 && good;
-  good = good && rename(working, path) == 0;
-  if (good) return true;
-  snprintf(error, size, "cannot write `%s`%s%s", path, errno ? ": " : "",
-           errno ? strerror(errno) : "");
-  unlink(working);
-  return false;
+  return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 
 bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,

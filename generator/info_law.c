@@ -23,6 +23,7 @@ typedef struct implied {
   bool stiff;
   double strength[2], strain[2]; /* under uniform uniaxial strain along x, y */
   implied_bond bond;
+  double crack[2]; /* N/m; opening along x, y */
   implied_waves waves;
   step_limit step;
   bool has_mass;
@@ -34,7 +35,8 @@ typedef struct facts {
   diagnostics said;
   model model;
   deck_material material;
-  pl_law *law;         /* interpreted; NULL for state laws */
+  pl_law *law;         /* interpreted; NULL for state laws and those not meant for plane stress */
+  char meant[64];      /* "plane_strain, space": settings, where not for plane stress */
   double *values;      /* [parameters] */
   bool *given;         /* a default or a setting */
   const char *missing; /* a parameter without a value, or NULL */
@@ -105,8 +107,10 @@ static bool imply(facts *f) {
   if (!w) return false;
   i->has_mass = w->mass > 0;
   i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
-  for (int c = 0; c < 2; c++)
+  for (int c = 0; c < 2; c++) {
     i->strength[c] = implied_strength(f->law, f->values, w, c, &i->strain[c]);
+    i->crack[c] = implied_crack_energy(f->law, f->values, w, c);
+  }
   implied_bond_curve(f->law, f->values, w, 0, &i->bond);
   if (i->has_mass) {
     implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
@@ -156,7 +160,8 @@ static void print_description(const char *text) {
 }
 
 static void print_symbols(const char *title, const symbol_list *list) {
-  if (list->count) printf("%s\n", title);
+  if (list->count)
+    printf("%s:\n  %-12s %-10s %-12s %s\n", title, "name", "unit", "lives", "meaning");
   for (int k = 0; k < list->count; k++) {
     const symbol *s = list->items[k];
     char unit_text[64];
@@ -189,23 +194,28 @@ static void print_strength(const implied *i) {
   for (int c = 0; c < 2; c++) {
     printf("  peak stress along %c   ", "xy"[c]);
     if (isfinite(i->strength[c]))
-      printf("%.6g MPa at a uniform strain of %.6g, the other strains held at 0\n",
-             1e-6 * i->strength[c], i->strain[c]);
+      printf("%.6g MPa at a uniform strain of %.6g, sides held\n", 1e-6 * i->strength[c],
+             i->strain[c]);
     else
       printf("none: it only grows\n");
   }
 }
 
-static void print_bond(const implied_bond *b) {
+static void print_bond(const implied *i) {
+  const implied_bond *b = &i->bond;
   if (isfinite(b->peak_force))
-    printf("  a bond drawn out      largest force %.6g N at a stretch of %.6g\n", b->peak_force,
+    printf("  one bond, drawn out   largest force %.6g N at a stretch of %.6g\n", b->peak_force,
            b->stretch_at_peak);
-  if (b->separates)
-    printf(
-        "  work of fracture      %.6g J a bond: %.6g N/m across the rows, by aligned bonds alone\n",
-        b->energy, b->row_energy);
-  else
+  if (!b->separates) {
     printf("  work of fracture      none: a bond never separates\n");
+    return;
+  }
+  printf("                        costs %.6g J: %.6g N/m on its share of a crack, sqrt(3)/2*s*t\n",
+         b->energy, b->row_energy);
+  printf("  work of fracture      %.6g N/m of a straight crack across the rows (opens along x), "
+         "%.6g N/m along "
+         "them (along y),\n                        by all bonds that it cuts\n",
+         i->crack[0], i->crack[1]);
 }
 
 static void print_dynamics(const implied *i, bool rotations) {
@@ -236,7 +246,7 @@ static void print_implied(const facts *f) {
   else
     printf("  elastic constants     none: the virgin lattice has no stiffness\n");
   print_strength(i);
-  print_bond(&i->bond);
+  print_bond(i);
   print_dynamics(i, f->law->dof > 2);
 }
 
@@ -244,12 +254,14 @@ static void print_text(const facts *f) {
   const law *l = f->model.law;
   printf("%s (law %s)\n", l->tree->name, law_kinds[l->tree->law]);
   if (l->tree->doc) printf("%s\n", l->tree->doc);
-  printf("Parameters (SI):\n");
+  if (l->parameters.count)
+    printf("Parameters:\n  %-12s %-12s %-10s %-18s %s\n", "name", "value", "unit", "bounds",
+           "meaning");
   for (int p = 0; p < l->parameters.count; p++)
     print_parameter(f, p);
   print_options(l);
-  print_symbols("State and damage:", &l->fields);
-  print_symbols("Outputs:", &l->outputs);
+  print_symbols("State and damage", &l->fields);
+  print_symbols("Outputs", &l->outputs);
   if (f->model.plan) print_cost(f);
   if (l->nonconservative) printf("Not conservative: %s\n", l->nonconservative);
   if (f->law && f->missing)
@@ -257,6 +269,9 @@ static void print_text(const facts *f) {
            f->missing);
   else if (f->law)
     print_implied(f);
+  else if (*f->meant)
+    printf("What it implies is worked out in plane_stress only; the law is meant for %s\n",
+           f->meant);
 }
 
 /* --- as JSON ---------------------------------------------------------------------------------- */
@@ -371,6 +386,7 @@ static void put_implied(json *j, const facts *f) {
   put_bool(j, "separates", i->bond.separates);
   put_number(j, "bond_work_of_fracture", i->bond.energy);
   put_number(j, "work_of_fracture", i->bond.row_energy);
+  put_pair(j, "crack_energy", i->crack);
   if (i->has_mass) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     put_number(j, "transverse_speed", i->waves.transverse);
@@ -411,7 +427,8 @@ static bool learn(facts *f, const info_law_options *o) {
               (!o->thickness || read_length(f, "--thickness", o->thickness, &f->thickness)) &&
               open_law(f, o);
   if (!good) return false;
-  if (f->model.plan) f->law = plan_interpreted(f->model.plan, "");
+  if (f->model.plan && model_suits(&f->model, "plane_stress", f->meant, sizeof f->meant))
+    f->law = plan_interpreted(f->model.plan, "");
   return take_values(f) && (!f->law || f->missing || imply(f));
 }
 

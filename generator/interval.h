@@ -34,8 +34,9 @@ bool range_is_nonnegative(range a); /* all >= 0 */
  * defined. */
 range range_apply(ir_op op, range a, range b);
 
-/* Warns (division-by-zero, domain) of operations of a pairwise law that the declared bounds do not
-   keep defined, with a state that shows it where one is found. */
+/* Warns of operations of a pairwise law that the declared bounds do not keep defined
+   (division-by-zero, domain) and of damages that they do not keep from 0 to 1 (damage-range). Each
+   warning shows a state; what is suspected but not found by drawing states is not said. */
 void interval_check(const law *l, diagnostics *d);
 
 #endif

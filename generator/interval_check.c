@@ -9,7 +9,13 @@
 #include "generator/interval_sums.h"
 #include "generator/physics_bench.h"
 
-enum { MOST_CONTEXTS = 600, MOST_RELATIONS = 24, DEEPEST = 150, MOST_WARNINGS = 20 };
+enum {
+  MOST_CONTEXTS = 600,
+  MOST_RELATIONS = 24,
+  DEEPEST = 150,
+  MOST_SEARCHES = 40,
+  MOST_TRIES = 3
+};
 static const long MOST_MEMORY = 20000000; /* numbers, in all contexts */
 static const long MOST_COMBINATIONS = 200000;
 
@@ -37,11 +43,12 @@ typedef struct analysis {
   const law *law;
   diagnostics *said;
   arena *memory;
-  int nodes, contexts, most_contexts, warnings, depth;
-  long combinations; /* of sums with relations so far */
-  bool given_up; /* some range is all numbers only because looking further would take too long */
+  int nodes, contexts, most_contexts, searches, depth;
+  long combinations;      /* of sums with relations so far */
   ir_node *lower, *upper; /* [parameters] */
-  unsigned char *warned;  /* [nodes] */
+  range *fields;          /* [fields] what a bond can reach from the initial values */
+  unsigned char *tried;   /* [nodes] searches for a state, in different branches */
+  bool quiet;
 } analysis;
 
 static range value_of(analysis *a, context *c, ir_node n);
@@ -97,6 +104,26 @@ static void relate(analysis *a, context *c, relation_kind kind, ir_node less, ir
   if (sum_combine(&p, -1, &q, &difference)) add_relation(a->graph, c, kind, &difference);
 }
 
+static bool is_zero(const ir *g, ir_node n) {
+  return ir_operation(g, n) == IR_CONSTANT && ir_value(g, n) == 0;
+}
+
+/* n > 0: so is what is left when positive factors and divisors are taken away, and x of max(x, 0).
+ */
+static void assume_positive(analysis *a, context *c, ir_node n) {
+  const ir *g = a->graph;
+  ir_op op = ir_operation(g, n);
+  sum whole = sum_of(g, n);
+  add_relation(g, c, POSITIVE, &whole);
+  if (op != IR_MUL && op != IR_DIV && op != IR_MAX) return;
+  ir_node p = ir_operand(g, n, 0), q = ir_operand(g, n, 1);
+  if (op == IR_MAX ? is_zero(g, q) : range_is_positive(value_of(a, c->outer, q)))
+    assume_positive(a, c, p);
+  else if (op == IR_MAX ? is_zero(g, p)
+                        : op == IR_MUL && range_is_positive(value_of(a, c->outer, p)))
+    assume_positive(a, c, q);
+}
+
 static void assume(analysis *a, context *c, ir_node guard, bool truth) {
   const ir *g = a->graph;
   ir_op op = ir_operation(g, guard);
@@ -107,7 +134,9 @@ static void assume(analysis *a, context *c, ir_node guard, bool truth) {
   else if ((op == IR_AND && truth) || (op == IR_OR && !truth)) {
     assume(a, c, p, truth);
     assume(a, c, q, truth);
-  } else if (op == IR_LT)
+  } else if (op == IR_LT && truth && is_zero(g, p))
+    assume_positive(a, c, q);
+  else if (op == IR_LT)
     relate(a, c, truth ? POSITIVE : NOT_NEGATIVE, truth ? p : q, truth ? q : p);
   else if (op == IR_LE)
     relate(a, c, truth ? NOT_NEGATIVE : POSITIVE, truth ? p : q, truth ? q : p);
@@ -166,10 +195,7 @@ static range least_by(analysis *a, context *c, const sum *s, const relation *kno
     for (int q = 0; q < known->of.count; q++) {
       double k = s->term[p].coefficient / known->of.term[q].coefficient;
       sum rest;
-      if (a->combinations > MOST_COMBINATIONS) {
-        a->given_up = true;
-        return r;
-      }
+      if (a->combinations > MOST_COMBINATIONS) return r;
       if (!(k > 0) || !sum_same_factors(&s->term[p], &known->of.term[q]) ||
           !sum_combine(s, -k, &known->of, &rest))
         continue;
@@ -261,9 +287,7 @@ static range input_range(analysis *a, context *c, ir_node n) {
   case IR_FROM_QUANTITY:
     return quantity_range(k);
   case IR_FROM_FIELD:
-    if (k < a->law->fields.count && a->law->fields.items[k]->kind == SYMBOL_DAMAGE)
-      return range_between(0, 1, false, false);
-    return range_all();
+    return k < a->law->fields.count ? a->fields[k] : range_all();
   case IR_FROM_PARAMETER: {
     const bounds *in = &a->law->parameters.items[k]->declared->in;
     range low = value_of(a, c, a->lower[k]), high = value_of(a, c, a->upper[k]);
@@ -322,10 +346,7 @@ static range comparison_range(analysis *a, context *c, ir_node n) {
 }
 
 static range branch_range(analysis *a, context *c, ir_node guard, bool truth, ir_node n) {
-  if (a->contexts >= a->most_contexts) {
-    a->given_up = true;
-    return range_all();
-  }
+  if (a->contexts >= a->most_contexts) return range_all();
   context *inner = new_context(a, c, guard, truth);
   assume(a, inner, guard, truth);
   return value_of(a, inner, n);
@@ -357,11 +378,6 @@ static span place_of(const analysis *a, ir_node n) {
   return a->law->tree->name_where;
 }
 
-static void range_text(range r, char *text, size_t size) {
-  snprintf(text, size, "%c%.4g, %.4g%c", r.low_open ? '(' : '[', r.low, r.high,
-           r.high_open ? ')' : ']');
-}
-
 /* A function called many times is one place. */
 static bool said_before(const analysis *a, diag_code code, span where) {
   for (int k = 0; k < a->said->count; k++) {
@@ -380,20 +396,16 @@ static void warn(analysis *a, context *c, ir_node n, ir_node operand, interval_w
   interval_condition conditions[32];
   diag_code code = wish == WISH_ZERO ? DIAG_DIVISION_BY_ZERO : DIAG_DOMAIN;
   span where = place_of(a, n);
-  if (a->warned[n] || a->warnings >= MOST_WARNINGS || said_before(a, code, where)) return;
-  a->warned[n] = 1;
-  a->warnings++;
+  if (a->quiet || a->tried[n] == MOST_TRIES || a->searches == MOST_SEARCHES ||
+      said_before(a, code, where))
+    return;
+  a->tried[n]++;
+  a->searches++;
   int count = conditions_of(c, conditions, 32);
-  char *state = interval_witness(a->bench, operand, wish, conditions, count);
-  if (!state && a->given_up) return;
-  diag_report(a->said, code, where, "%s%s", what[wish],
-              state ? " in a state within the bounds" : ", as far as the bounds tell");
-  char text[80];
-  range_text(value_of(a, c, operand), text, sizeof text);
-  if (state)
-    diag_note(a->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
-  else
-    diag_note(a->said, (span){0, 0, UINT16_MAX}, "its range was found to be %s", text);
+  char *state = interval_witness(a->bench, a->fields, operand, wish, conditions, count);
+  if (!state) return;
+  diag_report(a->said, code, where, "%s in a state within the bounds", what[wish]);
+  diag_note(a->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
   diag_hint(
       a->said,
       wish == WISH_ZERO
@@ -470,10 +482,7 @@ static range value_of(analysis *a, context *c, ir_node n) {
   if (c->state[n] == DONE) return c->known[n];
   if (c->state[n] == BEGUN) /* bounds that refer to each other */
     return range_all();
-  if (a->depth > DEEPEST) {
-    a->given_up = true;
-    return range_all();
-  }
+  if (a->depth > DEEPEST) return range_all();
   c->state[n] = BEGUN;
   a->depth++;
   range r;
@@ -497,7 +506,7 @@ static range value_of(analysis *a, context *c, ir_node n) {
   return r;
 }
 
-/* --- the law ---------------------------------------------------------------------------------- */
+/* --- bounds of parameters --------------------------------------------------------------------- */
 
 /* False when a bound cannot be compiled (said). */
 static bool find_bounds(analysis *a) {
@@ -528,18 +537,98 @@ static void relate_parameters(analysis *a, context *c) {
   }
 }
 
+static context *whole_law(analysis *a) {
+  context *c = new_context(a, NULL, IR_NONE, false);
+  relate_parameters(a, c);
+  return c;
+}
+
+/* --- states ----------------------------------------------------------------------------------- */
+
+/* Takes back what the rules do not keep up when all fields are as supposed. False when nothing is
+ * left to take back. */
+static bool take_back(analysis *a) {
+  arena *memory = a->memory;
+  bool changed = false;
+  a->memory = arena_new();
+  a->contexts = 0;
+  context *whole = whole_law(a);
+  for (int k = 0; k < a->law->fields.count; k++) {
+    if (a->law->fields.items[k]->kind == SYMBOL_DAMAGE) continue;
+    range r = value_of(a, whole, a->bench->law_step.fields[k]), *f = &a->fields[k];
+    if (f->low > r.low) changed = true, f->low = -INFINITY, f->low_open = true;
+    if (f->high < r.high) changed = true, f->high = INFINITY, f->high_open = true;
+  }
+  arena_free(a->memory);
+  a->memory = memory;
+  a->contexts = 0;
+  return changed;
+}
+
+/* A state may never fall below its initial value, or never rise above it: supposed of all, until
+   the rules keep up what is left. A damage is kept from 0 to 1. */
+static void learn_fields(analysis *a) {
+  const symbol_list *fields = &a->law->fields;
+  a->fields = arena_alloc(a->memory, ((size_t)fields->count + 1) * sizeof *a->fields);
+  for (int k = 0; k < fields->count; k++)
+    a->fields[k] = fields->items[k]->kind == SYMBOL_DAMAGE ? range_between(0, 1, false, false)
+                                                           : range_of(fields->items[k]->initial);
+  a->quiet = true;
+  for (bool changed = fields->count > 0; changed;)
+    changed = take_back(a);
+  a->quiet = false;
+  a->combinations = 0;
+}
+
+/* --- the law ---------------------------------------------------------------------------------- */
+
 static void look_at(analysis *a, context *c, ir_node n) {
   if (n != IR_NONE) value_of(a, c, n);
+}
+
+/* How far the rules of the damages stay above 0 and below 1: [2*fields], IR_NONE for states. */
+static ir_node *damage_margins(analysis *a) {
+  const double rounding = 1e-9;
+  ir *g = a->graph;
+  int count = a->law->fields.count;
+  ir_node *margins = arena_alloc(a->memory, (2 * (size_t)count + 1) * sizeof *margins);
+  for (int k = 0; k < count; k++) {
+    bool damage = a->law->fields.items[k]->kind == SYMBOL_DAMAGE;
+    ir_node rule = a->bench->law_step.text.rules[k];
+    margins[2 * k] = damage ? ir_add(g, rule, ir_constant(g, rounding)) : IR_NONE;
+    margins[2 * k + 1] = damage ? ir_sub(g, ir_constant(g, 1 + rounding), rule) : IR_NONE;
+  }
+  return margins;
+}
+
+/* Only what a state shows is said: ranges alone are too wide for a curve of softening. */
+static void check_damages(analysis *a, context *c, const ir_node *margins) {
+  for (int k = 0; k < 2 * a->law->fields.count; k++) {
+    const symbol *s = a->law->fields.items[k / 2];
+    if (margins[k] == IR_NONE || value_of(a, c, margins[k]).low >= 0 ||
+        said_before(a, DIAG_DAMAGE_RANGE, s->rule->where))
+      continue;
+    char *state = interval_witness(a->bench, a->fields, margins[k], WISH_NEGATIVE, NULL, 0);
+    if (!state) continue;
+    diag_report(
+        a->said, DIAG_DAMAGE_RANGE, s->rule->where,
+        "the rule of damage `%s` gives %s in a state within the bounds; it is cut off there",
+        s->name, k % 2 ? "more than 1" : "less than 0");
+    diag_note(a->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
+    diag_hint(a->said, "narrow the bounds of a parameter, or keep such values away by `max`");
+    free(state);
+  }
 }
 
 static void look_at_law(analysis *a) {
   const bench *b = a->bench;
   const law *l = a->law;
+  const ir_node *margins = damage_margins(a);
   a->nodes = ir_count(b->graph);
   a->most_contexts = (int)fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a->nodes)));
-  a->warned = arena_alloc(a->memory, (size_t)a->nodes);
-  context *whole = new_context(a, NULL, IR_NONE, false);
-  relate_parameters(a, whole);
+  a->tried = arena_alloc(a->memory, (size_t)a->nodes);
+  learn_fields(a);
+  context *whole = whole_law(a);
   const lowered_law *s = &b->law_step;
   for (int k = 0; k < l->fields.count; k++)
     look_at(a, whole, s->fields[k]);
@@ -548,6 +637,7 @@ static void look_at_law(analysis *a) {
     look_at(a, whole, results[k]);
   for (int k = 0; k < l->outputs.count; k++)
     look_at(a, whole, s->outputs[k]);
+  check_damages(a, whole, margins);
 }
 
 void interval_check(const law *l, diagnostics *d) {

@@ -2,6 +2,7 @@
 #ifndef PERILAT_GENERATOR_INTERVAL_PARTS_H
 #define PERILAT_GENERATOR_INTERVAL_PARTS_H
 
+#include "generator/interval.h"
 #include "generator/physics_bench.h"
 
 typedef enum interval_wish {
@@ -16,9 +17,9 @@ typedef struct interval_condition {
   bool truth;
 } interval_condition;
 
-/* Text (malloc'ed) of a state within the declared bounds at which the conditions hold and `operand`
+/* Text (malloc'ed) of a state within the declared bounds and the ranges of its fields at which the conditions hold and `operand`
    is as wished; NULL when none is found. */
-char *interval_witness(bench *b, ir_node operand, interval_wish wish,
+char *interval_witness(bench *b, const range *fields, ir_node operand, interval_wish wish,
                        const interval_condition *conditions, int count);
 
 #endif

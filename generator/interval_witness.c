@@ -14,6 +14,7 @@ typedef struct hunt {
   probe seen; /* argument, then the conditions */
   const interval_condition *conditions;
   int count;
+  const range *fields;
   interval_wish wish;
   double **states;
   double *low, *high; /* columns where the argument is below and above 0 */
@@ -69,8 +70,10 @@ static void draw_lane(hunt *h, int lane, bool vary) {
       bench_field(b, h->states, k)[lane] = choice == 0   ? 1
                                            : choice == 1 ? draw_uniform(&b->seed, 0, 1)
                                                          : 0;
-    else if (choice == 0)
-      bench_field(b, h->states, k)[lane] += draw_size(&b->seed, -6, 0);
+    else if (choice == 0) {
+      double drawn = bench_field(b, h->states, k)[lane] + draw_size(&b->seed, -6, 0);
+      bench_field(b, h->states, k)[lane] = fmin(fmax(drawn, h->fields[k].low), h->fields[k].high);
+    }
   }
   motion m = {{draw_size(&b->seed, -7, 0.5), draw_size(&b->seed, -3, 5),
                draw_size(&b->seed, -6, 0.4), draw_size(&b->seed, -6, 0.4)}};
@@ -141,10 +144,14 @@ static bool bisect(hunt *h, double *found) {
   return false;
 }
 
-char *interval_witness(bench *b, ir_node operand, interval_wish wish,
+char *interval_witness(bench *b, const range *fields, ir_node operand, interval_wish wish,
                        const interval_condition *conditions, int count) {
-  hunt h = {
-      .b = b, .conditions = conditions, .count = count, .wish = wish, .states = bench_states(b)};
+  hunt h = {.b = b,
+            .fields = fields,
+            .conditions = conditions,
+            .count = count,
+            .wish = wish,
+            .states = bench_states(b)};
   size_t width = (size_t)b->width * sizeof(double);
   ir_node nodes[64] = {operand};
   h.count = count < 63 ? count : 63;

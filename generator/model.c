@@ -72,6 +72,7 @@ static file_kind kind_by_content(const char *path) {
   fclose(in);
   head[n] = 0;
   if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0) return FILE_RESULT;
+  if (strncmp(head, "\x89PNG", 4) == 0 || strncmp(head, "%PDF", 4) == 0) return FILE_PICTURE;
   return kind_of_text(head);
 }
 
@@ -79,11 +80,24 @@ file_kind kind_of_file(const char *path) {
   static const struct {
     const char *ending;
     file_kind kind;
-  } endings[] = {
-      {".plm", FILE_LAW}, {".nml", FILE_DECK}, {".h5", FILE_RESULT}, {".hdf5", FILE_RESULT}};
+  } endings[] = {{".plm", FILE_LAW},     {".nml", FILE_DECK},  {".h5", FILE_RESULT},
+                 {".hdf5", FILE_RESULT}, {".csv", FILE_TABLE}, {".xdmf", FILE_SIDECAR}};
   for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
     if (ends_in(path, endings[k].ending)) return endings[k].kind;
   return kind_by_content(path);
+}
+
+bool file_suits(const char *path, unsigned kinds, const char *command, const char *needs) {
+  static const char *const words[] = {[FILE_LAW] = "a law",
+                                      [FILE_DECK] = "a deck",
+                                      [FILE_RESULT] = "a result",
+                                      [FILE_TABLE] = "a table of comma-separated values",
+                                      [FILE_SIDECAR] = "what ParaView reads of a result (.h5)",
+                                      [FILE_PICTURE] = "a picture"};
+  const file_kind kind = kind_of_file(path);
+  if (kind == FILE_UNKNOWN || kinds >> kind & 1) return true;
+  fprintf(stderr, "perilat: error: `%s` is %s; `%s` needs %s\n", path, words[kind], command, needs);
+  return false;
 }
 
 bool same_file(const char *a, const char *b) {
@@ -219,6 +233,17 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
   return good;
 }
 
+bool model_suits(const model *m, const char *setting, char *meant, size_t size) {
+  const tree *t = m->tree;
+  size_t n = 0;
+  meant[0] = 0;
+  for (int k = 0; k < t->setting_count; k++)
+    if (strcmp(t->settings[k], setting) == 0) return true;
+  for (int k = 0; k < t->setting_count && n < size; k++)
+    n += (size_t)snprintf(meant + n, size - n, "%s%s", k ? ", " : "", t->settings[k]);
+  return t->setting_count == 0;
+}
+
 bool model_plan(model *m) {
   return model_plan_varying(m, NULL, 0);
 }
@@ -248,8 +273,8 @@ bool model_plan_of_families(model *m) {
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size) {
   *note = NULL;
   if (!interpret && !toolchain_compiler())
-    *note = "no C compiler was found: the law runs on the interpreter, many times slower "
-            "(install gcc or clang, or set PERILAT_CC)";
+    *note = arena_printf(m->memory, "%s: the law runs on the interpreter, many times slower",
+                         toolchain_no_compiler());
   if (interpret || *note) {
     m->interpreted = plan_interpreted(m->plan, m->key);
     return m->interpreted;

@@ -23,8 +23,20 @@ typedef struct model {
 } model;
 
 /* What a file is: by its ending, or else by how its text begins; a name without a file is FILE_UNKNOWN, maybe a law's. */
-typedef enum file_kind { FILE_UNKNOWN, FILE_LAW, FILE_DECK, FILE_RESULT } file_kind;
+typedef enum file_kind {
+  FILE_UNKNOWN,
+  FILE_LAW,
+  FILE_DECK, /* or a path for `perilat drive` */
+  FILE_RESULT,
+  FILE_TABLE,
+  FILE_SIDECAR,
+  FILE_PICTURE
+} file_kind;
 file_kind kind_of_file(const char *path);
+#define FILES(kind) (1u << FILE_##kind)
+/* False, after a sentence that says what the file is, when it is of a known kind that is none of `kinds`, made of FILES.
+   `command` as the person typed it, "perilat plot", and what it needs: "a result". */
+bool file_suits(const char *path, unsigned kinds, const char *command, const char *needs);
 /* True when both name one existing file, by whatever path or link. */
 bool same_file(const char *a, const char *b);
 
@@ -38,6 +50,9 @@ bool model_open(model *m, const char *path, const law_choice *choices, int choic
 /* The same of a text at hand, which is named `path` in messages and found there by what it includes. */
 bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices,
                      int choice_count);
+/* True when the law is meant for a setting of the lattice, `plane_stress` say: its line `for` names it or is missing.
+   Otherwise `meant` says what it is meant for: "plane_strain, space". */
+bool model_suits(const model *m, const char *setting, char *meant, size_t size);
 /* Plans the kernel and emits its C (m->said on errors). */
 bool model_plan(model *m);
 /* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */

@@ -12,6 +12,14 @@ int option_flag(char **argv, int *at, const char *name) {
   return 1;
 }
 
+/* Files and numbers may begin with a `-`. */
+static bool is_option(const char *given) {
+  for (int k = 0; k < option_count; k++)
+    if (strcmp(given, option_table[k].name) == 0)
+      return true;
+  return false;
+}
+
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad) {
   const char *given = argv[*at];
   size_t n = strlen(name);
@@ -23,7 +31,7 @@ const char *option_value(int argc, char **argv, int *at, const char *name, int *
   }
   if (given[n] != 0)
     return NULL;
-  if (*at + 1 >= argc) {
+  if (*at + 1 >= argc || is_option(argv[*at + 1])) {
     fprintf(stderr, "perilat: error: `%s` needs a value\n", name);
     *bad = 1;
     ++*at;

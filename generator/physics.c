@@ -35,6 +35,10 @@ static void run_checks(physics *p) {
   bench_allow(b, 0.1);
   if (!p->failed[DIAG_STIFFNESS]) physics_check_stored_energy(p);
   if (!p->failed[DIAG_STIFFNESS] && !p->failed[DIAG_STORED_ENERGY]) physics_check_damage_force(p);
+  bench_allow(b, 0.1);
+  if (!p->failed[DIAG_FLOW]) physics_check_hold(p);
+  bench_allow(b, 0.1);
+  physics_check_healing(p);
   bench_allow(b, 0.15);
   physics_check_closed_path(p);
   bench_allow(b, 0.25);

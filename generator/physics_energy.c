@@ -243,12 +243,21 @@ void physics_check_stored_energy(physics *p) {
 
 /* --- damage force ----------------------------------------------------------------------------- */
 
+/* What a plain state stores nobody can tell (a slider beside a spring): they are as in a virgin bond,
+   so that the energy is the work from rest. */
+static void forget_states(const bench *b, double *const *states, int count) {
+  for (int k = 0; k < b->field_count; k++)
+    for (int lane = 0; lane < count && b->law->fields.items[k]->kind == SYMBOL_STATE; lane++)
+      bench_field(b, states, k)[lane] = b->law->fields.items[k]->initial;
+}
+
 static void check_rising(physics *p, int field, double *const *states, int count) {
   enum { LEVELS = 6 };
   static const double level[LEVELS] = {0, 0.25, 0.5, 0.75, 0.95, 1};
   bench *b = &p->b;
   const symbol *s = b->law->fields.items[field];
   work_done w[2][BENCH_LANES];
+  forget_states(b, states, count);
   for (int k = 0; k < LEVELS; k++) {
     for (int lane = 0; lane < count; lane++)
       bench_field(b, states, field)[lane] = level[k];
@@ -338,7 +347,6 @@ static void implied_forces(bench *b, ir_node *nodes) {
 
 void physics_check_energy_and_force(physics *p) {
   static const law_result given[WAYS] = {RESULT_N, RESULT_M_I, RESULT_M_J};
-  static const char *const names[WAYS] = {"N", "M_i", "M_j"};
   bench *b = &p->b;
   if (b->law_frozen.W == IR_NONE) return;
   ir_node nodes[2 * WAYS] = {b->law_frozen.N, b->law_frozen.M_i, b->law_frozen.M_j};
@@ -360,8 +368,9 @@ void physics_check_energy_and_force(physics *p) {
           continue;
         bench_get(b, states, lane, column);
         physics_say(p, DIAG_ENERGY_FORCE, physics_fault(p, k, column), column,
-                    "`%s` is %.6g, but the derivative of the law's energy is %.6g", names[k], force,
-                    implied);
+                    "`%s` is %.6g %s, but the derivative of the law's energy is %.6g %s",
+                    physics_force_names[k], force, physics_force_units[k], implied,
+                    physics_force_units[k]);
         diag_hint(p->said, "give the energy alone; the forces follow from it");
       }
   }

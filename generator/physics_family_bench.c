@@ -240,9 +240,26 @@ void family_bench_move(family_bench *b, const double *u, const double *v) {
   }
 }
 
+static const double MOST_BONDS = 2e6; /* about 50 ms */
+
+bool family_bench_tired(const family_bench *b) {
+  const double effort = b->options->effort > 0 ? b->options->effort : 1;
+  return b->bonds > effort * MOST_BONDS;
+}
+
+static void count_work(family_bench *b, const patch *of) {
+  b->bonds += (double)(of->count * 2 * of->lattice->directions);
+}
+
+void family_bench_observe(family_bench *b) {
+  patch_observe(b->whole);
+  count_work(b, b->whole);
+}
+
 void family_bench_forces(family_bench *b, patch *of, double *force) {
   patch_step(of);
   b->evaluated += (double)of->inside_count;
+  count_work(b, of);
   for (int d = 0; d < of->law->dimensions; d++)
     for (long q = 0; q < of->inside_count; q++)
       force[d * of->inside_count + q] = of->force[d][of->inside[q]];
@@ -293,6 +310,13 @@ static long site_of(const family_bench *b, watched w, int where) {
 
 bool family_bench_exists(const family_bench *b, watched w, int where) {
   return !w.wide || patch_has_bond(b->whole, site_of(b, w, where), where % neighbours_of(b));
+}
+
+int family_bench_bonds(const family_bench *b, watched w, int where) {
+  int count = 0;
+  for (int k = 0; k < neighbours_of(b); k++)
+    count += patch_has_bond(b->whole, site_of(b, w, where), k);
+  return count;
 }
 
 double family_bench_value(const family_bench *b, watched w, int where) {

@@ -61,7 +61,7 @@ static void turn(family_bench *b, double angle, double *u) {
 void family_check_rest(family_bench *b) {
   enum { ROUNDS = 4 };
   double *u = values_new(b), *force = values_new(b);
-  for (int round = 0; round < ROUNDS; round++) {
+  for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     family_bench_draw(b, round == 0);
     family_bench_deform(b, 1e-3, u);
     family_bench_move(b, u, NULL);
@@ -83,7 +83,7 @@ void family_check_rest(family_bench *b) {
 void family_check_stiffness(family_bench *b) {
   enum { ROUNDS = 16 };
   double *u = values_new(b), *force = values_new(b);
-  for (int round = 0; round < ROUNDS; round++) {
+  for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     double size = 0;
     if (round % 4 == 0) family_bench_draw(b, round == 0);
     family_bench_deform(b, 1e-7, u);
@@ -212,28 +212,28 @@ static void judge_triangle(family_bench *b, triangle *t, bool damaged) {
   static const int panels[] = {1, 3, 7, 17};
   double before = NAN;
   int settled = 0;
-  for (size_t k = 0; k < sizeof panels / sizeof *panels; k++) {
+  for (size_t k = 0; k < sizeof panels / sizeof *panels && settled < 2; k++) {
     go_round(b, t, panels[k]);
     const double gain = gain_of(t);
-    if (k == 0 || settled)
-      if (t->work[0] < -ENERGY_TOLERANCE * t->size && k > 0)
-        family_bench_say(b, DIAG_STORED_ENERGY, family_bench_force(b), t->strain,
-                         "the body stores a negative energy, %.4g J: it would give work without "
-                         "having taken any",
-                         t->work[0]);
-    if (!(fabs(gain) > GAIN_TOLERANCE * t->peak) && t->work[0] >= -ENERGY_TOLERANCE * t->size)
+    const bool negative = t->work[0] < -ENERGY_TOLERANCE * t->size;
+    if (negative && k > 0) {
+      family_bench_say(b, DIAG_STORED_ENERGY, family_bench_force(b), t->strain,
+                       "the body stores a negative energy, %.4g J: it would give work without "
+                       "having taken any",
+                       t->work[0]);
       return;
+    }
+    if (!negative && !(fabs(gain) > GAIN_TOLERANCE * t->peak)) return;
     settled = fabs(gain - before) <= 0.02 * fabs(gain) ? settled + 1 : 0;
     before = gain;
-    if (settled < 2) continue;
-    if (fabs(gain) > GAIN_TOLERANCE * t->peak) say_closed_path(b, t, damaged);
-    return;
   }
+  if (settled == 2) say_closed_path(b, t, damaged);
 }
 
-/* On bonds the same from either side. */
-static void draw_damage(family_bench *b) {
+/* On bonds the same from either side; the whole body alike, or each damage on its own. */
+static void draw_damage(family_bench *b, bool alike) {
   patch *p = b->whole;
+  const double level = draw_uniform(&b->seed, 0.5, 1);
   const int half = p->lattice->directions;
   for (int f = 0; f < b->law->fields.count; f++) {
     const pl_field *field = &p->law->fields[f];
@@ -242,7 +242,7 @@ static void draw_damage(family_bench *b) {
     for (int k = 0; k < planes; k++)
       for (long q = 0; q < p->inside_count; q++) {
         const long site = p->inside[q], far = patch_neighbour(p, site, k);
-        const double drawn = draw_field(&b->seed, field);
+        const double drawn = alike ? level : draw_field(&b->seed, field);
         p->field[f][k * p->size + site] = drawn;
         if (field->place != PL_ON_PARTICLE) p->field[f][(k + half) * p->size + far] = drawn;
       }
@@ -292,9 +292,11 @@ static bool has_damage(const law *l) {
 void family_check_energy(family_bench *b, bool damaged) {
   enum { ROUNDS = 3 };
   triangle t = {.rest = values_new(b), .a = values_new(b), .b = values_new(b)};
-  for (int round = 0; round < ROUNDS && (!damaged || has_damage(b->law)); round++) {
+  for (int round = 0;
+       round < ROUNDS && (!damaged || has_damage(b->law)) && !(round && family_bench_tired(b));
+       round++) {
     family_bench_draw(b, round == 0);
-    if (damaged) draw_damage(b);
+    if (damaged) draw_damage(b, round == 0);
     t.strain = draw_strain(b);
     family_bench_deform(b, t.strain, t.a);
     family_bench_deform(b, t.strain, t.b);
@@ -325,10 +327,10 @@ void family_check_energy_and_force(family_bench *b) {
   const double share = 1e-4;
   if (!b->has_energy || !force_state(b->law)) return;
   double *u = values_new(b), *v = values_new(b), *force = values_new(b);
-  for (int round = 0; round < ROUNDS; round++) {
+  for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     double size = 0;
     family_bench_draw(b, round == 0);
-    if (!b->law->nonconservative && round % 2) draw_damage(b);
+    if (!b->law->nonconservative && round % 2) draw_damage(b, round == 1);
     family_bench_share_fields(b);
     const double strain = draw_strain(b);
     family_bench_deform(b, strain, u);

@@ -30,13 +30,14 @@ typedef struct family_bench {
   bool has_energy;
   double *parameters;
   uint64_t seed;
-  watched *rule;       /* [fields] of damages */
-  watched *guard;      /* [lines + flows of step.text] */
-  watched *overstress; /* [flows]; at -1 where there is none */
+  watched *rule;         /* [fields] of damages */
+  watched *guard;        /* [lines + flows of step.text] */
+  watched *overstress;   /* [flows]; at -1 where there is none */
   unsigned char *varies; /* [lines + flows] the guard depends on the state */
   unsigned char *seen;   /* [lines + flows] 1: false, 2: true */
-  long values;         /* of a displacement: dimensions * particles */
-  double evaluated;    /* particles so far */
+  long values;           /* of a displacement: dimensions * particles */
+  double evaluated;      /* particles so far */
+  double bonds;          /* of all passes over them */
 } family_bench;
 
 /* NULL when the law cannot be lowered or there is no such lattice (said in `d`). */
@@ -56,6 +57,10 @@ void family_bench_forces(family_bench *b, patch *of, double *force);
 void family_bench_accept(family_bench *b);
 /* Fields of the whole law's body for the frozen one. */
 void family_bench_share_fields(family_bench *b);
+/* What `text` observes of the whole law's body. */
+void family_bench_observe(family_bench *b);
+/* The time there is has been used up (families of many neighbours): a check goes its first round only. */
+bool family_bench_tired(const family_bench *b);
 /* Sum of the law's energy over the body, J. */
 double family_bench_energy(family_bench *b);
 
@@ -64,6 +69,7 @@ double family_bench_energy(family_bench *b);
 int family_bench_places(const family_bench *b, watched w);
 bool family_bench_exists(const family_bench *b, watched w, int where);
 double family_bench_value(const family_bench *b, watched w, int where);
+int family_bench_bonds(const family_bench *b, watched w, int where); /* of the particle there */
 
 /* One error or warning of a kind, with the parameters that show it and `size`, the strain of the body there (0: none). */
 void family_bench_say(family_bench *b, diag_code code, span where, double size, const char *format,

@@ -61,7 +61,7 @@ static void move_on_leg(family_bench *b, leg *l, double way) {
 
 /* Truth of every guard at every place where its bond exists. */
 static void find_truths(family_bench *b, unsigned char *truth) {
-  patch_observe(b->whole);
+  family_bench_observe(b);
   for (int k = 0; k < guard_count(b); k++)
     for (int q = 0; q < family_bench_places(b, b->guard[k]); q++)
       *truth++ =
@@ -250,22 +250,35 @@ static bool is_whole(const family_bench *b) {
   return true;
 }
 
+/* Where the overstress is largest: what flows around it does not carry it away. Only among families as whole as there are
+   any: stresses of a few bonds at an edge may have no way back. -1 where nothing yields. */
+static int worst_place(const family_bench *b, watched over, const double *overstress,
+                       const double *yields) {
+  int worst = -1, most = 0;
+  for (int q = 0; q < family_bench_places(b, over); q++)
+    most = family_bench_bonds(b, over, q) > most ? family_bench_bonds(b, over, q) : most;
+  for (int q = 0; q < family_bench_places(b, over); q++)
+    if (family_bench_exists(b, over, q) && family_bench_bonds(b, over, q) == most &&
+        yields[q] != 0 && overstress[q] > 0 && (worst < 0 || overstress[q] > overstress[worst]))
+      worst = q;
+  return worst;
+}
+
 /* At a state just beyond a yield limit: one flow, everything else as it is. */
 static void check_one_flow(family_bench *b, leg *l, int k) {
   const lowered_flow *f = &b->step.text.flows[k];
   const watched over = b->overstress[k], when = b->guard[b->step.text.line_count + k];
   double *kept = kept_field(b->whole, f->field);
-  patch_observe(b->whole);
+  family_bench_observe(b);
   double *before = values_of(b, over), *yields = values_of(b, when);
   family_bench_share_fields(b);
   const double stored = b->has_energy ? family_bench_energy(b) : 0;
   family_bench_forces(b, b->whole, l->force);
   accept_flow(b, f->field);
-  patch_observe(b->whole);
+  family_bench_observe(b);
   double *after = values_of(b, over);
-  for (int q = 0; q < family_bench_places(b, over) && over.wide == when.wide; q++)
-    if (family_bench_exists(b, over, q) && yields[q] != 0 && before[q] > 0)
-      check_share(b, l, f, (before[q] - after[q]) / before[q]);
+  const int worst = over.wide == when.wide ? worst_place(b, over, before, yields) : -1;
+  if (worst >= 0) check_share(b, l, f, (before[worst] - after[worst]) / before[worst]);
   family_bench_share_fields(b);
   const double gain = b->has_energy ? family_bench_energy(b) - stored : 0;
   if (gain > 1e-7 * fabs(stored) && (is_whole(b) || !b->law->nonconservative)) {
@@ -304,7 +317,7 @@ static void begin_leg(family_bench *b, leg *l, bool slow, bool far) {
   double *from = l->from;
   l->from = l->to;
   l->to = from;
-  l->strain = pow(10, far ? draw_uniform(&b->seed, -1, 0.5) : draw_uniform(&b->seed, -6, -0.7));
+  l->strain = pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -6, -0.7));
   l->speed = slow ? 0 : pow(10, draw_uniform(&b->seed, -3, 5));
   family_bench_deform(b, l->strain, l->to);
   for (long k = 0; k < b->values; k++)
@@ -351,7 +364,7 @@ void family_check_histories(family_bench *b, int legs) {
   enum { LEGS_OF_ONE = 4, CROSSINGS_OF_ONE = 2 };
   leg l = leg_new(b);
   int crossings = 0;
-  for (int k = 0; k < legs; k++) {
+  for (int k = 0; k < legs && !(k && family_bench_tired(b)); k++) {
     if (k % LEGS_OF_ONE == 0) {
       family_bench_draw(b, k == 0);
       rest_leg(b, &l);
@@ -400,9 +413,11 @@ static void go_round(family_bench *b, cycle *c, int steps) {
   free(force);
 }
 
-static double tolerated_gain(const family_bench *b) {
-  return b->law->nonconservative || b->failed[DIAG_CLOSED_PATH_DAMAGED] ? GAIN_OF_NONCONSERVATIVE
-                                                                        : GAIN_TOLERANCE;
+/* Forces along the reference bonds have an energy in the limit of small strains only. */
+static double tolerated_gain(const family_bench *b, const cycle *c) {
+  if (b->law->nonconservative || b->failed[DIAG_CLOSED_PATH_DAMAGED])
+    return GAIN_OF_NONCONSERVATIVE;
+  return GAIN_TOLERANCE + (b->step.along_reference ? c->strain : 0);
 }
 
 /* True when ever finer steps agree that work comes out. */
@@ -412,7 +427,7 @@ static bool stays_negative(family_bench *b, cycle *c) {
   int settled = 0;
   for (size_t k = 0; k < sizeof steps / sizeof *steps && settled < 2; k++) {
     go_round(b, c, steps[k]);
-    if (!(c->work < -tolerated_gain(b) * c->peak)) return false;
+    if (!(c->work < -tolerated_gain(b, c) * c->peak)) return false;
     settled = fabs(c->work - before) <= 0.1 * fabs(c->work) ? settled + 1 : 0;
     before = c->work;
   }
@@ -434,11 +449,12 @@ void family_check_dissipation(family_bench *b, int cycles) {
   cycle c;
   for (int k = 0; k < CORNERS; k++)
     c.corner[k] = values_new(b);
-  for (int k = 0; k < cycles && !b->failed[DIAG_DISSIPATION]; k++) {
+  for (int k = 0; k < cycles && !b->failed[DIAG_DISSIPATION] && !(k && family_bench_tired(b));
+       k++) {
     family_bench_draw(b, k == 0);
     draw_cycle(b, &c, k);
     go_round(b, &c, COARSE);
-    if (!(c.work < -tolerated_gain(b) * c.peak) || !stays_negative(b, &c)) continue;
+    if (!(c.work < -tolerated_gain(b, &c) * c.peak) || !stays_negative(b, &c)) continue;
     family_bench_say(b, DIAG_DISSIPATION, family_bench_force(b), c.strain,
                      "a closed cycle gives %.4g J of work out, %.3g %% of its peak energy: the law "
                      "feeds energy",

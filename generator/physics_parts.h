@@ -18,12 +18,16 @@ typedef struct physics {
 
 /* --- physics_report.c: saying what was found -------------------------------------------------- */
 
+extern const char *const physics_force_names[FORCE_COUNT], *const physics_force_units[FORCE_COUNT];
+
 /* "stretch = 1.2e-4, omega = 0.5; with E = 3.1e+10 Pa": what the law reads of the state. */
 char *physics_state_text(const physics *p, const double *column);
 /* One error or warning of a kind, with the state that shows it (NULL: none) as its note. Later ones
    of the same kind are dropped. */
 void physics_say(physics *p, diag_code code, span where, const double *column, const char *format,
                  ...) __attribute__((format(printf, 5, 6)));
+/* Whether forces or states need `stretch_rate`. */
+bool physics_reads_rate(const physics *p);
 /* The statement that gives N, M_i or M_j; of a list of cases the line in force at the state. */
 span physics_fault(physics *p, int force, const double *column);
 
@@ -58,6 +62,18 @@ bool physics_flow_gains(physics *p, double *const *states, int lane, double *gai
 /* --- physics_paths.c -------------------------------------------------------------------------- */
 void physics_check_closed_path(physics *p);
 void physics_check_dissipation(physics *p);
+/* "0.001, 0, -0.002" or, of stretch and end rotations, "(0.001, 0, 0), ...": the corners after the
+ * first; of a law that reads the rate "0.001 at 10 1/s" when `rates` has those of the legs (NULL: no). */
+void physics_describe_way(const physics *p, const motion *corners, const double *rates, int count,
+                          char *text, size_t size);
+
+/* --- physics_healing.c ------------------------------------------------------------------------ */
+/* A state that scales the forces may not go back toward its initial value (warning). */
+void physics_check_healing(physics *p);
+
+/* --- physics_hold.c --------------------------------------------------------------------------- */
+/* A bond that is held may not pull harder and harder (error). */
+void physics_check_hold(physics *p);
 
 /* --- physics_tangent.c ------------------------------------------------------------------------ */
 void physics_check_rest(physics *p);

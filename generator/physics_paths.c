@@ -16,7 +16,7 @@ enum { CORNERS = 9, LEGS = CORNERS - 1 };
 
 typedef struct loop {
   motion corner[CORNERS]; /* corner[LEGS] is corner[0] */
-  double speed;           /* of the motion's norm, 1/s */
+  double rate[LEGS];      /* of the stretch, 1/s */
 } loop;
 
 typedef struct loops {
@@ -75,30 +75,29 @@ static int force_at_fault(const loops *l, int lane) {
   return worst;
 }
 
-/* "(0.001, 0, 0) (0.001, 0.01, 0)": the corners of a loop, of stretch and end rotations. */
-static void describe_loop(const physics *p, const loop *l, char *text, size_t size) {
+void physics_describe_way(const physics *p, const motion *corners, const double *rates, int count,
+                          char *text, size_t size) {
   size_t n = 0;
   text[0] = 0;
-  for (int k = 0; k < LEGS && n + 80 < size; k++) {
-    const double *m = l->corner[k + 1].at;
-    if (k > 0 && !memcmp(m, l->corner[k].at, sizeof l->corner[k].at)) continue;
-    if (p->b.micropolar)
-      n += (size_t)snprintf(text + n, size - n, "%s(%.3g, %.3g, %.3g)", n ? ", " : "",
-                            m[AXIS_STRETCH], m[AXIS_THETA_I], m[AXIS_THETA_J]);
-    else
-      n += (size_t)snprintf(text + n, size - n, "%s%.3g", n ? ", " : "", m[AXIS_STRETCH]);
+  for (int k = 1; k < count && n + 80 < size; k++) {
+    const double *m = corners[k].at;
+    if (k > 1 && !memcmp(m, corners[k - 1].at, sizeof corners->at)) continue;
+    n += (size_t)snprintf(text + n, size - n, p->b.micropolar ? "%s(%.3g, %.3g, %.3g)" : "%s%.3g",
+                          n ? ", " : "", m[AXIS_STRETCH], m[AXIS_THETA_I], m[AXIS_THETA_J]);
+    if (rates && physics_reads_rate(p))
+      n += (size_t)snprintf(text + n, size - n, " at %.3g 1/s", rates[k - 1]);
   }
 }
 
-static void note_loop(physics *p, const loops *l, int lane, bool rate) {
-  char corners[640], speed[64] = "";
+/* `rates`: those of the legs, or NULL. */
+static void note_loop(physics *p, const loops *l, int lane, const double *rates) {
+  char corners[640];
   double *column = must_alloc((size_t)p->b.width * sizeof *column);
   bench_get(&p->b, l->base, lane, column);
-  describe_loop(p, &l->of[lane], corners, sizeof corners);
-  if (rate) snprintf(speed, sizeof speed, " at a rate of %.3g 1/s", l->of[lane].speed);
+  physics_describe_way(p, l->of[lane].corner, rates, CORNERS, corners, sizeof corners);
   char *state = physics_state_text(p, column);
-  diag_note(p->said, (span){0, 0, UINT16_MAX}, "the way goes through %s = %s%s; it begins at %s",
-            p->b.micropolar ? "(stretch, theta_i, theta_j)" : "stretch", corners, speed, state);
+  diag_note(p->said, (span){0, 0, UINT16_MAX}, "the way goes through %s = %s; it begins at %s",
+            p->b.micropolar ? "(stretch, theta_i, theta_j)" : "stretch", corners, state);
   free(state);
   free(column);
 }
@@ -147,7 +146,7 @@ static void say_closed_path(physics *p, const loops *l, int lane) {
               "have no stored energy",
               damaged ? "at a damage that stays the same " : "",
               100 * fabs(l->work[lane]) / l->peak[lane]);
-  note_loop(p, l, lane, false);
+  note_loop(p, l, lane, NULL);
   if (p->b.law->results[RESULT_V])
     diag_hint(p->said,
               "the moments of `force V` are V*length/2: they have an energy when V is as s/length");
@@ -231,31 +230,15 @@ void physics_check_closed_path(physics *p) {
 
 /* --- dissipation ------------------------------------------------------------------------------ */
 
-static double norm_of_leg(const loop *o, int leg) {
-  double sum = 0;
-  for (int k = 0; k < AXIS_COUNT; k++) {
-    double way = o->corner[leg + 1].at[k] - o->corner[leg].at[k];
-    sum += k == AXIS_RATE ? 0 : way * way;
-  }
-  return sqrt(sum);
-}
-
 /* The whole law along the loop, from rest; `steps` a leg, forces in the middle of each. */
 static void go_round(physics *p, loops *l, int count, int steps) {
   bench *b = &p->b;
   restart(p, l, count);
   for (int leg = 0; leg < LEGS; leg++) {
-    double rate[BENCH_LANES];
-    for (int lane = 0; lane < count; lane++) {
-      const loop *o = &l->of[lane];
-      double way = o->corner[leg + 1].at[AXIS_STRETCH] - o->corner[leg].at[AXIS_STRETCH],
-             norm = norm_of_leg(o, leg);
-      rate[lane] = norm > 0 ? way * o->speed / norm : 0;
-    }
     for (int step = 0; step < steps; step++) {
       for (int lane = 0; lane < count; lane++) {
         motion m = between(&l->of[lane], leg, (step + 0.5) / steps);
-        m.at[AXIS_RATE] = rate[lane];
+        m.at[AXIS_RATE] = l->of[lane].rate[leg];
         bench_move(b, l->now, lane, m);
       }
       probe_run(b, &b->step, l->now, count);
@@ -278,10 +261,10 @@ static motion stretch_of(motion theta, motion stretch) {
 }
 
 /* Out and back; there and back through rest; stretch and rotation in turns; anywhere. */
-static void draw_cycle(physics *p, loop *o, int kind) {
+static void draw_corners(physics *p, loop *o, int kind) {
   motion amplitude = physics_draw_motion(p), rest = {{0}};
   motion a = physics_draw_corner(p, amplitude), b = physics_draw_corner(p, amplitude);
-  *o = (loop){.speed = pow(10, draw_uniform(&p->b.seed, -3, 5))};
+  *o = (loop){0};
   motion *c = o->corner;
   switch (p->b.micropolar ? kind % 4 : kind % 2) {
   case 0:
@@ -305,6 +288,16 @@ static void draw_cycle(physics *p, loop *o, int kind) {
   default:
     for (int k = 1; k < LEGS; k++)
       c[k] = physics_draw_corner(p, amplitude);
+  }
+}
+
+/* Each leg at its own speed, within a decade of the others. */
+static void draw_rates(physics *p, loop *o) {
+  double speed = pow(10, draw_uniform(&p->b.seed, -3, 5));
+  for (int leg = 0; leg < LEGS; leg++) {
+    double way = o->corner[leg + 1].at[AXIS_STRETCH] - o->corner[leg].at[AXIS_STRETCH];
+    double rate = speed * pow(10, draw_uniform(&p->b.seed, -1, 0));
+    o->rate[leg] = way == 0 ? 0 : copysign(rate, way);
   }
 }
 
@@ -337,7 +330,7 @@ static void look_closer(physics *p, const loops *coarse, int lane, loops *l) {
         p, DIAG_DISSIPATION, physics_fault(p, force_at_fault(l, 0), column), NULL,
         "a closed cycle gives %.4g J of work out, %.3g %% of its peak energy: the law feeds energy",
         -l->work[0], -100 * l->work[0] / l->peak[0]);
-    note_loop(p, l, 0, true);
+    note_loop(p, l, 0, l->of[0].rate);
     diag_hint(p->said, "damping opposes the rate, friction needs a `state` for the slip, and "
                        "damage is not undone");
   }
@@ -366,7 +359,8 @@ void physics_check_dissipation(physics *p) {
     for (int lane = 0; lane < BENCH_LANES; lane++) {
       bench_draw(b, l->base, lane);
       bench_virgin(b, l->base, lane);
-      draw_cycle(p, &l->of[lane], lane + round);
+      draw_corners(p, &l->of[lane], lane + round);
+      draw_rates(p, &l->of[lane]);
     }
     go_round(p, l, BENCH_LANES, COARSE_STEPS);
     for (int lane = worst_lane(l);

@@ -7,6 +7,9 @@
 #include "generator/law_inputs.h"
 #include "generator/physics_parts.h"
 
+const char *const physics_force_names[FORCE_COUNT] = {"N", "M_i", "M_j"};
+const char *const physics_force_units[FORCE_COUNT] = {"N", "N*m", "N*m"};
+
 /* --- the state as text ------------------------------------------------------------------------ */
 
 /* Inputs that the forces or fields need. */
@@ -64,6 +67,13 @@ static void add_parameters(const bench *b, const double *column, FILE *out,
   if (read[QUANTITY_S] || read[QUANTITY_SPACING])
     add_value(out, separator, "s", column[b->parameter_count + (int)QUANTITY_S], "m");
   free(read);
+}
+
+bool physics_reads_rate(const physics *p) {
+  unsigned char *read = inputs_read(&p->b, IR_FROM_QUANTITY, QUANTITY_COUNT);
+  bool rate = read[QUANTITY_STRETCH_RATE];
+  free(read);
+  return rate;
 }
 
 char *physics_state_text(const physics *p, const double *column) {

@@ -13,7 +13,6 @@ static const double REST_TOLERANCE = 1e-12;     /* of the force at a stretch and
 static const double STIFFNESS_TOLERANCE = 1e-6; /* stretches of 1e-7 leave nine digits */
 static const double TANGENT_TOLERANCE = 1e-4;
 
-static const char *const force_names[FORCE_COUNT] = {"N", "M_i", "M_j"};
 static const bench_axis force_axis[FORCE_COUNT] = {AXIS_STRETCH, AXIS_THETA_I, AXIS_THETA_J};
 
 static void virgin_batch(bench *b, double *const *states) {
@@ -47,11 +46,11 @@ void physics_check_rest(physics *p) {
       bench_get(b, states, lane, column);
       if (isfinite(force))
         physics_say(p, DIAG_REST_FORCE, physics_fault(p, k, column), column,
-                    "a virgin bond at rest carries `%s` = %.6g; it should carry nothing",
-                    force_names[k], force);
+                    "a virgin bond at rest carries `%s` = %.6g %s; it should carry nothing",
+                    physics_force_names[k], force, physics_force_units[k]);
       else
         physics_say(p, DIAG_REST_FORCE, physics_fault(p, k, column), column,
-                    "`%s` of a virgin bond at rest is not a finite number", force_names[k]);
+                    "`%s` of a virgin bond at rest is not a finite number", physics_force_names[k]);
       diag_hint(p->said,
                 "at stretch = 0 and without rotations every force is 0; 0/0 is not a number");
     }
@@ -101,7 +100,7 @@ void physics_check_stiffness(physics *p) {
     bench_get(b, states, lane, column);
     physics_say(p, DIAG_STIFFNESS, physics_fault(p, worst, column), column,
                 "a virgin bond has a negative stiffness: a small motion makes `%s` push it on",
-                force_names[worst]);
+                physics_force_names[worst]);
     diag_hint(p->said,
               "N pulls the ends together when stretch > 0; M_i opposes theta_i: look at the signs");
   }
@@ -179,6 +178,8 @@ typedef struct tangent_test {
   double largest[RESULTS_AND_AXES]; /* derivative of the batch */
   double force_size[FORCE_COUNT]; /* largest of the batch: what rounding inside the law is measured
                                      by */
+  double intact[FORCE_COUNT][BENCH_LANES]; /* forces of the bond as a new one: of a broken bond
+                                              1 - damage is all rounding */
 } tangent_test;
 
 static void walk_stencil(physics *p, tangent_test *t, int count, bench_axis axis) {
@@ -215,7 +216,8 @@ static void compare_slope(physics *p, tangent_test *t, int lane, bench_axis axis
     double close = (t->force[3][k][lane] - t->force[4][k][lane]) / step;
     double symbolic = t->tangent.out[k * AXIS_COUNT + (int)axis][lane];
     if (k == FORCE_N && axis == AXIS_STRETCH) symbolic += wrong;
-    double noise = (1e-13 * fabs(at) + 1e-15 * t->force_size[k]) / step,
+    double noise =
+               (1e-13 * fabs(at) + 1e-15 * (t->force_size[k] + fabs(t->intact[k][lane]))) / step,
            size = fmax(fabs(close), fabs(symbolic));
     if (size <= 1e-10 * t->largest[k * AXIS_COUNT + (int)axis])
       continue; /* what rounding leaves of a broken bond */
@@ -225,11 +227,27 @@ static void compare_slope(physics *p, tangent_test *t, int lane, bench_axis axis
     bench_get(&p->b, t->states, lane, column);
     physics_say(p, DIAG_TANGENT, physics_fault(p, k, column), column,
                 "the derivative of `%s` by `%s` is %.6g, but differences of the force give %.6g",
-                force_names[k], axis_names[axis], symbolic, close);
+                physics_force_names[k], axis_names[axis], symbolic, close);
     diag_hint(p->said,
               "this is a fault of the compiler, not of the law: please report it with the law");
     free(column);
   }
+}
+
+static void find_intact(physics *p, tangent_test *t, int count) {
+  bench *b = &p->b;
+  for (int lane = 0; lane < count; lane++) {
+    bench_virgin(b, t->moved, lane);
+    bench_move(b, t->moved, lane, bench_motion(b, t->states, lane));
+  }
+  probe_run(b, &b->frozen, t->moved, count);
+  for (int k = 0; k < FORCE_COUNT; k++)
+    memcpy(t->intact[k], b->frozen.out[k], (size_t)count * sizeof(double));
+}
+
+static void copy_to_moved(physics *p, tangent_test *t, int count) {
+  for (int k = 0; k < p->b.width; k++)
+    memcpy(t->moved[k], t->states[k], (size_t)count * sizeof(double));
 }
 
 static void test_batch(physics *p, tangent_test *t, int count, double wrong) {
@@ -238,8 +256,9 @@ static void test_batch(physics *p, tangent_test *t, int count, double wrong) {
   for (int k = 0; k < RESULTS_AND_AXES; k++)
     for (int lane = 0; lane < count; lane++)
       t->largest[k] = fmax(t->largest[k], fabs(t->tangent.out[k][lane]));
-  for (int k = 0; k < b->width; k++)
-    memcpy(t->moved[k], t->states[k], (size_t)count * sizeof(double));
+  copy_to_moved(p, t, count);
+  find_intact(p, t, count);
+  copy_to_moved(p, t, count);
   probe_run(b, &b->step, t->states, count);
   for (int k = 0; k < FORCE_COUNT; k++)
     for (int lane = 0; lane < count; lane++)

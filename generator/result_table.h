@@ -1,4 +1,4 @@
-/* Results as commands read them: opened with a message for what is no result, names as a list, a
+/* Results as commands read them: opened with a message for what is no result, a history or a
    frame's field with all that says what it is. */
 #ifndef PERILAT_GENERATOR_RESULT_TABLE_H
 #define PERILAT_GENERATOR_RESULT_TABLE_H
@@ -7,17 +7,6 @@
 
 /* NULL after a message. `command` as the person typed it, "perilat export". */
 result_file *table_open(const char *command, const char *path);
-
-typedef struct table_names {
-  char *text; /* holds the names */
-  char **items;
-  int count;
-} table_names;
-/* Histories ("/history") or fields of frames ("/frames"), without "time", in the file's order. */
-table_names table_names_of(result_file *f, const char *group);
-void table_names_free(table_names *n);
-/* Position, or -1. */
-int table_names_find(const table_names *n, const char *name);
 
 /* A history, or a field of one frame. */
 typedef struct table_values {

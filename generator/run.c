@@ -19,10 +19,9 @@ enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never
 
 /* --- signals ---------------------------------------------------------------------------------- */
 
-static volatile sig_atomic_t interrupted;
+static volatile sig_atomic_t interrupted; /* the first signal that asked for it */
 static void on_interrupt(int signal_number) {
-  (void)signal_number;
-  interrupted = 1;
+  if (!interrupted) interrupted = signal_number;
 }
 
 /* Ctrl-C, the end of a batch job, a closed terminal: all stop at a step and write what there is. */
@@ -133,9 +132,8 @@ static long next_stride(long stride, double seconds) {
 
 /* Time loop with frames and checkpoints. */
 static step_status march(run *r, bool *written) {
-  const long total = simulation_step_count(r->simulation);
   progress bar;
-  progress_begin(&bar, (double)simulation_step_done(r->simulation) / (double)total);
+  progress_begin(&bar, simulation_progress(r->simulation));
   double last_checkpoint = monotonic_seconds();
   bool first_checkpoint = true;
   long stride = 16;
@@ -148,7 +146,7 @@ static step_status march(run *r, bool *written) {
     stride = next_stride(stride, monotonic_seconds() - entered);
     char detail[256];
     describe_monitors(r, detail, sizeof detail);
-    progress_show(&bar, (double)simulation_step_done(r->simulation) / (double)total, detail);
+    progress_show(&bar, simulation_progress(r->simulation), detail);
     double interval = r->deck->checkpoint.interval;
     if (first_checkpoint && interval > EARLY_CHECKPOINT) interval = EARLY_CHECKPOINT;
     if (interval > 0 && status == STEP_OK && monotonic_seconds() - last_checkpoint > interval) {
@@ -167,9 +165,10 @@ static step_status march(run *r, bool *written) {
 
 /* What could not be written: what there is stays for --resume when a checkpoint can be written, and goes otherwise. */
 static void give_up_writing(run *r, step_status status) {
-  if (status != STEP_BAD && write_checkpoint(r))
-    fprintf(stderr, "  the run is kept in its checkpoint: make room, then go on with --resume\n");
-  else
+  if (status != STEP_BAD && write_checkpoint(r)) {
+    fputs("  the run is kept in its checkpoint: make room, then go on with --resume:\n", stderr);
+    print_resume(r, stderr);
+  } else
     result_discard(r->result);
 }
 
@@ -191,11 +190,13 @@ static int execute(run *r, long resume_frames) {
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
-  if (stopped_by_user)
-    printf("stopped at t = %.5g ms as asked; `--resume` goes on from here\n",
+  if (stopped_by_user) {
+    printf("stopped at t = %.5g ms as asked; this goes on from here:\n",
            1e3 * simulation_time(r->simulation));
-  else
-    unlink(r->checkpoint_path);
+    print_resume(r, stdout);
+    return 128 + interrupted;
+  }
+  unlink(r->checkpoint_path);
   return status == STEP_BAD ? RUN_FAILED : 0;
 }
 
@@ -213,8 +214,10 @@ static bool resume(run *r, long *frames) {
             "perilat: error: cannot resume: there is no checkpoint `%s`\n"
             "  a run leaves one when it is stopped or killed; run without --resume\n",
             r->checkpoint_path);
-  else
+  else {
     fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    print_misfit(r);
+  }
   return false;
 }
 

@@ -17,6 +17,7 @@ typedef struct built_in_law {
 } built_in_law;
 
 typedef struct run_options {
+  const char *program;      /* as it is called: "perilat run", or a solver's name */
   const char *deck_path;    /* file, or the name of the built-in deck */
   const char *deck_text;    /* built-in deck, or NULL: read the file */
   const built_in_law *laws; /* NULL: compile the deck's models */
@@ -33,13 +34,18 @@ typedef struct run_options {
   diag_json *report; /* diagnostics go here; NULL: to stderr as text */
 } run_options;
 
-/* Exit status: 0 done (also when stopped by Ctrl-C: what there is has been written), 1 the input is wrong, 2 the run failed. */
+/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
+   is has been written then, whole. */
 int run_deck(const run_options *o);
 
-/* Opens the law of a material with the options that the deck chooses (these are taken out of its assignments); the
+/* Opens the law in the file `path` with the options that the material chooses, which are taken out of its assignments. */
+bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said);
+/* Opens and plans the law of a material with the options that the deck chooses (these are taken out of its assignments); the
    law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The law takes the setting of
-   the lattice (NULL: its first), and is planned for it. The model must be closed when out->memory is set. */
-bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out, diagnostics *said);
+   the lattice (NULL: a bond is of a lattice in plane stress), and is planned for it. The model must be closed when
+   out->memory is set. */
+bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
+                       diagnostics *said);
 
 /* main() of a stand-alone solver. */
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,

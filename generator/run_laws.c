@@ -114,30 +114,33 @@ static bool plan_material(const deck_material *m, model *out, diagnostics *said)
   return good;
 }
 
+bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said) {
+  bool good = model_open(out, path, NULL, 0);
+  if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
+  return good;
+}
+
 static law_setting setting_of(const deck_lattice *l) {
-  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
+  for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
   return SETTING_PLANE_STRESS;
 }
 
-/* The law takes the setting of its lattice. */
+/* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
+  char meant[96];
+  if (!l && out->law->tree->law == LAW_STATE) return true;
   out->law->setting = setting_of(l);
-  if (law_allows(out->law, out->law->setting)) return true;
-  const tree *t = out->law->tree;
-  char meant[96] = "";
-  for (int k = 0; k < t->setting_count; k++) {
-    size_t used = strlen(meant);
-    snprintf(meant + used, sizeof meant - used, "%s%s", k ? ", " : "", t->settings[k]);
-  }
+  const char *name = law_setting_name(out->law->setting);
+  if (model_suits(out, name, meant, sizeof meant)) return true;
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
-              "the law `%s` is meant for %s, but the lattice '%s' is in %s", t->name, meant,
-              l->name, law_setting_name(out->law->setting));
+              "the law `%s` is meant for %s, but this lattice is in %s", out->law->tree->name,
+              meant, name);
   diag_hint(said,
             "take another law or setting; where the equations hold in %s, too, add it to the "
             "law's line `for`",
-            law_setting_name(out->law->setting));
+            name);
   return false;
 }
 
@@ -157,9 +160,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
                     "`models`; PERILAT_MODELS may name another folder");
     return false;
   }
-  bool good = model_open(out, path, NULL, 0);
-  if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
-  if (good && l) good = take_setting(m, l, out, said);
+  bool good = run_open_law(m, path, out, said) && take_setting(m, l, out, said);
   if (good && l && needs_families(l, out->law) && m->varying_count == 0)
     good = model_plan_of_families(out);
   else
@@ -220,7 +221,8 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
   diagnostics found;
   diag_begin(&found, &opened->sources);
   bool good = physics_check(
-      opened->law, &(physics_options){.parameters = parameters, .bonds = &bonds, .effort = 0.5},
+      opened->law,
+      &(physics_options){.parameters = parameters, .bonds = &bonds, .lattice = d, .effort = 0.5},
       &found, NULL);
   tell(r, &found);
   diag_clear(&found);

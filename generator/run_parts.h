@@ -23,7 +23,8 @@ typedef struct run {
   simulation *simulation;
   result *result;
   char *result_path, *checkpoint_path;
-  char fingerprint[40], started[32];
+  const char *fingerprint;
+  char started[32];
   double *frame_buffer;
 } run;
 
@@ -41,7 +42,7 @@ void choose_paths(run *r);
 /* Errors at the deck's line: a result that cannot be written, or that would replace the deck or a law. */
 bool result_can_be_written(run *r);
 bool result_spares_inputs(run *r);
-/* What a checkpoint belongs to. */
+/* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line each. */
 void fingerprint(run *r);
 bool open_result(run *r, long resume_frames);
 bool write_frame(run *r);
@@ -56,6 +57,10 @@ void announce(const run *r);
 void describe_monitors(const run *r, char *text, size_t size);
 /* Why and where a run went bad; leaves a path that drives the bond at fault. */
 void report_bad(const run *r);
+/* The command that goes on from the checkpoint. */
+void print_resume(const run *r, FILE *out);
+/* What the checkpoint belongs to and this run is not, when that is why it does not fit. */
+void print_misfit(const run *r);
 /* What came out. */
 void conclude(const run *r, double seconds, long steps);
 /* Which &stop ended the run early. */

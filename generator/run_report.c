@@ -6,6 +6,7 @@
 #include "generator/bad_bond.h"
 #include "generator/explain_bad.h"
 #include "generator/run_parts.h"
+#include "runtime/checkpoint.h"
 #include "runtime/implied.h"
 #include "runtime/random_field.h"
 
@@ -78,10 +79,16 @@ void announce(const run *r) {
     announce_law(r, k);
   }
   announce_fields(r);
-  printf("  time       %.6g ms in %ld steps of %.4g us: %.3g of the stable step %.4g us (%s mode "
+  const int increments = r->deck->relaxation.increments;
+  char parts[64];
+  if (increments > 0)
+    snprintf(parts, sizeof parts, "%d quasi-static increments, steps", increments);
+  else
+    snprintf(parts, sizeof parts, "%ld steps", simulation_step_count(r->simulation));
+  printf("  time       %.6g ms in %s of %.4g us: %.3g of the stable step %.4g us (%s mode "
          "rules)\n",
-         1e3 * s->end_time, simulation_step_count(r->simulation), 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+         1e3 * s->end_time, parts, 1e6 * limit->step, limit->step / limit->limit,
+         1e6 * limit->limit, limit->mode);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
@@ -89,7 +96,7 @@ void announce(const run *r) {
   fflush(stdout);
 }
 
-/* --- during and after ------------------------------------------------------------------------- */
+/* --- during the run, and when it goes wrong --------------------------------------------------- */
 
 /* "load 3100 N (peak 11020 N), cmod 1.2e-5 m": monitors at the last sample. */
 void describe_monitors(const run *r, char *text, size_t size) {
@@ -165,6 +172,65 @@ void report_bad(const run *r) {
           "stays finite there mends it\n");
 }
 
+/* --- stopped and resumed ---------------------------------------------------------------------- */
+
+/* As a word of a shell. */
+static void print_word(const char *word, FILE *out) {
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "_./:=,+-";
+  if (*word && strspn(word, plain) == strlen(word)) {
+    fputs(word, out);
+    return;
+  }
+  fputc('\'', out);
+  for (; *word; word++)
+    fputs(*word == '\'' ? "'\\''" : (char[]){*word, 0}, out);
+  fputc('\'', out);
+}
+
+void print_resume(const run *r, FILE *out) {
+  const run_options *o = r->options;
+  fprintf(out, "  %s", o->program);
+  if (!o->deck_text) {
+    fputc(' ', out);
+    print_word(o->deck_path, out);
+  }
+  for (int k = 0; k < o->override_count; k++) {
+    fputs(" --set ", out);
+    print_word(o->overrides[k].text, out);
+  }
+  fputs(o->interpret ? " --interpret --resume\n" : " --resume\n", out);
+}
+
+/* One line, cut to what is near the byte at which two lines begin to differ. */
+static void print_near(const char *title, const char *line, size_t differs) {
+  enum { BEFORE = 50, WIDTH = 120 };
+  size_t length = strcspn(line, "\n"), from = differs > BEFORE ? differs - BEFORE : 0;
+  size_t shown = length - from < WIDTH ? length - from : WIDTH;
+  fprintf(stderr, "    %s %s%.*s%s\n", title, from ? "..." : "", (int)shown, line + from,
+          from + shown < length ? "..."
+          : length              ? ""
+                                : "nothing more");
+}
+
+void print_misfit(const run *r) {
+  char *stopped = checkpoint_fingerprint(r->checkpoint_path);
+  if (!stopped || strcmp(stopped, r->fingerprint) == 0) {
+    free(stopped);
+    return;
+  }
+  size_t line = 0, at = 0;
+  for (; stopped[at] == r->fingerprint[at]; at++)
+    if (stopped[at] == '\n') line = at + 1;
+  fputs("  they differ first here:\n", stderr);
+  print_near("stopped run:", stopped + line, at - line);
+  print_near("this run:   ", r->fingerprint + line, at - line);
+  fputs("  a run goes on with the deck and the --set options that it began with\n", stderr);
+  free(stopped);
+}
+
+/* --- after the run ---------------------------------------------------------------------------- */
+
 static double last_value(const run *r, const char *name) {
   const double *time;
   long samples = simulation_history(r->simulation, &time);
@@ -190,11 +256,37 @@ static void conclude_energy(const run *r) {
   putchar('\n');
 }
 
+/* What states, damage and rate terms cannot do: give more than they have taken. */
+static void warn_of_gain(const run *r) {
+  static const struct {
+    const char *series, *words;
+  } parts[] = {{"energy/dissipated_damage", "its damage and states have"},
+               {"energy/dissipated_damping", "its rate terms and the deck's damping have"}};
+  const double scale =
+      fmax(fabs(last_value(r, "energy/external")),
+           fmax(fabs(last_value(r, "energy/kinetic")), fabs(last_value(r, "energy/stored"))));
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+    const double lost = last_value(r, parts[k].series);
+    if (!(lost < -1e-3 * scale)) continue;
+    fprintf(stderr,
+            "perilat: warning: the law gives energy: %s dissipated %.5g J, less than nothing\n"
+            "  `perilat drive` along a closed path shows where (`perilat help dissipation`)%s\n",
+            parts[k].words, lost,
+            k ? ""
+              : "; a law that locks energy in its states should give W (`perilat help energy`)");
+  }
+}
+
 void conclude(const run *r, double seconds, long steps) {
   const rows *w = simulation_rows(r->simulation, 0);
   double rate = (double)steps / fmax(seconds, 1e-9);
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
          1e-6 * rate * (double)w->bond_count);
+  long unbalanced;
+  const long increments = simulation_increments(r->simulation, &unbalanced);
+  if (increments > 0)
+    printf("  increments %ld, %ld of them without balance after most_steps\n", increments,
+           unbalanced);
   for (int k = 0; k < r->deck->monitor_count; k++) {
     const char *unit_name;
     const double *values;
@@ -205,6 +297,8 @@ void conclude(const run *r, double seconds, long steps) {
            pure ? "" : unit_name, 1e3 * when);
   }
   conclude_energy(r);
+  fflush(stdout);
+  warn_of_gain(r);
   long frames = result_frame_count(r->result);
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");

@@ -5,7 +5,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "dsl/hash.h"
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
@@ -74,18 +73,12 @@ bool result_spares_inputs(run *r) {
   return good;
 }
 
-/* With its end, so that no two sequences of texts run together alike. */
-static uint64_t hash_text(uint64_t hash, const char *text) {
-  return hash_more(hash, text, strlen(text) + 1);
-}
-
-/* What a checkpoint belongs to: the program, the deck as overridden, and the kernels. */
 void fingerprint(run *r) {
-  uint64_t hash = hash_text(HASH_START, perilat_version);
-  hash = hash_text(hash, r->deck->identity);
+  char *text = arena_printf(r->memory, "perilat %s\n", perilat_version);
   for (int k = 0; k < r->deck->lattice_count; k++)
-    hash = hash_text(hash, r->laws[k].law->key);
-  snprintf(r->fingerprint, sizeof r->fingerprint, "%016llx", (unsigned long long)hash);
+    text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
+                        r->laws[k].law->key);
+  r->fingerprint = arena_printf(r->memory, "%s%s", text, r->deck->identity);
 }
 
 /* --- result ----------------------------------------------------------------------------------- */

@@ -43,52 +43,60 @@ static void read_value(arena *a, source_set *sources, int file, uint32_t begin, 
   if (!good) take_text(a, sources->items[file].text, begin, (uint16_t)file, key);
 }
 
-/* name=value into a key of the group. */
-static bool read_one(arena *a, source_set *sources, const char *given, namelist_group *g,
-                     diagnostics *d) {
+/* Those of `m` but the ones of a name. */
+static int remove_name(deck_material *m, const char *name) {
+  int kept = 0;
+  const int before = m->assignment_count;
+  for (int k = 0; k < before; k++)
+    if (strcasecmp(m->assignments[k].name, name) != 0) m->assignments[kept++] = m->assignments[k];
+  m->assignment_count = kept;
+  return before - kept;
+}
+
+static void add_all(arena *a, const deck_material *set, deck_material *m) {
+  const size_t room = (size_t)(m->assignment_count + set->assignment_count) + 1;
+  deck_assignment *all = arena_alloc(a, room * sizeof *all);
+  for (int k = 0; k < m->assignment_count; k++)
+    all[k] = m->assignments[k];
+  for (int k = 0; k < set->assignment_count; k++)
+    all[m->assignment_count++] = set->assignments[k];
+  m->assignments = all;
+}
+
+/* name=value, or name= */
+static bool set_one(arena *a, source_set *sources, const char *given, deck_material *m,
+                    diagnostics *d) {
   int file = source_add(sources, "--set", given, strlen(given));
   const char *text = sources->items[file].text;
-  size_t name = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
-  const span where = {0, (uint32_t)name, (uint16_t)file};
-  size_t equals = name + strspn(text + name, " ");
-  bool empty = text[equals] == '=' && text[equals + 1 + strspn(text + equals + 1, " ")] == 0;
-  if (name == 0 || name > NAMELIST_LONGEST_NAME || text[equals] != '=' || empty) {
+  size_t length = strspn(text, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_");
+  const span where = {0, (uint32_t)length, (uint16_t)file};
+  size_t equals = length + strspn(text + length, " ");
+  if (length == 0 || length > NAMELIST_LONGEST_NAME || text[equals] != '=') {
     diag_report(d, DIAG_DECK_SYNTAX, (span){0, (uint32_t)strlen(text), (uint16_t)file},
                 "`--set` takes a name and its value");
     diag_hint(d, "for example --set E='40 GPa'");
     return false;
   }
-  namelist_key *key = namelist_add_key(a, g, arena_text(a, text, name));
+  const char *name = arena_text(a, text, length);
+  const int removed = remove_name(m, name);
+  if (text[equals + 1 + strspn(text + equals + 1, " ")] == 0) {
+    if (!removed) diag_report(d, DIAG_UNKNOWN_KEY, where, "no `%s` is given to take back", name);
+    return removed > 0;
+  }
+  namelist_group g = {.name = "material"};
+  deck_material set = {.lattice = NULL};
+  namelist_key *key = namelist_add_key(a, &g, name);
   read_value(a, sources, file, (uint32_t)equals + 1, key);
   key->name_where = where;
+  if (!settings_of_group(a, &g, &set, d)) return false;
+  add_all(a, &set, m);
   return true;
-}
-
-/* Those of `set` after those of `m`, of which the ones that it names again go. */
-static void replace(arena *a, const deck_material *set, deck_material *m) {
-  size_t room = (size_t)(m->assignment_count + set->assignment_count) + 1;
-  deck_assignment *all = arena_alloc(a, room * sizeof *all);
-  int count = 0;
-  for (int k = 0; k < m->assignment_count; k++) {
-    bool again = false;
-    for (int n = 0; n < set->assignment_count; n++)
-      again = again || strcasecmp(m->assignments[k].name, set->assignments[n].name) == 0;
-    if (!again) all[count++] = m->assignments[k];
-  }
-  for (int n = 0; n < set->assignment_count; n++)
-    all[count++] = set->assignments[n];
-  m->assignments = all;
-  m->assignment_count = count;
 }
 
 bool settings_read(arena *a, source_set *sources, const char *const *texts, int count,
                    deck_material *m, diagnostics *d) {
-  namelist_group g = {.name = "material"};
-  deck_material set = {.lattice = NULL};
   bool good = true;
   for (int k = 0; k < count; k++)
-    good = read_one(a, sources, texts[k], &g, d) && good;
-  good = good && settings_of_group(a, &g, &set, d);
-  if (good) replace(a, &set, m);
+    good = set_one(a, sources, texts[k], m, d) && good;
   return good;
 }

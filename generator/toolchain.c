@@ -65,6 +65,15 @@ const char *toolchain_compiler(void) {
   return NULL;
 }
 
+const char *toolchain_no_compiler(void) {
+  static _Thread_local char text[200]; /* the answer, until the thread's next call */
+  const char *chosen = setting("PERILAT_CC");
+  if (!chosen) return "no C compiler was found (install gcc or clang, or set PERILAT_CC)";
+  snprintf(text, sizeof text, "PERILAT_CC names the C compiler `%.100s`, which was not found",
+           chosen);
+  return text;
+}
+
 /* Lines of /proc/cpuinfo about one processor: model and instruction sets. Empty where there is
  * none. */
 static void read_processor(char *text, size_t size) {
@@ -368,9 +377,9 @@ static void explain_failure(int status, const char *source, const char *log, cha
     snprintf(error, size, "the C compiler `%s` could not be started", toolchain_compiler());
   else
     snprintf(error, size,
-             "internal error: `%s` refused the generated C (status %d); the source is kept as "
-             "`%s`; it begins:\n%s",
-             toolchain_compiler(), status, source, said);
+             "the C compiler `%s` failed (status %d) on the generated C, which is kept as `%s`; "
+             "it %s%s",
+             toolchain_compiler(), status, source, *said ? "said:\n" : "said nothing", said);
 }
 
 /* Compiles `source` to `path`, whole or not at all. */
@@ -378,14 +387,18 @@ static bool compile_to(const char *source, const char *path, const char *librari
                        char *error, size_t size) {
   char object[LONGEST_PATH], log[LONGEST_PATH];
   if (!toolchain_compiler()) {
-    snprintf(error, size, "there is no C compiler (install gcc or clang, or set PERILAT_CC)");
+    snprintf(error, size, "%s", toolchain_no_compiler());
     return false;
   }
   if (!make_temporary(path, ".tmp", object, sizeof object)) {
     snprintf(error, size, "cannot write beside `%s`: %s", path, strerror(errno));
     return false;
   }
-  snprintf(log, sizeof log, "%.*s.log", (int)strlen(object) - 4, object);
+  if (!make_temporary(source, ".log", log, sizeof log)) {
+    snprintf(error, size, "cannot write beside `%s`: %s", source, strerror(errno));
+    unlink(object);
+    return false;
+  }
   int status = compile(source, object, libraries, log);
   if (status) explain_failure(status, source, log, error, size);
   unlink(log);

@@ -6,7 +6,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
-#include <unistd.h>
 
 static bool ends_in(const char *text, const char *tail) {
   size_t n = strlen(text), m = strlen(tail);
@@ -25,16 +24,11 @@ bool canvas_open(canvas *c, const char *path, double width, double height, char 
                  size_t size) {
   *c = (canvas){.path = path, .width = width, .height = height, .is_png = ends_in(path, ".png")};
   const bool is_svg = ends_in(path, ".svg");
-  if (strlen(path) > 4096) {
-    snprintf(error, size, "the picture's path is too long");
-    return false;
-  }
   if (!c->is_png && !is_svg && !ends_in(path, ".pdf")) {
     snprintf(error, size, "a picture's name ends in .png, .svg or .pdf; `%s` does not", path);
     return false;
   }
-  snprintf(c->temporary, sizeof c->temporary, "%.4096s.part", path);
-  c->file = fopen(c->temporary, "wb");
+  c->file = whole_file_begin(&c->place, path) ? fopen(c->place.working, "wb") : NULL;
   if (!c->file) {
     snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
     return false;
@@ -62,11 +56,10 @@ bool canvas_close(canvas *c, char *error, size_t size) {
   cairo_surface_destroy(c->surface);
   errno = 0;
   bool written = fclose(c->file) == 0 && status == CAIRO_STATUS_SUCCESS && !c->reason;
-  if (written && rename(c->temporary, c->path) == 0) return true;
+  if (whole_file_end(&c->place, written)) return true;
   int reason = c->reason ? c->reason : errno;
   snprintf(error, size, "cannot write `%s`: %s", c->path,
            reason ? strerror(reason) : cairo_status_to_string(status));
-  unlink(c->temporary);
   return false;
 }
 
@@ -87,8 +80,8 @@ void canvas_text(canvas *c, double x, double y, double size, anchor a, const cha
   cairo_show_text(c->cr, text);
 }
 
-void canvas_text_within(canvas *c, double x, double y, double size, double width,
-                        const char *text) {
+static void put_within(canvas *c, double x, double y, double size, double width, anchor a,
+                       const char *text) {
   char shown[512];
   snprintf(shown, sizeof shown, "%s", text);
   double least = 0.7 * size;
@@ -98,14 +91,20 @@ void canvas_text_within(canvas *c, double x, double y, double size, double width
       n--;
     snprintf(shown + n - 1, sizeof shown - n + 1, "...");
   }
-  canvas_text(c, x, y, size, ANCHOR_LEFT, shown);
+  canvas_text(c, x, y, size, a, shown);
 }
 
-void canvas_text_upward(canvas *c, double x, double y, double size, const char *text) {
+void canvas_text_within(canvas *c, double x, double y, double size, double width,
+                        const char *text) {
+  put_within(c, x, y, size, width, ANCHOR_LEFT, text);
+}
+
+void canvas_text_upward(canvas *c, double x, double y, double size, double length,
+                        const char *text) {
   cairo_save(c->cr);
   cairo_translate(c->cr, x, y);
   cairo_rotate(c->cr, -M_PI / 2);
-  canvas_text(c, 0, 0, size, ANCHOR_CENTRE, text);
+  put_within(c, 0, 0, size, length, ANCHOR_CENTRE, text);
   cairo_restore(c->cr);
 }
 
@@ -126,11 +125,11 @@ const char *readable_unit(const char *si_unit, double largest, double *factor) {
   static const struct {
     const char *si, *shown;
     double factor, from; /* used for largest values of at least `from` (SI) */
-  } table[] = {{"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4}, {"m", "um", 1e6, 0},
+  } table[] = {{"m", "m", 1, 0.5},       {"m", "mm", 1e3, 5e-4}, {"m", "µm", 1e6, 0},
                {"N", "MN", 1e-6, 1e6},   {"N", "kN", 1e-3, 1e3}, {"N", "N", 1, 0},
                {"J", "MJ", 1e-6, 1e6},   {"J", "kJ", 1e-3, 1e3}, {"J", "J", 1, 0.5},
-               {"J", "mJ", 1e3, 5e-4},   {"J", "uJ", 1e6, 0},    {"s", "s", 1, 0.5},
-               {"s", "ms", 1e3, 5e-4},   {"s", "us", 1e6, 0},    {"Pa", "GPa", 1e-9, 1e9},
+               {"J", "mJ", 1e3, 5e-4},   {"J", "µJ", 1e6, 0},    {"s", "s", 1, 0.5},
+               {"s", "ms", 1e3, 5e-4},   {"s", "µs", 1e6, 0},    {"Pa", "GPa", 1e-9, 1e9},
                {"Pa", "MPa", 1e-6, 1e5}, {"Pa", "Pa", 1, 0}};
   for (size_t k = 0; k < sizeof table / sizeof *table; k++)
     if (strcmp(table[k].si, si_unit) == 0 && largest >= table[k].from) {

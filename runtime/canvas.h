@@ -7,6 +7,8 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "runtime/whole_file.h"
+
 typedef struct colour {
   double r, g, b;
 } colour;
@@ -16,8 +18,8 @@ typedef struct canvas {
   cairo_surface_t *surface;
   double width, height; /* in points (pixels of a PNG) */
   const char *path;
-  char temporary[4200];
-  FILE *file; /* of the temporary */
+  whole_file place;
+  FILE *file;
   int reason; /* errno of the first write that failed */
   bool is_png;
 } canvas;
@@ -26,7 +28,7 @@ typedef struct canvas {
    background. The canvas must stay where it is until it is closed. */
 bool canvas_open(canvas *c, const char *path, double width, double height, char *error,
                  size_t size);
-/* Writes under a temporary name and renames; frees. */
+/* Writes the picture, whole or not at all; frees. */
 bool canvas_close(canvas *c, char *error, size_t size);
 
 typedef enum anchor { ANCHOR_LEFT, ANCHOR_CENTRE, ANCHOR_RIGHT } anchor;
@@ -35,8 +37,9 @@ void canvas_colour(canvas *c, colour k);
 void canvas_text(canvas *c, double x, double y, double size, anchor a, const char *text);
 /* Left at x; smaller, and then cut, where it would be wider than `width`. */
 void canvas_text_within(canvas *c, double x, double y, double size, double width, const char *text);
-void canvas_text_upward(canvas *c, double x, double y, double size,
-                        const char *text); /* centred, turned by 90 degrees */
+/* Centred and turned by 90 degrees; smaller, and then cut, where it would be longer than `length`. */
+void canvas_text_upward(canvas *c, double x, double y, double size, double length,
+                        const char *text);
 void canvas_line(canvas *c, double x1, double y1, double x2, double y2, double width);
 double canvas_text_width(canvas *c, double size, const char *text);
 

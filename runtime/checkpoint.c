@@ -104,28 +104,57 @@ static bool open_file(stream *s) {
   return s->file || fail(s, strerror(errno));
 }
 
-static bool get_fingerprint(stream *s, const char *fingerprint) {
-  uint64_t length;
-  if (!get(s, &length, sizeof length)) return false;
-  if (length != strlen(fingerprint))
-    return fail(s, "the checkpoint belongs to another deck, law or kernel");
-  char *found = must_alloc((size_t)length + 1);
-  bool good = get(s, found, (size_t)length);
-  if (good && memcmp(found, fingerprint, (size_t)length) != 0)
-    good = fail(s, "the checkpoint belongs to another deck, law or kernel");
-  free(found);
-  return good;
+static off_t left_of(stream *s) {
+  const off_t at = ftello(s->file);
+  fseeko(s->file, 0, SEEK_END);
+  const off_t left = ftello(s->file) - at;
+  fseeko(s->file, at, SEEK_SET);
+  return left;
 }
 
-/* Everything before the parts' sizes. */
-static bool get_head(stream *s, const char *fingerprint, uint64_t *count) {
+static bool get_magic(stream *s) {
   char found[sizeof magic];
   if (!get(s, found, sizeof found)) return false;
   if (memcmp(found, magic, sizeof magic - 1) != 0)
     return fail(s, "this is not a checkpoint of perilat");
   if (found[sizeof magic - 1] != magic[sizeof magic - 1])
     return fail(s, "the checkpoint was written by another version of perilat");
-  return get_fingerprint(s, fingerprint) && get(s, count, sizeof *count);
+  return true;
+}
+
+/* malloc'ed; NULL where the file ends before it does. */
+static char *get_fingerprint(stream *s) {
+  uint64_t length;
+  if (!get(s, &length, sizeof length)) return NULL;
+  if (length > (uint64_t)left_of(s)) {
+    fail(s, "the checkpoint is cut short");
+    return NULL;
+  }
+  char *found = must_calloc((size_t)length + 1, 1);
+  if (get(s, found, (size_t)length)) {
+    if (strlen(found) == length) return found;
+    fail(s, "this is not a checkpoint of perilat");
+  }
+  free(found);
+  return NULL;
+}
+
+/* Everything before the parts' sizes. */
+static bool get_head(stream *s, const char *fingerprint, uint64_t *count) {
+  char *found = get_magic(s) ? get_fingerprint(s) : NULL;
+  if (!found) return false;
+  bool good = strcmp(found, fingerprint) == 0 ||
+              fail(s, "the checkpoint belongs to another deck, law or kernel");
+  free(found);
+  return good && get(s, count, sizeof *count);
+}
+
+char *checkpoint_fingerprint(const char *path) {
+  char unsaid[512];
+  stream s = {.path = path, .sum = HASH_START, .error = unsaid, .error_size = sizeof unsaid};
+  char *found = open_file(&s) && get_magic(&s) ? get_fingerprint(&s) : NULL;
+  if (s.file) fclose(s.file);
+  return found;
 }
 
 /* Reads to the end: the last eight bytes must be the sum of all before. */
@@ -147,14 +176,6 @@ static bool check_whole(stream *s) {
   if (found != sum) return fail(s, "the checkpoint is damaged (its checksum is wrong)");
   rewind(s->file);
   return true;
-}
-
-static off_t left_of(stream *s) {
-  const off_t at = ftello(s->file);
-  fseeko(s->file, 0, SEEK_END);
-  const off_t left = ftello(s->file) - at;
-  fseeko(s->file, at, SEEK_SET);
-  return left;
 }
 
 static bool get_parts(stream *s, const char *fingerprint, const checkpoint_part *parts, int count) {

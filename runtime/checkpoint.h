@@ -25,6 +25,9 @@ bool checkpoint_write(const char *path, const char *fingerprint, const checkpoin
 bool checkpoint_read(const char *path, const char *fingerprint, const checkpoint_part *parts,
                      int count, char *error, size_t size);
 
+/* The fingerprint of a checkpoint (malloc'ed); NULL where the file is none. */
+char *checkpoint_fingerprint(const char *path);
+
 /* The first `bytes` of part 0 alone, after the same checks of the file (not of the other parts):
    what the sizes of the others depend on. */
 bool checkpoint_peek(const char *path, const char *fingerprint, void *data, size_t bytes,

@@ -170,6 +170,7 @@ static void report_second(deck_reader *r, const namelist_group *second,
 }
 
 READ_SINGLE(simulation)
+READ_SINGLE(relaxation)
 READ_SINGLE(output)
 READ_SINGLE(checkpoint)
 
@@ -201,6 +202,8 @@ static void set_computed_defaults(deck_reader *r) {
   const char *name = without_ending(r->memory, k->name, ".nml");
   if (!k->simulation.title) k->simulation.title = name;
   if (!k->output.result) k->output.result = arena_printf(r->memory, "%s.h5", name);
+  if (k->simulation.step_safety <= 0)
+    k->simulation.step_safety = k->relaxation.increments > 0 ? 0.9 : 0.25;
   if (k->output.sample <= 0) k->output.sample = k->simulation.end_time / 2000;
 }
 
@@ -227,7 +230,7 @@ deck *deck_read(arena *a, source_set *sources, int file, const deck_override *ov
                 int override_count, diagnostics *d) {
   int errors = d->errors;
   namelist *n = namelist_read(a, sources, file, d);
-  deck_set(a, sources, n, overrides, override_count, d);
+  deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
 
   deck *k = arena_alloc(a, sizeof(*k));
   k->name = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));

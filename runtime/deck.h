@@ -250,12 +250,19 @@ typedef struct deck_checkpoint {
   double interval; /* seconds of wall time; default 600; 0: only when stopped */
 } deck_checkpoint;
 
+typedef struct deck_relaxation { /* increments 0: a dynamic run */
+  deck_item item;
+  int increments;
+  double tolerance; /* unbalanced force over the force needed */
+  int most_steps;   /* of an increment */
+} deck_relaxation;
+
 typedef struct deck_simulation {
   deck_item item;
   const char *title;
   double end_time;    /* s */
   double step;        /* s; 0: auto */
-  double step_safety; /* default 0.25 */
+  double step_safety; /* default 0.25; of quasi-static runs 0.9 */
   int threads;        /* 0: as the machine offers */
 } deck_simulation;
 
@@ -264,6 +271,7 @@ typedef struct deck {
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
                            without comments, title, number of threads and checkpoints */
   deck_simulation simulation;
+  deck_relaxation relaxation;
   deck_output output;
   deck_checkpoint checkpoint;
 #define DECK_LISTS(X)                                                                              \

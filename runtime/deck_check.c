@@ -311,6 +311,16 @@ void deck_check_simulation(deck_reader *r, const namelist_group *from, deck_simu
                 "`step` is longer than the run");
 }
 
+void deck_check_relaxation(deck_reader *r, const namelist_group *from, deck_relaxation *item) {
+  (void)from;
+  if (item->increments < 1)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "increments"),
+                "a quasi-static run has at least one increment");
+  if (item->most_steps < 1)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "most_steps"),
+                "an increment needs at least one step");
+}
+
 enum { IN_PLANE = 1 << 2, IN_SPACE = 1 << 3 }; /* by dimensions */
 static const char *const dimension_words[] = {
     [2] = "a lattice in the plane", [3] = "a lattice in space"};
@@ -655,9 +665,9 @@ static bool is_identifier(const char *name) {
 }
 
 static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
-  static const char *const taken[] = {"time", "energy"};
+  static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance"};
   span where = deck_where(&item->item, "name");
-  if (is_one_of(item->name, taken, 2))
+  if (is_one_of(item->name, taken, 4))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a monitor cannot be called `%s`: the result has a history of that name",
                 item->name);
@@ -802,6 +812,18 @@ static bool has_material(const deck *k, const char *lattice) {
   return false;
 }
 
+/* Inertia and its damping are means of the relaxation. */
+static void check_quasi_static(deck_reader *r) {
+  const deck *k = r->k;
+  if (k->relaxation.increments < 1) return;
+  if (k->damping_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->dampings[0].item.where,
+                "a quasi-static run chooses its damping itself: no `&damping` with `&relaxation`");
+  if (k->initial_velocity_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->initial_velocitys[0].item.where,
+                "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");
+}
+
 void deck_check_whole(deck_reader *r) {
   const deck *k = r->k;
   const deck_item *simulation = &k->simulation.item;
@@ -809,6 +831,7 @@ void deck_check_whole(deck_reader *r) {
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
   if (k->lattice_count == 0)
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
+  check_quasi_static(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];
     if (!lattice->name) continue;

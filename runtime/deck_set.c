@@ -3,14 +3,15 @@
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
-#include "runtime/deck_table.h"
 #include "runtime/deck_value.h"
 
 typedef struct setter {
   arena *memory;
   source_set *sources;
   namelist *groups;
+  const deck_grammar *grammar;
   diagnostics *d;
   int file;
   const char *text;
@@ -67,16 +68,23 @@ static bool split(setter *s, const char **group) {
   return true;
 }
 
+static bool find_group_info(setter *s, const char *group) {
+  const deck_grammar *g = s->grammar;
+  const char **names = arena_alloc(s->memory, (size_t)g->group_count * sizeof *names);
+  for (int k = 0; k < g->group_count; k++) {
+    names[k] = g->groups[k].name;
+    if (strcasecmp(names[k], group) == 0) s->group = &g->groups[k];
+  }
+  if (s->group) return true;
+  diag_report(s->d, DIAG_UNKNOWN_GROUP, s->group_where, "there is no group `&%s`",
+              deck_shown(s->memory, group));
+  deck_suggest(s->d, group, names, g->group_count, "the groups are");
+  return false;
+}
+
 static bool find_names(setter *s, const char *group) {
   const char *names[DECK_MOST_KEYS];
-  int kind = deck_group_find(group);
-  if (kind < 0) {
-    diag_report(s->d, DIAG_UNKNOWN_GROUP, s->group_where, "there is no group `&%s`",
-                deck_shown(s->memory, group));
-    deck_suggest(s->d, group, names, deck_group_names(names), "the groups are");
-    return false;
-  }
-  s->group = &deck_groups[kind];
+  if (!find_group_info(s, group)) return false;
   if (s->group->open || deck_key_find(s->group, s->key) >= 0) return true;
   diag_report(s->d, DIAG_UNKNOWN_KEY, s->key_where, "`&%s` has no key `%s`", s->group->name,
               s->key);
@@ -98,19 +106,24 @@ static void report_choice(setter *s, int found, int all) {
   const char *name = s->group->name, *identity = s->group->identity;
   span where = s->which ? s->which_where : s->group_where;
   if (all == 0)
-    diag_report(s->d, DIAG_UNKNOWN_GROUP, where, "the deck has no group `&%s`", name);
-  else if (found == 0)
-    diag_report(s->d, DIAG_UNKNOWN_NAME, where, "none of the deck's %d `&%s` is `%s`", all, name,
-                deck_shown(s->memory, s->which));
-  else
-    diag_report(s->d, DIAG_UNKNOWN_GROUP, where, "the deck has %d `&%s` that could be meant", found,
+    diag_report(s->d, DIAG_UNKNOWN_GROUP, where, "the %s has no group `&%s`", s->grammar->file,
                 name);
-  if (all > 0 && identity)
+  else if (found == 0)
+    diag_report(s->d, DIAG_UNKNOWN_NAME, where, "none of the %s's %d `&%s` is `%s`",
+                s->grammar->file, all, name, deck_shown(s->memory, s->which));
+  else
+    diag_report(s->d, DIAG_UNKNOWN_GROUP, where, "the %s has %d `&%s` that could be meant",
+                s->grammar->file, found, name);
+  if (all == 0)
+    diag_hint(s->d, "`--set` changes what is there; write `&%s ... /` into the %s first", name,
+              s->grammar->file);
+  else if (identity)
     diag_hint(s->d, "say which by number or by its %s, e.g. `%s[1].%s`", identity, name, s->key);
-  else if (all > 0)
+  else
     diag_hint(s->d, "say which by number, e.g. `%s[1].%s`", name, s->key);
 }
 
+/* The group meant; one that occurs once at most and is not there is added. */
 static namelist_group *find_group(setter *s) {
   namelist_group *meant = NULL;
   int found = 0, all = 0;
@@ -200,9 +213,35 @@ static bool read_value(setter *s, namelist_key *key) {
   return false;
 }
 
+/* Back to the default. A name that no table knows must be one that the deck gives. */
+static void remove_key(setter *s) {
+  namelist_group *g = find_group(s);
+  namelist_key *key = g ? namelist_find(g, s->key) : NULL;
+  if (key) {
+    namelist_remove_key(g, key);
+    g->where = s->key_where; /* there it is missed, if it must be given */
+  } else if (g && deck_key_find(s->group, s->key) < 0) {
+    diag_report(s->d, DIAG_UNKNOWN_KEY, s->key_where, "this `&%s` gives no `%s` to take back",
+                s->group->name, s->key);
+    const char **names = arena_alloc(s->memory, ((size_t)g->key_count + 1) * sizeof *names);
+    for (int k = 0; k < g->key_count; k++)
+      names[k] = g->keys[k].name;
+    diag_suggest(s->d, s->key, names, g->key_count);
+  }
+}
+
+static bool is_empty(const setter *s) {
+  const char *value = s->text + s->value_begin;
+  return value[strspn(value, " ")] == 0;
+}
+
 static void set_one(setter *s) {
   const char *group;
   if (!split(s, &group) || !find_names(s, group)) return;
+  if (is_empty(s)) {
+    remove_key(s);
+    return;
+  }
   namelist_key value = {.name = s->key};
   if (!read_value(s, &value)) return;
   namelist_group *g = find_group(s);
@@ -211,10 +250,12 @@ static void set_one(setter *s) {
   if (!key) key = namelist_add_key(s->memory, g, s->key);
   *key = value;
   key->name_where = s->key_where;
+  g->where =
+      at(s, 0, strlen(s->text)); /* what is wrong with the group as a whole is so since then */
 }
 
-void deck_set(arena *a, source_set *sources, namelist *n, const deck_override *overrides, int count,
-              diagnostics *d) {
+void deck_set(arena *a, source_set *sources, namelist *n, const deck_grammar *grammar,
+              const deck_override *overrides, int count, diagnostics *d) {
   for (int i = 0; i < count; i++) {
     size_t length = strlen(overrides[i].text);
     int file = source_add(sources, "--set", overrides[i].text, length);
@@ -222,7 +263,8 @@ void deck_set(arena *a, source_set *sources, namelist *n, const deck_override *o
       diag_report(d, DIAG_TOO_LONG, (span){0, 0, (uint16_t)file}, "the override is too long");
       continue;
     }
-    setter s = {.memory = a, .sources = sources, .groups = n, .d = d, .file = file};
+    setter s = {
+        .memory = a, .sources = sources, .groups = n, .grammar = grammar, .d = d, .file = file};
     s.text = sources->items[file].text;
     set_one(&s);
   }

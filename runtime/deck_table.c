@@ -167,7 +167,7 @@ static const deck_key_info simulation_keys[] = {
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_FRACTION,
-     .fallback = "0.25",
+     .fallback = "= 0.25; with &relaxation 0.9",
      AT(simulation, step_safety),
      .doc = "part of the largest stable step"},
     {.name = "threads",
@@ -176,6 +176,28 @@ static const deck_key_info simulation_keys[] = {
      .most = 4096,
      AT(simulation, threads),
      .doc = "0: as many as the machine offers"},
+};
+
+static const deck_key_info relaxation_keys[] = {
+    {.name = "increments",
+     .type = DECK_COUNT,
+     .required = true,
+     .most = 1000000,
+     AT(relaxation, increments),
+     .doc = "equal parts of `end_time` in which the loads come; the history has a sample after each"},
+    {.name = "tolerance",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_FRACTION,
+     .fallback = "1e-4",
+     AT(relaxation, tolerance),
+     .doc = "an increment is done when the unbalanced force is this part of the reactions or loads"},
+    {.name = "most_steps",
+     .type = DECK_COUNT,
+     .fallback = "100000",
+     .most = 1000000000,
+     AT(relaxation, most_steps),
+     .doc = "an increment that needs more steps is left as it is"},
 };
 
 static const deck_key_info lattice_keys[] = {
@@ -665,6 +687,8 @@ const deck_group_info deck_groups[DECK_GROUP_COUNT] = {
     DECK_GROUPS(X)
 #undef X
 };
+
+const deck_grammar deck_grammar_of_decks = {"deck", deck_groups, DECK_GROUP_COUNT};
 
 #define X(group, key, once, more, text)                                                            \
   _Static_assert(sizeof(group##_keys) / sizeof(group##_keys[0]) <= DECK_MOST_KEYS, "too many "     \

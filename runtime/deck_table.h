@@ -63,6 +63,9 @@ typedef struct deck_group_info {
  * single, open, doc) */
 #define DECK_GROUPS(X)                                                                             \
   X(simulation, NULL, true, false, "The run as a whole. Required, once.")                          \
+  X(relaxation, NULL, true, false,                                                                 \
+    "Makes the run quasi-static: the loads come in increments, and after each the body comes to "  \
+    "rest by damped motion.")                                                                      \
   X(lattice, "name", false, false,                                                                 \
     "A lattice of particles that bodies are cut from. At least one.")                              \
   X(material, "lattice", false, true,                                                              \
@@ -104,6 +107,14 @@ typedef enum deck_group_kind {
 } deck_group_kind;
 
 extern const deck_group_info deck_groups[DECK_GROUP_COUNT];
+
+/* The groups that a kind of file may hold. */
+typedef struct deck_grammar {
+  const char *file; /* what such a file is called: "deck" */
+  const deck_group_info *groups;
+  int group_count;
+} deck_grammar;
+extern const deck_grammar deck_grammar_of_decks;
 
 /* Position of the group or key of that name (without regard to case), or -1. */
 int deck_group_find(const char *name);

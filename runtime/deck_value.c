@@ -5,6 +5,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/unit_hint.h"
 #include "dsl/units.h"
 
 enum { LONGEST_SHOWN = 60, LONGEST_LIST = 400, MOST_CHOICES = 16 };
@@ -119,14 +120,7 @@ static span part(const namelist_value *v, const char *from, size_t length) {
 static bool report_unit(const namelist_value *v, const char *bad, size_t length, diagnostics *d) {
   diag_report(d, DIAG_UNKNOWN_UNIT, part(v, bad, length), "there is no unit `%.*s`",
               shown_length(bad, length), bad);
-  int count;
-  const char *const *symbols = unit_symbols(&count);
-  char name[LONGEST_SHOWN + 1];
-  snprintf(name, sizeof(name), "%.*s", shown_length(bad, length), bad);
-  const char *nearest = nearest_name(name, symbols, count);
-  if (nearest)
-    diag_hint(d, "did you mean `%s`?", nearest);
-  else
+  if (!unit_hint(d, bad, length))
     diag_hint(d, "a value in quotes is one number and its unit, e.g. '6.35 mm' or '1000 1/s'");
   return false;
 }

@@ -247,9 +247,17 @@ rows *implied_lattice(double spacing, double thickness, double rho) {
 enum { CURVE_POINTS = 24000, PEAK_POINTS = 400, PEAK_ROUNDS = 3 };
 static const double first_stretch = 1e-9, last_stretch = 1e3;
 
-/* Stretches of the curve: evenly spaced logarithms. */
+/* Ways of the curve over the bond's length: evenly spaced logarithms. */
 static double curve_stretch(int k) {
   return first_stretch * pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
+}
+
+/* Stretch of a bond whose far end has gone `way` lengths along the unit vector e; *turn: of its chord. */
+static double drawn_stretch(const lattice_bond *b, const double e[2], double way, double *turn) {
+  double along = b->n[0] * e[0] + b->n[1] * e[1], across = b->n[0] * e[1] - b->n[1] * e[0];
+  double length = hypot(1 + way * along, way * across);
+  *turn = atan2(way * across, 1 + way * along);
+  return way * (2 * along + way) / (1 + length); /* length - 1, of a small way too */
 }
 
 /* The largest force between two stretches, approached from the virgin state in equal steps. */
@@ -277,43 +285,67 @@ static void find_peak(lattice_bond *b, double from, double to, implied_bond *out
   }
 }
 
-/* Trapezoids over the curve; the points are close enough for 1e-6 at a kink. */
-static bool trace_curve(lattice_bond *b, double *work, double *largest, int *peak, double *last) {
-  double before = 0, force = 0;
-  *work = *largest = *last = 0;
-  *peak = 0;
+typedef struct curve {
+  double work, largest; /* J, N */
+  int peak;             /* point of the largest force */
+  bool separates;       /* all forces fall to nothing */
+} curve;
+
+/* Draws the bond's ends apart along e; the particles do not turn. Trapezoids; the points are close enough for 1e-6 at a
+   kink. */
+static curve trace_curve(lattice_bond *b, const double e[2]) {
+  const double nothing = 1e-9; /* of the peak */
+  curve c = {0};
+  double stretch = 0, turn = 0, force = 0, moment = 0, size = 0;
   for (int k = 0; k < CURVE_POINTS; k++) {
-    double result[PL_STATE_RESULTS], stretch = curve_stretch(k);
-    bond_step(b, stretch, 0, result);
-    if (!isfinite(result[0])) return false;
-    *work += 0.5 * (force + result[0]) * (stretch - before) * b->s;
-    before = stretch;
-    *last = force = result[0];
-    if (force > *largest) {
-      *largest = force;
-      *peak = k;
+    double result[PL_STATE_RESULTS], next_turn,
+        next = drawn_stretch(b, e, curve_stretch(k), &next_turn);
+    bond_step(b, next, -next_turn, result);
+    double N = result[0], M = result[1] + result[2];
+    if (!isfinite(N) || !isfinite(M)) return (curve){0};
+    c.work += 0.5 * (force + N) * (next - stretch) * b->s - 0.5 * (moment + M) * (next_turn - turn);
+    stretch = next, turn = next_turn, force = N, moment = M;
+    size = fmax(size, fabs(N) + fabs(M) / b->s);
+    if (N > c.largest) {
+      c.largest = N;
+      c.peak = k;
     }
   }
-  return true;
+  c.separates = c.largest > 0 && fabs(force) + fabs(moment) / b->s <= nothing * size;
+  return c;
 }
 
 void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
                         implied_bond *out) {
-  const double nothing = 1e-9; /* of the peak */
   lattice_bond b = bond_of(law, parameters, w, direction);
-  double work, largest, last;
-  int peak;
   *out = (implied_bond){
       .peak_force = INFINITY, .stretch_at_peak = NAN, .energy = INFINITY, .row_energy = INFINITY};
-  bool whole = trace_curve(&b, &work, &largest, &peak, &last);
-  if (peak > 0 && peak < CURVE_POINTS - 1)
-    find_peak(&b, curve_stretch(peak - 1), curve_stretch(peak + 1), out);
-  out->separates = whole && largest > 0 && fabs(last) <= nothing * largest;
+  curve c = trace_curve(&b, b.n);
+  if (c.peak > 0 && c.peak < CURVE_POINTS - 1)
+    find_peak(&b, curve_stretch(c.peak - 1), curve_stretch(c.peak + 1), out);
+  out->separates = c.separates;
   if (out->separates) {
-    out->energy = work;
-    out->row_energy = work * b.s / site_volume(w);
+    out->energy = c.work;
+    out->row_energy = c.work * b.s / site_volume(w);
   }
   bond_probe_free(b.probe);
+}
+
+double implied_crack_energy(const pl_law *law, const double *parameters, const rows *w,
+                            int component) {
+  double energy = 0;
+  for (int k = 0; k < w->directions; k++) {
+    const double reach =
+        w->chord[k][component]; /* a line across it cuts |reach| bonds per area of a site */
+    if (fabs(reach) < 1e-9 * w->spacing) continue;
+    const double e[2] = {component == 0 ? copysign(1, reach) : 0,
+                         component == 1 ? copysign(1, reach) : 0};
+    lattice_bond b = bond_of(law, parameters, w, k);
+    curve c = trace_curve(&b, e);
+    energy += c.separates ? c.work * fabs(reach) / site_volume(w) : INFINITY;
+    bond_probe_free(b.probe);
+  }
+  return energy;
 }
 
 void implied_wave_speeds(const pl_law *law, const double *parameters, const rows *w,

@@ -39,12 +39,18 @@ typedef struct implied_bond {
   double stretch_at_peak; /* NaN then */
   bool separates;         /* the force falls to nothing */
   double energy;          /* J: work until then; infinite when it does not separate */
-  double row_energy; /* N/m: the work per area of a crack straight across the rows, by its aligned
-                        bonds alone: energy * s/(area of a site * t), on the hexagon
-                        energy/((sqrt(3)/2) s t) */
+  double row_energy; /* N/m: energy over the bond's share of a crack straight across it, s t times
+                        sqrt(3)/2 on the hexagon: what the literature counts by aligned bonds alone */
 } implied_bond;
 void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
                         implied_bond *out);
+
+/* N/m: work per area of a straight crack that opens along `component` (0 x, 1 y): both halves of the
+   lattice are drawn apart without turning, and every bond that the crack cuts counts. Of central
+   bonds of energy g each: 2 g/(sqrt(3)/2 s t) across the rows, 2 g/(s t) along them. Infinite when
+   a bond does not separate. */
+double implied_crack_energy(const pl_law *law, const double *parameters, const rows *w,
+                            int component);
 
 /* Long waves in the virgin lattice, m/s: along x, along y (sqrt(D_xx/rho) and sqrt(D_yy/rho),
    transverse sqrt(G/rho)); frequency below which no rotation wave runs, rad/s (0 for central laws).

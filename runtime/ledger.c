@@ -18,7 +18,12 @@ void ledger_sample(ledger *g, const sweep *state, const loads *l, long step,
   terms[LEDGER_EXTERNAL] = l->work + work + t.gravity;
   const double held = terms[LEDGER_KINETIC] + terms[LEDGER_STORED];
   const double lost = t.internal + l->internal - t.stored;
-  if (!g->begun) *g = (ledger){.begun = 1, .initial = held, .lost = lost};
+  if (!g->begun)
+    *g = (ledger){.begun = 1,
+                  .initial = held,
+                  .lost = lost,
+                  .pending = terms[LEDGER_DISSIPATED_DAMPING]};
+  terms[LEDGER_DISSIPATED_DAMPING] -= g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] =
       state->law->kind == PL_STATE ? lost - g->lost : t.dissipated_state;
   terms[LEDGER_IMBALANCE] = terms[LEDGER_EXTERNAL] - (held - g->initial) -

@@ -43,6 +43,7 @@ extern const char *const ledger_names[LEDGER_COUNT];
 typedef struct ledger {
   double initial; /* J: kinetic and stored at the first sample */
   double lost;    /* J: laws of families: work against the bonds less stored, then */
+  double pending; /* J: damping of the half step before the first sample, which is before the run */
   int64_t begun;
 } ledger;
 

@@ -42,13 +42,14 @@ static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
             1e3 * low[0], 1e3 * high[0], 1e3 * low[1], 1e3 * high[1], above);
 }
 
-static void report_empty(const deck *k, const deck_region *region, const rows *w, diagnostics *d) {
+static void report_empty(const char *lattice, const deck_region *region, const rows *w,
+                         diagnostics *d) {
   diag_report(d, DIAG_EMPTY_REGION, region->item.where, "region `%s` holds no particle",
               region->name);
   if (region->shape.kind == SHAPE_POINT)
     hint_nearest(region->shape.at, w, d);
   else
-    hint_extent(k->lattices[0].name, w, d);
+    hint_extent(lattice, w, d);
 }
 
 static bool names_region(const char *name, const char *region) {
@@ -72,13 +73,13 @@ static bool region_is_used(const deck *k, const char *name) {
   return false;
 }
 
-static void select_regions(loads *l, const deck *k, diagnostics *d) {
+static void select_regions(loads *l, const deck *k, const char *lattice, diagnostics *d) {
   l->regions = must_calloc((size_t)k->region_count + 1, sizeof *l->regions);
   for (int r = 0; r < k->region_count; r++) {
     const deck_region *region = &k->regions[r];
     l->regions[r].count = rows_select(l->lattice, &region->shape, &l->regions[r].particles);
     if (l->regions[r].count == 0)
-      report_empty(k, region, l->lattice, d);
+      report_empty(lattice, region, l->lattice, d);
     else if (!region_is_used(k, region->name))
       diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);
@@ -241,12 +242,11 @@ static void protect(loads *l, rows *w) {
 }
 
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d) {
-  (void)lattice;
   const int before = d->errors;
   loads *l = must_calloc(1, sizeof *l);
   l->deck = k;
   l->lattice = w;
-  select_regions(l, k, d);
+  select_regions(l, k, k->lattices[lattice].name, d);
   motions m = {.dof = dof, .law = law, .said = d};
   m.holder = must_calloc((size_t)dof * (size_t)w->particle_count + 1, sizeof *m.holder);
   add_motions(l, &m);
@@ -342,13 +342,15 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
 
 /* --- in time ---------------------------------------------------------------------------------- */
 
-static double time_of(const sweep *w, long step) {
-  return (double)step * w->time_step;
+static double time_of(const loads *l, const sweep *w, long step) {
+  const load_clock *c = &l->clock;
+  if (c->ramp == 0) return (double)step * w->time_step;
+  return c->from + (c->to - c->from) * fmin(1, (double)(step - c->first) / (double)c->ramp);
 }
 
 /* Factor of the step that begins at step * time_step. */
 static double decay_of(const loads *l, const sweep *w, long step) {
-  const double t = time_of(w, step);
+  const double t = time_of(l, w, step);
   double rate = 0;
   for (int i = 0; i < l->deck->damping_count; i++)
     if (t >= l->deck->dampings[i].from && t < l->deck->dampings[i].until)
@@ -368,7 +370,7 @@ static double motion_at(const loads *l, const constraint *c, double t) {
  */
 static bool is_held(const loads *l, const sweep *w, const constraint *c, long step) {
   return c->drive < 0 ||
-         time_of(w, step) >= l->deck->drives[c->drive].motion.start - 1e-6 * w->time_step;
+         time_of(l, w, step) >= l->deck->drives[c->drive].motion.start - 1e-6 * w->time_step;
 }
 
 /* Where the motion takes up a particle that was free. A velocity that began between two steps has
@@ -376,7 +378,7 @@ static bool is_held(const loads *l, const sweep *w, const constraint *c, long st
 static double anchor_of(const loads *l, const sweep *w, const constraint *c, long step) {
   const double here = w->displacement[c->component][c->site];
   if (c->drive >= 0 && l->deck->drives[c->drive].is_displacement) return here;
-  return here - motion_at(l, c, time_of(w, step));
+  return here - motion_at(l, c, time_of(l, w, step));
 }
 
 static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
@@ -393,8 +395,8 @@ static void set_gravity(const loads *l, sweep *w, long step) {
     double here = 0, next = 0;
     for (int i = 0; i < l->deck->gravity_count; i++) {
       const deck_gravity *g = &l->deck->gravitys[i];
-      here += g->acceleration[c] * time_function_at(&g->factor, time_of(w, step));
-      next += g->acceleration[c] * time_function_at(&g->factor, time_of(w, step + 1));
+      here += g->acceleration[c] * time_function_at(&g->factor, time_of(l, w, step));
+      next += g->acceleration[c] * time_function_at(&g->factor, time_of(l, w, step + 1));
     }
     w->push[c] = w->time_step * here;
     w->push_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
@@ -411,7 +413,7 @@ void loads_begin(loads *l, sweep *w) {
     l->forces[i].now = force_at(l, &l->forces[i], 0);
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
   }
-  w->decay = decay_of(l, w, 0);
+  if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
   if (w->weight) set_gravity(l, w, 0);
 }
 
@@ -442,7 +444,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
   const double before = c->velocity;
   c->reaction = 0;
   if (c->active) {
-    const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
+    const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
     const double prescribed = (target - c->held) / w->time_step;
     c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
     correct_free_way(l, w, c->component, c->site, before, prescribed - *v);
@@ -458,7 +460,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
 static void next_forces(loads *l, const sweep *w, long step) {
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
-    const double next = force_at(l, f, time_of(w, step + 1));
+    const double next = force_at(l, f, time_of(l, w, step + 1));
     f->velocity = w->velocity[f->component][f->site];
     l->work += 0.5 * w->time_step * (f->now + next) * f->velocity;
     f->now = next;
@@ -472,7 +474,7 @@ void loads_apply(loads *l, sweep *w, long step) {
   next_forces(l, w, step);
   for (long i = 0; i < l->constraint_count; i++)
     take_up(l, w, &l->constraints[i], step + 1);
-  w->decay = decay_of(l, w, step + 1);
+  if (l->clock.ramp == 0) w->decay = decay_of(l, w, step + 1);
   if (w->weight) set_gravity(l, w, step + 1);
 }
 
@@ -498,7 +500,7 @@ void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, d
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
     if (!c->active) continue;
-    const double target = c->anchor + motion_at(l, c, time_of(w, step + 1));
+    const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
     const double prescribed = (target - c->held) / w->time_step, mass = w->mass[c->component];
     const double change = prescribed - free_velocity(w, c);
     *kinetic += 0.5 * mass * c->velocity * change;

@@ -42,6 +42,13 @@ typedef struct region_sites { /* of a region of the deck */
   long count;
 } region_sites;
 
+/* The deck's time after a number of steps: steps times their length where `ramp` is 0; else it goes
+   evenly from one value to the next within so many steps, and stands. */
+typedef struct load_clock {
+  double from, to; /* s */
+  int64_t first, ramp;
+} load_clock;
+
 typedef struct loads {
   const deck *deck;
   const rows *lattice;
@@ -50,6 +57,7 @@ typedef struct loads {
   long constraint_count;
   applied *forces;
   long force_count;
+  load_clock clock;
   double work; /* J: done by applied forces up to now and by reactions up to the last half step */
   /* J, of loaded particles beyond what the sweep counts: */
   double dissipated; /* by mass damping */
@@ -66,7 +74,7 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
 /* To be called once, before the first step: forces at time 0, places of the supports. */
 void loads_begin(loads *l, sweep *w);
 /* After the sweep of step n -> n+1: applied forces, prescribed motions, reactions, work; then the
-   damping of the coming step is set. */
+   damping of the coming step is set (with a clock of its own it stays as it is). */
 void loads_apply(loads *l, sweep *w, long step);
 
 /* Loaded particles are not free, as sweep_observe has it: what that adds to the kinetic energy

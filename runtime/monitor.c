@@ -99,7 +99,7 @@ static bool find_field(monitor *m, const monitors *all, diagnostics *d) {
 
 static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
   static const double most = 1e8; /* values in a ring */
-  const double dt = all->state->time_step, steps = m->deck->average / dt;
+  const double dt = all->interval, steps = m->deck->average / dt;
   m->zero_step = m->deck->zero_at >= 0 ? lround(fmin(m->deck->zero_at / dt, 9e15)) : -1;
   m->window = 1;
   if (counts_damage(m) || m->deck->average <= 0) return true;
@@ -144,10 +144,15 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
 }
 
 monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
-                       diagnostics *d) {
+                       double interval, diagnostics *d) {
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
-  *m = (monitors){.count = k->monitor_count, .deck = k, .state = state, .loads = l, .bonds = bonds};
+  *m = (monitors){.interval = interval,
+                  .count = k->monitor_count,
+                  .deck = k,
+                  .state = state,
+                  .loads = l,
+                  .bonds = bonds};
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   for (int i = 0; i < m->count; i++) {
     new_monitor(m, i, d);

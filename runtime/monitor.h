@@ -32,6 +32,7 @@ typedef struct monitor {
 } monitor;
 
 typedef struct monitors {
+  double interval; /* s between two monitors_step */
   monitor *items;
   int count;
   const deck *deck;
@@ -44,10 +45,11 @@ typedef struct monitors {
 } monitors;
 
 monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
-                       diagnostics *d);
+                       double interval, diagnostics *d);
 void monitors_free(monitors *m);
 
-/* After every step (and once at the start): rings and zeros. */
+/* After every step, of quasi-static runs after every increment (and once at the start): rings and
+   zeros. */
 void monitors_step(monitors *m, long step);
 /* Values of all monitors now; remembers peaks. */
 void monitors_sample(monitors *m, double time, double *values);

@@ -18,6 +18,7 @@ typedef struct reader {
   uint16_t file;
   diagnostics *d;
   int errors_before;
+  int value_count; /* so far, of all keys */
 } reader;
 
 /* --- bytes ------------------------------------------------------------------------------------ */
@@ -126,6 +127,11 @@ namelist_key *namelist_add_key(arena *a, namelist_group *g, const char *name) {
   namelist_key *key = &g->keys[g->key_count++];
   *key = (namelist_key){.name = name};
   return key;
+}
+
+void namelist_remove_key(namelist_group *g, namelist_key *key) {
+  const size_t after = (size_t)(g->keys + g->key_count-- - (key + 1));
+  memmove(key, key + 1, after * sizeof *key);
 }
 
 namelist_key *namelist_find(const namelist_group *g, const char *name) {
@@ -368,11 +374,12 @@ static bool read_value(reader *r, namelist_key *key, bool comma) {
   else
     return bad_character(r);
   if (!good) return false;
-  if (count > NAMELIST_MOST_VALUES - key->value_count) {
-    diag_report(r->d, DIAG_TOO_LONG, value.where, "`%s` has more than %d values", key->name,
-                NAMELIST_MOST_VALUES);
+  if (count > NAMELIST_MOST_VALUES - r->value_count) {
+    diag_report(r->d, DIAG_TOO_LONG, value.where, "with `%s` there are more than %d values",
+                key->name, NAMELIST_MOST_VALUES);
     return false;
   }
+  r->value_count += count;
   for (int i = 0; i < count; i++)
     add_value(r, key, &value);
   return true;
@@ -561,7 +568,7 @@ static void report_outside(reader *r, namelist *n) {
 static reader reader_begin(arena *a, source_set *sources, int file, diagnostics *d) {
   const source *s = &sources->items[file];
   uint32_t length = s->length > UINT32_MAX ? UINT32_MAX : (uint32_t)s->length;
-  return (reader){a, s->text, 0, length, (uint16_t)file, d, d->errors};
+  return (reader){a, s->text, 0, length, (uint16_t)file, d, d->errors, 0};
 }
 
 namelist *namelist_read(arena *a, source_set *sources, int file, diagnostics *d) {

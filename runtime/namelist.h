@@ -14,7 +14,7 @@ enum {
   NAMELIST_LONGEST_NAME = 63,               /* as in Fortran */
   NAMELIST_MOST_GROUPS = 10000,
   NAMELIST_MOST_KEYS = 200,       /* in a group */
-  NAMELIST_MOST_VALUES = 1000000, /* of a key, repeat counts included */
+  NAMELIST_MOST_VALUES = 1000000, /* of all keys, repeat counts included */
   NAMELIST_MOST_ERRORS = 50
 };
 
@@ -63,6 +63,7 @@ void namelist_read_values(arena *a, source_set *sources, int file, uint32_t begi
 namelist_key *namelist_find(const namelist_group *g, const char *name);
 /* Adds an empty key. `name` is not copied. */
 namelist_key *namelist_add_key(arena *a, namelist_group *g, const char *name);
+void namelist_remove_key(namelist_group *g, namelist_key *key);
 /* Adds an empty group. `name` is not copied. */
 namelist_group *namelist_add_group(arena *a, namelist *n, const char *name);
 

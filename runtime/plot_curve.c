@@ -154,6 +154,12 @@ static void draw_axes(canvas *c, const axis *x, const axis *y) {
     snprintf(text, sizeof text, "%.6g", fabs(v) < 1e-9 * y->step ? 0 : v);
     canvas_text(c, LEFT - 12, at + 7, 19, ANCHOR_RIGHT, text);
   }
+  canvas_colour(c, (colour){0.6, 0.6, 0.6}); /* where something is zero, inside of the frame */
+  if (x->low < 0 && x->high > 0)
+    canvas_line(c, along_x(x, 0), TOP, along_x(x, 0), HEIGHT - BOTTOM, 1);
+  if (y->low < 0 && y->high > 0)
+    canvas_line(c, LEFT, along_y(y, 0), WIDTH - RIGHT, along_y(y, 0), 1);
+  canvas_colour(c, ink);
   canvas_line(c, LEFT, HEIGHT - BOTTOM, WIDTH - RIGHT, HEIGHT - BOTTOM, 1.5);
   canvas_line(c, LEFT, TOP, LEFT, HEIGHT - BOTTOM, 1.5);
 }
@@ -173,7 +179,7 @@ static void draw_names(canvas *c, const axis *x, const axis *y, const char *titl
   name_axis(x, text, sizeof text);
   canvas_text(c, LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 26, 22, ANCHOR_CENTRE, text);
   name_axis(y, text, sizeof text);
-  canvas_text_upward(c, 36, TOP + (HEIGHT - TOP - BOTTOM) / 2.0, 22, text);
+  canvas_text_upward(c, 36, TOP + (HEIGHT - TOP - BOTTOM) / 2.0, 22, HEIGHT - TOP - BOTTOM, text);
   canvas_text_within(c, LEFT, 42, 24, WIDTH - LEFT - RIGHT, title);
 }
 
@@ -255,8 +261,8 @@ static bool draw_all(const curve *curves, int count, const plot_curve_options *o
   draw_axes(&c, &x, &y);
   draw_names(&c, &x, &y, title);
   cairo_save(c.cr);
-  cairo_rectangle(c.cr, LEFT - 4, TOP - 4, WIDTH - LEFT - RIGHT + 8, HEIGHT - TOP - BOTTOM + 8);
-  cairo_clip(c.cr);
+  cairo_rectangle(c.cr, LEFT - 1, TOP - 1, WIDTH - LEFT - RIGHT + 2, HEIGHT - TOP - BOTTOM + 2);
+  cairo_clip(c.cr); /* the frame, and half a line more */
   for (int k = 0; k < count; k++)
     draw_curve(&c, &curves[k], &x, &y, palette[k % PALETTE]);
   cairo_restore(c.cr);
@@ -268,19 +274,22 @@ static bool draw_all(const curve *curves, int count, const plot_curve_options *o
 typedef struct curve_set {
   const plot_curve_options *o;
   const char *const *results;
+  int result_count;
   curve curves[MOST_CURVES];
   int count;
   char x_unit[64], y_unit[64], title[512]; /* title: of the last result */
 } curve_set;
 
+/* "beam", "stored" or "beam: stored": what tells the curves apart, and what the user wants said. */
 static void label_curve(const curve_set *s, int from, int y, curve *c) {
-  char name[sizeof c->label / 2];
+  char name[sizeof c->label / 2] = "";
+  const bool named = s->o->labels || s->result_count > 1 || s->o->y_count == 1,
+             several = s->o->y_count > 1;
   if (s->o->labels)
     snprintf(name, sizeof name, "%s", s->o->labels[from]);
-  else
+  else if (named)
     label_of(s->results[from], name, sizeof name);
-  const bool several = s->o->y_count > 1;
-  snprintf(c->label, sizeof c->label, "%s%s%.120s", name, several ? ": " : "",
+  snprintf(c->label, sizeof c->label, "%s%s%.120s", name, named && several ? ": " : "",
            several ? s->o->ys[y] : "");
 }
 
@@ -324,9 +333,16 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
   return good;
 }
 
-/* "load, load_bottom" */
+/* "load, load_bottom"; "energy" of `energy/kinetic, energy/stored`, which the legend tells apart. */
 static void join_names(const plot_curve_options *o, char *text, size_t size) {
-  size_t used = 0;
+  size_t used = 0, group = strcspn(o->ys[0], "/");
+  bool of_group = o->y_count > 1 && o->ys[0][group] == '/';
+  for (int y = 1; y < o->y_count; y++)
+    of_group = of_group && strncmp(o->ys[y], o->ys[0], group + 1) == 0;
+  if (of_group) {
+    snprintf(text, size, "%.*s", (int)group, o->ys[0]);
+    return;
+  }
   text[0] = 0;
   for (int y = 0; y < o->y_count && used < size; y++)
     used += (size_t)snprintf(text + used, size - used, "%s%s", y ? ", " : "", o->ys[y]);
@@ -349,7 +365,7 @@ bool plot_curve(const char *const *results, int result_count, const plot_curve_o
   }
   char names[400], several[1100];
   join_names(&o, names, sizeof names);
-  curve_set s = {.o = &o, .results = results};
+  curve_set s = {.o = &o, .results = results, .result_count = result_count};
   bool good = true;
   for (int k = 0; good && k < result_count; k++)
     good = add_curves(&s, k, error, size);

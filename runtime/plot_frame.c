@@ -54,7 +54,7 @@ static void move_particles(plot_frame *m, const double *displacement, double wan
 static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
                         size_t size) {
   char name[512];
-  result_find_field(f, o->field, name, sizeof name);
+  if (!result_find(f, "/frames", o->field, name, sizeof name, error, size)) return false;
   m->values = result_read_frame(f, name, o->frame, &m->value_count, &m->components, m->unit_text,
                                 sizeof m->unit_text, error, size);
   if (!m->values) return false;
@@ -72,10 +72,17 @@ static bool read_values(result_file *f, plot_frame *m, const plot_map_options *o
   return true;
 }
 
+static bool is_stored(result_file *f, const char *field) {
+  result_names fields = result_members(f, "/frames");
+  const bool stored = result_names_find(&fields, field) >= 0;
+  result_names_free(&fields);
+  return stored;
+}
+
 /* A law may have its damage on particles. */
 static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_map_options *o) {
-  char none[256], name[64];
-  if (!result_find_field(f, "damage", name, sizeof name)) return false;
+  char none[256];
+  if (!is_stored(f, "damage")) return false;
   m->values = result_read_frame(f, "damage", o->frame, &m->value_count, &m->components,
                                 m->unit_text, sizeof m->unit_text, none, sizeof none);
   m->damage_of = "damage of particles:";
@@ -103,10 +110,10 @@ static bool read_damage(result_file *f, plot_frame *m, const char *path, const p
 /* NULL with a sentence that says how to store them when they are not there. */
 static double *read_displacements(result_file *f, const plot_frame *m, const char *path, long frame,
                                   char *error, size_t size) {
-  char unit_text[64], name[64];
+  char unit_text[64];
   long count = 0;
   int components = 0;
-  if (!result_find_field(f, "displacement", name, sizeof name)) {
+  if (!is_stored(f, "displacement")) {
     snprintf(error, size,
              "a map needs displacements, and `%s` holds none: add 'displacement' to `fields` in "
              "&output and run again",
@@ -126,7 +133,7 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   m->reference = result_read_reference(f, &m->particles, &m->dimensions);
   m->pairs = result_read_bonds(f, NULL, &m->bonds);
   if (!m->reference || !m->pairs || m->particles == 0) {
-    snprintf(error, size, "the result holds no particles and bonds to draw");
+    snprintf(error, size, "`%s` holds no lattice (particles and bonds) to draw", path);
     return false;
   }
   double *u = read_displacements(f, m, path, o->frame, error, size);

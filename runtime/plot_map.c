@@ -62,6 +62,10 @@ static int class_of(double damage) {
   return k;
 }
 
+static int class_of_bond(const map *m, long b) {
+  return m->frame.damage ? class_of(m->frame.damage[b]) : 0;
+}
+
 static void stroke_bond(canvas *c, const map *m, long b) {
   const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
                *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
@@ -87,7 +91,7 @@ static void draw_bonds(canvas *c, const map *m, bool coloured) {
     cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
     cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
     for (long b = 0; b < m->frame.bonds; b++) {
-      if ((m->frame.damage ? class_of(m->frame.damage[b]) : 0) != k) continue;
+      if (class_of_bond(m, b) != k) continue;
       if (k == SEPARATED)
         stroke_crack(c, m, b);
       else
@@ -185,9 +189,16 @@ static void draw_scale_bar(canvas *c, const map *m) {
   canvas_text(c, MARGIN, y + 24, 18, ANCHOR_LEFT, text);
 }
 
+/* The classes that occur. */
 static void draw_damage_legend(canvas *c, const map *m) {
   double x = WIDTH - MARGIN, y = m->height - 30;
+  bool occurs[CLASSES] = {m->frame.bonds == 0};
+  for (long b = 0; b < m->frame.bonds; b++)
+    occurs[class_of_bond(m, b)] = true;
+  for (long p = 0; m->frame.of_damage && m->frame.values && p < m->frame.value_count; p++)
+    occurs[class_of(m->frame.values[p])] = true;
   for (int k = CLASSES - 1; k >= 0; k--) {
+    if (!occurs[k]) continue;
     x -= canvas_text_width(c, 18, classes[k].text);
     canvas_colour(c, (colour){0.1, 0.1, 0.1});
     canvas_text(c, x, y, 18, ANCHOR_LEFT, classes[k].text);

@@ -30,8 +30,10 @@ static double normal_number(uint64_t key) {
   return radius * cos(2 * acos(-1) * unit_number(mix(key ^ UINT64_C(0x5851f42d4c957f2d))));
 }
 
-double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int direction) {
-  return normal_number(mix(mix(mix(seed) ^ (uint64_t)a) ^ (uint64_t)b) ^ (uint64_t)(direction + 1));
+double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int64_t c, int direction) {
+  const uint64_t of_layer = seed + (uint64_t)c * UINT64_C(0xd1342543de82ef95);
+  return normal_number(mix(mix(mix(of_layer) ^ (uint64_t)a) ^ (uint64_t)b) ^
+                       (uint64_t)(direction + 1));
 }
 
 uint64_t random_seed_of(const deck_field *f) {
@@ -46,7 +48,7 @@ uint64_t random_seed_of(const deck_field *f) {
 enum { WAVES = 512 };
 
 struct random_waves {
-  double kx[WAVES], ky[WAVES], phase[WAVES]; /* 1/m, 1/m, rad */
+  double k[3][WAVES], phase[WAVES]; /* 1/m, rad */
 };
 
 random_waves *random_waves_new(uint64_t seed, double correlation_length) {
@@ -58,8 +60,9 @@ random_waves *random_waves_new(uint64_t seed, double correlation_length) {
      * probable rings */
     const double radius = spread * sqrt(-2 * log((m + unit_number(mix(key ^ 1))) / WAVES));
     const double angle = 2 * acos(-1) * unit_number(mix(key ^ 2));
-    w->kx[m] = radius * cos(angle);
-    w->ky[m] = radius * sin(angle);
+    w->k[0][m] = radius * cos(angle);
+    w->k[1][m] = radius * sin(angle);
+    w->k[2][m] = spread * normal_number(mix(key ^ 4));
     w->phase[m] = 2 * acos(-1) * unit_number(mix(key ^ 3));
   }
   return w;
@@ -69,10 +72,10 @@ void random_waves_free(random_waves *w) {
   free(w);
 }
 
-double random_waves_at(const random_waves *w, double x, double y) {
+double random_waves_at(const random_waves *w, const double at[3]) {
   double sum = 0;
   for (int m = 0; m < WAVES; m++)
-    sum += cos(w->kx[m] * x + w->ky[m] * y + w->phase[m]);
+    sum += cos(w->k[0][m] * at[0] + w->k[1][m] * at[1] + w->k[2][m] * at[2] + w->phase[m]);
   return sqrt(2.0 / WAVES) * sum;
 }
 
@@ -179,43 +182,42 @@ double random_quantile(const random_distribution *r, double z) {
 
 typedef struct field_source {
   const deck_field *field;
-  const deck_lattice *lattice;
   const rows *rows;
   random_distribution distribution;
   uint64_t seed;
   random_waves *waves; /* NULL without correlation */
 } field_source;
 
-/* Integer coordinates of a site along the first two lattice vectors, from its place. */
-static void lattice_coordinates(const field_source *s, int64_t site, int64_t *a, int64_t *b) {
-  const double dx = s->rows->x[site] - s->lattice->origin[0],
-               dy = s->rows->y[site] - s->lattice->origin[1];
-  const double turn = s->lattice->rotation, spacing = s->lattice->spacing;
-  const double along = cos(turn) * dx + sin(turn) * dy, across = cos(turn) * dy - sin(turn) * dx;
-  *b = llround(across / (spacing * sqrt(3) / 2));
-  *a = llround(along / spacing - 0.5 * (double)*b);
+/* The number that belongs to a site and a direction, from the site's place in the infinite lattice:
+   the row and layer it is in, and its column along the lattice vectors. */
+static double normal_of(const field_source *s, int64_t site, int direction) {
+  const bravais *b = &s->rows->infinite;
+  double at[3], number[3];
+  rows_place(s->rows, site, at);
+  bravais_coordinates(b, at, number);
+  const int64_t row = llround(number[1]), layer = llround(number[2]);
+  const int64_t halves = b->shift_by[0] * row + b->shift_by[1] * layer;
+  const int64_t column = llround(number[0] - 0.5 * (double)halves);
+  return random_normal_of_site(s->seed, column, row, layer, direction);
 }
 
 static double value_of_particle(const field_source *s, int64_t site) {
-  int64_t a, b;
-  if (s->waves)
-    return random_quantile(&s->distribution,
-                           random_waves_at(s->waves, s->rows->x[site], s->rows->y[site]));
-  lattice_coordinates(s, site, &a, &b);
-  return random_quantile(&s->distribution, random_normal_of_site(s->seed, a, b, -1));
+  double at[3];
+  rows_place(s->rows, site, at);
+  return random_quantile(&s->distribution,
+                         s->waves ? random_waves_at(s->waves, at) : normal_of(s, site, -1));
 }
 
 static double value_of_bond(const field_source *s, int64_t site, int64_t partner, int direction) {
-  const rows *w = s->rows;
-  int64_t a, b;
+  double at[3], end[3];
   if (s->field->on_particles)
     return 0.5 * (value_of_particle(s, site) + value_of_particle(s, partner));
-  if (s->waves)
-    return random_quantile(&s->distribution,
-                           random_waves_at(s->waves, 0.5 * (w->x[site] + w->x[partner]),
-                                           0.5 * (w->y[site] + w->y[partner])));
-  lattice_coordinates(s, site, &a, &b);
-  return random_quantile(&s->distribution, random_normal_of_site(s->seed, a, b, direction));
+  rows_place(s->rows, site, at);
+  rows_place(s->rows, partner, end);
+  for (int c = 0; c < 3; c++)
+    at[c] = 0.5 * (at[c] + end[c]);
+  return random_quantile(&s->distribution,
+                         s->waves ? random_waves_at(s->waves, at) : normal_of(s, site, direction));
 }
 
 static void ends_of(const rows *w, const rows_bond *b, int64_t *site, int64_t *partner) {
@@ -296,14 +298,18 @@ static void report_fault(const rows *w, const rows_bond *bond, const pl_law *law
   const deck_field *f = sources[plane < 0 ? 0 : plane].field;
   const char *in = law->parameters[fault].unit;
   const bool pure = !in || !*in || strcmp(in, "1") == 0;
-  diag_report(d, DIAG_OUT_OF_BOUNDS, f->item.where,
-              "`%s` = %.6g%s%s in the bond from (%.6g, %.6g) to (%.6g, %.6g) mm is not in %c%.6g, "
-              "%.6g%c, the range of "
-              "the law `%s`; so are %ld of %ld bonds",
-              law->parameters[fault].name, b->values[fault], pure ? "" : " ", pure ? "" : in,
-              1e3 * w->x[site], 1e3 * w->y[site], 1e3 * w->x[partner], 1e3 * w->y[partner],
-              b->low_open[fault] ? '(' : '[', b->lower[fault], b->upper[fault],
-              b->high_open[fault] ? ')' : ']', law->name, count, w->bond_count);
+  double ends[2][3];
+  char texts[2][ROWS_PLACE_TEXT];
+  rows_place(w, site, ends[0]);
+  rows_place(w, partner, ends[1]);
+  diag_report(
+      d, DIAG_OUT_OF_BOUNDS, f->item.where,
+      "`%s` = %.6g%s%s in the bond from %s to %s is not in %c%.6g, %.6g%c, the range of the "
+      "law `%s`; so are %ld of %ld bonds",
+      law->parameters[fault].name, b->values[fault], pure ? "" : " ", pure ? "" : in,
+      rows_place_text(w, ends[0], texts[0]), rows_place_text(w, ends[1], texts[1]),
+      b->low_open[fault] ? '(' : '[', b->lower[fault], b->upper[fault],
+      b->high_open[fault] ? ')' : ']', law->name, count, w->bond_count);
   diag_hint(d, "take a distribution that stays inside, a smaller `cv`, or clip = .true. for the "
                "nearest allowed value");
 }
@@ -388,11 +394,11 @@ static int find_plane(const deck_field *f, const pl_law *law, diagnostics *d) {
   return -1;
 }
 
-static bool open_source(const deck_field *f, const deck_lattice *lattice, const rows *w,
-                        const pl_parameter *p, double *own, field_source *s, diagnostics *d) {
+static bool open_source(const deck_field *f, const rows *w, const pl_parameter *p, double *own,
+                        field_source *s, diagnostics *d) {
   char error[128];
   if (!units_fit(f, p, d)) return false;
-  *s = (field_source){.field = f, .lattice = lattice, .rows = w, .seed = random_seed_of(f)};
+  *s = (field_source){.field = f, .rows = w, .seed = random_seed_of(f)};
   if (!random_distribution_of(f, *own, &s->distribution, error, sizeof error)) {
     diag_report(d, DIAG_BAD_VALUE, f->item.where, "%s", error);
     return false;
@@ -414,9 +420,7 @@ static bool open_sources(const deck *k, int lattice, const rows *w, const pl_law
       continue;
     }
     const int p = law->varying[plane];
-    good = open_source(f, &k->lattices[lattice], w, &law->parameters[p], &parameters[p],
-                       &sources[plane], d) &&
-           good;
+    good = open_source(f, w, &law->parameters[p], &parameters[p], &sources[plane], d) && good;
   }
   return good;
 }

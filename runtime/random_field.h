@@ -33,10 +33,10 @@ double random_quantile(const random_distribution *r, double z);
 typedef struct random_waves random_waves;
 random_waves *random_waves_new(uint64_t seed, double correlation_length); /* m */
 void random_waves_free(random_waves *w);
-double random_waves_at(const random_waves *w, double x, double y);
-/* Standard normal number of a lattice site (its integer coordinates) and a direction (-1: of the
- * particle). */
-double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int direction);
+double random_waves_at(const random_waves *w, const double at[3]);
+/* Standard normal number of a lattice site (its integer coordinates; c is 0 in the plane) and a
+   direction (-1: of the particle). */
+double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int64_t c, int direction);
 /* Seed of a field: the deck's, mixed with the parameter's name without regard to case, so that two
    parameters with one seed are independent. */
 uint64_t random_seed_of(const deck_field *f);

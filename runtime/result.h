@@ -77,6 +77,24 @@ void result_close(result *r); /* frees; keeps files */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
+
+typedef struct result_names {
+  char **items;
+  int count;
+} result_names;
+/* Names of what a group holds ("/history", "/bonds"), in alphabetical order. Empty where there is no such group. */
+result_names result_list(result_file *f, const char *group);
+/* Histories ("/history") or fields ("/frames"): data sets of the group and of the groups in it, "load", "energy/kinetic",
+   "concrete/omega"; without `time`. */
+result_names result_members(result_file *f, const char *group);
+void result_names_free(result_names *n);
+/* Position of the name given in full or, where that says which, by its last part ("kinetic"); else -1. */
+int result_names_find(const result_names *n, const char *given);
+/* The full name of a history or a field that is given so. False with a sentence that lists what there is. */
+bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
+                 char *error, size_t error_size);
+
+/* A name may be given by its last part where that says which. */
 double *result_read_series(result_file *f, const char *name, long *count, char *unit,
                            size_t unit_size, char *error,
                            size_t size); /* "time", "load", "energy/kinetic" */
@@ -86,17 +104,10 @@ double *result_read_reference(result_file *f, long *particles,
                               int *dimensions); /* [N][2] or [N][3] */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: the first */
-/* The name under which result_read_frame knows a field: `given` itself, or of a bond's field without its interaction when
-   only one has it. False when there is none, or several. */
-bool result_find_field(result_file *f, const char *given, char *name, size_t size);
 /* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error ""). */
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);
 char *result_read_text(result_file *f, const char *path); /* "/input/deck" */
 char *result_read_title(result_file *f);                  /* "" without one */
-/* Names of the members of a group ("/history", "/frames"), comma separated; malloc'ed. */
-char *result_list(result_file *f, const char *group);
-/* Data sets of a group and of the groups in it, to be read: "load, time, energy/kinetic". malloc'ed, never NULL. */
-char *result_members(result_file *f, const char *group);
 
 #endif

@@ -1,10 +1,12 @@
 /* The reading half of result.h. */
 #include <errno.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
 #include "dsl/arena.h"
+#include "dsl/diagnostics.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/result.h"
 
@@ -86,14 +88,6 @@ static bool shape_of(hid_t set, int from, int *rank, hsize_t shape[3]) {
   return good && is_stored(set, *rank, shape);
 }
 
-/* The longer text; the old one is freed. */
-static char *append_name(char *text, const char *folder, const char *name) {
-  size_t used = strlen(text);
-  text = must_realloc(text, used + strlen(folder) + strlen(name) + 3);
-  sprintf(text + used, "%s%s%s", used ? ", " : "", folder, name);
-  return text;
-}
-
 static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
   int rank;
   if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted) return NULL;
@@ -108,63 +102,168 @@ static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hs
   return values;
 }
 
-char *result_members(result_file *f, const char *group) {
-  char *names = result_list(f, group), *rest = NULL;
-  char *text = must_calloc(1, 1);
-  for (char *name = names ? strtok_r(names, ",", &rest) : NULL; name;
-       name = strtok_r(NULL, ",", &rest)) {
-    char path[512];
-    snprintf(path, sizeof path, "%.250s/%.250s", group, name);
-    char *inner = result_list(f, path), *inner_rest = NULL;
-    if (!inner) text = append_name(text, "", name);
-    for (char *part = inner ? strtok_r(inner, ",", &inner_rest) : NULL; part;
-         part = strtok_r(NULL, ",", &inner_rest)) {
-      snprintf(path, sizeof path, "%.250s/", name);
-      text = append_name(text, path, part);
-    }
-    free(inner);
-  }
-  free(names);
-  if (!*text) text = append_name(text, "", "nothing");
-  return text;
+/* --- names ------------------------------------------------------------------------------------ */
+
+static void add_name(result_names *n, const char *folder, const char *name) {
+  const size_t size = strlen(folder) + strlen(name) + 2;
+  n->items = must_realloc(n->items, ((size_t)n->count + 1) * sizeof *n->items);
+  char *item = n->items[n->count++] = must_alloc(size);
+  snprintf(item, size, "%s%s%s", folder, *folder ? "/" : "", name);
 }
+
+void result_names_free(result_names *n) {
+  for (int k = 0; k < n->count; k++)
+    free(n->items[k]);
+  free(n->items);
+  *n = (result_names){NULL, 0};
+}
+
+static herr_t list_one(hid_t group, const char *name, const H5L_info_t *info, void *names) {
+  (void)group, (void)info;
+  add_name(names, "", name);
+  return 0;
+}
+
+result_names result_list(result_file *f, const char *group) {
+  result_names n = {NULL, 0};
+  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0) return n;
+  hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
+  if (g < 0) return n;
+  H5Literate(g, H5_INDEX_NAME, H5_ITER_INC, NULL, list_one, &n);
+  H5Gclose(g);
+  return n;
+}
+
+static bool is_group(const result_file *f, const char *path) {
+  hid_t g = H5Gopen2(f->file, path, H5P_DEFAULT);
+  if (g >= 0) H5Gclose(g);
+  return g >= 0;
+}
+
+result_names result_members(result_file *f, const char *group) {
+  result_names all = {NULL, 0}, outer = result_list(f, group);
+  for (int k = 0; k < outer.count; k++) {
+    char path[512];
+    if (strcmp(outer.items[k], "time") == 0) continue;
+    snprintf(path, sizeof path, "%.250s/%.250s", group, outer.items[k]);
+    if (!is_group(f, path)) {
+      add_name(&all, "", outer.items[k]);
+      continue;
+    }
+    result_names inner = result_list(f, path);
+    for (int i = 0; i < inner.count; i++)
+      add_name(&all, outer.items[k], inner.items[i]);
+    result_names_free(&inner);
+  }
+  result_names_free(&outer);
+  return all;
+}
+
+static const char *last_part(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
+int result_names_find(const result_names *n, const char *given) {
+  int found = -1, count = 0;
+  for (int k = 0; k < n->count; k++) {
+    if (strcmp(n->items[k], given) == 0) return k;
+    if (strcmp(last_part(n->items[k]), given) == 0 && !count++) found = k;
+  }
+  return count == 1 ? found : -1;
+}
+
+/* The nearest name, in full or its last part. */
+static const char *near_name(const result_names *n, const char *given) {
+  const char **candidates = must_calloc(2 * (size_t)n->count + 1, sizeof *candidates);
+  for (int k = 0; k < n->count; k++) {
+    candidates[k] = n->items[k];
+    candidates[n->count + k] = last_part(n->items[k]);
+  }
+  const char *near = nearest_name(given, candidates, 2 * n->count);
+  free(candidates);
+  return near;
+}
+
+/* Appends to the sentence, as far as there is room. */
+static void add_text(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void add_text(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text + used, size - used, format, values);
+  va_end(values);
+}
+
+enum { OF_PARTICLES = 1, OF_BONDS = 2 }; /* the latter lie in folders */
+static void add_names(char *text, size_t size, const result_names *n, int which) {
+  int count = 0;
+  for (int k = 0; k < n->count; k++)
+    if (which & (strchr(n->items[k], '/') ? OF_BONDS : OF_PARTICLES))
+      add_text(text, size, "%s%s", count++ ? ", " : "", n->items[k]);
+  if (!count) add_text(text, size, "none");
+}
+
+static void no_such_name(result_file *f, const char *group, const char *given, char *error,
+                         size_t size) {
+  const bool of_frames = strcmp(group, "/frames") == 0;
+  result_names n = result_members(f, group);
+  const char *near = near_name(&n, given);
+  snprintf(error, size, "`%s` has no %s `%s`; ", f->path, of_frames ? "field" : "history", given);
+  if (near) add_text(error, size, "did you mean `%s`? ", near);
+  if (of_frames) {
+    add_text(error, size, "fields of particles: ");
+    add_names(error, size, &n, OF_PARTICLES);
+    add_text(error, size, "; of bonds: ");
+    add_names(error, size, &n, OF_BONDS);
+  } else {
+    add_text(error, size, "it has ");
+    add_names(error, size, &n, OF_PARTICLES | OF_BONDS);
+  }
+  result_names_free(&n);
+}
+
+/* Opens a history or a field, by its full name or a part that says which. Negative after a sentence. */
+static hid_t open_named(result_file *f, const char *group, const char *given, char *error,
+                        size_t size) {
+  char name[512], path[600];
+  snprintf(path, sizeof path, "%s/%s", group, given);
+  hid_t set = open_set(f, path);
+  if (set >= 0) return set;
+  if (!result_find(f, group, given, name, sizeof name, error, size)) return -1;
+  snprintf(path, sizeof path, "%s/%s", group, name);
+  set = open_set(f, path);
+  if (set < 0) no_such_name(f, group, given, error, size);
+  return set;
+}
+
+bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
+                 char *error, size_t error_size) {
+  result_names n = result_members(f, group);
+  const int k = result_names_find(&n, given);
+  const bool is_time = k < 0 && strcmp(group, "/history") == 0 && strcmp(given, "time") == 0;
+  snprintf(name, size, "%s", k < 0 ? given : n.items[k]);
+  result_names_free(&n);
+  if (k < 0 && !is_time) no_such_name(f, group, given, error, error_size);
+  return k >= 0 || is_time;
+}
+
+/* --- values ----------------------------------------------------------------------------------- */
 
 double *result_read_series(result_file *f, const char *name, long *count, char *unit_text,
                            size_t unit_size, char *error, size_t size) {
-  char path[512];
-  snprintf(path, sizeof path, "/history/%s", name);
-  hid_t set = open_set(f, path);
+  hid_t set = open_named(f, "/history", name, error, size);
+  if (set < 0) return NULL;
   hsize_t shape[3];
-  double *values = set >= 0 ? read_whole(set, H5T_NATIVE_DOUBLE, sizeof *values, 1, shape) : NULL;
+  double *values = read_whole(set, H5T_NATIVE_DOUBLE, sizeof *values, 1, shape);
   if (values) {
     *count = (long)shape[0];
     h5_read_attribute_text(set, "units", unit_text, unit_size);
-  } else {
-    char *names = result_members(f, "/history");
-    snprintf(error, size, "`%s` has no history `%s`; it has %s", f->path, name, names);
-    free(names);
-  }
-  if (set >= 0) H5Dclose(set);
+  } else
+    snprintf(error, size, "the history `%s` of `%s` cannot be read", name, f->path);
+  H5Dclose(set);
   return values;
-}
-
-/* Names that result_read_frame takes, of particles or of bonds: "damage, displacement". */
-static char *field_names(result_file *f, bool of_bonds) {
-  char *members = result_members(f, "/frames"), *rest = NULL, *names = must_calloc(1, 1);
-  for (char *name = strtok_r(members, ", ", &rest); name; name = strtok_r(NULL, ", ", &rest))
-    if ((strchr(name, '/') != NULL) == of_bonds && strcmp(name, "time") != 0 &&
-        strcmp(name, "nothing") != 0)
-      names = append_name(names, "", name);
-  free(members);
-  return *names ? names : append_name(names, "", "none");
-}
-
-static void no_such_field(result_file *f, const char *field, char *error, size_t size) {
-  char *of_particles = field_names(f, false), *of_bonds = field_names(f, true);
-  snprintf(error, size, "`%s` has no field `%s`; fields of particles: %s; of bonds: %s", f->path,
-           field, of_particles, of_bonds);
-  free(of_particles);
-  free(of_bonds);
 }
 
 static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]) {
@@ -183,14 +282,14 @@ static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit_text, size_t unit_size, char *error,
                           size_t size) {
-  char path[512];
-  snprintf(path, sizeof path, "/frames/%s", field);
-  hid_t set = open_set(f, path);
+  hid_t set = open_named(f, "/frames", field, error, size);
+  if (set < 0) return NULL;
   int rank = 0;
   hsize_t shape[3] = {0, 0, 0};
-  if (set < 0 || !shape_of(set, 1, &rank, shape) || rank < 2) {
-    no_such_field(f, field, error, size);
-    if (set >= 0) H5Dclose(set);
+  if (!shape_of(set, 1, &rank, shape) || rank < 2) {
+    snprintf(error, size, "`%s` of `%s` is not a field with a value for each particle or bond",
+             field, f->path);
+    H5Dclose(set);
     return NULL;
   }
   long frames = (long)shape[0], wanted = frame < 0 ? frames + frame : frame;
@@ -205,25 +304,6 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   h5_read_attribute_text(set, "units", unit_text, unit_size);
   H5Dclose(set);
   return values;
-}
-
-bool result_find_field(result_file *f, const char *given, char *name, size_t size) {
-  char path[512], *interactions = result_list(f, "/bonds"), *rest = NULL;
-  int found = 0;
-  snprintf(path, sizeof path, "/frames/%.400s", given);
-  snprintf(name, size, "%s", given);
-  hid_t set = open_set(f, path);
-  for (char *i = set < 0 && interactions ? strtok_r(interactions, ",", &rest) : NULL; i;
-       i = strtok_r(NULL, ",", &rest)) {
-    snprintf(path, sizeof path, "/frames/%.200s/%.200s", i, given);
-    hid_t other = open_set(f, path);
-    if (other < 0) continue;
-    H5Dclose(other);
-    if (!found++) snprintf(name, size, "%s", path + strlen("/frames/"));
-  }
-  free(interactions);
-  if (set >= 0) H5Dclose(set);
-  return set >= 0 || found == 1;
 }
 
 static bool is_damage(result_file *f, const char *field) {
@@ -249,20 +329,19 @@ static double *larger_of(double *most, long bonds, double *more, long count) {
 }
 
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size) {
-  char name[512], unit_text[16], *interaction = result_list(f, "/bonds"), *rest = NULL;
+  result_names interactions = result_list(f, "/bonds"), fields = result_members(f, "/frames");
+  const size_t own = interactions.count ? strlen(interactions.items[0]) : 0;
   double *most = NULL;
-  bool good = interaction != NULL;
+  bool good = true;
   error[0] = 0;
   *bonds = 0;
-  if (interaction) interaction[strcspn(interaction, ",")] = 0;
-  snprintf(name, sizeof name, "/frames/%.400s", interaction ? interaction : "");
-  char *fields = interaction ? result_list(f, name) : NULL;
-  for (char *field = fields ? strtok_r(fields, ",", &rest) : NULL; good && field;
-       field = strtok_r(NULL, ",", &rest)) {
+  for (int k = 0; own && good && k < fields.count; k++) {
+    const char *name = fields.items[k];
+    char unit_text[16];
     long count = 0;
     int components = 0;
-    snprintf(name, sizeof name, "%.250s/%.250s", interaction, field);
-    if (!is_damage(f, name)) continue;
+    if (strncmp(name, interactions.items[0], own) != 0 || name[own] != '/' || !is_damage(f, name))
+      continue;
     double *more = result_read_frame(f, name, frame, &count, &components, unit_text,
                                      sizeof unit_text, error, size);
     if (more && components != 1) { /* one number a bond */
@@ -274,8 +353,8 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
     *bonds = count;
     good = most != NULL;
   }
-  free(fields);
-  free(interaction);
+  result_names_free(&interactions);
+  result_names_free(&fields);
   return most;
 }
 
@@ -304,10 +383,10 @@ double *result_read_reference(result_file *f, long *particles, int *dimensions) 
 /* Pairs that name particles which do not exist make the table unusable. */
 int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
   char path[512];
-  char *names = interaction ? NULL : result_list(f, "/bonds");
-  const char *name = interaction ? interaction : names ? names : "";
-  snprintf(path, sizeof path, "/bonds/%.*s", (int)strcspn(name, ","), name);
-  free(names);
+  result_names all = result_list(f, "/bonds");
+  const char *first = all.count ? all.items[0] : "";
+  snprintf(path, sizeof path, "/bonds/%s", interaction ? interaction : first);
+  result_names_free(&all);
   int columns;
   int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, 2, bonds, &columns);
   long particles;
@@ -332,32 +411,6 @@ char *result_read_text(result_file *f, const char *path) {
   char *text = h5_read_text(set);
   H5Dclose(set);
   return text;
-}
-
-typedef struct name_list {
-  char *text;
-  size_t length;
-} name_list;
-
-static herr_t add_name(hid_t group, const char *name, const H5L_info_t *info, void *data) {
-  (void)group, (void)info;
-  name_list *l = data;
-  size_t n = strlen(name);
-  l->text = must_realloc(l->text, l->length + n + 2);
-  if (l->length) l->text[l->length++] = ',';
-  memcpy(l->text + l->length, name, n + 1);
-  l->length += n;
-  return 0;
-}
-
-char *result_list(result_file *f, const char *group) {
-  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0) return NULL;
-  hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
-  if (g < 0) return NULL;
-  name_list l = {NULL, 0};
-  H5Literate(g, H5_INDEX_NAME, H5_ITER_INC, NULL, add_name, &l);
-  H5Gclose(g);
-  return l.text;
 }
 
 char *result_read_title(result_file *f) {

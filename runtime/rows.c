@@ -311,6 +311,24 @@ static void cut_notches(rows *w, const builder *b) {
   }
 }
 
+/* Points may stand alone; another body without a bond is a slip. */
+static bool has_bonds(const rows *w, const builder *b) {
+  bool extended = false;
+  for (int k = 0; k < b->deck->body_count; k++)
+    extended = extended || (site_of_lattice(b->lattice, b->deck->bodys[k].lattice) &&
+                            b->deck->bodys[k].shape.kind != SHAPE_POINT);
+  if (!extended) return true;
+  for (long p = 0; p < w->particle_count; p++)
+    if (w->bonds[w->particle_site[p]]) return true;
+  diag_report(
+      b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
+      "no two particles of lattice '%s' are neighbours: its spacing of %.6g mm is too large "
+      "for its bodies",
+      b->lattice->name, 1e3 * w->spacing);
+  diag_hint(b->d, "a number without a unit is in m; millimetres are written '6.35 mm'");
+  return false;
+}
+
 rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   builder b = {.deck = k, .lattice = &k->lattices[lattice], .d = d};
   if (!lattice_is_sound(&b)) return NULL;
@@ -320,6 +338,12 @@ rows *rows_build(const deck *k, int lattice, diagnostics *d) {
     place_sites(w, &b);
     number_particles(w);
     join_neighbours(w);
+    if (!has_bonds(w, &b)) {
+      rows_free(w);
+      w = NULL;
+    }
+  }
+  if (w) {
     cut_notches(w, &b);
     count_bonds(w);
   }

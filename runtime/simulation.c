@@ -106,8 +106,18 @@ static bool choose_step(simulation *s, diagnostics *d) {
   return false;
 }
 
+/* A sample at the start, and after each increment. */
+static bool count_increments(simulation *s) {
+  const deck_relaxation *k = &s->deck->relaxation;
+  s->step_count = INT64_C(1) << 60; /* as many as it takes */
+  s->sample_interval = s->deck->simulation.end_time / k->increments;
+  s->history_capacity = k->increments + 3;
+  return true;
+}
+
 static bool count_steps(simulation *s, diagnostics *d) {
   static const double most = 1e12;
+  if (s->deck->relaxation.increments > 0) return count_increments(s);
   const double end = s->deck->simulation.end_time, steps = ceil(end / s->limit.step - 1e-9);
   if (!(steps <= most)) {
     diag_report(d, DIAG_BAD_VALUE, deck_where(&s->deck->simulation.item, "end_time"),
@@ -134,8 +144,12 @@ static int choose_threads(const simulation *s) {
   return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
 }
 
+enum { RELAXATION_COUNT = 2 };
+static const char *const relaxation_names[] = {"relaxation_steps", "relaxation_unbalance"};
+
 static void new_history(simulation *s) {
-  s->series_count = s->monitors->count + (s->deck->output.energy ? LEDGER_COUNT : 0);
+  s->series_count = s->monitors->count + (s->deck->output.energy ? LEDGER_COUNT : 0) +
+                    (s->relaxation ? RELAXATION_COUNT : 0);
   const size_t capacity = (size_t)s->history_capacity;
   s->time = must_calloc(capacity, sizeof(double));
   s->history = must_calloc(capacity * (size_t)s->series_count + 1, sizeof(double));
@@ -166,6 +180,7 @@ static bool lattice_serves(const simulation *s, diagnostics *d) {
 
 static bool set_up(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
+  const bool quasi_static = k->relaxation.increments > 0;
   if (k->lattice_count > 1) {
     diag_report(d, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
                 "a run can have one lattice, this is the second");
@@ -190,11 +205,14 @@ static bool set_up(simulation *s, diagnostics *d) {
   const bool fields = frames_check(s, d), step = choose_step(s, d);
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
-                       k->output.energy, frames_want(s, "force"));
+                       k->output.energy, quasi_static || frames_want(s, "force"));
   if (s->fields) s->state->parameter = s->fields->value;
   if (k->gravity_count > 0) sweep_add_gravity(s->state);
   if (!loads_initial_velocity(s->loads, s->state, d)) return false;
-  s->monitors = monitors_new(k, s->state, s->loads, s->bonds, d);
+  if (quasi_static)
+    s->relaxation = relaxation_new(k, s->state, s->loads, s->limit.step / s->limit.limit);
+  s->monitors = monitors_new(k, s->state, s->loads, s->bonds,
+                             quasi_static ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
   frames_choose(s);
   new_history(s);
@@ -219,6 +237,7 @@ simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostic
 void simulation_free(simulation *s) {
   if (!s) return;
   monitors_free(s->monitors);
+  relaxation_free(s->relaxation);
   loads_free(s->loads);
   sweep_free(s->state);
   random_fields_free(s->fields);
@@ -253,8 +272,22 @@ long simulation_step_count(const simulation *s) {
 long simulation_step_done(const simulation *s) {
   return (long)s->at.step;
 }
+int64_t simulation_position(const simulation *s) {
+  return s->relaxation ? s->relaxation->state.done : s->at.step;
+}
+int64_t simulation_end(const simulation *s) {
+  return s->relaxation ? s->deck->relaxation.increments : s->step_count;
+}
+double simulation_progress(const simulation *s) {
+  return (double)simulation_position(s) / (double)simulation_end(s);
+}
+long simulation_increments(const simulation *s, long *unbalanced) {
+  *unbalanced = s->relaxation ? (long)s->relaxation->state.unbalanced : 0;
+  return s->relaxation ? (long)s->relaxation->state.done : 0;
+}
 double simulation_time(const simulation *s) {
-  return (double)s->at.step * s->limit.step;
+  return s->relaxation ? (double)s->relaxation->state.done * s->relaxation->interval
+                       : (double)s->at.step * s->limit.step;
 }
 int simulation_threads(const simulation *s) {
   return s->state->block_count;
@@ -284,6 +317,13 @@ static bool sample_due(const simulation *s) {
   return s->at.step >= sample_step(s, s->at.next_sample) || s->at.step == s->step_count;
 }
 
+static int64_t next_sample(const simulation *s) {
+  int64_t k = s->at.next_sample;
+  while (sample_step(s, k) <= s->at.step)
+    k++;
+  return k;
+}
+
 /* Values of the present state into the history. The end is sampled also when it lies between two
  * samples. */
 static void record_sample(simulation *s) {
@@ -292,12 +332,16 @@ static void record_sample(simulation *s) {
   monitors_sample(s->monitors, time, s->sampled);
   if (s->deck->output.energy)
     ledger_sample(&s->ledger, s->state, s->loads, (long)s->at.step, s->sampled + watched);
+  if (s->relaxation) {
+    double *own = s->sampled + s->series_count - RELAXATION_COUNT;
+    own[0] = (double)s->relaxation->state.steps;
+    own[1] = s->relaxation->state.unbalance;
+  }
   s->time[s->at.samples] = time;
   for (int k = 0; k < s->series_count; k++)
     s->history[k * s->history_capacity + s->at.samples] = s->sampled[k];
   s->at.samples++;
-  while (sample_step(s, s->at.next_sample) <= s->at.step)
-    s->at.next_sample++;
+  s->at.next_sample = s->relaxation ? s->at.samples : next_sample(s);
   s->stopped_by = monitors_stop(s->monitors, time, s->sampled);
   if (s->stopped_by) {
     s->at.status = STEP_STOPPED;
@@ -321,9 +365,12 @@ int simulation_series_count(const simulation *s) {
 const char *simulation_series(const simulation *s, int k, const char **symbol,
                               const double **values) {
   const int watched = s->monitors->count;
-  if (symbol) *symbol = k < watched ? s->monitors->items[k].unit : "J";
+  const int own = k - (s->series_count - (s->relaxation ? RELAXATION_COUNT : 0));
+  if (symbol) *symbol = k < watched ? s->monitors->items[k].unit : own < 0 ? "J" : "1";
   if (values) *values = s->history + k * s->history_capacity;
-  return k < watched ? s->deck->monitors[k].name : ledger_names[k - watched];
+  return k < watched ? s->deck->monitors[k].name
+         : own < 0   ? ledger_names[k - watched]
+                     : relaxation_names[own];
 }
 
 double simulation_monitor_peak(const simulation *s, int index, double *time) {
@@ -345,15 +392,34 @@ static void after_step(simulation *s) {
   sweep_turn(s->state);
   loads_apply(s->loads, s->state, (long)s->at.step);
   s->at.step++;
-  monitors_step(s->monitors, (long)s->at.step);
   s->go_on = s->at.step < s->until && !(s->interrupted && *s->interrupted);
+  if (s->relaxation) {
+    s->observe = relaxation_due(s->relaxation, s->at.step);
+    return;
+  }
+  monitors_step(s->monitors, (long)s->at.step);
   s->observe = sample_due(s) && s->deck->output.energy;
   if (sample_due(s) && !s->observe) record_sample(s);
 }
 
+/* Quasi-static runs observe to see whether the body has come to rest. */
+static void end_increment(simulation *s) {
+  if (!relaxation_look(s->relaxation, s->at.step)) return;
+  monitors_step(s->monitors, (long)simulation_position(s));
+  record_sample(s);
+  if (simulation_position(s) == simulation_end(s))
+    s->at.status = s->at.status == STEP_OK ? STEP_END : s->at.status;
+  else
+    relaxation_next(s->relaxation, s->at.step);
+  if (s->at.status != STEP_OK || simulation_frame_due(s)) s->go_on = false;
+}
+
 static void after_observing(simulation *s) {
   s->observe = false;
-  record_sample(s);
+  if (s->relaxation && s->at.step > 0)
+    end_increment(s);
+  else
+    record_sample(s);
 }
 
 /* A barrier; the last to arrive does what has to be done alone. Steps are short, so that waiting is
@@ -398,7 +464,7 @@ static int64_t next_stop(const simulation *s, long steps) {
   const int64_t frames = s->deck->output.frames, step = s->at.step;
   int64_t until = steps < s->step_count - step ? step + steps : s->step_count;
   int64_t f = s->at.next_frame;
-  if (frames <= 0) return until;
+  if (frames <= 0 || s->relaxation) return until;
   while (f <= frames && frames_step(s, f) <= step)
     f++;
   if (f <= frames && frames_step(s, f) < until) until = frames_step(s, f);
@@ -407,6 +473,7 @@ static int64_t next_stop(const simulation *s, long steps) {
 
 static void begin(simulation *s) {
   s->at.begun = 1;
+  if (s->relaxation) relaxation_begin(s->relaxation);
   loads_begin(s->loads, s->state);
   monitors_step(s->monitors, 0);
   s->observe = s->deck->output.energy;

@@ -1,8 +1,8 @@
 /* One run: bodies, their laws, loads and the time loop. Setting up allocates and checks everything;
-   a step allocates nothing. Symplectic Euler: v += dt a, u += dt v; the sweep evaluates the bonds
-   of one row into a row buffer and updates that row's particles at once, so bond forces never go to
-   memory. A particle's bonds are summed in a fixed order: results do not depend on the number of
-   threads.
+   a step allocates nothing. Symplectic Euler: v += dt a, u += dt v, by the sweep in stages that all
+   threads do together (sweep.h). Forces are summed in a fixed order: results do not depend on the
+   number of threads. With a &relaxation the steps lead from one state of balance to the next
+   (relaxation.h).
 
    The energy ledger is explained in ledger.h, signs of reactions and drives in loads.h, means and
    zeros in monitor.h. */
@@ -48,9 +48,12 @@ void simulation_free(simulation *s);
 const struct random_fields *simulation_fields(const simulation *s);
 const rows *simulation_rows(const simulation *s, int lattice);
 const step_limit *simulation_step_limit(const simulation *s);
-long simulation_step_count(const simulation *s); /* planned */
+long simulation_step_count(const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
-double simulation_time(const simulation *s);
+double simulation_progress(const simulation *s); /* part of the run that is done, 0 to 1 */
+/* Increments done of a quasi-static run, and how many of them ended without balance; 0 else. */
+long simulation_increments(const simulation *s, long *unbalanced);
+double simulation_time(const simulation *s);   /* s, as the deck's loads count it */
 double simulation_memory(const simulation *s); /* bytes */
 int simulation_threads(const simulation *s);   /* that will work on it */
 /* The arrays of the state, for tools and tests; before the first step they may be set (an initial
@@ -90,8 +93,8 @@ typedef struct bad_state {
   double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
   const double
       *fields; /* of that bond after the step's rules, initial values where these gave no number */
-  int field_count;          /* 0 without a bond; the values are the simulation's */
-  const double *parameters; /* of the law in that bond; NULL without a bond */
+  int field_count;             /* 0 without a bond; the values are the simulation's */
+  const double *parameters;    /* of the law in that bond; NULL without a bond */
   const bad_neighbour *family; /* of the particle; the values are the simulation's */
   int family_count;
   const double *own_fields; /* [law's fields] those on particles: of the particle */
@@ -99,7 +102,8 @@ typedef struct bad_state {
 } bad_state;
 bad_state simulation_bad(const simulation *s);
 
-/* History so far. Series 0.. are the deck's monitors, then the energy terms. */
+/* History so far. Series 0.. are the deck's monitors, then the energy terms; of quasi-static runs
+   then the steps that the increment took and the unbalanced force at its end (relaxation.h). */
 long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);

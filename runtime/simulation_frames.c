@@ -145,7 +145,7 @@ bool frames_check(const simulation *s, diagnostics *d) {
 
 int64_t frames_step(const simulation *s, int64_t frame) {
   const int64_t frames = s->deck->output.frames;
-  return (int64_t)llround((double)frame * (double)s->step_count / (double)frames);
+  return (int64_t)llround((double)frame * (double)simulation_end(s) / (double)frames);
 }
 
 int simulation_frame_fields(const simulation *s, const frame_field **fields) {
@@ -157,13 +157,14 @@ bool simulation_frame_due(const simulation *s) {
   const int64_t frames = s->deck->output.frames;
   if (frames <= 0 || s->at.last_frame_step == s->at.step) return false;
   if (s->at.status != STEP_OK) return true; /* the last state is always worth a frame */
-  return s->at.next_frame <= frames && frames_step(s, s->at.next_frame) <= s->at.step;
+  return s->at.next_frame <= frames && frames_step(s, s->at.next_frame) <= simulation_position(s);
 }
 
 void simulation_frame_taken(simulation *s) {
   const int64_t frames = s->deck->output.frames;
   s->at.last_frame_step = s->at.step;
-  while (frames > 0 && s->at.next_frame <= frames && frames_step(s, s->at.next_frame) <= s->at.step)
+  while (frames > 0 && s->at.next_frame <= frames &&
+         frames_step(s, s->at.next_frame) <= simulation_position(s))
     s->at.next_frame++;
 }
 

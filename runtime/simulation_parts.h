@@ -10,6 +10,7 @@
 #include "runtime/loads.h"
 #include "runtime/monitor.h"
 #include "runtime/random_field.h"
+#include "runtime/relaxation.h"
 #include "runtime/simulation.h"
 #include "runtime/sweep.h"
 
@@ -46,6 +47,7 @@ struct simulation {
   sweep *state;
   loads *loads;
   monitors *monitors;
+  relaxation *relaxation; /* NULL: a dynamic run */
   ledger ledger;
   step_limit limit;
   double sample_interval; /* s */
@@ -80,7 +82,10 @@ bool frames_check(const simulation *s, diagnostics *d);
 void frames_choose(simulation *s);
 /* True when the deck lists the field `name`. */
 bool frames_want(const simulation *s, const char *name);
-/* Step at which a frame is due; the first is that of the undeformed body. */
+/* What the run has done and what it has to do: steps, or increments of quasi-static runs. */
+int64_t simulation_position(const simulation *s);
+int64_t simulation_end(const simulation *s);
+/* Position at which a frame is due; the first is that of the undeformed body. */
 int64_t frames_step(const simulation *s, int64_t frame);
 
 /* Fills s->bad after a sweep that found a velocity beyond its limit. */

@@ -39,6 +39,14 @@ static void add_state(part_list *l, const simulation *s) {
   add_part(l, "internal", w->row_internal, (size_t)s->lattice->row_count * sizeof(double));
 }
 
+static void add_relaxation(part_list *l, relaxation *r, size_t site) {
+  add_part(l, "relaxation", &r->state, sizeof r->state);
+  for (int d = 0; d < r->sweep->dof; d++) {
+    add_part(l, "displacement looked at", r->displacement[d], site);
+    add_part(l, "force looked at", r->force[d], site);
+  }
+}
+
 /* One list serves saving and restoring; `head` comes first. */
 static part_list parts_of(const simulation *s, progress_state *head) {
   part_list l = {NULL, 0};
@@ -46,6 +54,8 @@ static part_list parts_of(const simulation *s, progress_state *head) {
   const size_t samples = (size_t)head->samples * sizeof(double);
   add_state(&l, s);
   add_part(&l, "decay", &s->state->decay, sizeof(double));
+  add_part(&l, "clock", &s->loads->clock, sizeof(load_clock));
+  if (s->relaxation) add_relaxation(&l, s->relaxation, (size_t)s->lattice->size * sizeof(double));
   add_part(&l, "constraints", s->loads->constraints,
            (size_t)s->loads->constraint_count * sizeof(constraint));
   add_part(&l, "forces", s->loads->forces, (size_t)s->loads->force_count * sizeof(applied));
@@ -82,6 +92,7 @@ static bool is_reachable(const simulation *s, const progress_state *at) {
   if (at->next_sample < 0 || at->next_sample > s->history_capacity) return false;
   if (at->samples < at->begun || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
+  if (s->relaxation && at->samples > simulation_end(s) + 1) return false;
   return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
          at->last_frame_step <= at->step && at->result_frames >= 0;
 }
@@ -120,9 +131,13 @@ static void put_places_back(const simulation *s, own_places *own) {
     l->forces[k].now = read.now;
     l->forces[k].velocity = read.velocity;
   }
+  if (s->relaxation && s->at.begun) { /* a sample at the start, and one after each increment */
+    s->relaxation->state.done = s->at.samples - 1;
+    relaxation_next(s->relaxation, l->clock.first);
+  }
   for (int m = 0; m < s->monitors->count; m++) /* one push a step, and one before the first */
     if (s->monitors->items[m].window > 1)
-      s->monitors->items[m].state.filled = s->at.begun ? s->at.step + 1 : 0;
+      s->monitors->items[m].state.filled = s->at.begun ? simulation_position(s) + 1 : 0;
 }
 
 bool simulation_restore(simulation *s, const char *path, const char *fingerprint, long *frames,

@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
 # Runs the beams whose results are missing and draws all curves, load over crack mouth opening: all_curves.png, and one
-# picture for each depth. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
+# picture for each depth. Another program than ../../build/perilat or the one installed: PERILAT=path bash plot_all.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 perilat=${PERILAT:-../../build/perilat}
+[[ -n ${PERILAT:-} || -x $perilat ]] || perilat=perilat
 
 beams=(d3_s6.35 d3_s3.175 d6_s6.35 d6_s3.175 d9_s12.7 d9_s6.35 d9_s3.175)
 

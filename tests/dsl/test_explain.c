@@ -40,7 +40,7 @@ static char *explained(const law *l, explain_form form) {
   char *text = NULL;
   size_t length;
   FILE *out = open_memstream(&text, &length);
-  explain_law(l, form, out);
+  explain_law(l, form, NULL, 0, out);
   fclose(out);
   return text;
 }
@@ -208,6 +208,47 @@ static void documents_are_as_expected(void **state) {
   }
 }
 
+/* y, with `mode` and not `size` decided. */
+static void chosen_branches_stand_alone(void **state) {
+  (void)state;
+  static const struct {
+    const char *rule, *formula;
+  } pairs[] = {
+      {"y = | a when mode == one | 2*a otherwise", "$$y = 2\\,a$$"},
+      {"y = | a when mode == two | 2*a otherwise", "$$y = a$$"},
+      {"y = | a when mode /= one and stretch > 0 | 2*a otherwise",
+       "$$y = \\begin{cases} a & \\text{when } \\mathit{stretch} > 0 \\\\ 2\\,a & "
+       "\\text{otherwise} \\end{cases}$$"},
+      {"y = | 0*a when stretch < 0 | a when mode == two or stretch > 1 | 2*a otherwise",
+       "$$y = \\begin{cases} 0\\,a & \\text{when } \\mathit{stretch} < 0 \\\\ a & "
+       "\\text{otherwise} \\end{cases}$$"},
+      {"y = 3*(| a when not mode == two | a + 2*a otherwise)",
+       "$$y = 3\\,\\left(a + 2\\,a\\right)$$"},
+      {"y = | a when size == big | 2*a otherwise",
+       "$$y = \\begin{cases} a & \\text{when } \\mathrm{size} = \\mathrm{big} \\\\ 2\\,a & "
+       "\\text{otherwise} \\end{cases}$$"},
+  };
+  static const law_choice choices[] = {{"mode", "two"}};
+  for (size_t k = 0; k < sizeof pairs / sizeof *pairs; k++) {
+    char text[2048];
+    snprintf(text, sizeof text,
+             "model m\n  law central bond\n  option mode = one | two\n  option size = big | small\n"
+             "  parameter a = 2 [N]\n  %s\n  force N = y*stretch\nend model\n",
+             pairs[k].rule);
+    reading r;
+    read_law(&r, text);
+    char *found = NULL;
+    size_t length;
+    FILE *out = open_memstream(&found, &length);
+    explain_law(r.law, EXPLAIN_MARKDOWN, choices, 1, out);
+    fclose(out);
+    if (!strstr(found, pairs[k].formula))
+      fail_msg("%s\nis not read as\n%s\nbut\n%s", pairs[k].rule, pairs[k].formula, found);
+    free(found);
+    end(&r);
+  }
+}
+
 static void the_command_explains_with_options(void **state) {
   (void)state;
   char command[4096];
@@ -220,6 +261,7 @@ static void the_command_explains_with_options(void **state) {
   assert_non_null(strstr(
       text,
       "| `onset` | `rankine`, `mohr_coulomb` | `mohr_coulomb` | what begins tensile damage |"));
+  assert_null(strstr(text, "\\mathrm{rankine}"));
   free(text);
   snprintf(command, sizeof command,
            "%s explain --set onset=none %s/tests/dsl/golden/splm_concrete.plm 2>/dev/null",
@@ -235,6 +277,7 @@ int main(void) {
       cmocka_unit_test(units_read_as_formulas),
       cmocka_unit_test(descriptions_are_escaped),
       cmocka_unit_test(documents_are_as_expected),
+      cmocka_unit_test(chosen_branches_stand_alone),
       cmocka_unit_test(the_command_explains_with_options),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,6 @@
 /* A deck's text through the namelist reader and the deck's checks. Lines `! --set text` at the top
    are overrides, as in tests/runtime/bad. What can be read must have its numbers finite and its
-   lists whole; every place lies in its text. */
+   lists whole; every place lies in its text; what identifies the deck can be read again. */
 #include <math.h>
 #include <string.h>
 
@@ -17,7 +17,6 @@ static void check_places(const diagnostics *d) {
     MUST(x->where.begin <= x->where.end && x->where.end <= d->sources->items[x->where.file].length);
     MUST(*x->message && !strchr(x->message, '\n'));
   }
-  diag_print(d, nowhere());
 }
 
 static void check_values(const namelist *n, const source *text) {
@@ -56,6 +55,24 @@ static void check_deck(const deck *k) {
     MUST(deck_find_monitor(k, k->stops[m].monitor) >= 0);
 }
 
+static bool keep(const char *group, const char *key) {
+  (void)group, (void)key;
+  return false;
+}
+
+/* What the deck asks for, as one text, is a deck that asks for the same. */
+static void check_identity(arena *memory, const deck *k) {
+  source_set sources = {NULL, 0};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  const int file = source_add(&sources, "identity", k->identity, strlen(k->identity));
+  const namelist *n = namelist_read(memory, &sources, file, &said);
+  MUST(said.errors == 0);
+  MUST(strcmp(namelist_text(memory, n, keep), k->identity) == 0);
+  diag_clear(&said);
+  source_clear(&sources);
+}
+
 /* The overrides in the comment lines at the top, cut out in place. */
 static int take_overrides(char *text, deck_override *overrides) {
   static const char mark[] = "! --set ";
@@ -70,25 +87,33 @@ static int take_overrides(char *text, deck_override *overrides) {
   return count;
 }
 
+static void check_namelist(arena *memory, source_set *sources, int file) {
+  diagnostics said;
+  diag_begin(&said, sources);
+  const namelist *n = namelist_read(memory, sources, file, &said);
+  MUST(n);
+  check_values(n, &sources->items[file]);
+  diag_clear(&said);
+}
+
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   if (size > LONGEST) return 0;
+  const fuzz_choice choice = fuzz_choose(data, size);
   source_set sources = {NULL, 0};
   diagnostics said;
   diag_begin(&said, &sources);
   arena *memory = arena_new();
   const int file = source_add(&sources, "deck.nml", (const char *)data, size);
-  const namelist *n = namelist_read(memory, &sources, file, &said);
-  MUST(n);
-  check_values(n, &sources.items[file]);
-  diag_clear(&said);
-  diag_begin(&said, &sources);
+  if (fuzz_one_in(choice, 4)) check_namelist(memory, &sources, file);
   deck_override overrides[MOST_OVERRIDES];
   char *head = arena_text(memory, (const char *)data, size);
   const int count = take_overrides(head, overrides);
   const deck *k = deck_read(memory, &sources, file, overrides, count, &said);
   MUST((k != NULL) == (said.errors == 0));
   if (k) check_deck(k);
+  if (k && fuzz_one_in(choice, 3)) check_identity(memory, k);
   check_places(&said);
+  if (fuzz_one_in(choice, 13)) diag_print(&said, nowhere());
   diag_clear(&said);
   source_clear(&sources);
   arena_free(memory);

@@ -5,7 +5,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "tests/fuzz/fuzz.h"
+#include "tests/fuzz/recipe.h"
 
 typedef struct memory_file {
   int handle;
@@ -44,22 +44,6 @@ static inline uint8_t *file_bytes(const char *path, size_t *size) {
   MUST(bytes && fread(bytes, 1, *size, in) == *size);
   fclose(in);
   return bytes;
-}
-
-/* Reads an input piece by piece; behind its end there are zeros. */
-typedef struct recipe {
-  const uint8_t *at, *end;
-} recipe;
-
-static inline unsigned recipe_byte(recipe *r) {
-  return r->at < r->end ? *r->at++ : 0;
-}
-
-static inline uint64_t recipe_number(recipe *r, int bytes) {
-  uint64_t n = 0;
-  for (int k = 0; k < bytes; k++)
-    n |= (uint64_t)recipe_byte(r) << 8 * k;
-  return n;
 }
 
 /* Changes of a file that was right: first what is cut off its end, then places and what is written

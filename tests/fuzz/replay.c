@@ -1,5 +1,5 @@
-/* Runs a fuzzer on files instead of on inventions: `replay_model folder | file ...`. A folder's
-   files are taken in the order of their names. The test fails when one of them ends the program, or
+/* Runs a fuzzer on files instead of on inventions, each through all its parts: `replay_model folder
+   | file ...`. A folder's files are taken in the order of their names. The test fails when one of them ends the program, or
    when there is none. */
 #include <dirent.h>
 #include <errno.h>
@@ -46,6 +46,7 @@ static long replay(const char *path) {
 
 int main(int argc, char **argv) {
   long files = 0;
+  MUST(setenv("FUZZ_EVERYTHING", "1", 1) == 0);
   for (int k = 1; k < argc; k++) {
     long found = replay(argv[k]);
     if (!found) fprintf(stderr, "%s: no files: %s\n", argv[k], strerror(errno));

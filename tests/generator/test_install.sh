@@ -31,11 +31,21 @@ for law in "$source"/models/*.plm; do
   "$perilat" check "$(basename "$law" .plm)" | grep -q 'no errors'
 done
 "$perilat" drive "$prefix/share/perilat/models/drives/elastic_central.nml" | grep -q 'expectations hold'
+# Every link of the documentation leads somewhere.
+pages=0
+while IFS= read -r page; do
+  pages=$((pages + 1))
+  { grep -o '](\([^)]*\))' "$page" || true; } | sed 's/^](//; s/)$//; s/#.*//' | while IFS= read -r link; do
+    case $link in "" | http*) continue ;; esac
+    [ -e "$(dirname "$page")/$link" ] || fail "$page: there is no $link"
+  done
+done < <(find "$prefix/share/doc/perilat" -name '*.md')
+[ "$pages" -gt 60 ] || fail "only $pages pages of documentation"
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
 sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" run deck.nml --set "simulation.end_time=0.1 ms" --set output.result=run.h5 2>&1 | grep -q 'written'
-"$perilat" info run.h5 | grep -q elongation
+"$perilat" info run.h5 | grep -q opening
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
 PATH=/nonexistent ./solver --set "simulation.end_time=0.1 ms" --set output.result=solver.h5 >solver.log 2>&1
 "$perilat" compare run.h5 solver.h5 | grep -q '^same'
@@ -57,8 +67,9 @@ int main(int argc, char **argv) {
   bool good = path && model_open(&m, path, NULL, 0) && model_plan(&m);
   result_file *f = good ? result_read(argv[2], error, sizeof error) : NULL;
   long particles = 0;
+  int dimensions;
   if (f)
-    free(result_read_reference(f, &particles));
+    free(result_read_reference(f, &particles, &dimensions));
   printf("%s has %d parameters; %ld particles\n", good ? m.law->tree->name : "?", good ? m.law->parameters.count : 0,
          particles);
   return f && particles > 0 ? 0 : 1;
@@ -76,7 +87,7 @@ add_executable(use use.c)
 target_link_libraries(use PRIVATE perilat::generator)
 END
 export PERILAT_MODELS=$prefix/share/perilat/models
-expected="elastic_central has 2 parameters; 264 particles"
+expected="elastic_central has 2 parameters; 281 particles"
 "$cmake" -S . -B cmake-build -G "$generator" -DCMAKE_MAKE_PROGRAM="$make_program" -DCMAKE_C_COMPILER="$compiler" \
   -DCMAKE_PREFIX_PATH="$prefix" >cmake.log 2>&1 || { cat cmake.log; fail "configuring with the CMake package"; }
 "$cmake" --build cmake-build >cmake.log 2>&1 || { cat cmake.log; fail "building with the CMake package"; }

@@ -191,7 +191,8 @@ static void check_family_law(const char *path, const law_choice *choice, long st
     law_setting setting = (law_setting)k;
     model m;
     assert_true(model_open(&m, path, choice, choice ? 1 : 0));
-    const bool allowed = law_allows(m.law, setting);
+    char meant[96];
+    const bool allowed = model_suits(&m, law_setting_name(setting), meant, sizeof meant);
     model_close(&m);
     if (!allowed) continue;
     const pl_law *kernel = open_kernel_for(&m, path, choice, &setting);

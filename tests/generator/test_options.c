@@ -102,6 +102,30 @@ static void help_shows_every_option(void **state) {
   }
 }
 
+static void help_on_nothing_lists_the_topics(void **state) {
+  workplace *w = *state;
+  static const char *const listed[] = {
+      "did you mean `drive`?",  "commands: new check", "groups of decks: simulation",
+      "words of the language:", " otherwise",          "units: stretch",
+      " unknown-name"};
+  for (size_t k = 0; k < sizeof listed / sizeof *listed; k++)
+    expect(w, "help drivee", 1, listed[k]);
+}
+
+static void format_leaves_laws_with_errors(void **state) {
+  workplace *w = *state;
+  static const char *const laws[] = {
+      "model x\n  law central bond\nforce N = zork*stretch\nend model\n", "model x\nforce N =\n"};
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+    write_text(w, "x.plm", laws[k]);
+    expect(w, "format -i x.plm", 1, "error: ");
+    size_t size;
+    char *left = read_bytes(w, "x.plm", &size);
+    assert_string_equal(left, laws[k]);
+    free(left);
+  }
+}
+
 /* --- completion ------------------------------------------------------------------------------- */
 
 /* What bash offers, sorted, after a line whose words are given as it would cut them. */
@@ -198,7 +222,7 @@ static void new_files_work_at_once(void **state) {
     expect(w, line, 0, "no errors");
     snprintf(line, sizeof line, "run %s.nml", name);
     expect(w, line, 0, "written    ");
-    snprintf(line, sizeof line, "plot %s.h5 --x elongation --y load -o %s.svg", name, name);
+    snprintf(line, sizeof line, "plot %s.h5 --x opening --y load -o %s.svg", name, name);
     expect(w, line, 0, "written");
     assert_int_equal(shell(w, "grep -l NAME %s.plm %s_drive.nml %s.nml", name, name, name),
                      1); /* no mark is left */
@@ -228,6 +252,9 @@ static void new_refuses(void **state) {
       status = shell(w, "$P check *.plm && rm *.plm *_drive.nml && rm -f [!b]*.nml") == 0 ? 1 : -1;
     if (status != 1) fail_msg("perilat new %s: status %d: %s", names[k], status, w->said);
   }
+  expect(w, "new when", 1, "`when` cannot be the name of a law: `when` is a word of the language");
+  assert_null(strstr(w->said, "when.plm"));
+  expect(w, "new mplm_bilinear", 0, "warning: there is a law `mplm_bilinear` already");
   expect(w, "new", 1, "needs a name");
   expect(w, "new a b", 1, "takes one name");
   expect(w, "new a --kind state", 1, "--kind takes central or micropolar");
@@ -250,6 +277,8 @@ int main(void) {
       T(options_of_others_are_refused),
       T(every_option_in_the_sources_has_a_row),
       T(help_shows_every_option),
+      T(help_on_nothing_lists_the_topics),
+      T(format_leaves_laws_with_errors),
       T(bash_completes),
       T(other_shells_read_theirs),
       T(man_pages_are_whole),

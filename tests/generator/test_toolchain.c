@@ -227,7 +227,7 @@ static void refused_source_is_kept_and_named(void **state) {
   const char *text = "int here_is_no_semicolon\nstatic\n";
   assert_false(toolchain_load(text, "somekey", &k, error, sizeof error));
   snprintf(path, sizeof path, "%s/somekey.c", p->folder);
-  assert_non_null(strstr(error, "internal error"));
+  assert_non_null(strstr(error, "failed (status 1) on the generated C, which is kept as"));
   assert_non_null(strstr(error, path));
   assert_non_null(strstr(error, "error:")); /* what the compiler said */
   FILE *in = fopen(path, "r");
@@ -313,6 +313,7 @@ static void a_named_compiler_is_taken_or_none(void **state) {
   (void)state;
   setenv("PERILAT_CC", "no-such-compiler", 1);
   assert_null(toolchain_compiler());
+  assert_non_null(strstr(toolchain_no_compiler(), "PERILAT_CC names the C compiler `no-such-comp"));
   unsetenv("PERILAT_CC");
   setenv("CC", "no-such-compiler", 1);
   assert_string_not_equal(toolchain_compiler(), "no-such-compiler");

@@ -270,6 +270,54 @@ static void overrides_replace_and_add(void **state) {
   end(&r);
 }
 
+/* A clockwise polygon with arcs comes counter-clockwise, each arc on its edge; components are degrees of freedom. */
+static void a_body_in_space(void **state) {
+  (void)state;
+  static const char block[] =
+      "&simulation end_time = 1 /\n"
+      "&lattice name = 'block' kind = 'fcc' spacing = '5 mm' shells = 2 rotation = 90 axis = 1, 1, "
+      "0\n"
+      "  origin = '1 mm', '2 mm', '3 mm' /\n"
+      "&material lattice = 'block' model = 'm' /\n"
+      "&body lattice = 'block' shape = 'extrusion' points = 0, 0, 0, 2, 3, 1 bulge = 0.1, 0.2, "
+      "0.3\n"
+      "  z = '-1 mm', '4 mm' /\n"
+      "&notch lattice = 'block' shape = 'cylinder' from = 0, 0, 0 to = 0, 0, '9 mm' radius = 1 /\n"
+      "&region name = 'end' shape = 'face' points = 0, 0, 1, 1, 0, 1, 0, 1, 1 /\n"
+      "&support region = 'end' fix = 'xz' /\n"
+      "&drive region = 'end' component = 'y' velocity = 1 /\n"
+      "&force region = 'end' component = 'z' force = '2 kN' /\n"
+      "&gravity acceleration = 0, 0, '-9.81 m/s^2' /\n"
+      "&monitor name = 'held' kind = 'reaction' region = 'end' component = 'z' /\n"
+      "&stop monitor = 'held' above = '1 kN' /\n";
+  static const double points[] = {3, 1, 0, 2, 0, 0}, bulge[] = {0.2, 0.1, 0.3};
+  reading r;
+  read_good(&r, block, NULL, 0);
+  const deck *k = r.k;
+  assert_string_equal(k->lattices[0].setting, "space");
+  assert_int_equal(k->lattices[0].shells, 2);
+  near(k->lattices[0].rotation, 2 * atan(1));
+  assert_true(k->lattices[0].axis[1] == 1 && k->lattices[0].axis[2] == 0);
+  near(k->lattices[0].origin[2], 3e-3);
+  const deck_shape *s = &k->bodys[0].shape;
+  assert_int_equal(s->point_count, 3);
+  for (int p = 0; p < 6; p++)
+    near(s->points[p], points[p]);
+  for (int p = 0; p < 3; p++)
+    near(s->bulge[p], bulge[p]);
+  assert_true(s->z[0] == -1e-3 && s->z[1] == 4e-3);
+  near(k->notchs[0].shape.to[2], 9e-3);
+  assert_int_equal(k->regions[0].shape.point_count, 3);
+  assert_int_equal(k->supports[0].fix, FIX_X | FIX_Z);
+  assert_int_equal(k->drives[0].component, 1);
+  assert_int_equal(k->forces[0].component, 2);
+  assert_int_equal(k->monitors[0].component, 2);
+  assert_string_equal(deck_component_name(3, 2), "z");
+  near(k->gravitys[0].acceleration[2], -9.81);
+  near(k->stops[0].level, 1000);
+  end(&r);
+}
+
 static uint32_t next_random(uint64_t *seed) {
   *seed = *seed * 6364136223846793005u + 1442695040888963407u;
   return (uint32_t)(*seed >> 33);
@@ -457,6 +505,7 @@ int main(void) {
                                      cmocka_unit_test(what_is_not_written_has_its_default),
                                      cmocka_unit_test(every_kind_of_value),
                                      cmocka_unit_test(loads_in_time),
+                                     cmocka_unit_test(a_body_in_space),
                                      cmocka_unit_test(places_of_values),
                                      cmocka_unit_test(overrides_replace_and_add),
                                      cmocka_unit_test(no_damaged_deck_crashes),

@@ -173,6 +173,31 @@ static void a_thrown_body_keeps_its_velocity(void **state) {
   small_close(&r);
 }
 
+static double first_of(const small_run *r, const char *name) {
+  const double *values;
+  simulation_series(r->simulation, small_series(r, name), NULL, &values);
+  return values[0];
+}
+
+/* The ledger begins with the run: nothing is lost before it. */
+static void a_thrown_body_with_damping_has_lost_nothing_at_first(void **state) {
+  (void)state;
+  small_run r;
+  must_open(&r, "&simulation end_time = 1e-3 /\n" BLOCK
+                "&initial_velocity region = 'all' component = 'x' value = 0.5 /\n"
+                "&damping kind = 'mass' rate = 500 /\n"
+                "&output frames = 0 /\n");
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(first_of(&r, "energy/dissipated_damping") == 0);
+  assert_true(first_of(&r, "energy/imbalance") == 0);
+  const double t = simulation_time(r.simulation), before = first_of(&r, "energy/kinetic"),
+               after = small_last(&r, "energy/kinetic");
+  assert_true(fabs(after / before / exp(-2 * 500 * t) - 1) < 1e-9);
+  assert_true(fabs(small_last(&r, "energy/dissipated_damping") / (before - after) - 1) < 1e-9);
+  assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-10 * before);
+  small_close(&r);
+}
+
 typedef struct misfit {
   const char *groups;
   diag_code code;
@@ -231,6 +256,7 @@ int main(void) {
       cmocka_unit_test(the_ledger_counts_the_work_of_gravity),
       cmocka_unit_test(threads_do_not_change_the_fall),
       cmocka_unit_test(a_thrown_body_keeps_its_velocity),
+      cmocka_unit_test(a_thrown_body_with_damping_has_lost_nothing_at_first),
       cmocka_unit_test(misfits_are_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

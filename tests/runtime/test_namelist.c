@@ -174,6 +174,10 @@ static void limits_are_kept(void **state) {
   read_text(&r, "&g x = 999999*1, 2*1 /");
   assert_int_equal(r.d.errors, 1);
   end(&r);
+  read_text(&r, "&g x = 999999*1 / &g y = 1 / &h z = 1 /"); /* of all keys together */
+  assert_int_equal(r.d.errors, 1);
+  assert_int_equal(r.d.items[0].code, DIAG_TOO_LONG);
+  end(&r);
   read_text(&r, "&g x = 99999999999999999999*1 /");
   assert_int_equal(r.d.errors, 1);
   end(&r);

@@ -124,7 +124,7 @@ static void values_follow_their_distribution(void **state) {
     for (int a = 0; a < SIDE; a++)
       for (int b = 0; b < SIDE; b++)
         for (int k = 0; k < 3; k++)
-          values[n++] = random_quantile(&r, random_normal_of_site(42 + c, a - 50, b - 150, k));
+          values[n++] = random_quantile(&r, random_normal_of_site(42 + c, a - 50, b - 150, 0, k));
     check_values(cases[c].name, values, n, cases[c].mean, cases[c].cv, cases[c].below);
   }
   free(values);
@@ -177,31 +177,34 @@ static double correlation(double (*first)(int, int), double (*second)(int, int))
 }
 
 static double here(int a, int b) {
-  return random_normal_of_site(7, a, b, 0);
+  return random_normal_of_site(7, a, b, 0, 0);
 }
 static double right(int a, int b) {
-  return random_normal_of_site(7, a + 1, b, 0);
+  return random_normal_of_site(7, a + 1, b, 0, 0);
 }
 static double above(int a, int b) {
-  return random_normal_of_site(7, a, b + 1, 0);
+  return random_normal_of_site(7, a, b + 1, 0, 0);
 }
 static double mirrored(int a, int b) {
-  return random_normal_of_site(7, b, a, 0);
+  return random_normal_of_site(7, b, a, 0, 0);
 }
 static double other_direction(int a, int b) {
-  return random_normal_of_site(7, a, b, 1);
+  return random_normal_of_site(7, a, b, 0, 1);
 }
 static double particle(int a, int b) {
-  return random_normal_of_site(7, a, b, -1);
+  return random_normal_of_site(7, a, b, 0, -1);
 }
 static double other_seed(int a, int b) {
-  return random_normal_of_site(8, a, b, 0);
+  return random_normal_of_site(8, a, b, 0, 0);
+}
+static double other_layer(int a, int b) {
+  return random_normal_of_site(7, a, b, 1, 0);
 }
 
 static void neighbours_directions_and_seeds_are_independent(void **state) {
   (void)state;
-  double (*const others[])(int, int) = {right,           above,    mirrored,
-                                        other_direction, particle, other_seed};
+  double (*const others[])(int, int) = {right,    above,      mirrored,   other_direction,
+                                        particle, other_seed, other_layer};
   assert_true(fabs(correlation(here, here) - 300) < 1e-9);
   for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
     const double r = correlation(here, others[k]);
@@ -222,23 +225,27 @@ static void correlation_falls_with_distance(void **state) {
   enum { SEEDS = 20000, LAGS = 5 };
   static const double lags[LAGS] = {0, 0.25, 0.5, 1, 2};
   const double L = 0.02;
-  double along[LAGS] = {0}, across[LAGS] = {0}, *values = must_calloc(SEEDS, sizeof *values);
+  double along[LAGS] = {0}, across[LAGS] = {0}, upward[LAGS] = {0},
+         *values = must_calloc(SEEDS, sizeof *values);
   for (int seed = 0; seed < SEEDS; seed++) {
     random_waves *w = random_waves_new((uint64_t)seed, L);
-    const double z = random_waves_at(w, 0.3, -0.7);
+    const double z = random_waves_at(w, (double[3]){0.3, -0.7, 0});
     values[seed] = z;
     for (int k = 0; k < LAGS; k++) {
-      along[k] += z * random_waves_at(w, 0.3 + lags[k] * L, -0.7) / SEEDS;
-      across[k] += z * random_waves_at(w, 0.3, -0.7 + lags[k] * L) / SEEDS;
+      const double r = lags[k] * L;
+      along[k] += z * random_waves_at(w, (double[3]){0.3 + r, -0.7, 0}) / SEEDS;
+      across[k] += z * random_waves_at(w, (double[3]){0.3, -0.7 + r, 0}) / SEEDS;
+      upward[k] += z * random_waves_at(w, (double[3]){0.3, -0.7, r}) / SEEDS;
     }
     random_waves_free(w);
   }
   for (int k = 0; k < LAGS; k++) {
     const double rho = exp(-lags[k] * lags[k]), spread = sqrt((1 + rho * rho) / SEEDS);
-    print_message("correlation at %.2f L: %.4f and %.4f, theory %.4f +- %.4f\n", lags[k], along[k],
-                  across[k], rho, spread);
+    print_message("correlation at %.2f L: %.4f, %.4f, %.4f, theory %.4f +- %.4f\n", lags[k],
+                  along[k], across[k], upward[k], rho, spread);
     assert_true(fabs(along[k] - rho) < standard_errors * spread);
     assert_true(fabs(across[k] - rho) < standard_errors * spread);
+    assert_true(fabs(upward[k] - rho) < standard_errors * spread);
   }
   double distance = 0;
   qsort(values, SEEDS, sizeof *values, ascending);

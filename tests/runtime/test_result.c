@@ -17,49 +17,22 @@
 #include "runtime/canvas.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/plot.h"
-#include "runtime/result.h"
+#include "tests/runtime/small_result.h"
 
-enum { PARTICLES = 3, BONDS = 2, SAMPLES = 5 };
-
-static const double reference[2 * PARTICLES] = {0, 0, 1, 0, 0.5, 0.75};
-static const double volume[PARTICLES] = {1, 2, 3};
-static const int32_t body[PARTICLES] = {0, 0, 1};
-static const int32_t bonds[2 * BONDS] = {0, 1, 1, 2};
-static const result_text deck_models[] = {{"law", "model law"}}, kernels[] = {{"law", "int x;"}};
-static const result_field fields[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
-                                      {"omega", "1", "concrete", 1, BONDS, "damage"}};
 static char error[512];
 
 static result_header header(const char *path) {
-  return (result_header){.path = path,
-                         .title = "three particles",
-                         .started = "now",
-                         .version = "0",
-                         .kernel_key = "k",
-                         .deck_text = "&simulation /",
-                         .models = deck_models,
-                         .model_count = 1,
-                         .kernels = kernels,
-                         .kernel_count = 1,
-                         .particle_count = PARTICLES,
-                         .dimensions = 2,
-                         .reference = reference,
-                         .body = body,
-                         .volume = volume,
-                         .interaction = "concrete",
-                         .bond_count = BONDS,
-                         .bonds = bonds,
-                         .fields = fields,
-                         .field_count = 2};
+  static const result_text deck_models[] = {{"law", "model law"}}, kernels[] = {{"law", "int x;"}};
+  result_header h = small_header(path);
+  h.models = deck_models;
+  h.kernels = kernels;
+  h.model_count = h.kernel_count = 1;
+  return h;
 }
 
-/* Values of frame k: displacement k + p/10 + c/100, damage k/10 + b. */
 static void write_frame(result *r, int k) {
   double u[2 * PARTICLES], omega[BONDS];
-  for (int q = 0; q < 2 * PARTICLES; q++)
-    u[q] = k + 0.1 * (q / 2) + 0.01 * (q % 2);
-  for (int b = 0; b < BONDS; b++)
-    omega[b] = 0.1 * k + b;
+  small_frame(k, u, omega);
   const double *values[] = {u, omega};
   assert_true(result_frame(r, 0.5 * k, values, error, sizeof error));
 }
@@ -79,20 +52,21 @@ static void expect_frame(result_file *f, int k) {
   long count;
   int components;
   char unit_text[16];
+  double expected[2 * PARTICLES], damage[BONDS];
+  small_frame(k, expected, damage);
   double *u = result_read_frame(f, "displacement", k, &count, &components, unit_text,
                                 sizeof unit_text, error, sizeof error);
   assert_non_null(u);
   assert_int_equal(count, PARTICLES);
   assert_int_equal(components, 2);
   assert_string_equal(unit_text, "m");
-  for (int q = 0; q < 2 * PARTICLES; q++)
-    assert_true(u[q] == k + 0.1 * (q / 2) + 0.01 * (q % 2));
+  assert_memory_equal(u, expected, sizeof expected);
   free(u);
   double *omega = result_read_frame(f, "concrete/omega", k, &count, &components, unit_text,
                                     sizeof unit_text, error, sizeof error);
   assert_non_null(omega);
   assert_int_equal(count, BONDS);
-  assert_true(omega[1] == 0.1 * k + 1);
+  assert_memory_equal(omega, damage, sizeof damage);
   free(omega);
 }
 
@@ -359,11 +333,11 @@ static void damage_is_the_largest_of_the_damages(void **state) {
                                          {"displacement", "displacement"},
                                          {"damage", "damage"}};
   for (int k = 0; k < 4; k++) {
-    assert_true(result_find_field(f, given[k][0], name, sizeof name));
+    assert_true(result_find(f, "/frames", given[k][0], name, sizeof name, error, sizeof error));
     assert_string_equal(name, given[k][1]);
   }
-  assert_false(result_find_field(f, "v", name, sizeof name));
-  assert_false(result_find_field(f, "concrete", name, sizeof name)); /* a group */
+  assert_false(result_find(f, "/frames", "v", name, sizeof name, error, sizeof error));
+  assert_false(result_find(f, "/frames", "concrete", name, sizeof name, error, sizeof error));
   result_read_close(f);
   write_kinds("result_n.h5", 0, 3); /* a state, but no damage on bonds */
   f = result_read("result_n.h5", error, sizeof error);

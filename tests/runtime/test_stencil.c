@@ -16,6 +16,7 @@
 #include "runtime/stencil.h"
 #include "tests/runtime/elastic_law.h"
 #include "tests/runtime/family_law.h"
+#include "tests/runtime/spring_law.h"
 
 static const double spacing = 0.01, thickness = 0.1;
 
@@ -104,12 +105,71 @@ static void long_waves_give_the_elastic_constants(void **state) {
   }
 }
 
+/* --- in space --------------------------------------------------------------------------------- */
+
+static rows *space_lattice(const char *kind, double horizon) {
+  const deck_lattice l = {
+      .kind = kind, .spacing = spacing, .horizon = horizon, .rotation = 0.3, .axis = {1, 2, 3}};
+  rows *w = implied_lattice_like(&l, 2000);
+  assert_non_null(w);
+  return w;
+}
+
+/* Springs k = c/s between nearest neighbours: omega^2 m = 4 k on the cubic lattice (the zone's
+   corners), 8 k on the face-centred one (at X). */
+static void springs_in_space_have_their_frequencies(void **state) {
+  (void)state;
+  const struct {
+    const char *kind;
+    double square;
+  } lattices[] = {{"cubic", 4}, {"fcc", 8}};
+  for (int n = 0; n < 2; n++) {
+    rows *w = space_lattice(lattices[n].kind, 0);
+    const double parameters[] = {1e5, 2000};
+    const double omega = sqrt(lattices[n].square * 1e5 / spacing / w->mass);
+    step_limit limit;
+    stability_limit(&springs, parameters, w, &limit);
+    assert_true(fabs(limit.omega_max - omega) <= 1e-7 * omega);
+    rows_free(w);
+  }
+}
+
+/* Springs along bonds r: C = sum over half of the bonds of c r^4/(s V) (Cauchy), shear strains as
+   angles. */
+static void springs_in_space_have_their_stiffness(void **state) {
+  (void)state;
+  static const int pair[][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
+  const double horizons[] = {0, 2.01};
+  for (int n = 0; n < 2; n++) {
+    rows *w = space_lattice("fcc", horizons[n]);
+    const double parameters[] = {1e5, 2000};
+    double D[36], largest = 0;
+    stencil s = stencil_new(&springs, parameters, w);
+    stencil_elastic(&s, w, D);
+    for (int i = 0; i < 36; i++)
+      largest = fmax(largest, D[i]);
+    for (int i = 0; i < 36; i++) {
+      double sum = 0;
+      for (int k = 0; k < w->directions; k++) {
+        const double *r = w->chord[k], length = w->length[k];
+        sum += 1e5 * w->weight[k] / (length * length * length) * r[pair[i / 6][0]] *
+               r[pair[i / 6][1]] * r[pair[i % 6][0]] * r[pair[i % 6][1]];
+      }
+      assert_true(fabs(D[i] - sum / w->volume) <= 1e-7 * largest);
+    }
+    stencil_free(&s);
+    rows_free(w);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(rigid_motions_leave_no_force),
       cmocka_unit_test(largest_frequency_is_that_of_theory),
       cmocka_unit_test(bonds_and_families_have_the_same_limit),
       cmocka_unit_test(long_waves_give_the_elastic_constants),
+      cmocka_unit_test(springs_in_space_have_their_frequencies),
+      cmocka_unit_test(springs_in_space_have_their_stiffness),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,19 @@
+#!/usr/bin/env bash
+# Runs what is missing and draws the curves of both profiles, thesis.png and objective.png, and the damage of each
+# prism. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
+set -euo pipefail
+cd "$(dirname "$0")"
+perilat=${PERILAT:-../../build/perilat}
+
+draw() { # ending of the names, picture, title
+  local angle
+  for angle in 0 15 30; do
+    [[ -s rot$angle$1.h5 ]] || "$perilat" run "rot$angle$1.nml"
+    "$perilat" plot "rot$angle$1.h5" --map damage --frame 21 --factor 20 -o "rot$angle$1_damage.png"
+  done
+  "$perilat" plot "rot0$1.h5" "rot15$1.h5" "rot30$1.h5" --x displacement --y load --title "$3" \
+    --label "0 degrees" --label "15 degrees" --label "30 degrees" -o "$2"
+}
+
+draw ""         thesis.png    "Prism in compression, law as published"
+draw _objective objective.png "Prism in compression, objective profile"

@@ -1,0 +1,13 @@
+#!/usr/bin/env bash
+# Runs what is missing and draws the curves of all rotations, curves.png, and the crack of each. Another program than
+# ../../build/perilat: PERILAT=path bash plot_all.sh
+set -euo pipefail
+cd "$(dirname "$0")"
+perilat=${PERILAT:-../../build/perilat}
+
+for angle in 0 15 30; do
+  [[ -s rot$angle.h5 ]] || "$perilat" run "rot$angle.nml"
+  "$perilat" plot "rot$angle.h5" --map damage --frame 20 --factor 100 -o "rot${angle}_damage.png"
+done
+"$perilat" plot rot0.h5 rot15.h5 rot30.h5 --x displacement --y load --title "Split cylinder" \
+  --label "0 degrees" --label "15 degrees" --label "30 degrees" -o curves.png

@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# Runs what is missing and draws the curves of B at all spacings, b_curves.png, that of D, d_curve.png, and the crack of
+# each. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
+set -euo pipefail
+cd "$(dirname "$0")"
+perilat=${PERILAT:-../../build/perilat}
+
+for bone in b_s8 b_s4 b_s2 d_s8; do
+  [[ -s $bone.h5 ]] || "$perilat" run "$bone.nml"
+  "$perilat" plot "$bone.h5" --map damage --frame 14 --factor 50 -o "${bone}_damage.png"
+done
+"$perilat" plot b_s8.h5 b_s4.h5 b_s2.h5 --x displacement --y load --title "Dog-bone B" \
+  --label "8 mm" --label "4 mm" --label "2 mm" -o b_curves.png
+"$perilat" plot d_s8.h5 --x displacement --y load --title "Dog-bone D, 8 mm" -o d_curve.png

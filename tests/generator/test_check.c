@@ -1,0 +1,74 @@
+/* `perilat check` and `perilat info` as commands: a path is no deck, a law is meant for a setting, and
+   what a law implies is said with what it is measured on. */
+#define _GNU_SOURCE
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/generator/command_tools.h"
+
+static const char path_of_bond[] = "&material  model = 'elastic_central'  /\n"
+                                   "&path  quantity = 'stretch'  value = 1e-4  rise = '1 s'  /\n";
+
+static void a_path_is_shown_the_way_to_drive(void **state) {
+  workplace *w = *state;
+  static const char *const commands[] = {"run", "build -o solver", "info"};
+  write_text(w, "path.nml", path_of_bond);
+  for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
+    char arguments[100];
+    snprintf(arguments, sizeof arguments, "%s path.nml", commands[k]);
+    expect(w, arguments, 1, "`path.nml` is a path that drives one bond");
+    assert_non_null(strstr(w->said, "perilat drive path.nml"));
+  }
+  expect(w, "check path.nml", 0, "path.nml: no errors; a path that drives one bond");
+  assert_non_null(strstr(w->said, "perilat drive path.nml"));
+  expect(w, "drive path.nml", 0, "elastic_central");
+  /* a deck that is wrong otherwise stays a deck */
+  write_text(w, "wrong.nml", "&simulation  end_time = '1 ms'  /\n&boddy  /\n");
+  expect(w, "check wrong.nml", 1, "there is no group `&boddy`");
+}
+
+static const char law_for_space[] = "model solid\n  law central bond\n  for plane_strain, space\n"
+                                    "  parameter EA  = 2 [MN]         in (0, inf)\n"
+                                    "  parameter rho = 2300 [kg/m^3]  in (0, inf)\n"
+                                    "  force N = EA*stretch\nend model\n";
+
+static void a_law_runs_in_the_setting_it_is_meant_for(void **state) {
+  workplace *w = *state;
+  write_text(w, "solid.plm", law_for_space);
+  write_text(w, "solid_path.nml", path_of_bond);
+  expect(w, "check solid.plm", 0, "no errors");
+  expect(w, "run beam.nml --set material.model=./solid.plm", 1,
+         "the law `solid` is meant for plane_strain, space, but lattices are computed in "
+         "plane_stress");
+  assert_non_null(strstr(w->said, "[conflict]"));
+  expect(w, "drive ./solid.plm solid_path.nml", 1, "is meant for plane_strain, space");
+  expect(w, "info solid.plm", 0, "worked out in plane_stress only");
+  assert_null(strstr(w->said, "elastic constants"));
+}
+
+static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
+  workplace *w = *state;
+  expect(w, "info mplm_bilinear --spacing '6.35 mm' --thickness '152.4 mm'", 0,
+         "81.5872 N/m on its share of a crack, sqrt(3)/2*s*t");
+  assert_non_null(strstr(w->said, "sides held"));
+  expect(w, "info cohesive_central --set G_f='100 N/m'", 0,
+         "115.47 N/m of a straight crack across the rows (opens along x), 100 N/m along them");
+  expect(w, "info cohesive_central --json", 0, "\"crack_energy\": [");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_setup_teardown(a_path_is_shown_the_way_to_drive, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_law_runs_in_the_setting_it_is_meant_for, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(what_a_law_implies_says_what_it_is_measured_on,
+                                      set_up_workplace, tear_down_workplace),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,42 @@
+/* A small result for tests: three particles, two bonds between them, a field of each. */
+#ifndef PERILAT_TESTS_SMALL_RESULT_H
+#define PERILAT_TESTS_SMALL_RESULT_H
+
+#include "runtime/result.h"
+
+enum { PARTICLES = 3, BONDS = 2, SAMPLES = 5 };
+
+static const double small_reference[2 * PARTICLES] = {0, 0, 1, 0, 0.5, 0.75};
+static const result_field small_fields[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
+                                            {"omega", "1", "concrete", 1, BONDS, "damage"}};
+
+static inline result_header small_header(const char *path) {
+  static const double volume[PARTICLES] = {1, 2, 3};
+  static const int32_t body[PARTICLES] = {0, 0, 1}, bonds[2 * BONDS] = {0, 1, 1, 2};
+  return (result_header){.path = path,
+                         .title = "three particles",
+                         .started = "now",
+                         .version = "0",
+                         .kernel_key = "k",
+                         .deck_text = "&simulation /",
+                         .particle_count = PARTICLES,
+                         .dimensions = 2,
+                         .reference = small_reference,
+                         .body = body,
+                         .volume = volume,
+                         .interaction = "concrete",
+                         .bond_count = BONDS,
+                         .bonds = bonds,
+                         .fields = small_fields,
+                         .field_count = 2};
+}
+
+/* Values of frame k: displacement k + p/10 + c/100, damage k/4 + b/8. */
+static inline void small_frame(int k, double u[2 * PARTICLES], double omega[BONDS]) {
+  for (int q = 0; q < 2 * PARTICLES; q++)
+    u[q] = k + 0.1 * (q / 2) + 0.01 * (q % 2);
+  for (int b = 0; b < BONDS; b++)
+    omega[b] = 0.25 * k + 0.125 * b;
+}
+
+#endif

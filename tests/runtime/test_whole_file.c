@@ -1,0 +1,109 @@
+/* Files that appear whole or not at all. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <errno.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "runtime/whole_file.h"
+
+static const char name[] = "whole.txt", link_name[] = "whole.link";
+
+static void put(const char *path, const char *text) {
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fputs(text, out);
+  assert_int_equal(fclose(out), 0);
+}
+
+static void expect_text(const char *path, const char *text) {
+  char found[64] = "";
+  FILE *in = fopen(path, "r");
+  assert_non_null(in);
+  found[fread(found, 1, sizeof found - 1, in)] = 0;
+  fclose(in);
+  assert_string_equal(found, text);
+}
+
+static int clean(void **state) {
+  (void)state;
+  unlink(name);
+  unlink(link_name);
+  return 0;
+}
+
+static void the_old_text_stays_until_the_end(void **state) {
+  (void)state;
+  whole_file f;
+  put(name, "old");
+  assert_true(whole_file_begin(&f, name));
+  put(f.working, "new");
+  expect_text(name, "old");
+  errno = ENOSPC;
+  assert_false(whole_file_end(&f, false));
+  assert_int_equal(errno, ENOSPC);
+  expect_text(name, "old");
+  assert_int_not_equal(access(f.working, F_OK), 0);
+  assert_true(whole_file_begin(&f, name));
+  put(f.working, "new");
+  assert_true(whole_file_end(&f, true));
+  expect_text(name, "new");
+  assert_int_not_equal(access(f.working, F_OK), 0);
+}
+
+static void a_link_stays_a_link(void **state) {
+  (void)state;
+  whole_file f;
+  struct stat about;
+  put(name, "old");
+  assert_int_equal(symlink(name, link_name), 0);
+  assert_true(whole_file_begin(&f, link_name));
+  put(f.working, "new");
+  assert_true(whole_file_end(&f, true));
+  assert_int_equal(lstat(link_name, &about), 0);
+  assert_true(S_ISLNK(about.st_mode));
+  expect_text(name, "new");
+}
+
+static void a_device_is_written_to_and_stays(void **state) {
+  (void)state;
+  whole_file f;
+  struct stat about;
+  assert_true(whole_file_begin(&f, "/dev/null"));
+  assert_string_equal(f.working, "/dev/null");
+  assert_true(whole_file_end(&f, true));
+  assert_false(whole_file_end(&f, false));
+  assert_int_equal(stat("/dev/null", &about), 0);
+  assert_true(S_ISCHR(about.st_mode));
+}
+
+static void what_cannot_be_written_is_refused(void **state) {
+  (void)state;
+  whole_file f;
+  char path[2 * WHOLE_FILE_PATH];
+  memset(path, 'a', sizeof path);
+  path[sizeof path - 1] = 0;
+  assert_false(whole_file_begin(&f, path));
+  assert_int_equal(errno, ENAMETOOLONG);
+  put(name, "old");
+  chmod(name, 0444);
+  if (geteuid() != 0) assert_false(whole_file_begin(&f, name)); /* root may write everywhere */
+  expect_text(name, "old");
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test_teardown(the_old_text_stays_until_the_end, clean),
+      cmocka_unit_test_teardown(a_link_stays_a_link, clean),
+      cmocka_unit_test_teardown(a_device_is_written_to_and_stays, clean),
+      cmocka_unit_test_teardown(what_cannot_be_written_is_refused, clean),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,118 @@
+/* The state-based lattice gives the same bits for any number of threads, and after a checkpoint: a prism at 15 degrees,
+   pressed so fast that it yields, cracks and crushes within a millisecond. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <unistd.h>
+
+#include "tests/verification/case.h"
+
+static void open_prism(deck_case *c, const char *threads) {
+  const char *const overrides[] = {threads, "simulation.end_time=0.9 ms", "drive.rise=1 ms",
+                                   "output.sample=0.01 ms", "output.frames=0"};
+  assert_true(deck_case_run(c, "examples/compression/rot15.nml", overrides, 5));
+}
+
+/* Particles whose value of a field is not 0 on any of its planes. */
+static long touched(const sweep *w, int field) {
+  const rows *g = w->lattice;
+  const int planes = sweep_planes(w, w->law->fields[field].place);
+  long count = 0;
+  for (long p = 0; p < g->particle_count; p++) {
+    bool any = false;
+    for (int k = 0; k < planes; k++)
+      any |= w->field[field][k * g->size + g->particle_site[p]] != 0;
+    count += any;
+  }
+  return count;
+}
+
+static long different(const sweep *a, const double *x, const double *y, int planes) {
+  const rows *g = a->lattice;
+  long count = 0;
+  for (int k = 0; k < planes; k++)
+    for (long p = 0; p < g->particle_count; p++) {
+      const long at = k * g->size + g->particle_site[p];
+      count += memcmp(&x[at], &y[at], sizeof(double)) != 0;
+    }
+  return count;
+}
+
+static void assert_same(const deck_case *a, const deck_case *b) {
+  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  for (int d = 0; d < x->dof; d++) {
+    assert_int_equal(different(x, x->displacement[d], y->displacement[d], 1), 0);
+    assert_int_equal(different(x, x->velocity[d], y->velocity[d], 1), 0);
+  }
+  for (int f = 0; f < x->law->field_count; f++)
+    assert_int_equal(
+        different(x, x->field[f], y->field[f], sweep_planes(x, x->law->fields[f].place)), 0);
+  const double *p, *q;
+  const long samples = simulation_history(a->simulation, NULL);
+  assert_int_equal(simulation_history(b->simulation, NULL), samples);
+  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
+    simulation_series(a->simulation, k, NULL, &p);
+    simulation_series(b->simulation, k, NULL, &q);
+    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
+  }
+}
+
+static void any_number_of_threads_gives_the_same_bits(void **state) {
+  (void)state;
+  deck_case one, more;
+  open_prism(&one, "simulation.threads=1");
+  assert_int_equal(deck_case_go(&one), STEP_END);
+  const sweep *w = simulation_state(one.simulation);
+  for (int f = 0; f < w->law->field_count; f++) { /* every rule of the law was at work */
+    print_message("%s: %ld of %ld particles\n", w->law->fields[f].name, touched(w, f),
+                  w->lattice->particle_count);
+    assert_true(touched(w, f) > 20);
+  }
+  for (int threads = 2; threads <= 3; threads++) {
+    open_prism(&more, threads == 2 ? "simulation.threads=2" : "simulation.threads=3");
+    assert_int_equal(deck_case_go(&more), STEP_END);
+    assert_same(&one, &more);
+    deck_case_close(&more);
+  }
+  deck_case_close(&one);
+}
+
+/* Stopped in the midst of yielding, an odd and an even number of steps in. */
+static void a_resumed_run_gives_the_same_bits(void **state) {
+  (void)state;
+  char path[] = "/tmp/perilat-state-XXXXXX", error[256];
+  const int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  deck_case straight;
+  open_prism(&straight, "simulation.threads=1");
+  assert_int_equal(deck_case_go(&straight), STEP_END);
+  for (long stop = 1200; stop <= 1201; stop++) {
+    deck_case first, second;
+    long frames = -1;
+    open_prism(&first, "simulation.threads=1");
+    assert_int_equal(simulation_advance(first.simulation, stop, NULL), STEP_OK);
+    assert_int_equal(simulation_step_done(first.simulation), stop);
+    assert_true(simulation_save(first.simulation, path, "prism", 0, error, sizeof error));
+    deck_case_close(&first);
+    open_prism(&second, "simulation.threads=2");
+    assert_true(simulation_restore(second.simulation, path, "prism", &frames, error, sizeof error));
+    assert_int_equal(deck_case_go(&second), STEP_END);
+    assert_same(&straight, &second);
+    deck_case_close(&second);
+  }
+  deck_case_close(&straight);
+  unlink(path);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+      cmocka_unit_test(a_resumed_run_gives_the_same_bits),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
