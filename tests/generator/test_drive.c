@@ -186,7 +186,7 @@ static void closed_forms_see_the_row(void **state) {
 
 /* The strength 1e-4 lies between two of the rows 0, 1.5e-4, 3e-4, ... */
 #define COHESIVE                                                                                   \
-  "&simulation steps = 4 /\n&material model = 'cohesive' f_t = '3 MPa' E = '30 GPa' /\n"   \
+  "&simulation steps = 4 /\n&material model = 'cohesive' f_t = '3 MPa' E = '30 GPa' /\n"           \
   "&path quantity = 'stretch' value = 6e-4 rise = '1 s' /\n"                                       \
   "&expect quantity = 'peak N' formula = 'EA*S_t' tolerance = 1e-3 /\n"
 
@@ -270,8 +270,7 @@ static void bad_paths_are_explained(void **state) {
       {"&material model = 'elastic_central' EE = 1 /\n" TO_MICRO, "has no parameter `EE`"},
       {"&material model = 'elastic_central' E = -1 /\n" TO_MICRO, "is not in (0, inf)"},
       {"&material model = 'no_such_law' /\n" TO_MICRO, "there is no model `no_such_law`"},
-      {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO,
-       "has no choice `liner`"},
+      {"&material model = 'cohesive' softening = 'liner' /\n" TO_MICRO, "has no choice `liner`"},
       {"&material model = 'mplm_bilinear' /\n&initial omega = 2 /\n" TO_MICRO,
        "is between 0 and 1"},
       {"&material model = 'mplm_bilinear' /\n&initial omega = '1 mm' /\n" TO_MICRO,
@@ -458,6 +457,30 @@ static void the_reference_is_true(void **state) {
   free(text);
 }
 
+/* --- particles -------------------------------------------------------------------------------- */
+
+static void a_particle_is_driven_by_strains(void **state) {
+  (void)state;
+#define PARTICLE  "&material model = 'splm_elastic' /\n&particle spacing = '5 mm' /\n"
+#define STRETCHED "&path quantity = 'strain_xx' value = 1e-6 rise = '1 s' /\n"
+  /* sides held: E/(1 - nu^2), and nu times that across; half of that times the strain on sqrt(3)/2 s^2 t is stored */
+  drive(PARTICLE STRETCHED
+        "&expect quantity = 'stress_xx' formula = 'E*1e-6/(1 - nu**2)' tolerance = 1e-5 /\n"
+        "&expect quantity = 'stress_yy' formula = 'nu*E*1e-6/(1 - nu**2)' tolerance = 1e-5 /\n"
+        "&expect quantity = 'external' formula = 'V*E*1e-12/(1 - nu**2)/2' tolerance = 1e-5 /\n"
+        "&expect quantity = 'final dissipated' value = 0 absolute = '1e-14 J' /\n",
+        "", 0, "4 of 4");
+  drive(PARTICLE "&path quantity = 'strain_xy' value = 1e-6 rise = '1 s' /\n"
+                 "&expect quantity = 'stress_xy' formula = 'E/(1 + nu)*1e-6' tolerance = 1e-5 /\n",
+        "--compiled", 0, "1 of 1");
+  drive(PARTICLE TO_MICRO, "", 1, "a law of families is not driven by this quantity");
+  drive(ELASTIC STRETCHED, "", 1, "a law of bonds is not driven by this quantity");
+  drive(PARTICLE "&path quantity = 'strain_zz' value = 1e-6 rise = '1 s' /\n", "", 1,
+        "a law of families in the plane knows no such strain");
+  drive("&material model = 'splm_elastic' /\n&particle lattice = 'kagome' /\n" STRETCHED, "", 1,
+        "lattice");
+}
+
 /* --- info ---------------------------------------------------------------------------------------
  */
 
@@ -478,8 +501,7 @@ static void info_says_what_a_law_implies(void **state) {
   expect("info mplm_bilinear --spacing='3.175 mm' --set S_t=1.5e-4", 0,
          "65.919 N/m on its share of a crack");
   expect("info elastic_central --json", 0, "\"separates\": false");
-  expect("info cohesive --set softening=exponential --json", 0,
-         "\"chosen\": \"exponential\"");
+  expect("info cohesive --set softening=exponential --json", 0, "\"chosen\": \"exponential\"");
   expect("info elastic_central", 0, "none: a bond never separates");
 }
 
@@ -489,7 +511,7 @@ static void info_refuses(void **state) {
   expect("info mplm_bilinear --spacing -5", 1, "must be greater than 0");
   expect("info mplm_bilinear --set nu=0.4", 1, "is not in [0, 0.33333333]");
   expect("info mplm_bilinear --set mu=0.4", 1, "did you mean `nu`?");
-  expect("info mplm_bilinear --lattice cubic", 1, "can only be hexagonal");
+  expect("info mplm_bilinear --lattice cubic", 1, "hexagonal lattice of nearest neighbours only");
   expect("info mplm_bilinear --spacin 5", 1, "did you mean `--spacing`?");
   expect("info no_such_law --set E=1", 1, "there is no model `no_such_law`");
 }
@@ -512,6 +534,7 @@ int main(void) {
       cmocka_unit_test(results_can_be_read),
       cmocka_unit_test(what_is_no_number_is_named),
       cmocka_unit_test(a_failing_run_leaves_its_bond),
+      cmocka_unit_test(a_particle_is_driven_by_strains),
       cmocka_unit_test(the_reference_is_true),
       cmocka_unit_test(info_says_what_a_law_implies),
       cmocka_unit_test(info_refuses),
