@@ -53,6 +53,8 @@
   X(M_END_J, "x = min(m_i, m_j)/m_j")                                                              \
   X(AREA, "x = area*length")                                                                       \
   X(SHELL, "x = | 1 when shell == 1 | 0.5 otherwise")                                              \
+  X(HORIZON, "x = s/horizon")                                                                      \
+  X(WEIGHT, "x = sum(weight*stretch[j])")                                                          \
   X(N_FAMILY, "x = sum(stretch[j])/n")                                                             \
   X(DIRECTION, "x = norm(direction)")
 

@@ -51,18 +51,29 @@ static long row_of_largest_force(const drive_table *t) {
   return row;
 }
 
-/* Marks the rows at corners of the path: every n-th, so that at most `most` are. */
+/* Marks `most` more rows, at corners of the path: every n-th where there are more. */
 static void mark_corners(const drive_input *in, const drive_table *t, long most, bool *shown) {
   const double *time = t->columns[DRIVE_COLUMN_TIME].values;
-  long corners, row = 0;
-  if (most < 1) return;
+  long corners, row = 0, unmarked = 0;
   double *at = drive_corners(in, &corners);
-  for (long k = 0; k < corners; k += (corners + most - 1) / most) {
-    while (row < t->rows - 1 && time[row] < at[k])
+  long *rows = must_calloc((size_t)corners + 1, sizeof *rows);
+  for (long k = 0; k < corners; k++) {
+    while (row < t->rows - 1 &&
+           time[row] < at[k] - 1e-12 * time[t->rows - 1]) /* as rows are kept apart */
       row++;
-    shown[row] = true;
+    if (!shown[row]) rows[unmarked++] = row;
   }
+  for (long k = 0; most > 0 && k < unmarked; k += (unmarked + most - 1) / most)
+    shown[rows[k]] = true;
+  free(rows);
   free(at);
+}
+
+static long count_marked(const drive_table *t, const bool *shown) {
+  long marked = 0;
+  for (long k = 0; k < t->rows; k++)
+    marked += shown[k];
+  return marked;
 }
 
 /* Marks `more` rows, evenly spread between those that are marked; both ends are. */
@@ -87,11 +98,9 @@ void drive_print(const drive_input *in, const drive_table *t, FILE *out) {
   shown[t->rows - 1] = true;
   if (most > 1) shown[0] = true;
   if (most > 2) shown[row_of_largest_force(t)] = true;
-  mark_corners(in, t, most - 3, shown);
-  long marked = 0;
-  for (long k = 0; k < t->rows; k++)
-    marked += shown[k];
-  if (marked < most) mark_between(t, most - marked, shown);
+  mark_corners(in, t, most - count_marked(t, shown), shown);
+  const long left = most - count_marked(t, shown);
+  if (left > 0) mark_between(t, left, shown);
   for (int c = 0; c < t->column_count; c++) {
     if (!is_worth_showing(t, c)) continue;
     heading(&t->columns[c], text, sizeof text);

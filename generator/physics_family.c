@@ -20,7 +20,7 @@ static void run_checks(family_bench *b) {
   if (!b->failed[DIAG_STIFFNESS]) family_check_energy(b, false);
   if (!b->failed[DIAG_STIFFNESS] && !b->failed[DIAG_CLOSED_PATH] && !b->law->nonconservative)
     family_check_energy(b, true);
-  if (!energy_is_wrong(b)) family_check_dissipation(b, (int)(8 * effort));
+  if (!energy_is_wrong(b)) family_check_dissipation(b, (int)(5 * effort));
 }
 
 static int guards_of(const family_bench *b) {

@@ -190,11 +190,11 @@ static void print_word(const char *word, FILE *out) {
 
 void print_resume(const run *r, FILE *out) {
   const run_options *o = r->options;
-  fprintf(out, "  %s", o->program);
-  if (!o->deck_text) {
-    fputc(' ', out);
-    print_word(o->deck_path, out);
-  }
+  if (o->deck_text)
+    fputs("  ", out);
+  else
+    fprintf(out, "  %s ", o->program);
+  print_word(o->deck_text ? o->program : o->deck_path, out);
   for (int k = 0; k < o->override_count; k++) {
     fputs(" --set ", out);
     print_word(o->overrides[k].text, out);
@@ -231,16 +231,21 @@ void print_misfit(const run *r) {
 
 /* --- after the run ---------------------------------------------------------------------------- */
 
-static double last_value(const run *r, const char *name) {
+/* The first or the last sample of a series; NaN where there is none. */
+static double sample_of(const run *r, const char *name, bool last) {
   const double *time;
   long samples = simulation_history(r->simulation, &time);
   for (int k = 0; k < simulation_series_count(r->simulation); k++) {
     const char *unit_name;
     const double *values;
     if (strcmp(simulation_series(r->simulation, k, &unit_name, &values), name) == 0 && samples > 0)
-      return values[samples - 1];
+      return values[last ? samples - 1 : 0];
   }
   return NAN;
+}
+
+static double last_value(const run *r, const char *name) {
+  return sample_of(r, name, true);
 }
 
 static void conclude_energy(const run *r) {
@@ -262,9 +267,9 @@ static void warn_of_gain(const run *r) {
     const char *series, *words;
   } parts[] = {{"energy/dissipated_damage", "its damage and states have"},
                {"energy/dissipated_damping", "its rate terms and the deck's damping have"}};
-  const double scale =
-      fmax(fabs(last_value(r, "energy/external")),
-           fmax(fabs(last_value(r, "energy/kinetic")), fabs(last_value(r, "energy/stored"))));
+  const double given = fmax(fabs(last_value(r, "energy/external")),
+                            fabs(sample_of(r, "energy/kinetic", false))),
+               scale = fmax(given, fabs(last_value(r, "energy/stored")));
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     const double lost = last_value(r, parts[k].series);
     if (!(lost < -1e-3 * scale)) continue;

@@ -298,8 +298,9 @@ sweep *simulation_state(simulation *s) {
 
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
+  const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->state->dof + 1) : 0;
   return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) +
-         site * (double)s->lattice->size +
+         looks * (double)s->lattice->size + site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);

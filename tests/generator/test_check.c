@@ -56,9 +56,9 @@ static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
   expect(w, "info mplm_bilinear --spacing '6.35 mm' --thickness '152.4 mm'", 0,
          "81.5872 N/m on its share of a crack, sqrt(3)/2*s*t");
   assert_non_null(strstr(w->said, "sides held"));
-  expect(w, "info cohesive_central --set G_f='100 N/m'", 0,
+  expect(w, "info cohesive --set G_f='100 N/m'", 0,
          "115.47 N/m of a straight crack across the rows (opens along x), 100 N/m along them");
-  expect(w, "info cohesive_central --json", 0, "\"crack_energy\": [");
+  expect(w, "info cohesive --json", 0, "\"crack_energy\": [");
 }
 
 int main(void) {

@@ -55,9 +55,9 @@ static void arguments_are_checked(void **state) {
       {"check mplm_bilinear --set 'E=40 GPa'", 0, "no errors"},
       {"check mplm_bilinear --set S_t=-1", 1, "is not in (0, 1)"},
       {"check mplm_bilinear --set S_t=-1 --no-physics", 1, "is not in (0, 1)"},
-      {"check mplm_bilinear --set 'E=40 mm'", 1, "`E` needs stress"},
-      {"check cohesive_central --set softening=exponential --dump=c", 0, "exp"},
-      {"check cohesive_central --set softening=sudden", 1,
+      {"check mplm_bilinear --set 'E=40 mm'", 1, "`E` needs a stress (Pa), this is a length"},
+      {"check cohesive --set softening=exponential --dump=c", 0, "exp"},
+      {"check cohesive --set softening=sudden", 1,
        "the choices are 'linear', 'exponential'"},
       {"info --builtins", 0, "stretch"},
       {"info --builtins > /dev/full", 2, "cannot write to the standard output"},
@@ -527,7 +527,7 @@ static pid_t start_long_run(const workplace *w, const char *output) {
       _exit(99);
     setenv("PERILAT_MODELS", SOURCE_DIR "/models", 1);
     execl(PERILAT_PROGRAM, "perilat", "run", "long.nml", "--set", set, "--set",
-          "simulation.title=it's long", (char *)NULL); /* to be quoted for a shell */
+          "simulation.title=a long run", (char *)NULL); /* to be quoted for a shell */
     _exit(99);
   }
   off_t first = 0;

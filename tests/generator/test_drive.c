@@ -186,7 +186,7 @@ static void closed_forms_see_the_row(void **state) {
 
 /* The strength 1e-4 lies between two of the rows 0, 1.5e-4, 3e-4, ... */
 #define COHESIVE                                                                                   \
-  "&simulation steps = 4 /\n&material model = 'cohesive_central' f_t = '3 MPa' E = '30 GPa' /\n"   \
+  "&simulation steps = 4 /\n&material model = 'cohesive' f_t = '3 MPa' E = '30 GPa' /\n"   \
   "&path quantity = 'stretch' value = 6e-4 rise = '1 s' /\n"                                       \
   "&expect quantity = 'peak N' formula = 'EA*S_t' tolerance = 1e-3 /\n"
 

@@ -259,7 +259,7 @@ static void kernels_of_the_family_laws_match(void **state) {
 /* A law of bonds compiled for lattices that are no hexagon. */
 static void laws_of_bonds_match_as_laws_of_families(void **state) {
   (void)state;
-  static const char *const names[] = {SOURCE_DIR "/models/cohesive_central.plm",
+  static const char *const names[] = {SOURCE_DIR "/models/cohesive.plm",
                                       SOURCE_DIR "/tests/generator/laws/exponential.plm"};
   for (size_t k = 0; k < sizeof names / sizeof *names; k++)
     for (int space = 0; space < 2; space++) {

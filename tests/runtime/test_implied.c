@@ -133,7 +133,7 @@ static void cracks_cost_all_bonds_that_they_cut(void **state) {
     probe p;
     implied_bond b;
     double s = 5e-3, t = 0.1524;
-    open_law(&p, k ? "mplm_bilinear" : "cohesive_central", NULL, 0, s);
+    open_law(&p, k ? "mplm_bilinear" : "cohesive", NULL, 0, s);
     if (k) set(&p, "nu", 1.0 / 3), set(&p, "beta", 0);
     implied_bond_curve(p.law, p.parameters, p.lattice, 0, &b);
     near(implied_crack_energy(p.law, p.parameters, p.lattice, 0),
