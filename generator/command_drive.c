@@ -1,4 +1,4 @@
-/* perilat drive: one bond along a path. */
+/* perilat drive: one bond, or one particle of a law of families, along a path. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -137,6 +137,32 @@ static bool read_input(driving *r) {
   return false;
 }
 
+static bool is_of_families(const driving *r) {
+  return r->law->kind == PL_STATE;
+}
+
+/* Bonds stretch and turn, particles are strained; beyond the plane in space only. */
+static bool suits_law(driving *r) {
+  for (int k = 0; k < r->in->piece_count; k++) {
+    const drive_quantity q = r->in->pieces[k].quantity;
+    const bool strain = q >= DRIVE_STRAIN_XX;
+    const bool beyond = q == DRIVE_STRAIN_ZZ || q == DRIVE_STRAIN_YZ || q == DRIVE_STRAIN_XZ;
+    if (strain == is_of_families(r) && !(beyond && r->law->dimensions == 2)) continue;
+    diag_report(&r->said, DIAG_LAW_KIND, r->in->pieces[k].where,
+                strain != is_of_families(r) ? "a law of %s is not driven by this quantity"
+                                            : "a law of %s in the plane knows no such strain",
+                is_of_families(r) ? "families" : "bonds");
+    diag_hint(&r->said, is_of_families(r)
+                            ? "a particle is driven by strain_xx, strain_yy, strain_xy"
+                            : "a bond is driven by stretch, theta_i, theta_j");
+    return false;
+  }
+  if (!is_of_families(r) || !r->options->compiled) return true;
+  fputs("perilat: error: a law of families is driven on the interpreter; leave out --compiled\n",
+        stderr);
+  return false;
+}
+
 static int open_law(driving *r) {
   char error[ERROR_LENGTH];
   const char *note;
@@ -212,9 +238,10 @@ static void report_bad(const driving *r) {
   int column = 0;
   while (isfinite(t->columns[column].values[row]))
     column++;
-  fprintf(stderr, "perilat: error: `%s` is not a number at %.6g s, stretch %.6g\n",
+  fprintf(stderr, "perilat: error: `%s` is not a number at %.6g s, %s %.6g\n",
           t->columns[column].name, t->columns[DRIVE_COLUMN_TIME].values[row],
-          t->columns[DRIVE_COLUMN_STRETCH].values[row]);
+          t->columns[t->way].name, t->columns[t->way].values[row]);
+  if (t->of_families) return;
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
   for (int f = 0; f < t->fields; f++)
     fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->initial[f];
@@ -236,9 +263,14 @@ static void report_bad(const driving *r) {
 static void describe(const driving *r) {
   const drive_table *t = &r->table;
   const drive_bond *b = &r->in->bond;
-  printf("%s on one bond, s = %.6g mm, t = %.6g mm: %ld rows to %.6g s (%s)\n", r->law->name,
-         1e3 * b->spacing, 1e3 * b->thickness, t->rows,
-         t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
+  const deck_lattice like = drive_lattice(r->in, r->model.law);
+  if (t->of_families)
+    printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->law->name, like.kind,
+           like.setting, 1e3 * like.spacing);
+  else
+    printf("%s on one bond, s = %.6g mm, t = %.6g mm", r->law->name, 1e3 * b->spacing,
+           1e3 * b->thickness);
+  printf(": %ld rows to %.6g s (%s)\n", t->rows, t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
          r->law->context ? "interpreter" : "compiled");
   drive_print(r->in, t, stdout);
 }
@@ -314,8 +346,9 @@ static void print_verdict(const driving *r, const drive_expect *e, const drive_v
   if (v->passed)
     printf(" (expected %.9g)\n", v->expected);
   else
-    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, stretch %.6g)\n", v->expected,
-           fabs(v->found - v->expected), v->allowed, v->time, v->stretch);
+    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, %s %.6g)\n", v->expected,
+           fabs(v->found - v->expected), v->allowed, v->time, r->table.columns[r->table.way].name,
+           v->way);
   if (!v->passed && v->extreme)
     printf("      the rows beside it are at %.6g s and %.6g s; an extreme between them is found by "
            "more steps: --set simulation.steps=%d\n",
@@ -341,8 +374,11 @@ static int prepare(driving *r) {
   if (!r->in->material.model) return 0;
   int status = open_law(r);
   if (status) return status;
-  if (!set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
-  drive_columns(r->law, &r->columns);
+  if (!suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
+  if (is_of_families(r))
+    drive_family_columns(r->in, r->model.law, r->law, &r->columns);
+  else
+    drive_columns(r->law, &r->columns);
   r->expectations = drive_expectations_read(r->in, &r->model, &r->columns, &r->said);
   return r->expectations ? 0 : INPUT_WRONG;
 }
@@ -351,9 +387,12 @@ static int prepare(driving *r) {
 static int drive(driving *r) {
   int status = prepare(r);
   if (status || r->options->check_only) return status;
-  if (!drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said)) return INPUT_WRONG;
+  if (is_of_families(r) ? !drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial,
+                                            &r->table, &r->said)
+                        : !drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said))
+    return INPUT_WRONG;
   describe(r);
-  note_fall(r);
+  if (!is_of_families(r)) note_fall(r);
   bool written = write_files(r);
   if (r->table.bad_row >= 0) {
     report_bad(r);
@@ -376,9 +415,10 @@ static void close_drive(driving *r) {
 static void print_checked(const driving *r) {
   const char *path = r->options->path;
   if (r->law)
-    printf("%s: no errors; a path that drives one bond of `%s`, with %d expectation%s\n  perilat "
+    printf("%s: no errors; a path that drives one %s of `%s`, with %d expectation%s\n  perilat "
            "drive %s\n",
-           path, r->law->name, r->in->expect_count, r->in->expect_count == 1 ? "" : "s", path);
+           path, is_of_families(r) ? "particle" : "bond", r->law->name, r->in->expect_count,
+           r->in->expect_count == 1 ? "" : "s", path);
   else
     printf("%s: no errors; a path that names no law, so that its expectations are not checked\n"
            "  perilat drive law.plm %s\n",

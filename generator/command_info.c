@@ -95,13 +95,6 @@ typedef struct info_options {
   bool builtins;
 } info_options;
 
-static bool reads_lattice(const char *kind) {
-  if (strcmp(kind, "hexagonal") == 0) return true;
-  fprintf(stderr, "perilat: error: there is no lattice `%s`\n  --lattice can only be hexagonal\n",
-          kind);
-  return false;
-}
-
 static bool read_options(int argc, char **argv, const char **settings, info_options *o) {
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
@@ -115,7 +108,11 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     else if ((value = option_value(argc, argv, &at, "--thickness", &bad)))
       o->law.thickness = value;
     else if ((value = option_value(argc, argv, &at, "--lattice", &bad)))
-      bad = bad || !reads_lattice(value);
+      o->law.lattice = value;
+    else if ((value = option_value(argc, argv, &at, "--horizon", &bad)))
+      o->law.horizon = value;
+    else if ((value = option_value(argc, argv, &at, "--shells", &bad)))
+      o->law.shells = value;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       settings[o->law.setting_count++] = value;
     else if (argv[at][0] == '-')
@@ -135,12 +132,13 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
 
 static int info_file(const info_options *o) {
   file_kind kind = kind_of_file(o->file);
-  bool asks_law = o->law.spacing || o->law.thickness || o->law.setting_count || o->law.json;
+  bool asks_law = o->law.spacing || o->law.thickness || o->law.lattice || o->law.horizon ||
+                  o->law.shells || o->law.setting_count || o->law.json;
   if (asks_law && (kind == FILE_RESULT || kind == FILE_DECK)) {
-    fprintf(
-        stderr,
-        "perilat: error: `%s` is a %s; --spacing, --thickness, --set and --json ask about a law\n",
-        o->file, kind == FILE_DECK ? "deck" : "result");
+    fprintf(stderr,
+            "perilat: error: `%s` is a %s; --lattice, --spacing, --set, --json and their like ask "
+            "about a law\n",
+            o->file, kind == FILE_DECK ? "deck" : "result");
     return 1;
   }
   if (!file_suits(o->file, FILES(LAW) | FILES(DECK) | FILES(RESULT), "perilat info",

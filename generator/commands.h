@@ -72,7 +72,9 @@
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                                                \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                                     \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                                            \
-  X(info, "--lattice", "hexagonal", "kind of the lattice")                                                             \
+  X(info, "--lattice", "KIND", "hexagonal, square, cubic or fcc; by the law if not given")                             \
+  X(info, "--horizon", "H", "neighbours up to so many spacings away; the nearest ones if not given")                   \
+  X(info, "--shells", "N", "neighbours of so many shells")                                                             \
   X(info, "--set", "name=value", "set a parameter or an option of the law; may be given several times")                \
   X(info, "--json", "", "what a law implies as one JSON document")                                                     \
   X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")                               \

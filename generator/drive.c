@@ -180,8 +180,7 @@ int drive_column_find(const drive_table *t, const char *name) {
   return -1;
 }
 
-/* A law's own name that is a column already stands with `law_` before it. */
-static void add_column(drive_table *t, const char *name, const char *unit_text, long rows) {
+void drive_add_column(drive_table *t, const char *name, const char *unit_text, long rows) {
   if (drive_column_find(t, name) >= 0) name = arena_printf(t->memory, "law_%s", name);
   t->columns[t->column_count++] =
       (drive_column){arena_text(t->memory, name, strlen(name)),
@@ -191,16 +190,21 @@ static void add_column(drive_table *t, const char *name, const char *unit_text, 
 
 static void table_open(drive_table *t, const pl_law *kernel, long rows) {
   int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
-  *t = (drive_table){.memory = arena_new(), .fields = kernel->field_count, .bad_row = -1};
+  *t = (drive_table){.memory = arena_new(),
+                     .way = DRIVE_COLUMN_STRETCH,
+                     .force = DRIVE_COLUMN_N,
+                     .law_column = DRIVE_COLUMN_LAW,
+                     .fields = kernel->field_count,
+                     .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   for (int k = 0; k < DRIVE_COLUMN_LAW; k++)
-    add_column(t, first_names[k], first_units[k], rows);
+    drive_add_column(t, first_names[k], first_units[k], rows);
   for (int k = 0; k < kernel->field_count; k++)
-    add_column(t, kernel->fields[k].name, kernel->fields[k].unit, rows);
+    drive_add_column(t, kernel->fields[k].name, kernel->fields[k].unit, rows);
   for (int k = 0; k < kernel->output_count; k++)
-    add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, rows);
+    drive_add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, rows);
   for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
-    add_column(t, last_names[k], "J", rows);
+    drive_add_column(t, last_names[k], "J", rows);
 }
 
 void drive_columns(const pl_law *kernel, drive_table *out) {

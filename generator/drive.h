@@ -18,7 +18,11 @@
   X(STRETCH, "stretch", "1")                                                                       \
   X(THETA_I, "theta_i", "1")                                                                       \
   X(THETA_J, "theta_j", "1")                                                                       \
-  X(STRETCH_RATE, "stretch_rate", "1/s")
+  X(STRETCH_RATE, "stretch_rate", "1/s")                                                           \
+  X(STRAIN_XX, "strain_xx", "1")                                                                   \
+  X(STRAIN_YY, "strain_yy", "1")                                                                   \
+  X(STRAIN_ZZ, "strain_zz", "1")                                                                   \
+  X(STRAIN_XY, "strain_xy", "1") X(STRAIN_YZ, "strain_yz", "1") X(STRAIN_XZ, "strain_xz", "1")
 
 typedef enum drive_quantity {
 #define X(code, name, unit) DRIVE_##code,
@@ -66,6 +70,16 @@ typedef struct drive_bond {
   double mass_i, mass_j;     /* kg; negative: from rho */
 } drive_bond;
 
+/* Laws of families: one particle of a lattice in which all are alike. */
+typedef struct drive_particle {
+  deck_item item;
+  const char *lattice; /* kind; NULL: hexagonal, of a law in space fcc with second neighbours */
+  double spacing, thickness; /* m */
+  double horizon;            /* spacings; 0: `shells` decides */
+  int shells;                /* 0: the nearest neighbours */
+  double rotation;           /* rad */
+} drive_particle;
+
 typedef struct drive_output {
   deck_item item;
   const char *csv, *hdf5, *picture; /* paths, or NULL */
@@ -77,6 +91,7 @@ typedef struct drive_input {
   const char *path; /* of the file */
   drive_simulation simulation;
   drive_bond bond;
+  drive_particle particle;
   drive_output output;
   deck_material material; /* model may be NULL */
   deck_material initial;  /* state and damage at the start, as assignments */
@@ -122,8 +137,8 @@ double drive_time_of_stretch(const drive_input *in, double stretch, double after
   X(TIME, "time", "s")                                                                             \
   X(STRETCH, "stretch", "1")                                                                       \
   X(STRETCH_RATE, "stretch_rate", "1/s")                                                           \
-  X(THETA_I, "theta_i", "1") X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m")        \
-      X(M_J, "M_j", "N*m")
+  X(THETA_I, "theta_i", "1")                                                                       \
+  X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
 /* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
    row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \
@@ -151,10 +166,14 @@ typedef struct drive_column {
 } drive_column;
 
 typedef struct drive_table {
+  bool of_families;
+  int way,
+      force; /* columns of what is prescribed and what answers: stretch and N, first strain and stress */
+  int law_column; /* those of the law's fields, then its outputs, begin here */
   drive_column *columns;
   int column_count;
   long rows;
-  int fields;    /* columns DRIVE_COLUMN_LAW .. are those of the law's fields, then its outputs */
+  int fields;    /* columns of the law's fields */
   long bad_row;  /* first row in which a value is not finite, or -1; rows then end with it */
   arena *memory; /* owns all */
 } drive_table;
@@ -166,6 +185,8 @@ void drive_columns(const pl_law *kernel, drive_table *out);
 bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
                const double *initial, drive_table *out, diagnostics *d);
 void drive_table_free(drive_table *t);
+/* A law's own name that is a column already stands with `law_` before it. */
+void drive_add_column(drive_table *t, const char *name, const char *unit_text, long rows);
 int drive_column_find(const drive_table *t, const char *name); /* or -1 */
 /* What the law is told about the bond. rho may be 0. */
 pl_bond_class drive_bond_class(const drive_input *in, double rho);
@@ -175,15 +196,32 @@ pl_bond_class drive_bond_class(const drive_input *in, double rho);
 void drive_observe(const drive_input *in, const pl_law *kernel, const double *parameters,
                    const drive_table *t, long row, double *outputs);
 
+/* --- laws of families (drive_family.c) -------------------------------------------------------- */
+
+/* As drive_run, drive_columns, drive_observe: one particle under the path's strains (small, as tensor components), its
+   neighbours always in the same state. Columns: time; strain_xx, ...; strain_rate_xx, ...; stress_xx, ... (by virtual
+   work of the bond forces); F_1, ... (force state toward each neighbour, in the order of the lattice); the law's fields
+   and outputs (toward neighbours: name_1, ...); energies of the particle: stored, dissipated, external. */
+bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
+                      const double *parameters, const double *initial, drive_table *out,
+                      diagnostics *d);
+void drive_family_columns(const drive_input *in, const law *l, const pl_law *kernel,
+                          drive_table *out);
+void drive_family_observe(const drive_input *in, const law *l, const pl_law *kernel,
+                          const double *parameters, const drive_table *t, long row,
+                          double *outputs);
+/* The lattice of the particle. */
+deck_lattice drive_lattice(const drive_input *in, const law *l);
+
 /* --- expectations (drive_expect.c) ------------------------------------------------------------ */
 
 typedef struct drive_verdict {
   bool passed;
   double found, expected, allowed;
   const char *unit;
-  double time, stretch; /* of the row */
-  bool extreme;         /* the row was chosen for a largest or smallest value */
-  double beside[2];     /* times of the rows before and after it */
+  double time, way; /* of the row */
+  bool extreme;     /* the row was chosen for a largest or smallest value */
+  double beside[2]; /* times of the rows before and after it */
 } drive_verdict;
 
 /* What every &expect asks for, before anything is driven: names, units and times are checked against `columns` (of

@@ -135,7 +135,7 @@ static bool choose(const judge *j, const drive_expect *e, asked *c) {
   c->time = INFINITY;
   if (final) return true;
   c->extreme_of =
-      at_extreme ? p.count == 4 ? find_column(j, e, p.words[3]) : DRIVE_COLUMN_N : c->column;
+      at_extreme ? p.count == 4 ? find_column(j, e, p.words[3]) : j->columns->force : c->column;
   c->sign = sign_of(p.words[at_extreme ? 2 : 0]);
   return c->extreme_of >= 0;
 }
@@ -202,8 +202,9 @@ static bool open_forms(const judge *j, closed_forms *f) {
   for (int k = 0; k < l->options.count; k++)
     choices[k] = (law_choice){l->options.items[k]->name, l->chosen[k]};
   f->opened = true;
-  bool good = model_open_text(&f->model, j->model->path, f->text, choices, l->options.count) &&
-              model_plan(&f->model);
+  bool good = model_open_text(&f->model, j->model->path, f->text, choices, l->options.count);
+  if (good) f->model.law->setting = l->setting;
+  good = good && model_plan(&f->model);
   int errors = 0;
   for (int k = 0; k < f->model.said.count && !good; k++)
     if (diag_severity(f->model.said.items[k].code) == SEVERITY_ERROR) {
@@ -310,7 +311,10 @@ static double form_value(const judge *j, const double *parameters, const drive_t
                          long row) {
   const pl_law *kernel = j->forms.law;
   double *outputs = must_calloc((size_t)kernel->output_count, sizeof *outputs);
-  drive_observe(j->in, kernel, parameters, t, row, outputs);
+  if (t->of_families)
+    drive_family_observe(j->in, j->forms.model.law, kernel, parameters, t, row, outputs);
+  else
+    drive_observe(j->in, kernel, parameters, t, row, outputs);
   const double value = outputs[output];
   free(outputs);
   return value;
@@ -324,7 +328,7 @@ static drive_verdict judge_one(const judge *j, const double *parameters, const d
   drive_verdict v = {.found = t->columns[a->column].values[row],
                      .unit = t->columns[a->column].unit,
                      .time = time[row],
-                     .stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+                     .way = t->columns[t->way].values[row],
                      .extreme = at_extreme,
                      .beside = {time[row ? row - 1 : 0], time[row < t->rows - 1 ? row + 1 : row]}};
   v.expected = e->formula ? form_value(j, parameters, t, a->output, row) : a->value;

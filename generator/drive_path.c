@@ -74,6 +74,46 @@ static const deck_key_info bond_keys[] = {
      .doc = "`m_j`"},
 };
 
+static const deck_key_info particle_keys[] = {
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .fallback = "= 'hexagonal'; in space 'fcc' with `shells = 2`",
+     AT(particle, lattice),
+     .doc = "`'hexagonal'`, `'square'`, `'cubic'` or `'fcc'`"},
+    {.name = "spacing",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "'10 mm'",
+     AT(particle, spacing),
+     .doc = "of nearest neighbours"},
+    {.name = "thickness",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "'100 mm'",
+     AT(particle, thickness),
+     .doc = "`t` of the law, in the plane"},
+    {.name = "horizon",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= by `shells`",
+     AT(particle, horizon),
+     .doc = "neighbours up to so many spacings away"},
+    {.name = "shells",
+     .type = DECK_COUNT,
+     .fallback = "= the nearest neighbours",
+     .most = 64,
+     AT(particle, shells),
+     .doc = "neighbours of so many shells"},
+    {.name = "rotation",
+     .type = DECK_ANGLE,
+     .fallback = "0",
+     AT(particle, rotation),
+     .doc = "of the lattice, in degrees"},
+};
+
 static const deck_key_info material_keys[] = {
     {.name = "model",
      .type = DECK_NAME,
@@ -92,7 +132,8 @@ static const deck_key_info initial_keys[] = {
 static const deck_key_info path_keys[] = {
     {.name = "quantity",
      .type = DECK_CHOICE,
-     .choices = "stretch|theta_i|theta_j|stretch_rate",
+     .choices = "stretch|theta_i|theta_j|stretch_rate|strain_xx|strain_yy|strain_zz|strain_xy|"
+                "strain_yz|strain_xz",
      .required = true,
      NOT_KEPT,
      .doc = "what is prescribed; several `&path` of one quantity add up; the rate is that of the "
@@ -131,12 +172,12 @@ static const deck_key_info output_keys[] = {
      .doc = "path of a curve, .png, .svg or .pdf"},
     {.name = "x",
      .type = DECK_NAME,
-     .fallback = "'stretch'",
+     .fallback = "= stretch, or the first strain",
      AT(output, x),
      .doc = "column along the picture"},
     {.name = "y",
      .type = DECK_NAME,
-     .fallback = "'N'",
+     .fallback = "= N, or the first stress",
      AT(output, y),
      .doc = "column up the picture"},
     {.name = "rows",
@@ -192,9 +233,10 @@ static const deck_key_info expect_keys[] = {
 #define DRIVE_GROUPS(X)                                                                            \
   X(simulation, true, false, "The drive as a whole.")                                              \
   X(bond, true, false, "The bond that is driven.")                                                 \
+  X(particle, true, false, "The particle of a law of families that is driven.")                    \
   X(material, true, true, "The law: every key but `model` sets a parameter or an option.")         \
   X(initial, true, true, "State and damage at the start, where not the law's own.")                \
-  X(path, false, false, "What the bond undergoes. At least one.")                                  \
+  X(path, false, false, "What the bond or the particle undergoes. At least one.")                  \
   X(output, true, false, "What is written.")                                                       \
   X(expect, false, false, "What should come out. Give `value` or `formula`.")
 
@@ -564,6 +606,10 @@ static void read_group(const reader *r, const namelist_group *g, int kind) {
     copy_places(r->memory, g, &in->bond.item);
     read_keys(r, g, &groups[kind], &in->bond);
     return;
+  case GROUP_particle:
+    copy_places(r->memory, g, &in->particle.item);
+    read_keys(r, g, &groups[kind], &in->particle);
+    return;
   case GROUP_output:
     copy_places(r->memory, g, &in->output.item);
     read_keys(r, g, &groups[kind], &in->output);
@@ -624,7 +670,7 @@ static void check_whole(const reader *r, int file) {
   }
   if (in->piece_count == 0 && r->d->errors == 0)
     diag_report(r->d, DIAG_MISSING_KEY, (span){0, 0, (uint16_t)file},
-                "there is no `&path`: nothing happens to the bond");
+                "there is no `&path`: nothing happens");
   double end = drive_end(in);
   if (!(end < LONGEST)) {
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, (span){0, 0, (uint16_t)file},
@@ -652,6 +698,7 @@ drive_input *drive_read(arena *a, source_set *sources, int file, const deck_over
   in->expects = arena_alloc(a, most * sizeof *in->expects);
   deck_defaults(a, &groups[GROUP_simulation], &in->simulation);
   deck_defaults(a, &groups[GROUP_bond], &in->bond);
+  deck_defaults(a, &groups[GROUP_particle], &in->particle);
   deck_defaults(a, &groups[GROUP_output], &in->output);
   in->simulation.end_time = in->bond.mass_i = in->bond.mass_j = -1;
   in->material.item.where = in->initial.item.where = (span){0, 0, (uint16_t)file};

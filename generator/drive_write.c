@@ -24,7 +24,7 @@ static void heading(const drive_column *c, char *text, size_t size) {
 
 /* Columns that are 0 throughout, such as the moments of a central law, are left out. */
 static bool is_worth_showing(const drive_table *t, int column) {
-  if (column <= DRIVE_COLUMN_STRETCH || column == DRIVE_COLUMN_N) return true;
+  if (column <= t->way || column == t->force) return true;
   for (long k = 0; k < t->rows; k++)
     if (t->columns[column].values[k] != 0) return true;
   return false;
@@ -44,7 +44,7 @@ static void print_row(const drive_table *t, long row, FILE *out) {
 }
 
 static long row_of_largest_force(const drive_table *t) {
-  const double *N = t->columns[DRIVE_COLUMN_N].values;
+  const double *N = t->columns[t->force].values;
   long row = 0;
   for (long k = 1; k < t->rows; k++)
     if (fabs(N[k]) > fabs(N[row])) row = k;
@@ -140,9 +140,11 @@ bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t
   return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 
-static bool write_particles(const drive_input *in, hid_t file) {
-  const double s = in->bond.spacing, reference[4] = {0, 0, s, 0};
-  const double one = sqrt(3) / 2 * s * s * in->bond.thickness, volume[2] = {one, one};
+static bool write_particles(const drive_input *in, const drive_table *t, hid_t file) {
+  const bool bond = !t->of_families;
+  const double s = bond ? in->bond.spacing : in->particle.spacing, reference[4] = {0, 0, s, 0};
+  const double thickness = bond ? in->bond.thickness : in->particle.thickness;
+  const double one = sqrt(3) / 2 * s * s * thickness, volume[2] = {one, one};
   const int32_t body[2] = {0, 0};
   const hsize_t extent[2] = {2, 2};
   return h5_make_group(file, "/particles") &&
@@ -154,8 +156,8 @@ static bool write_particles(const drive_input *in, hid_t file) {
 static bool write_file(const drive_input *in, const drive_table *t, hid_t file) {
   char name[256];
   bool good = h5_attribute_text(file, "perilat_version", perilat_version) &&
-              h5_attribute_text(file, "title", in->simulation.title) && write_particles(in, file) &&
-              h5_make_group(file, "/history");
+              h5_attribute_text(file, "title", in->simulation.title) &&
+              write_particles(in, t, file) && h5_make_group(file, "/history");
   const hsize_t rows = (hsize_t)t->rows;
   for (int c = 0; good && c < t->column_count; c++) {
     snprintf(name, sizeof name, "/history/%s", t->columns[c].name);
@@ -180,13 +182,14 @@ bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *p
 bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
                 size_t size) {
   const drive_output *o = &in->output;
-  int x = drive_column_find(t, o->x), y = drive_column_find(t, o->y);
+  const char *along = o->x ? o->x : t->columns[t->way].name;
+  const char *up = o->y ? o->y : t->columns[t->force].name;
+  int x = drive_column_find(t, along), y = drive_column_find(t, up);
   if (x < 0 || y < 0) {
-    snprintf(error, size, "the table has no column `%s` to draw", x < 0 ? o->x : o->y);
+    snprintf(error, size, "the table has no column `%s` to draw", x < 0 ? along : up);
     return false;
   }
-  plot_curve_options options = {
-      .output = path, .x = o->x, .y = o->y, .title = in->simulation.title};
+  plot_curve_options options = {.output = path, .x = along, .y = up, .title = in->simulation.title};
   return plot_values(t->columns[x].values, t->columns[y].values, t->rows, t->columns[x].unit,
                      t->columns[y].unit, &options, error, size);
 }

@@ -27,6 +27,7 @@ typedef struct implied {
   implied_waves waves;
   step_limit step;
   bool has_mass;
+  int neighbours;
 } implied;
 
 typedef struct facts {
@@ -35,12 +36,11 @@ typedef struct facts {
   diagnostics said;
   model model;
   deck_material material;
-  pl_law *law;         /* interpreted; NULL for state laws and those not meant for plane stress */
-  char meant[64];      /* "plane_strain, space": settings, where not for plane stress */
+  pl_law *law;         /* interpreted */
   double *values;      /* [parameters] */
   bool *given;         /* a default or a setting */
   const char *missing; /* a parameter without a value, or NULL */
-  double spacing, thickness;
+  deck_lattice lattice;
   implied implied;
 } facts;
 
@@ -56,19 +56,90 @@ static bool read_length(facts *f, const char *option, const char *text, double *
   return deck_real_read(&v, option + 2, "m", BOUND_POSITIVE, value, &f->said);
 }
 
+/* --- the lattice ------------------------------------------------------------------------------ */
+
+static bool read_number(const char *option, const char *text, double least, double most,
+                        double *value) {
+  double number;
+  if (namelist_number(text, strlen(text), &number) == strlen(text) && number >= least &&
+      number <= most) {
+    *value = number;
+    return true;
+  }
+  fprintf(stderr, "perilat: error: %s needs a number from %g to %g, not `%s`\n", option, least,
+          most, text);
+  return false;
+}
+
+static bool read_family(deck_lattice *l, const info_law_options *o) {
+  double shells = l->shells;
+  if (o->horizon && o->shells) {
+    fputs("perilat: error: --horizon and --shells exclude each other\n", stderr);
+    return false;
+  }
+  if (o->horizon) l->shells = 0;
+  if (o->horizon && !read_number("--horizon", o->horizon, 1, 8, &l->horizon)) return false;
+  if (o->shells && !read_number("--shells", o->shells, 1, 64, &shells)) return false;
+  if (o->shells) l->shells = (int)shells;
+  return true;
+}
+
+/* The setting of such a lattice that the law is meant for, plane stress before plane strain. */
+static law_setting meant_setting(const model *m, int dimensions) {
+  char meant[96];
+  if (dimensions == 3) return SETTING_SPACE;
+  for (int k = SETTING_PLANE_STRESS; m->law && k <= SETTING_PLANE_STRAIN; k++)
+    if (model_suits(m, law_setting_name((law_setting)k), meant, sizeof meant))
+      return (law_setting)k;
+  return SETTING_PLANE_STRESS;
+}
+
+static bool choose_lattice(facts *f, const info_law_options *o, const model *m) {
+  deck_lattice *d = &f->lattice;
+  const bool space = m->law && m->law->setting == SETTING_SPACE;
+  double spacing = 10e-3, thickness = 100e-3;
+  *d = (deck_lattice){.name = "lattice",
+                      .kind = o->lattice ? o->lattice
+                              : space    ? "fcc"
+                                         : "hexagonal"};
+  if (!o->lattice && space) d->shells = 2;
+  const int dimensions = bravais_dimensions(d->kind);
+  if (!dimensions) {
+    fprintf(
+        stderr,
+        "perilat: error: there is no lattice `%s`\n  --lattice takes hexagonal, square, cubic or "
+        "fcc\n",
+        d->kind);
+    return false;
+  }
+  if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &spacing)) ||
+      (o->thickness && !read_length(f, "--thickness", o->thickness, &thickness)))
+    return false;
+  d->spacing = spacing;
+  d->thickness = d->stiffness_thickness = d->mass_thickness = dimensions == 2 ? thickness : 0;
+  d->setting = law_setting_name(meant_setting(m, dimensions));
+  return true;
+}
+
+/* --- the law ---------------------------------------------------------------------------------- */
+
+/* Looks at the law for the lattice that it is meant for. */
+static bool open_lattice(facts *f, const info_law_options *o, const char *path) {
+  model m;
+  model_open(&m, path, NULL, 0);
+  const bool good = choose_lattice(f, o, &m);
+  model_close(&m);
+  return good;
+}
+
 static bool open_law(facts *f, const info_law_options *o) {
   char *path = model_find(o->law, NULL);
-  bool good;
-  if (o->setting_count) {
-    f->material.model = path ? path : o->law;
-    f->material.item.where = (span){0, 0, UINT16_MAX};
-    good = settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
-                         &f->said) &&
-           run_open_material(&f->material, NULL, NULL, &f->model, &f->said);
-  } else {
-    good = model_open(&f->model, path ? path : o->law, NULL, 0) &&
-           (f->model.law->tree->law == LAW_STATE || model_plan(&f->model));
-  }
+  f->material.model = path ? path : o->law;
+  f->material.item.where = (span){0, 0, UINT16_MAX};
+  bool good = open_lattice(f, o, f->material.model) &&
+              settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
+                            &f->said) &&
+              run_open_material(&f->material, &f->lattice, NULL, &f->model, &f->said);
   if (f->model.memory) diag_print(&f->model.said, stderr);
   free(path);
   return good;
@@ -91,7 +162,7 @@ static bool take_values(facts *f) {
     f->values[k] = a ? a->value : p->items[k]->initial;
     if (!f->given[k] && !f->missing) f->missing = p->items[k]->name;
   }
-  if (!f->law || f->missing) return true;
+  if (f->missing) return true;
   return material_parameters(&f->material, f->law, f->values, &f->said);
 }
 
@@ -101,17 +172,41 @@ static double rho_of(const facts *f) {
   return 0;
 }
 
-static bool imply(facts *f) {
+/* What single bonds tell; laws of families have none. */
+static void imply_bonds(facts *f, const rows *w) {
   implied *i = &f->implied;
-  rows *w = implied_lattice(f->spacing, f->thickness, rho_of(f));
-  if (!w) return false;
-  i->has_mass = w->mass > 0;
-  i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
   for (int c = 0; c < 2; c++) {
     i->strength[c] = implied_strength(f->law, f->values, w, c, &i->strain[c]);
     i->crack[c] = implied_crack_energy(f->law, f->values, w, c);
   }
   implied_bond_curve(f->law, f->values, w, 0, &i->bond);
+}
+
+static bool is_of_families(const facts *f) {
+  return f->law->kind == PL_STATE;
+}
+
+static bool imply(facts *f) {
+  implied *i = &f->implied;
+  const bool hexagon = strcmp(f->lattice.kind, "hexagonal") == 0 && f->lattice.horizon <= 1 &&
+                       f->lattice.shells <= 1;
+  if (f->law->kind == PL_MICROPOLAR && !hexagon) {
+    fputs("perilat: error: a micropolar law runs on the hexagonal lattice of nearest neighbours "
+          "only\n",
+          stderr);
+    return false;
+  }
+  rows *w = implied_lattice_like(&f->lattice, rho_of(f));
+  if (!w) {
+    fprintf(stderr,
+            "perilat: error: a particle of this lattice has no neighbours, or more than %d\n",
+            ROWS_MAX_NEIGHBOURS);
+    return false;
+  }
+  i->neighbours = 2 * w->directions;
+  i->has_mass = w->mass > 0;
+  i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
+  if (!is_of_families(f)) imply_bonds(f, w);
   if (i->has_mass) {
     implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
     stability_limit(f->law, f->values, w, &i->step);
@@ -120,9 +215,36 @@ static bool imply(facts *f) {
   return true;
 }
 
+/* Arrays that a segment over neighbours reads and writes, without what a pass keeps for itself. */
+static long arrays_of_segment(const ir *g, const segment *a) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  long count = 1; /* the bits of the bonds */
+  for (int k = 0; k < a->root_count; k++) {
+    ir_mark(g, &a->roots[k].node, 1, needed);
+    count += a->roots[k].target == TO_NEIGHBOUR_FIELD;
+  }
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_operation(g, n) != IR_INPUT || ir_place(g, n) <= ON_BODY) continue;
+    const ir_source from = ir_input_source(g, n);
+    count += from != IR_FROM_SLOT && from != IR_FROM_PLANE;
+  }
+  free(needed);
+  return count;
+}
+
+static long bytes_of_families(const kernel_plan *p) {
+  long count = 0;
+  for (int k = 0; k < p->step.pass_count; k++)
+    for (int s = 0; s < p->step.passes[k].segment_count; s++)
+      if (p->step.passes[k].segments[s].kind == OVER_NEIGHBOURS)
+        count += arrays_of_segment(p->graph, &p->step.passes[k].segments[s]);
+  return 8 * count;
+}
+
 /* Bytes that one bond reads and writes in a step, most of them from a cache: neighbouring bonds
  * share their ends. */
 static long bytes_per_bond(const kernel_plan *p) {
+  if (p->kind == PL_STATE) return bytes_of_families(p);
   const pass *a = &p->passes[PASS_ROWS];
   unsigned char *needed = must_calloc((size_t)ir_count(p->graph) + 1, 1);
   long count = a->root_count + 1; /* the flags */
@@ -181,13 +303,20 @@ static void print_options(const law *l) {
   }
 }
 
+static int pass_count(const kernel_plan *p) {
+  return p->kind == PL_STATE ? p->step.pass_count : 1;
+}
+
 static void print_cost(const facts *f) {
   const kernel_plan *p = f->model.plan;
-  printf("Cost per bond and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; 1 "
-         "pass; %d value%s computed once "
-         "per lattice\n",
-         p->flops_per_bond + p->divisions_per_bond, p->divisions_per_bond, bytes_per_bond(p),
-         p->uniform_count, p->uniform_count == 1 ? "" : "s");
+  const int passes = pass_count(p);
+  printf(
+      "Cost per bond%s and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; %d "
+      "pass%s; %d value%s computed once "
+      "per lattice\n",
+      p->kind == PL_STATE ? " of either side" : "", p->flops_per_bond + p->divisions_per_bond,
+      p->divisions_per_bond, bytes_per_bond(p), passes, passes == 1 ? "" : "es", p->uniform_count,
+      p->uniform_count == 1 ? "" : "s");
 }
 
 static void print_strength(const implied *i) {
@@ -234,10 +363,26 @@ static void print_dynamics(const implied *i, bool rotations) {
   printf(")\n");
 }
 
+/* "plane stress" of plane_stress. */
+static void print_setting(const char *name) {
+  for (; *name; name++)
+    putchar(*name == '_' ? ' ' : *name);
+}
+
+static void print_lattice(const facts *f) {
+  const deck_lattice *d = &f->lattice;
+  printf("On a%s %s lattice", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind);
+  if (f->implied.neighbours != 6 || strcmp(d->kind, "hexagonal") != 0)
+    printf(" of %d neighbours", f->implied.neighbours);
+  printf(", s = %.6g mm, ", 1e3 * d->spacing);
+  if (d->thickness > 0) printf("t = %.6g mm, ", 1e3 * d->thickness);
+  print_setting(d->setting);
+  puts(":");
+}
+
 static void print_implied(const facts *f) {
   const implied *i = &f->implied;
-  printf("On a hexagonal lattice, s = %.6g mm, t = %.6g mm, plane stress:\n", 1e3 * f->spacing,
-         1e3 * f->thickness);
+  print_lattice(f);
   if (i->stiff)
     printf("  elastic constants     E = %.6g GPa along x, %.6g GPa along y; nu = %.6g, %.6g; G = "
            "%.6g GPa\n",
@@ -245,9 +390,11 @@ static void print_implied(const facts *f) {
            1e-9 * i->elastic.G);
   else
     printf("  elastic constants     none: the virgin lattice has no stiffness\n");
-  print_strength(i);
-  print_bond(i);
-  print_dynamics(i, f->law->dof > 2);
+  if (!is_of_families(f)) {
+    print_strength(i);
+    print_bond(i);
+  }
+  print_dynamics(i, f->law->kind == PL_MICROPOLAR);
 }
 
 static void print_text(const facts *f) {
@@ -262,16 +409,13 @@ static void print_text(const facts *f) {
   print_options(l);
   print_symbols("State and damage", &l->fields);
   print_symbols("Outputs", &l->outputs);
-  if (f->model.plan) print_cost(f);
+  print_cost(f);
   if (l->nonconservative) printf("Not conservative: %s\n", l->nonconservative);
-  if (f->law && f->missing)
+  if (f->missing)
     printf("What it implies depends on `%s`, which has no default: give --set %s=...\n", f->missing,
            f->missing);
-  else if (f->law)
+  else
     print_implied(f);
-  else if (*f->meant)
-    printf("What it implies is worked out in plane_stress only; the law is meant for %s\n",
-           f->meant);
 }
 
 /* --- as JSON ---------------------------------------------------------------------------------- */
@@ -360,25 +504,12 @@ static void put_cost(json *j, const facts *f) {
   put_number(j, "operations", p->flops_per_bond + p->divisions_per_bond);
   put_number(j, "divisions", p->divisions_per_bond);
   put_number(j, "bytes", (double)bytes_per_bond(p));
-  put_number(j, "passes", 1);
+  put_number(j, "passes", pass_count(p));
   put_number(j, "computed_once", p->uniform_count);
   json_object_end(j);
 }
 
-/* SI units throughout; null for what is infinite, unknown or does not exist. */
-static void put_implied(json *j, const facts *f) {
-  const implied *i = &f->implied;
-  json_key(j, "implied");
-  json_object(j);
-  put_text(j, "lattice", "hexagonal");
-  put_text(j, "setting", "plane_stress");
-  put_number(j, "spacing", f->spacing);
-  put_number(j, "thickness", f->thickness);
-  if (i->stiff) {
-    put_pair(j, "E", i->elastic.E);
-    put_pair(j, "nu", i->elastic.nu);
-    put_number(j, "G", i->elastic.G);
-  }
+static void put_bonds(json *j, const implied *i) {
   put_pair(j, "peak_stress", i->strength);
   put_pair(j, "strain_at_peak", i->strain);
   put_number(j, "bond_peak_force", i->bond.peak_force);
@@ -387,10 +518,29 @@ static void put_implied(json *j, const facts *f) {
   put_number(j, "bond_work_of_fracture", i->bond.energy);
   put_number(j, "work_of_fracture", i->bond.row_energy);
   put_pair(j, "crack_energy", i->crack);
+}
+
+/* SI units throughout; null for what is infinite, unknown or does not exist. */
+static void put_implied(json *j, const facts *f) {
+  const implied *i = &f->implied;
+  json_key(j, "implied");
+  json_object(j);
+  put_text(j, "lattice", f->lattice.kind);
+  put_number(j, "neighbours", i->neighbours);
+  put_text(j, "setting", f->lattice.setting);
+  put_number(j, "spacing", f->lattice.spacing);
+  put_number(j, "thickness", f->lattice.thickness > 0 ? f->lattice.thickness : NAN);
+  if (i->stiff) {
+    put_pair(j, "E", i->elastic.E);
+    put_pair(j, "nu", i->elastic.nu);
+    put_number(j, "G", i->elastic.G);
+  }
+  if (!is_of_families(f)) put_bonds(j, i);
   if (i->has_mass) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     put_number(j, "transverse_speed", i->waves.transverse);
-    put_number(j, "rotation_cutoff", f->law->dof > 2 ? i->waves.rotation_cutoff : NAN);
+    put_number(j, "rotation_cutoff",
+               f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
     put_number(j, "stable_step", i->step.limit);
     put_text(j, "ruling_mode", i->step.mode);
     put_number(j, "omega_max", i->step.omega_max);
@@ -412,8 +562,8 @@ static void print_json(const facts *f) {
   put_symbols(&j, "fields", &l->fields);
   put_symbols(&j, "outputs", &l->outputs);
   put_text(&j, "nonconservative", l->nonconservative);
-  if (f->model.plan) put_cost(&j, f);
-  if (f->law && !f->missing) put_implied(&j, f);
+  put_cost(&j, f);
+  if (!f->missing) put_implied(&j, f);
   json_object_end(&j);
   json_end(&j);
 }
@@ -421,15 +571,9 @@ static void print_json(const facts *f) {
 /* --- all of it -------------------------------------------------------------------------------- */
 
 static bool learn(facts *f, const info_law_options *o) {
-  f->spacing = 10e-3;
-  f->thickness = 100e-3;
-  bool good = (!o->spacing || read_length(f, "--spacing", o->spacing, &f->spacing)) &&
-              (!o->thickness || read_length(f, "--thickness", o->thickness, &f->thickness)) &&
-              open_law(f, o);
-  if (!good) return false;
-  if (f->model.plan && model_suits(&f->model, "plane_stress", f->meant, sizeof f->meant))
-    f->law = plan_interpreted(f->model.plan, "");
-  return take_values(f) && (!f->law || f->missing || imply(f));
+  if (!open_law(f, o)) return false;
+  f->law = plan_interpreted(f->model.plan, "");
+  return take_values(f) && (f->missing || imply(f));
 }
 
 int info_law(const info_law_options *o) {

@@ -14,9 +14,9 @@ void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int 
 void dpotri_(const char *triangle, const int *n, double *a, const int *lda, int *info,
              size_t triangle_length);
 
-/* Volume of lattice that stress is counted on: a site's area times the stiffness thickness. */
+/* Volume of lattice that stress is counted on: in the plane a site's area times the stiffness thickness. */
 static double site_volume(const rows *w) {
-  return w->site_area * w->stiffness_thickness;
+  return w->dimensions == 3 ? w->volume : w->site_area * w->stiffness_thickness;
 }
 
 /* One bond of a direction of the lattice, uncoupled to others. */
@@ -354,5 +354,5 @@ void implied_wave_speeds(const pl_law *law, const double *parameters, const rows
   *out = (implied_waves){.transverse = sqrt(e->G / density)};
   for (int c = 0; c < 2; c++)
     out->longitudinal[c] = sqrt(e->D[c][c] / density);
-  if (law->dof > 2) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
+  if (law->kind == PL_MICROPOLAR) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
 }

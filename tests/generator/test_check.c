@@ -47,8 +47,29 @@ static void a_law_runs_in_the_setting_it_is_meant_for(void **state) {
          "plane_stress");
   assert_non_null(strstr(w->said, "[conflict]"));
   expect(w, "drive ./solid.plm solid_path.nml", 1, "is meant for plane_strain, space");
-  expect(w, "info solid.plm", 0, "worked out in plane_stress only");
-  assert_null(strstr(w->said, "elastic constants"));
+  expect(w, "info solid.plm", 0, "t = 100 mm, plane strain:");
+  expect(w, "info solid.plm --lattice cubic", 0,
+         "On a cubic lattice of 6 neighbours, s = 10 mm, space:");
+}
+
+/* Nikravesh 2017: the hexagon has E and nu exactly, fcc with second neighbours, too. */
+static void laws_of_families_are_put_on_lattices(void **state) {
+  workplace *w = *state;
+  expect(w, "info splm_elastic --spacing '5 mm'", 0,
+         "On a hexagonal lattice, s = 5 mm, t = 100 mm");
+  assert_non_null(strstr(w->said, "E = 25.131 GPa along x, 25.131 GPa along y; nu = 0.2, 0.2"));
+  assert_non_null(strstr(w->said, "2 passes"));
+  assert_non_null(strstr(w->said, "stable step"));
+  expect(w, "info splm_elastic --lattice fcc --shells 2", 0, "On an fcc lattice of 18 neighbours");
+  assert_non_null(strstr(w->said, "E = 25.131 GPa along x"));
+  assert_null(strstr(w->said, "longitudinal 0 m/s"));
+  expect(w, "info lps --lattice square --horizon 3 --json", 0, "\"neighbours\": 28");
+  expect(w, "info lps --lattice kagome", 1, "there is no lattice `kagome`");
+  expect(w, "info lps --horizon 3 --shells 2", 1, "exclude each other");
+  expect(w, "info lps --horizon far", 1, "--horizon needs a number from 1 to 8");
+  expect(w, "info lps --lattice cubic --horizon 7", 1, "no neighbours, or more than");
+  expect(w, "info mplm_bilinear --lattice square", 1,
+         "hexagonal lattice of nearest neighbours only");
 }
 
 static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
@@ -69,6 +90,8 @@ int main(void) {
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(what_a_law_implies_says_what_it_is_measured_on,
                                       set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(laws_of_families_are_put_on_lattices, set_up_workplace,
+                                      tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
