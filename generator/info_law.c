@@ -88,7 +88,7 @@ static bool read_family(deck_lattice *l, const info_law_options *o) {
 static law_setting meant_setting(const model *m, int dimensions) {
   char meant[96];
   if (dimensions == 3) return SETTING_SPACE;
-  for (int k = SETTING_PLANE_STRESS; m->law && k <= SETTING_PLANE_STRAIN; k++)
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_PLANE_STRAIN; k++)
     if (model_suits(m, law_setting_name((law_setting)k), meant, sizeof meant))
       return (law_setting)k;
   return SETTING_PLANE_STRESS;
@@ -96,7 +96,7 @@ static law_setting meant_setting(const model *m, int dimensions) {
 
 static bool choose_lattice(facts *f, const info_law_options *o, const model *m) {
   deck_lattice *d = &f->lattice;
-  const bool space = m->law && m->law->setting == SETTING_SPACE;
+  const bool space = m->law->setting == SETTING_SPACE;
   double spacing = 10e-3, thickness = 100e-3;
   *d = (deck_lattice){.name = "lattice",
                       .kind = o->lattice ? o->lattice
@@ -126,8 +126,9 @@ static bool choose_lattice(facts *f, const info_law_options *o, const model *m) 
 /* Looks at the law for the lattice that it is meant for. */
 static bool open_lattice(facts *f, const info_law_options *o, const char *path) {
   model m;
-  model_open(&m, path, NULL, 0);
-  const bool good = choose_lattice(f, o, &m);
+  const bool opened = model_open(&m, path, NULL, 0);
+  if (!opened) diag_print(&m.said, stderr);
+  const bool good = opened && choose_lattice(f, o, &m);
   model_close(&m);
   return good;
 }

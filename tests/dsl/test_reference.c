@@ -1,5 +1,5 @@
 /* The language reference and its laws: every ```plm block of dsl/README.md is a law without a
-   message; every ```plm-error block gives exactly the ```text block after it. The reference lists
+   message, which compiles where it is one of families; every ```plm-error block gives exactly the ```text block after it. The reference lists
    every diagnostic code and every built-in name. */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -77,6 +77,28 @@ static void laws_of_the_reference_are_right(void **state) {
   free(page);
 }
 
+/* Laws of families are also compiled and put through the physics checks. */
+static void laws_of_families_of_the_reference_hold(void **state) {
+  (void)state;
+  char *page = read_page(), *text;
+  const char *at = page;
+  int count = 0;
+  for (; (text = next_block(&at, "plm")); free(text)) {
+    if (!strstr(text, "law state")) continue;
+    FILE *out = fopen("reference_law.plm", "w");
+    assert_non_null(out);
+    fputs(text, out);
+    assert_int_equal(fclose(out), 0);
+    if (system("'" PERILAT_PROGRAM "' check reference_law.plm --dump=c > reference_law.txt 2>&1"))
+      fail_msg("%s\nis refused; see reference_law.txt", text);
+    count++;
+  }
+  remove("reference_law.plm");
+  remove("reference_law.txt");
+  assert_true(count >= 4);
+  free(page);
+}
+
 static void faults_of_the_reference_give_the_messages_shown(void **state) {
   (void)state;
   char *page = read_page(), *text;
@@ -116,6 +138,7 @@ static void the_reference_lists_every_code_and_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(laws_of_the_reference_are_right),
+      cmocka_unit_test(laws_of_families_of_the_reference_hold),
       cmocka_unit_test(faults_of_the_reference_give_the_messages_shown),
       cmocka_unit_test(the_reference_lists_every_code_and_name),
   };

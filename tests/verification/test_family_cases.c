@@ -7,120 +7,28 @@
 
 #include <cmocka.h>
 
-#include "tests/verification/case.h"
-
-static void run_of(deck_case *c, const char *name, const char *const *overrides, int count) {
-  assert_true(deck_case_run(c, name, overrides, count));
-  assert_int_equal(deck_case_go(c), STEP_END);
-}
-
-static double last_of(const deck_case *c, const char *name) {
-  return deck_case_series(c, name)[simulation_history(c->simulation, NULL) - 1];
-}
-
-static void is_within(const char *what, double value, double low, double high) {
-  print_message("%s: %.6g\n", what, value);
-  if (!(value >= low && value <= high))
-    fail_msg("%s: %g is not in %g to %g", what, value, low, high);
-}
-
-/* --- elasticity ------------------------------------------------------------------------------- */
+#include "tests/verification/family_cases.h"
 
 static void a_cube_has_the_constants_of_the_solid(void **state) {
   (void)state;
-  deck_case c;
-  static const char *const coarse[] = {"lattice.spacing=10 mm"};
-  run_of(&c, "examples/fcc_cube/cube.nml", coarse, 1);
-  const double strain = last_of(&c, "strain");
-  is_within("E/25 GPa", last_of(&c, "stress") / strain / 25e9, 0.99, 1.01);
-  is_within("nu", -last_of(&c, "lateral") / strain, 0.185, 0.215);
-  deck_case_close(&c);
+  check_cube("lattice.spacing=10 mm");
 }
 
-/* --- waves ------------------------------------------------------------------------------------ */
-
-/* Time of the pulse's centre of gravity. */
-static double centre_of(const deck_case *c, const char *name) {
-  const double *time, *v = deck_case_series(c, name);
-  const long count = simulation_history(c->simulation, &time);
-  double sum = 0, moment = 0;
-  for (long k = 1; k < count; k++) {
-    sum += v[k] * (time[k] - time[k - 1]);
-    moment += v[k] * time[k] * (time[k] - time[k - 1]);
-  }
-  return moment / sum;
-}
-
-/* Error of the speed between the stations 0.4 m apart, against that of a bar of the lattice's own modulus. */
-static double error_of_speed(const char *name, const char *spacing, const char *origin, double E) {
-  deck_case c;
-  const char *const overrides[] = {spacing, origin};
-  run_of(&c, name, overrides, 2);
-  const double speed = 0.4 / (centre_of(&c, "far") - centre_of(&c, "near"));
-  const double error = speed / sqrt(E / 2323) - 1;
-  print_message("%s, %s: error of the speed %.4f\n", name, spacing, error);
-  deck_case_close(&c);
-  return error;
-}
-
-/* The free sides make the bar stiffer by a part that goes with the horizon over the height. */
 static void pulses_travel_along_a_bar(void **state) {
   (void)state;
-  static const struct {
-    const char *deck;
-    double E; /* Pa, that perilat announces for the lattice */
-  } laws[] = {{"examples/wave_in_a_bar/pmb.nml", 25.57e9},
-              {"examples/wave_in_a_bar/lps.nml", 25e9}};
-  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
-    const double coarse = error_of_speed(laws[k].deck, "lattice.spacing=5 mm",
-                                         "lattice.origin=2.5 mm, 2.5 mm", laws[k].E);
-    const double fine = error_of_speed(laws[k].deck, "lattice.spacing=2.5 mm",
-                                       "lattice.origin=1.25 mm, 1.25 mm", laws[k].E);
-    assert_true(fine < 0.1 && fine < 0.7 * coarse);
-  }
+  check_pulses((const char *const[]){"lattice.spacing=5 mm", "lattice.origin=2.5 mm, 2.5 mm"},
+               (const char *const[]){"lattice.spacing=2.5 mm", "lattice.origin=1.25 mm, 1.25 mm"},
+               0.1);
 }
 
-/* --- cracks ----------------------------------------------------------------------------------- */
-
-/* Time at which a fifth of the bonds at a station is broken. */
-static double passes_at(const deck_case *c, const char *name) {
-  const double *time, *broken = deck_case_series(c, name);
-  const long count = simulation_history(c->simulation, &time);
-  for (long k = 0; k < count; k++)
-    if (broken[k] > 0.2) return time[k];
-  fail_msg("the crack does not reach %s", name);
-  return 0;
-}
-
-/* Between 0.4 and 1 of the Rayleigh speed, 0.93 c_s; a crack that leaves its plane by three rows breaks a fifth
-   of the bonds there and more. */
 static void a_crack_runs_below_the_rayleigh_speed(void **state) {
   (void)state;
-  deck_case c;
-  static const char *const coarse[] = {"lattice.spacing=1 mm", "lattice.origin=0, 0.5 mm"};
-  run_of(&c, "examples/running_crack/pmb.nml", coarse, 2);
-  const double rayleigh = (0.862 + 1.14 / 3) / (4. / 3) * sqrt(27e9 / 2440);
-  is_within("crack speed over Rayleigh's",
-            0.04 / (passes_at(&c, "b85") - passes_at(&c, "b45")) / rayleigh, 0.4, 1);
-  is_within("bonds broken above the crack", last_of(&c, "above"), 0, 0.2);
-  is_within("bonds broken below the crack", last_of(&c, "below"), 0, 0.2);
-  deck_case_close(&c);
+  check_crack((const char *const[]){"lattice.spacing=1 mm", "lattice.origin=0, 0.5 mm"});
 }
 
 static void a_beam_in_space_breaks(void **state) {
   (void)state;
-  deck_case c;
-  static const char *const coarse[] = {"lattice.spacing=8 mm"};
-  run_of(&c, "examples/notched_beam_3d/beam.nml", coarse, 1);
-  const double *load = deck_case_series(&c, "load");
-  const double peak = load[largest_of(load, simulation_history(c.simulation, NULL))];
-  is_within("peak, N", peak, 3500, 5500);
-  is_within("load at the end over the peak", last_of(&c, "load") / peak, 0, 0.5);
-  is_within("energy of the crack over G_f times the ligament",
-            last_of(&c, "energy/dissipated_damage") / (80 * 50.8e-3 * 76.2e-3), 0.5, 1.3);
-  is_within("imbalance over work",
-            fabs(last_of(&c, "energy/imbalance")) / last_of(&c, "energy/external"), 0, 1e-9);
-  deck_case_close(&c);
+  check_beam("lattice.spacing=8 mm");
 }
 
 /* --- cohesive bonds in space ------------------------------------------------------------------ */
