@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 #include "dsl/json.h"
 #include "generator/model.h"
@@ -137,7 +138,9 @@ static bool open_law(facts *f, const info_law_options *o) {
   char *path = model_find(o->law, NULL);
   f->material.model = path ? path : o->law;
   f->material.item.where = (span){0, 0, UINT16_MAX};
-  bool good = open_lattice(f, o, f->material.model) &&
+  const bool there =
+      path || access(o->law, F_OK) == 0; /* what is nowhere has a message of its own */
+  bool good = (!there || open_lattice(f, o, f->material.model)) &&
               settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
                             &f->said) &&
               run_open_material(&f->material, &f->lattice, NULL, &f->model, &f->said);

@@ -81,6 +81,28 @@ static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
   expect(w, "info cohesive --json", 0, "\"crack_energy\": [");
 }
 
+static const char deck_of_families[] =
+    "&simulation  title = 'family'  end_time = '5 us'  /\n"
+    "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '10 mm'  thickness = '100 mm'  "
+    "/\n"
+    "&material    lattice = 'concrete'  model = 'splm_elastic'  /\n"
+    "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '60 mm', '60 "
+    "mm'  /\n"
+    "&output      result = 'family.h5'  /\n";
+
+/* Its kernel against the interpreter; its mechanics on the lattice of the deck. */
+static void decks_of_families_are_checked(void **state) {
+  workplace *w = *state;
+  write_text(w, "family.nml", deck_of_families);
+  expect(w, "run family.nml --check-kernel", 0,
+         "kernel check: splm_elastic and its interpreter give the same bits");
+  assert_non_null(strstr(w->said, "random bonds of families in each of 3 passes"));
+  expect(w, "check family.nml", 0, "no errors");
+  assert_null(strstr(w->said, "[patch]"));
+  expect(w, "check family.nml --set lattice.kind=square --set lattice.shells=2", 0, "[patch]");
+  assert_non_null(strstr(w->said, "particles of a square lattice"));
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(a_path_is_shown_the_way_to_drive, set_up_workplace,
@@ -90,6 +112,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(what_a_law_implies_says_what_it_is_measured_on,
                                       set_up_workplace, tear_down_workplace),
       cmocka_unit_test_setup_teardown(laws_of_families_are_put_on_lattices, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(decks_of_families_are_checked, set_up_workplace,
                                       tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
