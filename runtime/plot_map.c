@@ -126,23 +126,31 @@ static colour particle_colour(const map *m, long p, int component, double low, d
   return m->frame.of_damage ? classes[class_of(value)].ink : shade(place_of(value, low, high));
 }
 
+static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius) {
+  canvas_colour(c, ink);
+  cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
+            2 * M_PI);
+  cairo_fill_preserve(c->cr);
+  if (m->frame.surface) { /* an edge, so that those in front stand out */
+    canvas_colour(c, (colour){0.25, 0.25, 0.28});
+    cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
+    cairo_stroke(c->cr);
+  }
+  cairo_new_path(c->cr);
+}
+
+/* In the plane the more damaged above the less damaged; in a view of a surface those in front above those behind. */
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   const bool coloured = m->frame.values && !m->frame.of_bonds;
-  double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
+  const double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const colour plain = {0.45, 0.48, 0.52};
   cairo_new_path(c->cr);
-  for (long p = 0; p < m->frame.particles; p++) {
-    canvas_colour(c, coloured ? particle_colour(m, p, component, low, high)
-                              : (colour){0.45, 0.48, 0.52});
-    cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
-              2 * M_PI);
-    cairo_fill_preserve(c->cr);
-    if (m->frame.surface) { /* an edge, so that those in front stand out */
-      canvas_colour(c, (colour){0.25, 0.25, 0.28});
-      cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
-      cairo_stroke(c->cr);
-    }
-    cairo_new_path(c->cr);
-  }
+  for (int k = 0; k < (by_class ? CLASSES : 1); k++)
+    for (long p = 0; p < m->frame.particles; p++)
+      if (!by_class || class_of(m->frame.values[p]) == k)
+        draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain,
+                      radius);
 }
 
 static bool is_separated(const map *m, long b) {

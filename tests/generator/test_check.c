@@ -43,8 +43,7 @@ static void a_law_runs_in_the_setting_it_is_meant_for(void **state) {
   write_text(w, "solid_path.nml", path_of_bond);
   expect(w, "check solid.plm", 0, "no errors");
   expect(w, "run beam.nml --set material.model=./solid.plm", 1,
-         "the law `solid` is meant for plane_strain, space, but lattices are computed in "
-         "plane_stress");
+         "the law `solid` is meant for plane_strain, space, but this lattice is in plane_stress");
   assert_non_null(strstr(w->said, "[conflict]"));
   expect(w, "drive ./solid.plm solid_path.nml", 1, "is meant for plane_strain, space");
   expect(w, "info solid.plm", 0, "t = 100 mm, plane strain:");
