@@ -64,6 +64,12 @@ static void write_array(emitter *e, ir_node n) {
   case IR_FROM_NEIGHBOUR_LINK:
     c_text_add(e->out, "family->link[%d] + first + to", index);
     break;
+  case IR_FROM_BOND_LINK:
+    c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", index);
+    break;
+  case IR_FROM_NEIGHBOUR_BOND_LINK:
+    c_text_add(e->out, "family->bond_link[%d] + first + to + back*family->plane", index);
+    break;
   case IR_FROM_SHAPE:
     c_text_add(e->out, "family->shape[%d] + first", index);
     break;
@@ -120,6 +126,9 @@ static void write_target(emitter *e, const segment_root *r) {
     break;
   case TO_PLANE:
     c_text_add(e->out, "plane_%d[k]", r->index);
+    break;
+  case TO_BOND_LINK:
+    c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", r->index);
     break;
   default:
     c_text_add(e->out, "slot_%d", r->index);
@@ -274,8 +283,9 @@ void emit_programs(emitter *e) {
 
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
-             "    .link_count = %d,\n    .reads_shape = %d,\n    .step = {%d, step_passes},\n"
+             "    .link_count = %d,\n    .bond_link_count = %d,\n    .reads_shape = %d,\n    .step "
+             "= {%d, step_passes},\n"
              "    .observe = {%d, observe_passes},\n",
-             e->plan->link_count, e->plan->reads_shape, e->plan->step.pass_count,
-             e->plan->observe.pass_count);
+             e->plan->links.of_particles, e->plan->links.of_bonds, e->plan->reads_shape,
+             e->plan->step.pass_count, e->plan->observe.pass_count);
 }

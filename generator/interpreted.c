@@ -378,7 +378,8 @@ static void describe(interpreted *p, const char *key) {
   p->law.list = p->law.list_ledger = p->law.list_observe = NULL;
   p->law.states = NULL;
   p->law.tangent = NULL;
-  p->law.link_count = plan->link_count;
+  p->law.link_count = plan->links.of_particles;
+  p->law.bond_link_count = plan->links.of_bonds;
   p->law.reads_shape = plan->reads_shape;
   p->law.step = (pl_program){plan->step.pass_count, step_passes};
   p->law.observe = (pl_program){plan->observe.pass_count, observe_passes};

@@ -15,8 +15,8 @@ struct family_runner {
   const kernel_plan *plan;
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
-  const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **slots,
-      **planes, *shape[PL_SHAPE_VALUES(3)], *ends[ENDS_COUNT];
+  const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
+      **neighbour_bond_links, **slots, **planes, *shape[PL_SHAPE_VALUES(3)], *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
@@ -77,8 +77,10 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->parameters = pointers(r, p->law->parameters.count + p->uniform_count);
   r->fields = pointers(r, fields);
   r->neighbour_fields = pointers(r, fields);
-  r->links = pointers(r, p->link_count);
-  r->neighbour_links = pointers(r, p->link_count);
+  r->links = pointers(r, p->links.of_particles);
+  r->neighbour_links = pointers(r, p->links.of_particles);
+  r->bond_links = pointers(r, p->links.of_bonds);
+  r->neighbour_bond_links = pointers(r, p->links.of_bonds);
   r->slots = pointers(r, slots);
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
@@ -89,7 +91,8 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
     r->result[k] = r->results + (size_t)k * LANES;
   for (int k = 0; k < slots; k++)
     r->slots[k] = r->slot + (size_t)k * LANES;
-  const int most = larger(larger(fields, p->link_count), larger(slots, larger(planes, 21)));
+  const int most = larger(larger(fields, larger(p->links.of_particles, p->links.of_bonds)),
+                          larger(slots, larger(planes, 21)));
   r->ones = arena_alloc(r->memory, (size_t)most + 1);
   memset(r->ones, 1, (size_t)most + 1);
   memset(r->ends_stride, 1, sizeof r->ends_stride);
@@ -120,7 +123,7 @@ static bool is_of_particle(const family_runner *r, int field) {
 
 /* What a segment of the particles reads: neighbours are not touched. */
 static void point_at_particles(family_runner *r, const pl_family *f, long first) {
-  for (int k = 0; k < r->plan->link_count; k++)
+  for (int k = 0; k < r->plan->links.of_particles; k++)
     r->links[k] = f->link[k] + first;
   for (int k = 0; k < r->plan->law->fields.count; k++)
     r->fields[k] = f->old_field[k] + first;
@@ -145,8 +148,12 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   const int parameters = p->law->parameters.count;
   for (int u = 0; u < p->uniform_count; u++)
     r->parameters[parameters + u] = uniforms + k * p->uniform_count + u;
-  for (int n = 0; n < p->link_count; n++)
+  for (int n = 0; n < p->links.of_particles; n++)
     r->neighbour_links[n] = f->link[n] + first + to;
+  for (int n = 0; n < p->links.of_bonds; n++) {
+    r->bond_links[n] = f->bond_link[n] + first + k * f->plane;
+    r->neighbour_bond_links[n] = f->bond_link[n] + first + to + back * f->plane;
+  }
   for (int n = 0; n < p->law->fields.count; n++) {
     const bool of_particle = is_of_particle(r, n);
     r->fields[n] = f->old_field[n] + first + (of_particle ? 0 : k * f->plane);
@@ -176,6 +183,8 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_FIELD] = r->neighbour_fields,
                                          [IR_FROM_LINK] = r->links,
                                          [IR_FROM_NEIGHBOUR_LINK] = r->neighbour_links,
+                                         [IR_FROM_BOND_LINK] = r->bond_links,
+                                         [IR_FROM_NEIGHBOUR_BOND_LINK] = r->neighbour_bond_links,
                                          [IR_FROM_SLOT] = r->slots,
                                          [IR_FROM_PLANE] = r->planes},
                               .stride = {[IR_FROM_FIELD] = r->ones,
@@ -184,6 +193,8 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_FIELD] = r->ones,
                                          [IR_FROM_LINK] = r->ones,
                                          [IR_FROM_NEIGHBOUR_LINK] = r->ones,
+                                         [IR_FROM_BOND_LINK] = r->ones,
+                                         [IR_FROM_NEIGHBOUR_BOND_LINK] = r->ones,
                                          [IR_FROM_SLOT] = r->ones,
                                          [IR_FROM_PLANE] = r->ones}};
 }
@@ -195,6 +206,8 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
   switch (root->target) {
   case TO_LINK:
     return f->link[root->index] + first;
+  case TO_BOND_LINK:
+    return f->bond_link[root->index] + first + k * f->plane;
   case TO_PARTICLE_FIELD:
     return f->new_field[root->index] + first;
   case TO_PARTICLE_FORCE:
@@ -220,7 +233,8 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
 static void store(family_runner *r, const segment_root *root, const double *value,
                   const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
-  const bool plain = root->target < TO_SUM || root->target == TO_PLANE;
+  const bool plain =
+      root->target < TO_SUM || root->target == TO_PLANE || root->target == TO_BOND_LINK;
   for (long q = 0; q < lanes; q++) {
     const bool present = plain || is_present(f, first, k, q);
     switch (root->target) {

@@ -52,6 +52,8 @@ typedef enum ir_source {
   IR_FROM_NEIGHBOUR_FIELD, /* index: law->fields; of the neighbour, toward me where it is directed */
   IR_FROM_LINK,            /* index: value of the particle that an earlier pass left */
   IR_FROM_NEIGHBOUR_LINK,  /* the same of the neighbour */
+  IR_FROM_BOND_LINK,       /* index: value toward each neighbour that an earlier pass left */
+  IR_FROM_NEIGHBOUR_BOND_LINK, /* the same of the neighbour toward me */
   IR_FROM_SLOT,            /* index: value of the particle within a pass */
   IR_FROM_PLANE,           /* index: value toward each neighbour within a pass */
   IR_SOURCE_COUNT

@@ -20,7 +20,7 @@ typedef struct body {
   double **motion; /* [2 * dimensions][SIZE] displacements, velocities */
   double **shape;  /* [PL_SHAPE_VALUES][SIZE] */
   double **before; /* [fields] */
-  double **after[2], **link[2], **force[2], **observed[2];
+  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2];
   uint64_t *bonds, *held; /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS];
 } body;
@@ -59,6 +59,7 @@ static body body_new(const pl_law *law, int neighbours) {
   for (int side = 0; side < 2; side++) {
     b.after[side] = values_new(&b, law->fields, law->field_count);
     b.link[side] = planes_new(law->link_count, SIZE);
+    b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
     b.force[side] = planes_new(law->dimensions, SIZE);
     b.observed[side] = observed_new(&b);
   }
@@ -74,6 +75,7 @@ static void body_free(body *b) {
   for (int side = 0; side < 2; side++) {
     planes_free(b->after[side], b->law->field_count);
     planes_free(b->link[side], b->law->link_count);
+    planes_free(b->bond_link[side], b->law->bond_link_count);
     planes_free(b->force[side], b->law->dimensions);
     planes_free(b->observed[side], 1 + b->law->output_count);
   }
@@ -119,6 +121,9 @@ static void draw_body(body *b, double s, uint64_t *seed) {
   for (int k = 0; k < b->law->link_count; k++)
     for (int q = 0; q < SIZE; q++)
       b->link[0][k][q] = b->link[1][k][q] = draw_size(seed, -6, 0);
+  for (int k = 0; k < b->law->bond_link_count; k++)
+    for (long q = 0; q < (long)b->neighbours * SIZE; q++)
+      b->bond_link[0][k][q] = b->bond_link[1][k][q] = draw_size(seed, -6, 0);
 }
 
 static bool has_bond(const body *b, int k, long q) {
@@ -169,6 +174,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .held = b->held + site,
                  .new_field = from_site(&s, b->after[side], law->field_count, site),
                  .link = from_site(&s, b->link[side], law->link_count, site),
+                 .bond_link = from_site(&s, b->bond_link[side], law->bond_link_count, site),
                  .force = from_site(&s, b->force[side], law->dimensions, site),
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
                  .time_step = 1.7e-7};
@@ -207,6 +213,9 @@ static void compare_values(comparison *c, const body *b, const char *program, co
 static void compare_links(comparison *c, const body *b, const char *program) {
   for (int k = 0; k < b->law->link_count; k++)
     comparison_add(c, program, "link", k, b->link[0][k], b->link[1][k], SIZE);
+  for (int k = 0; k < b->law->bond_link_count; k++)
+    comparison_add(c, program, "link of bonds", k, b->bond_link[0][k], b->bond_link[1][k],
+                   (long)b->neighbours * SIZE);
 }
 
 static void compare_step(comparison *c, const body *b) {

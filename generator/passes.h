@@ -80,7 +80,7 @@ typedef struct kernel_plan {
   double flops_per_bond, divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
   family_program step, observe;
-  int link_count;
+  program_links links;
   bool reads_shape; /* inverse shape matrices */
   arena *memory;
 } kernel_plan;

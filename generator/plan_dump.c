@@ -72,7 +72,7 @@ void plan_dump(const kernel_plan *p, FILE *out) {
   fprintf(out, "kernel of %s: %s, %d dimensions, %d degrees of freedom, ", p->law->tree->name,
           kinds[p->kind], p->dimensions, p->dof);
   if (p->kind == PL_STATE)
-    fprintf(out, "%d links\n", p->link_count);
+    fprintf(out, "%d links of particles, %d of bonds\n", p->links.of_particles, p->links.of_bonds);
   else
     fprintf(out, "%d force planes\n", p->force_planes);
   fprintf(out, "computed once for each bond class: %d values\n", p->uniform_count);

@@ -28,6 +28,9 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
   case TO_LINK:
     snprintf(text, size, "link %d%s%s", r->index, blank, name);
     break;
+  case TO_BOND_LINK:
+    snprintf(text, size, "link of bonds %d%s%s", r->index, blank, name);
+    break;
   case TO_PLANE:
     snprintf(text, size, "plane %d%s%s", r->index, blank, name);
     break;
@@ -74,8 +77,10 @@ static read_kind kind_of_input(const ir *g, ir_node n) {
   switch (ir_input_source(g, n)) {
   case IR_FROM_NEIGHBOUR_FIELD:
   case IR_FROM_NEIGHBOUR_LINK:
+  case IR_FROM_NEIGHBOUR_BOND_LINK:
     return READ_NEIGHBOUR;
   case IR_FROM_LINK:
+  case IR_FROM_BOND_LINK:
     return READ_LINKS;
   case IR_FROM_SLOT:
     return READ_SLOTS;

@@ -198,9 +198,9 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   share_reciprocals_of_roots(p.g, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
-                &plan->link_count);
+                &plan->links);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
-                &plan->link_count);
+                &plan->links);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",

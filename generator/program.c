@@ -38,8 +38,10 @@ enum { MOST_LINKS = 4096 };
 typedef struct builder {
   ir *g;
   arena *memory;
-  ir_node *link; /* [link_count] what each link holds, in the terms of the particle itself */
+  ir_node *link;    /* [link_count] what each link holds, in the terms of the particle itself */
+  int *link_number; /* [link_count] among those of particles, or those of bonds */
   int link_count;
+  program_links links; /* how many of either */
   node_map resolved, mirrored, linked, reduced, level;
 } builder;
 
@@ -75,6 +77,18 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
   return changed ? made_again(b->g, n, operand) : n;
 }
 
+/* What a value toward a neighbour costs when it is computed again, in additions. */
+static int cost_again(const ir *g, ir_node n, int most) {
+  if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
+  ir_op op = ir_operation(g, n);
+  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
+               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+  int cost = cheap ? 1 : 10;
+  for (int k = 0; k < ir_arity(op) && cost < most; k++)
+    cost += cost_again(g, ir_operand(g, n, k), most - cost);
+  return cost;
+}
+
 /* --- what belongs to the neighbour ------------------------------------------------------------ */
 
 /* Whether the value goes over a family, so that a neighbour cannot compute it again. */
@@ -94,8 +108,20 @@ static int link_of(builder *b, ir_node n) {
   if (known >= 0) return known;
   assert(b->link_count < MOST_LINKS);
   b->link[b->link_count] = n;
+  b->link_number[b->link_count] =
+      is_of_particle(b->g, n) ? b->links.of_particles++ : b->links.of_bonds++;
   map_set(&b->linked, n, b->link_count);
   return b->link_count++;
+}
+
+/* What the link that an input reads from the neighbour holds. */
+static ir_node linked_node(const builder *b, ir_node input) {
+  const bool of_particle = ir_input_source(b->g, input) == IR_FROM_NEIGHBOUR_LINK;
+  int k = 0;
+  while (b->link_number[k] != ir_input_index(b->g, input) ||
+         is_of_particle(b->g, b->link[k]) != of_particle)
+    k++;
+  return b->link[k];
 }
 
 static const char *link_name(builder *b, int link) {
@@ -106,12 +132,16 @@ static const char *link_name(builder *b, int link) {
 static ir_node neighbour_link(builder *b, ir_node n) {
   int link = link_of(b, n);
   const char *name = arena_printf(b->memory, "%s_j", link_name(b, link));
-  return ir_input(b->g, IR_FROM_NEIGHBOUR_LINK, link, name, ON_BOND);
+  const bool of_particle = is_of_particle(b->g, n);
+  return ir_input(b->g, of_particle ? IR_FROM_NEIGHBOUR_LINK : IR_FROM_NEIGHBOUR_BOND_LINK,
+                  b->link_number[link], name, ON_NEIGHBOUR);
 }
 
 static ir_node own_link(builder *b, ir_node n) {
   int link = link_of(b, n);
-  return ir_input(b->g, IR_FROM_LINK, link, link_name(b, link), ON_PARTICLE);
+  const bool of_particle = is_of_particle(b->g, n);
+  return ir_input(b->g, of_particle ? IR_FROM_LINK : IR_FROM_BOND_LINK, b->link_number[link],
+                  link_name(b, link), of_particle ? ON_PARTICLE : ON_NEIGHBOUR);
 }
 
 static ir_node mirror_ends(builder *b, ir_node n) {
@@ -158,7 +188,8 @@ static ir_node mirror_input(builder *b, ir_node n) {
                     ir_place(g, n) == ON_BOND ? ON_PARTICLE : ON_NEIGHBOUR);
   }
   case IR_FROM_NEIGHBOUR_LINK:
-    return b->link[index];
+  case IR_FROM_NEIGHBOUR_BOND_LINK:
+    return linked_node(b, n);
   case IR_FROM_SHAPE:
     return neighbour_link(b, n);
   default:
@@ -183,14 +214,22 @@ static ir_node mirror(builder *b, ir_node n) {
   return image;
 }
 
+/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two loads for each
+   neighbour. The motion of the bond, which both sides need anyway, does not count. */
+static bool is_dear(const builder *b, ir_node n) {
+  enum { DEAR = 30 };
+  return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && cost_again(b->g, n, DEAR) >= DEAR;
+}
+
 /* The value without IR_NEIGHBOUR. */
 static ir_node resolve(builder *b, ir_node n) {
   int known = map_get(&b->resolved, n);
   if (known >= 0) return known;
   ir_node image = n;
-  if (ir_operation(b->g, n) == IR_NEIGHBOUR)
-    image = mirror(b, resolve(b, ir_operand(b->g, n, 0)));
-  else if (!is_leaf(b->g, n))
+  if (ir_operation(b->g, n) == IR_NEIGHBOUR) {
+    ir_node theirs = resolve(b, ir_operand(b->g, n, 0));
+    image = is_dear(b, theirs) ? neighbour_link(b, theirs) : mirror(b, theirs);
+  } else if (!is_leaf(b->g, n))
     image = with_images(b, n, resolve);
   map_set(&b->resolved, n, image);
   return image;
@@ -204,8 +243,9 @@ static int level_of(builder *b, ir_node n) {
   if (known >= 0) return known;
   int level = 0;
   if (is_leaf(b->g, n)) {
-    if (ir_operation(b->g, n) == IR_INPUT && ir_input_source(b->g, n) == IR_FROM_NEIGHBOUR_LINK)
-      level = level_of(b, b->link[ir_input_index(b->g, n)]) + 1;
+    ir_source from = ir_operation(b->g, n) == IR_INPUT ? ir_input_source(b->g, n) : IR_SOURCE_COUNT;
+    if (from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK)
+      level = level_of(b, linked_node(b, n)) + 1;
   } else {
     for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
       int below = level_of(b, ir_operand(b->g, n, k));
@@ -230,7 +270,8 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
   if (known >= 0) return known;
   ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   if (!is_leaf(g, n)) {
-    if (is_of_particle(g, n) && goes_over_family(b, n) && level_of(b, n) < v->now) {
+    const bool kept = is_of_particle(g, n) ? goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
+    if (kept && level_of(b, n) < v->now) {
       image = own_link(b, n);
     } else {
       for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
@@ -321,18 +362,6 @@ static ir_node plane_of(scheduler *s, ir_node n) {
     add_root(s, neighbours_in(s, phase_of(s, n)), n, TO_PLANE, plane);
   }
   return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
-}
-
-/* What a value toward a neighbour costs when it is computed again, in additions. */
-static int cost_again(const ir *g, ir_node n, int most) {
-  if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
-  ir_op op = ir_operation(g, n);
-  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
-  int cost = cheap ? 1 : 10;
-  for (int k = 0; k < ir_arity(op) && cost < most; k++)
-    cost += cost_again(g, ir_operand(g, n, k), most - cost);
-  return cost;
 }
 
 /* A value as a segment sees it: `loop` of the neighbours, or after `loop` loops for the particle. */
@@ -453,7 +482,9 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
   for (int k = 0; k < root_count; k++)
     if (level_of(b, roots[k].node) == now) wanted[count++] = roots[k];
   for (int k = 0; k < links; k++)
-    if (level_of(b, b->link[k]) == now) wanted[count++] = (segment_root){b->link[k], TO_LINK, k};
+    if (level_of(b, b->link[k]) == now)
+      wanted[count++] = (segment_root){
+          b->link[k], is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK, b->link_number[k]};
   for (int k = 0; k < count; k++) {
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
@@ -465,9 +496,10 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
 
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   int *link_count) {
+                   program_links *links) {
   builder b = {.g = g, .memory = memory};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
+  b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);
   segment_root *own = arena_alloc(memory, ((size_t)root_count + 1) * sizeof *own);
   int last = 0;
   for (int k = 0; k < root_count; k++) {
@@ -485,7 +517,8 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   memset(out->passes, 0, (size_t)out->pass_count * sizeof *out->passes);
   for (int p = last; p >= 0; p--) /* a pass may ask earlier ones for more links */
     build_pass(&b, &out->passes[p], p, own, root_count);
-  if (b.link_count > *link_count) *link_count = b.link_count;
+  if (b.links.of_particles > links->of_particles) links->of_particles = b.links.of_particles;
+  if (b.links.of_bonds > links->of_bonds) links->of_bonds = b.links.of_bonds;
   map_clear(&b.resolved);
   map_clear(&b.mirrored);
   map_clear(&b.linked);

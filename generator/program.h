@@ -26,6 +26,7 @@ typedef enum segment_target {
   TO_LARGEST,           /* slot[index] = max(slot, node); begins with -inf */
   TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
   TO_PLANE,             /* plane[index][neighbour] = node */
+  TO_BOND_LINK,         /* bond_link[index][neighbour] = node */
   TO_NEIGHBOUR_FIELD,   /* new_field[index][neighbour] = node */
   TO_NEIGHBOUR_OBSERVED /* observed[index][neighbour] = node */
 } segment_target;
@@ -60,13 +61,18 @@ typedef struct program_motion {
   int count;
 } program_motion;
 
+/* Values that passes leave to later ones: of particles, and toward each neighbour. */
+typedef struct program_links {
+  int of_particles, of_bonds;
+} program_links;
+
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for
-   x, to the bit: values of particles that go over a family are links, all others are evaluated again with both sides
-   exchanged. Motion is substituted after that, since stretch and length are the same from either side. `memory` holds
-   the program; *link_count is raised to what it needs. */
+   x, to the bit: values of particles that go over a family are links, and so are values toward a neighbour that are dear;
+   all others are evaluated again with both sides exchanged. Motion is substituted after that, since stretch and length are the same from either side. `memory` holds
+   the program; *links is raised to what it needs. */
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   int *link_count);
+                   program_links *links);
 
 #endif

@@ -12,7 +12,7 @@ enum { SHAPE_VALUES = PL_SHAPE_VALUES(3) }; /* the most */
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
   const double **old_field;
-  double **new_field, **link, **observed;
+  double **new_field, **link, **bond_link, **observed;
   const double *shape[SHAPE_VALUES];
 } family_block;
 
@@ -21,6 +21,7 @@ typedef struct family {
   double *uniforms;            /* [neighbours][uniform_count] */
   double **new_field;          /* [fields][planes * size] */
   double **link;               /* [links][size] */
+  double **bond_link;          /* [bond_links][neighbours * size] */
   double **observed;           /* [1 + outputs][planes * size] */
   double *shape[SHAPE_VALUES]; /* [size]; NULL unless the law reads them */
   family_block *blocks;        /* [block_count] */
@@ -40,6 +41,8 @@ static void point_at_run(const sweep *w, family_block *b, long start) {
   }
   for (int k = 0; k < w->law->link_count; k++)
     b->link[k] = f->link[k] + start;
+  for (int k = 0; k < w->law->bond_link_count; k++)
+    b->bond_link[k] = f->bond_link[k] + start;
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
   for (int k = 0; k < SHAPE_VALUES && f->shape[k]; k++)
@@ -60,6 +63,7 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
                    .old_field = b->old_field,
                    .new_field = b->new_field,
                    .link = b->link,
+                   .bond_link = b->bond_link,
                    .observed = b->observed,
                    .time_step = w->time_step};
   for (int d = 0; d < w->dof; d++) {
@@ -219,6 +223,9 @@ static void new_planes(sweep *w, family *f) {
   f->link = must_calloc((size_t)law->link_count + 1, sizeof *f->link);
   for (int k = 0; k < law->link_count; k++)
     f->link[k] = sweep_doubles(w, size);
+  f->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *f->bond_link);
+  for (int k = 0; k < law->bond_link_count; k++)
+    f->bond_link[k] = sweep_doubles(w, sweep_planes(w, PL_ON_NEIGHBOUR) * size);
   f->observed = must_calloc((size_t)law->output_count + 1, sizeof *f->observed);
   f->observed[0] = sweep_doubles(w, size);
   for (int k = 0; k < law->output_count; k++)
@@ -233,6 +240,7 @@ static void new_blocks(const sweep *w, family *f) {
     b->old_field = must_calloc((size_t)law->field_count + 1, sizeof *b->old_field);
     b->new_field = must_calloc((size_t)law->field_count + 1, sizeof *b->new_field);
     b->link = must_calloc((size_t)law->link_count + 1, sizeof *b->link);
+    b->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *b->bond_link);
     b->observed = must_calloc((size_t)law->output_count + 1, sizeof *b->observed);
   }
 }
@@ -249,10 +257,12 @@ static void free_own(sweep *w) {
     free(f->blocks[k].old_field);
     free(f->blocks[k].new_field);
     free(f->blocks[k].link);
+    free(f->blocks[k].bond_link);
     free(f->blocks[k].observed);
   }
   free_arrays(f->new_field, w->law->field_count);
   free_arrays(f->link, w->law->link_count);
+  free_arrays(f->bond_link, w->law->bond_link_count);
   free_arrays(f->observed, 1 + w->law->output_count);
   for (int v = 0; v < SHAPE_VALUES; v++)
     free(f->shape[v]);

@@ -107,6 +107,7 @@ typedef struct pl_family {
   const double *const *old_field; /* [fields] at the beginning of the step */
   double *const *new_field;       /* [fields] written by the pass that finds them; never the same memory */
   double *const *link;            /* [links] values of particles, written by one pass and read by later ones */
+  double *const *bond_link;       /* [bond_links] the same of values toward each neighbour, in planes like a field's */
   double *const *force;           /* [dimensions] N: sum over the bonds, written by the last pass of the step */
   double *const *observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
   double time_step;        /* s */
@@ -162,7 +163,7 @@ typedef struct pl_law {
                   const double *const *in, double *const *out);
 
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
-  int link_count;
+  int link_count, bond_link_count;
   int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */

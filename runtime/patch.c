@@ -172,6 +172,9 @@ static void new_values(patch *p, int more, int wide) {
   p->link = must_calloc((size_t)law->link_count + 1, sizeof *p->link);
   for (int k = 0; k < law->link_count; k++)
     p->link[k] = site_array(p, 1, sizeof(double));
+  p->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *p->bond_link);
+  for (int k = 0; k < law->bond_link_count; k++)
+    p->bond_link[k] = site_array(p, 2 * p->lattice->directions, sizeof(double));
   const int own = 1 + law->output_count;
   p->observed_count = own + more + wide;
   p->observed = must_calloc((size_t)p->observed_count, sizeof *p->observed);
@@ -204,6 +207,7 @@ void patch_free(patch *p) {
   free_arrays(p, p->field, p->law->field_count);
   free_arrays(p, p->new_field, p->law->field_count);
   free_arrays(p, p->link, p->law->link_count);
+  free_arrays(p, p->bond_link, p->law->bond_link_count);
   free_arrays(p, p->observed, p->observed_count);
   free(p->image);
   free(p->inside);
@@ -285,6 +289,7 @@ static void run_program(patch *p, const pl_program *program) {
                    .held = p->held + p->first,
                    .new_field = from_first(&s, p, p->new_field, law->field_count),
                    .link = from_first(&s, p, p->link, law->link_count),
+                   .bond_link = from_first(&s, p, p->bond_link, law->bond_link_count),
                    .force = from_first(&s, p, p->force, law->dimensions),
                    .observed = from_first(&s, p, p->observed, p->observed_count),
                    .time_step = p->time_step};
@@ -298,6 +303,9 @@ static void run_program(patch *p, const pl_program *program) {
     program->pass[k](law, p->uniforms, &run);
     for (int l = 0; l < law->link_count; l++)
       patch_repeat(p, p->link[l]);
+    for (int l = 0; l < law->bond_link_count; l++)
+      for (int n = 0; n < 2 * p->lattice->directions; n++)
+        patch_repeat(p, p->bond_link[l] + n * p->size);
   }
   for (int k = 0; k < s.count; k++)
     free(s.lists[k]);

@@ -26,7 +26,7 @@ typedef struct patch {
   uint64_t *bonds, *held; /* [size] as in pl_family */
   double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_VALUES(3)];
   double **field, **new_field; /* [fields] at hand; of the last step */
-  double **link;
+  double **link, **bond_link;
   double **observed; /* [observed_count] */
   int observed_count;
   double time_step;

@@ -41,7 +41,7 @@ static void one_sum_needs_one_pass_and_one_loop(void **state) {
   assert_int_equal(loops_of(&step->passes[0]), 1);
   assert_int_equal(observe->pass_count, 1);
   assert_int_equal(loops_of(&observe->passes[0]), 1);
-  assert_int_equal(t->plan->link_count, 0);
+  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 0);
   close_law(t);
 }
 
@@ -51,7 +51,7 @@ static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **
   assert_int_equal(t->plan->step.pass_count, 2);
   assert_int_equal(loops_of(&t->plan->step.passes[0]), 1);
   assert_int_equal(loops_of(&t->plan->step.passes[1]), 1);
-  assert_int_equal(t->plan->link_count, 1);
+  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 1);
   close_law(t);
 }
 
@@ -60,7 +60,7 @@ static void neighbours_of_neighbours_need_a_third(void **state) {
   tested_law *t = open_program("", "  near = sum(stretch[j])\n  far = sum(near[j])\n"
                                    "  force state F[j] = a*stretch[j] + b*far\n");
   assert_int_equal(t->plan->step.pass_count, 3);
-  assert_int_equal(t->plan->link_count, 2);
+  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 2);
   close_law(t);
 }
 
