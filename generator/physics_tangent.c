@@ -12,6 +12,7 @@
 static const double REST_TOLERANCE = 1e-12;     /* of the force at a stretch and rotation of 1e-3 */
 static const double STIFFNESS_TOLERANCE = 1e-6; /* stretches of 1e-7 leave nine digits */
 static const double TANGENT_TOLERANCE = 1e-4;
+static const double LEAST_MOTION = 1e-12; /* about what positions in double precision can hold */
 
 static const bench_axis force_axis[FORCE_COUNT] = {AXIS_STRETCH, AXIS_THETA_I, AXIS_THETA_J};
 
@@ -273,7 +274,7 @@ static void test_batch(physics *p, tangent_test *t, int count, double wrong) {
                           : fmax(fabs(m.at[AXIS_STRETCH]),
                                  fmax(fabs(m.at[AXIS_THETA_I]), fabs(m.at[AXIS_THETA_J])));
       double size = fmax(fabs(m.at[axis]), 1e-3 * others);
-      t->step[lane] = size > 0 ? 1e-4 * size : 1e-9;
+      t->step[lane] = size > LEAST_MOTION ? 1e-4 * size : 1e-9;
     }
     walk_stencil(p, t, count, (bench_axis)axis);
     for (int lane = 0; lane < count; lane++)
