@@ -74,6 +74,17 @@ static void check_fields(checker *ck) {
   }
 }
 
+/* A product or sum in which the bond's length is the only thing that differs from neighbour to neighbour. */
+static bool is_made_of_length(const expr *e) {
+  if (!e || e->place <= ON_PARTICLE) return false;
+  if (e->kind == EXPR_NAME) return strcmp(e->name, "s") == 0;
+  if (e->kind != EXPR_BINARY && e->kind != EXPR_UNARY) return false;
+  const bool left = e->left && e->left->place > ON_PARTICLE;
+  const bool right = e->kind == EXPR_BINARY && e->right && e->right->place > ON_PARTICLE;
+  return (left || right) && (!left || is_made_of_length(e->left)) &&
+         (!right || is_made_of_length(e->right));
+}
+
 /* In a state law the [j] on the left says whether there is one value or one for each neighbour. */
 static bool check_family_rule(checker *ck, const stmt *s, value *v) {
   if (is_pairwise(ck)) {
@@ -88,7 +99,13 @@ static bool check_family_rule(checker *ck, const stmt *s, value *v) {
     complain(ck, DIAG_PLACEMENT, s->name_where,
              "the rule of `%s` has one value for each neighbour, but `%s` has only one", s->name,
              s->name);
-    diag_hint(ck->d, "write `%s[j] = ...`, or take the sum, mean or max over the family", s->name);
+    if (is_made_of_length(s->value))
+      diag_hint(ck->d,
+                "`s` is the length of one bond: write `spacing` for that of the lattice, or put "
+                "`s` inside the sum");
+    else
+      diag_hint(ck->d, "write `%s[j] = ...`, or take the sum, mean or max over the family",
+                s->name);
     return false;
   }
   if (s->indexed && !varies) v->place = v->place == ON_PARTICLE ? ON_NEIGHBOUR : ON_BOND;

@@ -181,6 +181,15 @@ static void count_cost(kernel_plan *plan) {
     }
 }
 
+static bool reads_thickness(const family_planner *p) {
+  const law *l = p->plan->law;
+  ir_node t = lower_quantity(p->g, QUANTITY_T);
+  ir_node results[] = {p->step.F, p->step.N, p->frozen.W};
+  for (int k = 0; k < 3; k++)
+    if (results[k] != IR_NONE && rewrite_depends(p->g, &results[k], 1, &t, 1)) return true;
+  return rewrite_depends(p->g, p->step.fields, l->fields.count, &t, 1);
+}
+
 bool plan_programs(kernel_plan *plan, diagnostics *d) {
   const law *l = plan->law;
   family_planner p = {.plan = plan, .g = plan->graph};
@@ -193,6 +202,12 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
       !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))
     return false;
+  if (plan->dimensions == 3 && reads_thickness(&p)) {
+    diag_report(d, DIAG_CONFLICT, l->tree->name_where,
+                "this law reads the thickness `t`, which a lattice in space does not have");
+    diag_hint(d, "say `for plane_stress` after `law state`, or give another value `when space`");
+    return false;
+  }
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
   share_reciprocals_of_roots(p.g, &observe);

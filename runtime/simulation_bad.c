@@ -5,14 +5,14 @@
 #include "runtime/bond_probe.h"
 #include "runtime/simulation_parts.h"
 
-/* The row of a bad particle was not moved; others have been. */
+/* Rows of bad particles were not moved; others have been. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
   const sweep *w = s->state;
-  const int bad_row = rows_row(s->lattice, w->blocks[sweep_bad(w)].bad_site);
+  const bool moved = !w->row_stuck[rows_row(s->lattice, site)];
   for (int d = 0; d < 3; d++) {
     u[d] = d < w->dof ? w->displacement[d][site] : 0;
     v[d] = d < w->dof ? w->velocity[d][site] : 0;
-    if (rows_row(s->lattice, site) != bad_row && isfinite(v[d])) u[d] -= w->time_step * v[d];
+    if (moved && isfinite(v[d])) u[d] -= w->time_step * v[d];
   }
 }
 

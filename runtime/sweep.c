@@ -66,6 +66,7 @@ static void new_state(sweep *w, bool forces) {
                      &w->row_pending, &w->row_internal, &w->row_internal_pending};
   for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
     *sums[k] = sweep_doubles(w, g->row_count);
+  w->row_stuck = must_calloc((size_t)g->row_count + 1, 1);
 }
 
 static void new_blocks(sweep *w, int threads) {
@@ -131,6 +132,7 @@ void sweep_free(sweep *w) {
   free(w->row_internal);
   free(w->row_internal_pending);
   free(w->row_gravity);
+  free(w->row_stuck);
   free(w->weight);
   free(w->begin);
   free(w->count);
@@ -231,6 +233,7 @@ double sweep_total(long count, const double *restrict a) {
 }
 
 void sweep_note_bad(const sweep *w, sweep_block *b, int row) {
+  w->row_stuck[row] = 1;
   if (b->bad_site >= 0) return;
   for (long q = 0; q < w->count[row]; q++)
     for (int d = 0; d < w->dof; d++) {

@@ -67,6 +67,7 @@ struct sweep {
                                 used); NULL when never asked */
   double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
   double *row_internal, *row_internal_pending;               /* [row_count] J */
+  unsigned char *row_stuck; /* [row_count] a velocity of the row was bad: it has not moved */
   double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
   long *begin,
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */

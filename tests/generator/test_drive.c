@@ -420,24 +420,36 @@ static void what_is_no_number_is_named(void **state) {
       "", 2, "breaking.plm:6: the law's `rest`");
 }
 
+/* Bonds along rows, and bonds between two rows, both of which then stay behind. */
 static void a_failing_run_leaves_its_bond(void **state) {
   (void)state;
+  static const char *const pulled[] = {
+      "&region name = 'one' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '4 mm', '22 mm' "
+      "/\n"
+      "&region name = 'other' shape = 'rectangle' corner = '17 mm', '-1 mm' size = '6 mm', '22 mm' "
+      "/\n"
+      "&drive region = 'other' component = 'x' velocity = '200 mm/s' /\n",
+      "&region name = 'one' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '22 mm', '4 mm' "
+      "/\n"
+      "&region name = 'other' shape = 'rectangle' corner = '-1 mm', '15 mm' size = '22 mm', '6 mm' "
+      "/\n"
+      "&drive region = 'other' component = 'y' velocity = '200 mm/s' /\n"};
   write_file("breaking.plm", breaking_law);
-  write_file("breaking_run.nml",
+  for (size_t k = 0; k < sizeof pulled / sizeof *pulled; k++) {
+    char text[2048];
+    snprintf(text, sizeof text,
              "&simulation end_time = '0.2 ms' /\n"
              "&lattice name = 'c' kind = 'hexagonal' spacing = '5 mm' thickness = '100 mm' /\n"
              "&material lattice = 'c' model = 'breaking.plm' E = '20 GPa' /\n"
-             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '20 mm', '10 mm' /\n"
-             "&region name = 'left' shape = 'rectangle' corner = '-1 mm', '-1 mm' size = '4 mm', "
-             "'12 mm' /\n"
-             "&region name = 'right' shape = 'rectangle' corner = '17 mm', '-1 mm' size = '6 mm', "
-             "'12 mm' /\n"
-             "&support region = 'left' fix = 'xy' /\n"
-             "&drive region = 'right' component = 'x' velocity = '200 mm/s' /\n"
-             "&output result = 'breaking_run.h5' frames = 2 /\n");
-  unlink("breaking_run_bad_bond.nml");
-  expect("run breaking_run.nml", 2, "perilat drive breaking_run_bad_bond.nml");
-  expect("drive breaking_run_bad_bond.nml", 2, "breaking.plm:6: the law's `rest`");
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = '20 mm', '20 mm' /\n%s"
+             "&support region = 'one' fix = 'xy' /\n"
+             "&output result = 'breaking_run.h5' frames = 2 /\n",
+             pulled[k]);
+    write_file("breaking_run.nml", text);
+    unlink("breaking_run_bad_bond.nml");
+    expect("run breaking_run.nml", 2, "perilat drive breaking_run_bad_bond.nml");
+    expect("drive breaking_run_bad_bond.nml", 2, "breaking.plm:6: the law's `rest`");
+  }
 }
 
 /* The README's tables are what the program says of itself. */
