@@ -481,6 +481,40 @@ static void an_energy_gives_the_force_state(void **state) {
                      "  force state F[j] = a*stretch[j]\n");
 }
 
+/* The length of a bond moves with its stretch. */
+static void an_energy_of_lengths_gives_the_force_state(void **state) {
+  (void)state;
+  assert_same_forces("  for space\n", "fcc", "  energy W = sum(a/s*(length[j] - s)**2)/4\n",
+                     "  force state F[j] = a*stretch[j]\n");
+  assert_same_forces(
+      "  for space\n", "fcc",
+      "  energy W = sum(a*stretch[j]*(length[j] - s))/4 + b*spacing*sum(length[j]/s - 1)**2/4\n",
+      "  force state F[j] = a*stretch[j] + b*spacing/s*sum(length[j]/s - 1)\n");
+}
+
+static double stored_by(const char *lines) {
+  tested_law *t = open_program("", lines);
+  rows *w = lattice_of("hexagonal", 1);
+  seed = 5;
+  patch *p = shaken_patch(t, w, 0.1);
+  patch_observe(p);
+  const double stored = p->observed[0][p->inside[0]];
+  patch_free(p);
+  rows_free(w);
+  close_law(t);
+  return stored;
+}
+
+/* Without an energy half of force times stretch is known to be one only where the force is proportional. */
+static void a_proportional_force_stores_half_of_its_work(void **state) {
+  (void)state;
+  const double energy = stored_by("  energy W = sum(s*a*stretch[j]**2)/4\n");
+  assert_true(energy > 0);
+  assert_near(stored_by("  force state F[j] = a*stretch[j]\n"), energy, 0, "stored");
+  assert_true(stored_by("  force state F[j] = a*stretch[j]*length[j]/s\n") == 0);
+  assert_true(stored_by("  force state F[j] = a*stretch[j]**3\n") == 0);
+}
+
 /* A sum of stretches weighted by s: what is the same for a bond class stays in the sum. */
 static void weights_of_a_bond_class_stay_in_the_sum(void **state) {
   (void)state;
@@ -510,6 +544,8 @@ int main(void) {
       cmocka_unit_test(bond_forces_are_means_of_both_sides),
       cmocka_unit_test(both_ends_of_a_bond_feel_the_same_bits),
       cmocka_unit_test(an_energy_gives_the_force_state),
+      cmocka_unit_test(an_energy_of_lengths_gives_the_force_state),
+      cmocka_unit_test(a_proportional_force_stores_half_of_its_work),
       cmocka_unit_test(weights_of_a_bond_class_stay_in_the_sum),
       cmocka_unit_test(densities_of_force_count_both_volumes),
   };
