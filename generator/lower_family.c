@@ -371,12 +371,21 @@ bool lower_family_call(lowering *c, const expr *e, components *out) {
 
 /* --- energy ----------------------------------------------------------------------------------- */
 
+/* By the stretch of the bond to j; its length is s (1 + stretch). */
+static ir_node by_stretch(lowering *c, ir_node n) {
+  ir *g = c->graph;
+  ir_node slope = ir_derivative(g, n, lower_quantity(g, QUANTITY_STRETCH));
+  ir_node by_length = ir_derivative(g, n, lower_quantity(g, QUANTITY_LENGTH));
+  if (is_zero(c, by_length)) return slope;
+  return ir_add(g, slope, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
+}
+
 /* Sums over the family that W is made of, each as if it were an independent variable: dW/dstretch
    toward j is the sum over them of dW/dsum times the derivative of what stands in it at j. A bond
    belongs to two particles, so that the force state is twice what W alone gives. */
 ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
   ir *g = c->graph;
-  ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), slope = number(c, 0);
+  ir_node slope = number(c, 0);
   unsigned char *marks = arena_alloc(c->memory, (size_t)ir_count(g) + 1);
   int count = ir_count(g);
   memset(marks, 0, (size_t)count + 1);
@@ -386,7 +395,7 @@ ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
     if (!marks[n] ||
         (op != IR_FAMILY_SUM && op != IR_FAMILY_MAX && op != IR_FAMILY_MIN && op != IR_NEIGHBOUR))
       continue;
-    ir_node inside = ir_operand(g, n, 0), by = ir_derivative(g, inside, stretch);
+    ir_node inside = ir_operand(g, n, 0), by = by_stretch(c, inside);
     if (is_zero(c, by)) continue;
     if (op != IR_FAMILY_SUM)
       return lower_fail(c, c->law->tree->name_where,
@@ -397,7 +406,7 @@ ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
     ir_mark(g, &inside, 1, below);
     for (ir_node k = 0; k < n; k++)
       if (below[k] && ir_operation(g, k) == IR_FAMILY_SUM &&
-          !is_zero(c, ir_derivative(g, ir_operand(g, k, 0), stretch)))
+          !is_zero(c, by_stretch(c, ir_operand(g, k, 0))))
         return lower_fail(c, c->law->tree->name_where,
                           "a force state cannot be derived from sums inside sums over the family");
     slope = ir_add(g, slope, ir_mul(g, ir_derivative(g, W, n), by));

@@ -150,15 +150,19 @@ static components lower_own_name(lowering *c, const expr *e) {
   }
 }
 
+/* x[j] of a particle's x and x'[j] are the neighbour's. */
+static components of_whom(lowering *c, const expr *name, components mine) {
+  const bool of_neighbour = name->primed || (name->indexed && name->symbol->place == ON_PARTICLE);
+  return of_neighbour ? lower_neighbour(c, mine) : mine;
+}
+
 static components lower_name(lowering *c, const expr *e) {
   if (c->frame)
     for (int k = 0; k < c->frame->function->word_count; k++)
       if (strcmp(c->frame->function->words[k], e->name) == 0) return c->frame->arguments[k];
   if (!e->symbol)
     return lower_failed_value(c, e->where, "this name has no value that can be compiled");
-  components v = lower_own_name(c, e);
-  const bool of_neighbour = e->primed || (e->indexed && e->symbol->place == ON_PARTICLE);
-  return of_neighbour ? lower_neighbour(c, v) : v;
+  return of_whom(c, e, lower_own_name(c, e));
 }
 
 /* --- numbers and operators -------------------------------------------------------------------- */
@@ -339,12 +343,13 @@ static components lower_user_call(lowering *c, const expr *e) {
   return result;
 }
 
-/* previous(x): the value at the end of the last step. */
+/* previous(x): the value at the end of the last step, of x[j] and x'[j] the neighbour's. */
 static ir_node lower_previous(lowering *c, const expr *e) {
-  const symbol *s = e->arguments[0].value->symbol;
+  const expr *name = e->arguments[0].value;
+  const symbol *s = name->symbol;
   if (!s || (s->kind != SYMBOL_STATE && s->kind != SYMBOL_DAMAGE))
     return lower_fail(c, e->where, "`previous` asks for a state or a damage");
-  return lower_field(c->graph, c->law, s->index);
+  return of_whom(c, name, scalar(lower_field(c->graph, c->law, s->index))).of[0];
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */

@@ -86,7 +86,7 @@ void family_check_elasticity(family_bench *b);
 void family_check_energy(family_bench *b, bool damaged);
 void family_check_energy_and_force(family_bench *b);
 
-/* Random histories: finite forces, ranges of damages, continuity, flow. */
+/* Random histories: finite forces, bonds whose particles agree, ranges of damages, continuity, flow. */
 void family_check_histories(family_bench *b, int legs);
 void family_check_dissipation(family_bench *b, int cycles);
 

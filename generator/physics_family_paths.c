@@ -8,6 +8,7 @@
 #include "generator/random_values.h"
 
 static const double DAMAGE_TOLERANCE = 1e-9;
+static const double SIDES_TOLERANCE = 1e-9; /* of the largest value of the field */
 static const double JUMP_TOLERANCE =
     1e-6; /* of the largest force, between two states that are nearly one */
 static const double GAIN_TOLERANCE = 1e-6; /* of a cycle's peak energy */
@@ -104,6 +105,45 @@ static void check_damage_range(family_bench *b, const leg *l) {
                        "the rule of damage `%s` gives %.6g, outside [0, 1]; it is cut off there",
                        b->law->fields.items[f]->name, rule);
     }
+}
+
+/* New values of a bond that its two particles find. */
+typedef struct both_sides {
+  double mine, other;
+} both_sides;
+
+static both_sides worst_sides(const patch *p, int field, double *size) {
+  both_sides worst = {0, 0};
+  const int half = p->lattice->directions;
+  *size = 0;
+  for (long q = 0; q < p->inside_count; q++)
+    for (int k = 0; k < half; k++) {
+      const long site = p->inside[q];
+      if (!patch_has_bond(p, site, k)) continue;
+      const double *v = p->new_field[field] + k * p->size, *back = v + half * p->size;
+      const both_sides now = {v[site], back[patch_neighbour(p, site, k)]};
+      *size = fmax(*size, fmax(fabs(now.mine), fabs(now.other)));
+      if (fabs(now.mine - now.other) > fabs(worst.mine - worst.other)) worst = now;
+    }
+  return worst;
+}
+
+/* What lives on a bond has one value: passes take it for the neighbour's, too. */
+static void check_bond_fields(family_bench *b, const leg *l) {
+  for (int f = 0; f < b->law->fields.count; f++) {
+    const symbol *s = b->law->fields.items[f];
+    double size;
+    if (s->place != ON_BOND || b->failed[DIAG_EXCHANGE]) continue;
+    const both_sides worst = worst_sides(b->whole, f, &size);
+    if (fabs(worst.mine - worst.other) <= SIDES_TOLERANCE * size) continue;
+    family_bench_say(
+        b, DIAG_EXCHANGE, s->rule->where, l->strain,
+        "the particles of a bond find different values for its `%s`: one %.6g, the other %.6g",
+        s->name, worst.mine, worst.other);
+    diag_hint(b->said, "declare it `on neighbour`, which has a value on either side, or write a "
+                       "rule that reads the same "
+                       "from both");
+  }
 }
 
 /* --- continuity ------------------------------------------------------------------------------- */
@@ -387,6 +427,7 @@ static void go_leg(family_bench *b, leg *l, int *crossings) {
     move_on_leg(b, l, after);
     family_bench_forces(b, b->whole, l->force);
     check_finite(b, l);
+    check_bond_fields(b, l);
     family_bench_accept(b);
   }
 }

@@ -44,7 +44,8 @@ void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *r
         (segment_root){family_sum(g, ir_mul(g, f, present_direction(g, d))), TO_PARTICLE_FORCE, d};
 }
 
-/* The particle's share of what its bonds store, J. */
+/* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are
+   homogeneous of degree one, else 0. */
 static ir_node stored_energy(family_planner *p) {
   const law *l = p->plan->law;
   ir *g = p->g;
@@ -58,7 +59,9 @@ static ir_node stored_energy(family_planner *p) {
     return W;
   }
   rewrite_zero(g, &p->frozen.F, 1, &rate, 1, &F);
-  if (rewrite_degree(g, F, &stretch, 1) != 1) return ir_constant(g, 0);
+  ir_node length = lower_quantity(g, QUANTITY_LENGTH); /* s (1 + stretch) is not homogeneous */
+  if (rewrite_depends(g, &F, 1, &length, 1) || rewrite_degree(g, F, &stretch, 1) != 1)
+    return ir_constant(g, 0);
   ir_node work = ir_mul(g, ir_mul(g, F, stretch), s);
   return ir_mul(g, ir_constant(g, 0.25), family_sum(g, work));
 }

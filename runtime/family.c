@@ -152,12 +152,20 @@ static void turn(sweep *w) {
 
 /* --- sampling --------------------------------------------------------------------------------- */
 
-/* Values at absent sites mean nothing. */
+static bool has_bonds(const rows *g, long site) {
+  bool any = g->bonds[site] != 0;
+  for (int k = 0; k < g->directions && !any; k++)
+    any = rows_has_bond(g, rows_partner(g, site, g->directions + k), k);
+  return any;
+}
+
+/* Values at absent sites mean nothing, and without bonds a particle stores nothing: a law may divide by what a family
+   has. */
 static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q]) sum += own(w)->observed[0][q];
+    if (w->lattice->present[q] && has_bonds(w->lattice, q)) sum += own(w)->observed[0][q];
   return sum;
 }
 

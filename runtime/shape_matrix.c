@@ -1,6 +1,7 @@
 #include "runtime/shape_matrix.h"
 
 #include <assert.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -37,13 +38,17 @@ static int products(const rows *w, int direction, double n[MOST_ORDER]) {
   return count;
 }
 
-static void invert(int order, double *sum) {
-  double a[MOST_ORDER * MOST_ORDER], values[MOST_ORDER], work[16 * MOST_ORDER];
+/* Least squares with the smallest tensor, sum of e_ab^2, so that the axes do not matter: shear, which counts twice in
+   that, is scaled by the root of 2. */
+static void invert(int dimensions, int order, double *sum) {
+  double scale[MOST_ORDER], a[MOST_ORDER * MOST_ORDER], values[MOST_ORDER], work[16 * MOST_ORDER];
   const int size = 16 * MOST_ORDER;
   int info = 0, at = 0;
   for (int p = 0; p < order; p++)
+    scale[p] = p < dimensions ? 1 : sqrt(2);
+  for (int p = 0; p < order; p++)
     for (int q = p; q < order; q++)
-      a[q * order + p] = sum[at++];
+      a[q * order + p] = scale[p] * scale[q] * sum[at++];
   dsyev_("V", "U", &order, a, &order, values, work, &size, &info, 1, 1);
   assert(info == 0);
   at = 0;
@@ -53,7 +58,7 @@ static void invert(int order, double *sum) {
       for (int m = 0; m < order; m++)
         if (values[m] > SMALLEST * values[order - 1])
           value += a[m * order + p] * a[m * order + q] / values[m];
-      sum[at++] = value;
+      sum[at++] = scale[p] * scale[q] * value;
     }
 }
 
@@ -69,7 +74,7 @@ static void find_matrix(const rows *w, known_family *f) {
       for (int b = a; b < order; b++)
         f->matrix[at++] += bonds * n[a] * n[b];
   }
-  invert(order, f->matrix);
+  invert(w->dimensions, order, f->matrix);
 }
 
 static const double *matrix_at(const rows *w, known_family *known, long site) {

@@ -413,6 +413,89 @@ static void bond_forces_are_means_of_both_sides(void **state) {
   close_law(t);
 }
 
+/* --- steps ------------------------------------------------------------------------------------ */
+
+/* Values of the law below, of the particle and toward its six neighbours. */
+typedef struct remembered {
+  double q, p[6];
+} remembered;
+
+static const char remembering_lines[] =
+    "  state q on particle = 0\n  state p on neighbour = 0\n"
+    "  inner = sum(stretch[j])\n  before[j] = q[j] - 2*q + p'[j]/8\n"
+    "  q = q/4 + max(inner[j])\n  p[j] = q[j] - q/2 + p'[j]/4 + before'[j]\n"
+    "  force state F[j] = a*stretch[j]\n"
+    "  state seen on neighbour = 0\n"
+    "  seen[j] = previous(q[j]) + 3*previous(p'[j]) + 5*p'[j] + 7*q[j] + 11*previous(q) + "
+    "13*previous(p[j])\n";
+
+enum { REMEMBERING = 16 }; /* particles */
+
+/* A step of that law in plain C: what is read above its rule is old, below it new, and `previous` is always old. */
+static void remember(const patch *p, const int *number, remembered now[REMEMBERING],
+                     double seen[REMEMBERING][6]) {
+  remembered old[REMEMBERING];
+  double inner[REMEMBERING];
+  int other[REMEMBERING][6];
+  memcpy(old, now, sizeof old);
+  for (int k = 0; k < REMEMBERING; k++) {
+    const family f = look(p, p->inside[k]);
+    inner[k] = sum_over(&f, f.stretch);
+    for (int n = 0; n < 6; n++)
+      other[k][n] = number[f.neighbour[n]];
+  }
+  for (int k = 0; k < REMEMBERING; k++) {
+    double most = -INFINITY;
+    for (int n = 0; n < 6; n++)
+      most = fmax(most, inner[other[k][n]]);
+    now[k].q = old[k].q / 4 + most;
+  }
+  for (int k = 0; k < REMEMBERING; k++)
+    for (int n = 0; n < 6; n++) {
+      const int m = other[k][n];
+      const double before =
+          old[k].q - 2 * old[m].q + old[k].p[n] / 8; /* the neighbour's, toward me */
+      now[k].p[n] = now[m].q - now[k].q / 2 + old[m].p[(n + 3) % 6] / 4 + before;
+    }
+  for (int k = 0; k < REMEMBERING; k++)
+    for (int n = 0; n < 6; n++) {
+      const int m = other[k][n], back = (n + 3) % 6;
+      seen[k][n] = old[m].q + 3 * old[m].p[back] + 5 * now[m].p[back] + 7 * now[m].q +
+                   11 * old[k].q + 13 * old[k].p[n];
+    }
+}
+
+static void old_and_new_values_are_those_of_both_sides(void **state) {
+  (void)state;
+  tested_law *t = open_program("", remembering_lines);
+  rows *w = lattice_of("hexagonal", 1);
+  patch *p = shaken_patch(t, w, 0.1);
+  remembered now[REMEMBERING] = {{0}};
+  double seen[REMEMBERING][6];
+  int *number = calloc((size_t)p->sites, sizeof *number);
+  assert_int_equal(p->inside_count, REMEMBERING);
+  for (int k = 0; k < REMEMBERING; k++)
+    number[p->inside[k]] = k;
+  for (int step = 0; step < 3; step++) {
+    remember(p, number, now, seen);
+    patch_step(p);
+    patch_accept(p);
+    for (int k = 0; k < REMEMBERING; k++) {
+      const long site = p->inside[k];
+      assert_near(p->field[0][site], now[k].q, 1, "q");
+      for (int n = 0; n < 6; n++) {
+        assert_near(p->field[1][n * p->size + site], now[k].p[n], 10, "p");
+        assert_near(p->field[2][n * p->size + site], seen[k][n], 100, "seen");
+      }
+    }
+    shake(p, 0.1);
+  }
+  free(number);
+  patch_free(p);
+  rows_free(w);
+  close_law(t);
+}
+
 /* With one bond left, what its ends feel is opposite to the bit, whatever the law. */
 static void both_ends_of_a_bond_feel_the_same_bits(void **state) {
   (void)state;
@@ -481,6 +564,40 @@ static void an_energy_gives_the_force_state(void **state) {
                      "  force state F[j] = a*stretch[j]\n");
 }
 
+/* The length of a bond moves with its stretch. */
+static void an_energy_of_lengths_gives_the_force_state(void **state) {
+  (void)state;
+  assert_same_forces("  for space\n", "fcc", "  energy W = sum(a/s*(length[j] - s)**2)/4\n",
+                     "  force state F[j] = a*stretch[j]\n");
+  assert_same_forces(
+      "  for space\n", "fcc",
+      "  energy W = sum(a*stretch[j]*(length[j] - s))/4 + b*spacing*sum(length[j]/s - 1)**2/4\n",
+      "  force state F[j] = a*stretch[j] + b*spacing/s*sum(length[j]/s - 1)\n");
+}
+
+static double stored_by(const char *lines) {
+  tested_law *t = open_program("", lines);
+  rows *w = lattice_of("hexagonal", 1);
+  seed = 5;
+  patch *p = shaken_patch(t, w, 0.1);
+  patch_observe(p);
+  const double stored = p->observed[0][p->inside[0]];
+  patch_free(p);
+  rows_free(w);
+  close_law(t);
+  return stored;
+}
+
+/* Without an energy half of force times stretch is known to be one only where the force is proportional. */
+static void a_proportional_force_stores_half_of_its_work(void **state) {
+  (void)state;
+  const double energy = stored_by("  energy W = sum(s*a*stretch[j]**2)/4\n");
+  assert_true(energy > 0);
+  assert_near(stored_by("  force state F[j] = a*stretch[j]\n"), energy, 0, "stored");
+  assert_true(stored_by("  force state F[j] = a*stretch[j]*length[j]/s\n") == 0);
+  assert_true(stored_by("  force state F[j] = a*stretch[j]**3\n") == 0);
+}
+
 /* A sum of stretches weighted by s: what is the same for a bond class stays in the sum. */
 static void weights_of_a_bond_class_stay_in_the_sum(void **state) {
   (void)state;
@@ -509,7 +626,10 @@ int main(void) {
       cmocka_unit_test(tensors_are_those_of_theory),
       cmocka_unit_test(bond_forces_are_means_of_both_sides),
       cmocka_unit_test(both_ends_of_a_bond_feel_the_same_bits),
+      cmocka_unit_test(old_and_new_values_are_those_of_both_sides),
       cmocka_unit_test(an_energy_gives_the_force_state),
+      cmocka_unit_test(an_energy_of_lengths_gives_the_force_state),
+      cmocka_unit_test(a_proportional_force_stores_half_of_its_work),
       cmocka_unit_test(weights_of_a_bond_class_stay_in_the_sum),
       cmocka_unit_test(densities_of_force_count_both_volumes),
   };

@@ -658,6 +658,34 @@ static void concrete_follows_its_equations(void **state) {
   assert_true(c.w_c == 1 && c.yielded == 1);
 }
 
+/* --- alone ------------------------------------------------------------------------------------ */
+
+/* A law of families may divide by what a family has: a particle without bonds takes nothing from the ledger. */
+static void a_particle_alone_stores_nothing(void **state) {
+  (void)state;
+  static const char *const models[] = {"lps", "pmb", "splm_elastic", "splm_concrete"};
+  for (size_t k = 0; k < sizeof models / sizeof *models; k++) {
+    deck_case c;
+    char text[1024];
+    snprintf(text, sizeof text,
+             "&simulation end_time = '1 us' step_safety = 0.3 /\n"
+             "&lattice name = 'l' kind = 'hexagonal' spacing = '5 mm' thickness = '20 mm' /\n"
+             "&material lattice = 'l' model = '%s' /\n"
+             "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '30 mm', '20 mm' /\n"
+             "&body lattice = 'l' shape = 'point' at = '60 mm', 0 /\n"
+             "&region name = 'base' shape = 'rectangle' corner = 0, 0 size = '70 mm', '1 mm' /\n"
+             "&drive region = 'base' component = 'y' velocity = '-1 m/s' /\n&output sample = '0.2 "
+             "us' /\n",
+             models[k]);
+    assert_true(deck_case_text(&c, text));
+    assert_int_equal(deck_case_go(&c), STEP_END);
+    const double *stored = deck_case_series(&c, "energy/stored");
+    const double last = stored[simulation_history(c.simulation, NULL) - 1];
+    if (!(last > 0)) fail_msg("%s stores %g J", models[k], last);
+    deck_case_close(&c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(lattices_have_the_stiffness_of_the_solid),
@@ -667,6 +695,7 @@ int main(void) {
       cmocka_unit_test(a_crack_in_pmb_costs_G_0),
       cmocka_unit_test(dilation_of_lps_has_the_bulk_modulus),
       cmocka_unit_test(shear_of_lps_is_right_in_the_mean),
+      cmocka_unit_test(a_particle_alone_stores_nothing),
       cmocka_unit_test(eps_yields_in_shear),
       cmocka_unit_test(concrete_follows_its_equations),
   };
