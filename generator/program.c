@@ -42,7 +42,7 @@ typedef struct builder {
   int *link_number; /* [link_count] among those of particles, or those of bonds */
   int link_count;
   program_links links; /* how many of either */
-  node_map resolved, mirrored, linked, reduced, level;
+  node_map resolved, mirrored, linked, reduced, sided, level;
 } builder;
 
 static bool is_leaf(const ir *g, ir_node n) {
@@ -214,11 +214,24 @@ static ir_node mirror(builder *b, ir_node n) {
   return image;
 }
 
+/* Whether the neighbour may have another value than the particle: not for what follows from the bond's own motion. */
+static bool has_sides(builder *b, ir_node n) {
+  int known = map_get(&b->sided, n);
+  if (known >= 0) return known != 0;
+  bool sided = is_of_particle(b->g, n);
+  if (ir_operation(b->g, n) == IR_INPUT) sided = sided || mirror_input(b, n) != n;
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && !sided; k++)
+    sided = has_sides(b, ir_operand(b->g, n, k));
+  map_set(&b->sided, n, sided);
+  return sided;
+}
+
 /* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two loads for each
    neighbour. The motion of the bond, which both sides need anyway, does not count. */
-static bool is_dear(const builder *b, ir_node n) {
+static bool is_dear(builder *b, ir_node n) {
   enum { DEAR = 30 };
-  return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && cost_again(b->g, n, DEAR) >= DEAR;
+  return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && has_sides(b, n) &&
+         cost_again(b->g, n, DEAR) >= DEAR;
 }
 
 /* The value without IR_NEIGHBOUR. */
@@ -523,5 +536,6 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.mirrored);
   map_clear(&b.linked);
   map_clear(&b.reduced);
+  map_clear(&b.sided);
   map_clear(&b.level);
 }

@@ -55,6 +55,24 @@ static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **
   close_law(t);
 }
 
+/* What is cheap is computed on both sides; what is dear is kept for the other side. */
+static void a_dear_value_toward_the_neighbour_is_kept(void **state) {
+  (void)state;
+  tested_law *t = open_program("", "  damage w on particle\n  w = norm(stretch)\n"
+                                   "  x[j] = stretch[j]/1e-3\n"
+                                   "  hard[j] = exp(x[j]) - exp(-x[j]) + tanh(x[j])\n"
+                                   "  force state F[j] = (1 - previous(w))*a*hard[j]\n");
+  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->links.of_particles, 0);
+  assert_int_equal(t->plan->links.of_bonds, 1);
+  close_law(t);
+  t = open_program("", "  x[j] = stretch[j]/1e-3\n" /* the same on both sides */
+                       "  force state F[j] = a*(exp(x[j]) - exp(-x[j]) + tanh(x[j]))\n");
+  assert_int_equal(t->plan->step.pass_count, 1);
+  assert_int_equal(t->plan->links.of_bonds, 0);
+  close_law(t);
+}
+
 static void neighbours_of_neighbours_need_a_third(void **state) {
   (void)state;
   tested_law *t = open_program("", "  near = sum(stretch[j])\n  far = sum(near[j])\n"
@@ -619,6 +637,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_sum_needs_one_pass_and_one_loop),
       cmocka_unit_test(a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass),
+      cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
       cmocka_unit_test(neighbours_of_neighbours_need_a_third),
       cmocka_unit_test(dear_values_are_kept_in_planes),
       cmocka_unit_test(reductions_are_those_of_the_family),
