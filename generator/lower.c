@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "generator/kinematics.h"
+#include "generator/rewrite.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
@@ -72,6 +73,18 @@ static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **
   return count;
 }
 
+/* Whether a sum over the family moves with the flow. */
+static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
+  unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool found = false;
+  ir_mark(g, &over, 1, marks);
+  for (ir_node n = 0; n <= over && !found; n++)
+    found =
+        marks[n] && ir_is_reduction(ir_operation(g, n)) && rewrite_depends(g, &n, 1, &lambda, 1);
+  free(marks);
+  return found;
+}
+
 /* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what neighbours have being
    frozen. Newton's method from lambda = 0 in a fixed number of steps: the returns of the usual convex yield functions
    have converged to rounding long before; the `flow` check of a law says so where one has not. */
@@ -90,6 +103,11 @@ static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node
                             ir_place(g, over) > ON_BODY ? ir_place(g, over) : ON_BOND);
   ir_node moved = ir_add(g, old, ir_mul(g, lambda, direction));
   ir_substitute(g, &over, 1, &old, &moved, 1, &over);
+  if (ir_place(g, over) > ON_PARTICLE && moves_a_sum(g, over, lambda))
+    return lower_fail(
+        c, rule->where,
+        "the flow toward one neighbour would change the guards of all others: a guard "
+        "that goes over the family must be one for the whole particle");
   ir_node slope = ir_derivative(g, over, lambda);
   ir_node falls = binary(g, IR_LT, slope, ir_constant(g, 0));
   ir_node safe = ir_select(g, falls, slope, ir_constant(g, -1));

@@ -394,8 +394,14 @@ static ir_node computed_here(segment_view *v, ir_node n) {
   return made_again(v->s->g, n, operand);
 }
 
+/* Values toward a neighbour that an earlier loop had: a plane costs a store and a load, and room on the stack (64 KiB). */
+static bool is_worth_a_plane(scheduler *s, ir_node n, int loop) {
+  enum { DEAR = 4, MOST_PLANES = 16 };
+  if (phase_of(s, n) >= loop || cost_again(s->g, n, DEAR) < DEAR) return false;
+  return map_get(&s->plane, n) >= 0 || s->pass->plane_count < MOST_PLANES;
+}
+
 static ir_node seen_in_segment(segment_view *v, ir_node n) {
-  enum { DEAR = 4 }; /* a plane costs a store and a load */
   scheduler *s = v->s;
   const ir *g = s->g;
   int known = map_get(&v->seen, n);
@@ -409,8 +415,7 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
     image = v->kind == OVER_NEIGHBOURS || phase_of(s, n) < v->loop ? slot_of(s, n)
                                                                    : computed_here(v, n);
   else
-    image = phase_of(s, n) < v->loop && cost_again(g, n, DEAR) >= DEAR ? plane_of(s, n)
-                                                                       : computed_here(v, n);
+    image = is_worth_a_plane(s, n, v->loop) ? plane_of(s, n) : computed_here(v, n);
   map_set(&v->seen, n, image);
   return image;
 }

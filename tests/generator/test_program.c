@@ -98,6 +98,22 @@ static void dear_values_are_kept_in_planes(void **state) {
   close_law(dear);
 }
 
+/* Planes stand on the stack: a law of many dear values computes some of them twice. */
+static void planes_are_few(void **state) {
+  (void)state;
+  char lines[7000] = "  force state F[j] = a*stretch[j]\n";
+  for (int k = 1; k <= 40; k++) {
+    char *end = lines + strlen(lines);
+    snprintf(end, sizeof lines - strlen(lines),
+             "  x%d[j] = exp(%d*stretch[j])\n  output o%d = norm(deviator(x%d))\n", k, k, k, k);
+  }
+  tested_law *t = open_program("", lines);
+  const family_pass *observe = &t->plan->observe.passes[0];
+  assert_int_equal(loops_of(observe), 2);
+  assert_in_range(observe->plane_count, 1, 16);
+  close_law(t);
+}
+
 /* --- patches ---------------------------------------------------------------------------------- */
 
 static uint64_t seed = 77;
@@ -514,6 +530,41 @@ static void old_and_new_values_are_those_of_both_sides(void **state) {
   close_law(t);
 }
 
+/* A flow toward each neighbour ends on its own guard; one that moves the sums in the guards of all others is refused. */
+static void flows_toward_neighbours_return_one_by_one(void **state) {
+  (void)state;
+  const char *lines = "  law state\n  parameter y = 1e-3 in (0, 1)\n  state p on neighbour = 0\n"
+                      "  left[j] = abs(stretch[j] - p[j])%s\n"
+                      "  flow p[j] along sign(stretch[j] - p[j]) returned when left[j] >= y\n"
+                      "  force state F[j] = 1 [MN]*(stretch[j] - p[j])\nend model\n";
+  char text[1000], own[1000], shared[1000];
+  snprintf(text, sizeof text, "model tested\n%s", lines);
+  snprintf(own, sizeof own, text, "*(1 + mean(abs(stretch[j])))");
+  snprintf(shared, sizeof shared, text, " + sum(abs(stretch[j] - p[j]))");
+  tested_law *t = open_law(shared);
+  assert_null(t->plan);
+  assert_int_equal(t->said.items[t->said.count - 1].code, DIAG_NOT_SUPPORTED);
+  close_law(t);
+  t = open_law(own);
+  rows *w = lattice_of("hexagonal", 1);
+  patch *p = shaken_patch(t, w, 0.01);
+  patch_step(p);
+  for (long q = 0; q < p->inside_count; q++) {
+    const family f = look(p, p->inside[q]);
+    double mean = 0;
+    for (int k = 0; k < 6; k++)
+      mean += fabs(f.stretch[k]) / 6;
+    for (int k = 0; k < 6; k++) {
+      const double most = 1e-3 / (1 + mean), S = f.stretch[k];
+      const double slip = fabs(S) > most ? S - copysign(most, S) : 0;
+      assert_near(p->new_field[0][k * p->size + p->inside[q]], slip, 1e-3, "slip");
+    }
+  }
+  patch_free(p);
+  rows_free(w);
+  close_law(t);
+}
+
 /* With one bond left, what its ends feel is opposite to the bit, whatever the law. */
 static void both_ends_of_a_bond_feel_the_same_bits(void **state) {
   (void)state;
@@ -640,12 +691,14 @@ int main(void) {
       cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
       cmocka_unit_test(neighbours_of_neighbours_need_a_third),
       cmocka_unit_test(dear_values_are_kept_in_planes),
+      cmocka_unit_test(planes_are_few),
       cmocka_unit_test(reductions_are_those_of_the_family),
       cmocka_unit_test(a_particle_without_bonds_has_means_of_0),
       cmocka_unit_test(tensors_are_those_of_theory),
       cmocka_unit_test(bond_forces_are_means_of_both_sides),
       cmocka_unit_test(both_ends_of_a_bond_feel_the_same_bits),
       cmocka_unit_test(old_and_new_values_are_those_of_both_sides),
+      cmocka_unit_test(flows_toward_neighbours_return_one_by_one),
       cmocka_unit_test(an_energy_gives_the_force_state),
       cmocka_unit_test(an_energy_of_lengths_gives_the_force_state),
       cmocka_unit_test(a_proportional_force_stores_half_of_its_work),
