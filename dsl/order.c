@@ -166,6 +166,7 @@ void report_unused(checker *ck) {
   for (int i = 0; i < ck->entry_count; i++) {
     const symbol *s = &ck->entries[i]->symbol;
     if (s->used || s == ck->law->rho) continue;
+    if (ck->reads_poisson && strcmp(s->name, "nu") == 0) continue;
     if (s->where.file != ck->tree->name_where.file)
       continue; /* a library brings more than needed */
     if (ck->entries[i]->space != SPACE_QUANTITIES && ck->entries[i]->space != SPACE_FUNCTIONS)
