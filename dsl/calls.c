@@ -250,6 +250,7 @@ static value virtual_work(checker *ck, expr *e) {
              describe(ck, v.dim));
     return BROKEN;
   }
+  ck->reads_poisson = true;
   v.place = ON_PARTICLE;
   v.unknown = false;
   return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
@@ -258,6 +259,7 @@ static value virtual_work(checker *ck, expr *e) {
 static value fit(checker *ck, expr *e) {
   value v = family_argument(ck, e, false);
   if (v.broken || v.unknown) return v;
+  ck->reads_poisson = true;
   v.place = ON_PARTICLE;
   return with_shape(v, v.dim, SHAPE_TENSOR);
 }

@@ -73,6 +73,7 @@ typedef struct checker {
 
   entry *function; /* whose body is being checked, or NULL */
   int call_depth;  /* 0 while the body is checked where it is declared */
+  bool reads_poisson; /* stress or strain of a family: its third direction follows from `nu` */
   span call_where; /* the outermost call */
   int depth, expansions, searches, search_mark;
   bool too_deep, in_reduction;

@@ -162,15 +162,11 @@ static const char *kind_words(symbol_kind kind) {
   }
 }
 
-/* The third direction of stresses and strains in a plane reads the parameter `nu`, though no rule names it. */
-static bool is_poisson(const checker *ck, const symbol *s) {
-  return !is_pairwise(ck) && s->kind == SYMBOL_PARAMETER && strcmp(s->name, "nu") == 0;
-}
-
 void report_unused(checker *ck) {
   for (int i = 0; i < ck->entry_count; i++) {
     const symbol *s = &ck->entries[i]->symbol;
-    if (s->used || s == ck->law->rho || is_poisson(ck, s)) continue;
+    if (s->used || s == ck->law->rho) continue;
+    if (ck->reads_poisson && strcmp(s->name, "nu") == 0) continue;
     if (s->where.file != ck->tree->name_where.file)
       continue; /* a library brings more than needed */
     if (ck->entries[i]->space != SPACE_QUANTITIES && ck->entries[i]->space != SPACE_FUNCTIONS)
