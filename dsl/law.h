@@ -83,7 +83,7 @@ typedef struct law {
 
 /* Checks names, units, placement, definite assignment, options. All errors of the file are reported.
    `choices` selects options (NULL, 0: the first of each). Returns NULL when there are errors.
-   Law kinds that can be checked but not yet compiled are not errors here. */
+   What cannot be compiled is no error here: the generator says so. */
 law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
                int choice_count, diagnostics *d);
 

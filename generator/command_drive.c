@@ -56,7 +56,7 @@ static bool take_file(drive_options *o, const char *file) {
     return false;
   if (kind == FILE_DECK && drive_is_deck(file) && !drive_is_path(file)) {
     fprintf(stderr,
-            "perilat: error: `%s` is a deck, not a path that drives one bond\n  perilat run %s\n",
+            "perilat: error: `%s` is a deck, not a path\n  perilat run %s\n",
             file, file);
     return false;
   }

@@ -17,7 +17,7 @@
   X(check, "law.plm | deck.nml | path.nml", "plm nml", "report all errors, run nothing", COMMAND_STATUS)               \
   X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS) \
   X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                                                  \
-  X(drive, "[law.plm] path.nml", "plm nml", "one bond along a path, of the law that it names: table, picture, expectations", \
+  X(drive, "[law.plm] path.nml", "plm nml", "one bond, or one particle of a law of families, along a path: table, picture, expectations", \
     DRIVE_STATUS)                                                                                                      \
   X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)    \
   X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most", "0 the same, 1 an input is wrong, 2 different")  \

@@ -107,7 +107,7 @@ static void add_step(interpreter *p, const ir *g, int slot) {
   const double *operand[3] = {p->lanes, p->lanes, p->lanes};
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = find_lanes(p, ir_operand(g, n, k));
-  assert(lane_functions[op] && "reductions over the family arrive with state laws");
+  assert(lane_functions[op] && "reductions over the family are for programs");
   p->steps[p->step_count++] =
       (step){lane_functions[op], operand[0], operand[1], operand[2], lanes_of(p, slot)};
 }

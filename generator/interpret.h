@@ -13,9 +13,9 @@ typedef struct interpreter interpreter;
    0 or 1, select takes `b` where `a` is not 0. Not for inputs, constants, and reductions over the family. */
 double interpret_operation(ir_op op, double a, double b, double c);
 
-/* Prepares to evaluate `roots` (none of them IR_NONE). The graph must outlive the interpreter and may grow. Reductions
-   over the family arrive with state laws: until then a root that needs one fails an assertion. An interpreter serves one
-   thread at a time. */
+/* Prepares to evaluate `roots` (none of them IR_NONE). The graph must outlive the interpreter and may grow. Reductions over
+   the family and IR_NEIGHBOUR are no operations on numbers: programs of families (program.h) have neither, a root that
+   does fails an assertion. An interpreter serves one thread at a time. */
 interpreter *interpreter_new(const ir *g, const ir_node *roots, int root_count);
 void interpreter_free(interpreter *p);
 

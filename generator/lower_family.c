@@ -229,8 +229,8 @@ static ir_node poisson(lowering *c, const expr *e) {
 }
 
 bool lower_is_per_volumes(dimension d) {
-  enum { LENGTH }; /* N or N/m^6: the checker allows nothing else */
-  return d.twelfths[LENGTH] < 0;
+  const int length = 0; /* of N or of N/m^6: the checker allows nothing else */
+  return d.twelfths[length] < 0;
 }
 
 ir_node lower_force_of_density(lowering *c, ir_node density) {

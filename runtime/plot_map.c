@@ -293,7 +293,7 @@ static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size
   if (measured) {
     draw_field(&c, m, o, low, high);
   } else {
-    draw_bonds(&c, m, true);
+    if (m->frame.damage) draw_bonds(&c, m, true); /* damage of particles says nothing of bonds */
     draw_particles(&c, m, o->component, low, high);
     draw_damage_legend(&c, m);
   }
