@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 4
+#define PL_KERNEL_ABI 5
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -29,6 +29,9 @@ enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
 /* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle. */
 enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2 };
+
+/* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists each has its own. */
+enum pl_topology { PL_ROWS = 0, PL_LIST = 1 };
 
 /* Bits of a strip's flags. */
 #define PL_PRESENT(direction)   (INT64_C(1) << (direction))        /* the bond exists */
@@ -88,22 +91,33 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
 
 #define PL_MAX_DIRECTIONS 64 /* pairs of opposite neighbours of a family */
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
+#define PL_SHAPE_PLANES(dimensions) (PL_SHAPE_VALUES(dimensions) + 1)
 
-/* A run of particles of one row. Arrays begin at the run's first site. Neighbour k of site q is site q + offset[k];
-   neighbour k + neighbours/2 lies opposite to it. In a law of families a bond's field, too, has a value on either side.
-   Fields on particles have one plane, all others one for each neighbour, `plane` doubles apart: that of particle q
-   toward neighbour k is field[f][k * plane + q]. */
+/* A run of particles of one row. Arrays begin at the run's first site. On rows neighbour k of site q is site
+   q + offset[k], on lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
+   neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. In a law of families a bond's field, too,
+   has a value on either side. Fields on particles have one plane, all others one for each neighbour, `plane` doubles
+   apart: that of particle q toward neighbour k is field[f][k * plane + q]. */
 typedef struct pl_family {
   long count;            /* sites, a multiple of PL_LANES */
   long neighbours;       /* of a full family; even */
   long plane;            /* doubles between planes of a field */
-  const long *offset;    /* [neighbours] */
+  const long *offset;    /* [neighbours] rows */
   const uint64_t *bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
   const uint64_t *held;  /* not 0: the damage of this particle, and of its bonds, stays as it is */
   const double *displacement[3], *velocity[3]; /* [dimensions] */
-  /* Inverse (or pseudo-inverse) of the shape matrix sum(n n^T) over the reference bonds that exist, n = (x^2, y^2, x y) or
-     (x^2, y^2, z^2, x y, y z, x z) of the bond's reference direction: upper triangle, row by row; shear counts twice. */
-  const double *const *shape;     /* [PL_SHAPE_VALUES] */
+  /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord is some vector that is
+     not 0. */
+  const int32_t *neighbour; /* [neighbours][plane] */
+  const uint64_t *incoming; /* bit k: the bond to neighbour k + neighbours/2 exists */
+  const double *length;     /* [neighbours][plane] m */
+  const double *chord[3];   /* [neighbours][plane] reference chord to the neighbour, m */
+  const double *volume, *mass; /* of the particles: m^3, kg */
+  /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T) on rows, on lists
+     sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2, z^2, x y, y z, x z) of the bond's reference
+     direction: upper triangle, row by row; shear counts twice. Behind it a plane that is 1 where the bonds resolve all
+     strains (condition of the matrix at most 1e3), else 0. */
+  const double *const *shape;     /* [PL_SHAPE_PLANES] */
   const double *const *old_field; /* [fields] at the beginning of the step */
   double *const *new_field;       /* [fields] written by the pass that finds them; never the same memory */
   double *const *link;            /* [links] values of particles, written by one pass and read by later ones */
@@ -113,7 +127,8 @@ typedef struct pl_family {
   double time_step;        /* s */
 } pl_family;
 
-/* uniforms: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour */
+/* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour; lists:
+   [uniform_count] */
 typedef void (*pl_family_function)(const struct pl_law *law, const double *uniforms,
                                    const pl_family *family);
 typedef struct pl_program {
@@ -125,6 +140,7 @@ typedef struct pl_program {
 typedef struct pl_law {
   int abi;        /* PL_KERNEL_ABI; checked at load */
   int kind;       /* pl_law_kind */
+  int topology;   /* pl_topology of laws of families; laws of bonds have strips for both */
   int dimensions; /* 2 */
   int dof;        /* per particle */
   int force_planes;

@@ -19,6 +19,16 @@
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
 
+/* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the bonds of a particle those
+   it owns have different numbers below `directions`, those others own have different numbers from there on, and
+   a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. */
+typedef struct neighbour_list {
+  int32_t *neighbour; /* [2 directions][size] from a site to its neighbour: how much further; where there is none, to an
+                         absent site without bonds */
+  uint64_t *incoming; /* [size] bit k: bond k + directions exists */
+  double *length, *chord[3]; /* [2 directions][size] m; of reference chords to the neighbours */
+} neighbour_list;
+
 enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 
 typedef struct rows {
@@ -41,7 +51,9 @@ typedef struct rows {
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space */
-  double mass, inertia;       /* set from rho by the simulation: kg, kg m^2 */
+  double mass, inertia;       /* set from rho by the simulation: kg, kg m^2; of the mean particle on lists */
+  neighbour_list *list;       /* NULL on lattices */
+  double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
   uint64_t *bonds;            /* [size] bit k: the owned bond k exists */
   uint64_t *held_bonds;       /* [size] bit k: the damage of the owned bond k stays as it is */
   uint64_t *held;             /* [size] 1: the particle is protected */
@@ -64,12 +76,13 @@ static inline int rows_row(const rows *w, long site) {
   return (int)((site - w->first) / w->pitch);
 }
 
-/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. */
+/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. Not on lists. */
 static inline long rows_offset(const rows *w, int row, int direction) {
   return w->offset[w->row_class[row + w->margin]][direction];
 }
 
 static inline long rows_partner(const rows *w, long site, int direction) {
+  if (w->list) return site + w->list->neighbour[direction * w->size + site];
   return site + rows_offset(w, rows_row(w, site), direction);
 }
 
