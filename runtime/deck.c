@@ -1,8 +1,10 @@
 #include "runtime/deck.h"
 
+#include <stdio.h>
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/bravais.h"
 #include "runtime/deck_check.h"
 #include "runtime/deck_set.h"
 #include "runtime/deck_value.h"
@@ -26,6 +28,24 @@ FIND(region, name)
 FIND(lattice, name)
 FIND(monitor, name)
 FIND(material, lattice)
+
+bool deck_lattice_is_irregular(const deck_lattice *l) {
+  return strcmp(l->kind, "blue_noise") == 0 || strcmp(l->kind, "particles") == 0;
+}
+
+int deck_lattice_dimensions(const deck_lattice *l) {
+  if (!deck_lattice_is_irregular(l)) return bravais_dimensions(l->kind);
+  return l->setting && strcmp(l->setting, "space") == 0 ? 3 : 2;
+}
+
+char *deck_file_path(const deck *k, const char *name) {
+  const char *slash = strrchr(k->name, '/');
+  const int folder = slash && name[0] != '/' ? (int)(slash - k->name) + 1 : 0;
+  const size_t size = (size_t)folder + strlen(name) + 1;
+  char *path = must_alloc(size);
+  snprintf(path, size, "%.*s%s", folder, k->name, name);
+  return path;
+}
 
 const char *deck_component_name(int dimensions, int component) {
   static const char *const names[] = {"x", "y", "rotation", "z"};

@@ -32,10 +32,14 @@ typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction
 typedef struct deck_lattice {
   deck_item item;
   const char *name;
-  const char *kind; /* "hexagonal", "square", "cubic", "fcc" */
-  double spacing;   /* m */
-  double horizon;   /* in spacings; 0: `shells` decides */
+  const char *kind; /* "hexagonal", "square", "cubic", "fcc"; "blue_noise", "particles" */
+  double spacing;   /* m; of particles on no lattice: of the hexagonal or fcc lattice with as large particles; 0: from
+                       the file */
+  double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
   int shells;       /* 0: the nearest neighbours */
+  int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */
+  int seed;         /* blue_noise */
+  const char *file; /* particles: as written; deck_file_path finds it */
   volume_correction volume_correction;
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
   double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
@@ -44,6 +48,11 @@ typedef struct deck_lattice {
   double stiffness_thickness, mass_thickness; /* m; default: thickness */
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
+
+/* True for particles that stand on no lattice: kinds "blue_noise" and "particles". */
+bool deck_lattice_is_irregular(const deck_lattice *l);
+/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown kind. */
+int deck_lattice_dimensions(const deck_lattice *l);
 
 typedef struct deck_assignment { /* parameter = value in a &material */
   const char *name;              /* as written */
@@ -312,6 +321,9 @@ int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
+
+/* A file that the deck names, beside the deck unless its name begins with `/`; malloc'ed. */
+char *deck_file_path(const deck *k, const char *name);
 
 /* "x", "y", and "rotation" in the plane or "z" in space. */
 const char *deck_component_name(int dimensions, int component);

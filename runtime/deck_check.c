@@ -237,7 +237,7 @@ static void check_numbers(deck_reader *r, const deck_item *item, deck_shape *sha
 /* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
 static int dimensions_of(const deck_reader *r, const char *lattice) {
   const int l = lattice ? deck_find_lattice(r->k, lattice) : r->k->lattice_count == 1 ? 0 : -1;
-  return l < 0 || !r->k->lattices[l].kind ? 0 : bravais_dimensions(r->k->lattices[l].kind);
+  return l < 0 || !r->k->lattices[l].kind ? 0 : deck_lattice_dimensions(&r->k->lattices[l]);
 }
 
 static bool shape_is_of(deck_reader *r, const deck_item *item, const deck_shape *shape,
@@ -321,27 +321,106 @@ void deck_check_relaxation(deck_reader *r, const namelist_group *from, deck_rela
                 "an increment needs at least one step");
 }
 
-enum { IN_PLANE = 1 << 2, IN_SPACE = 1 << 3 }; /* by dimensions */
-static const char *const dimension_words[] = {
-    [2] = "a lattice in the plane", [3] = "a lattice in space"};
-static const deck_key_use lattice_uses[] = {{"axis", IN_SPACE, false},
-                                            {"thickness", IN_PLANE, true},
-                                            {"stiffness_thickness", IN_PLANE, false},
-                                            {"mass_thickness", IN_PLANE, false},
-                                            {"setting", IN_PLANE, false}};
+enum {
+  PLANE = 2, /* by dimensions, and particles that stand on no lattice in space */
+  SPACE,
+  IRREGULAR_SPACE,
+  IN_PLANE = 1 << PLANE,
+  IN_SPACE = 1 << SPACE,
+  IN_IRREGULAR_SPACE = 1 << IRREGULAR_SPACE
+};
+static const char *const dimension_words[] = {[PLANE] = "a lattice in the plane",
+                                              [SPACE] = "a lattice in space",
+                                              [IRREGULAR_SPACE] =
+                                                  "a lattice of particles in space"};
+static const deck_key_use dimension_uses[] = {{"axis", IN_SPACE, false},
+                                              {"thickness", IN_PLANE, true},
+                                              {"stiffness_thickness", IN_PLANE, false},
+                                              {"mass_thickness", IN_PLANE, false},
+                                              {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
 
-/* Which keys a lattice has depends on its dimensions. */
-static void check_dimensions(deck_reader *r, const namelist_group *from, deck_lattice *item) {
-  const int dimensions = bravais_dimensions(item->kind);
-  if (!deck_keys_fit(from, lattice_uses, 5, dimensions, dimension_words[dimensions], r->d)) return;
+enum {
+  REGULAR,
+  BLUE_NOISE,
+  FROM_FILE,
+  IS_BLUE_NOISE = 1 << BLUE_NOISE,
+  IS_FROM_FILE = 1 << FROM_FILE
+};
+static const char *const arrangement_words[] = {"a regular lattice", "a lattice of blue noise",
+                                                "a lattice of particles"};
+static const deck_key_use arrangement_uses[] = {{"neighbours", IS_BLUE_NOISE | IS_FROM_FILE, false},
+                                                {"seed", IS_BLUE_NOISE, false},
+                                                {"file", IS_FROM_FILE, true}};
+
+static int arrangement_of(const deck_lattice *l) {
+  if (!deck_lattice_is_irregular(l)) return REGULAR;
+  return strcmp(l->kind, "particles") == 0 ? FROM_FILE : BLUE_NOISE;
+}
+
+/* What only sites of a lattice have. */
+static bool refuse_keys_of_sites(deck_reader *r, const namelist_group *from) {
+  static const struct {
+    const char *key, *reason;
+  } none[] = {{"shells", "have no shells of neighbours: give `neighbours` or a `horizon`"},
+              {"rotation", "have no direction that could be turned"},
+              {"axis", "have no direction that could be turned"},
+              {"origin", "have no origin; the bodies say where they are"},
+              {"volume_correction", "have no volume correction: they have volumes of their own"}};
+  bool good = true;
+  for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
+    const namelist_key *key = namelist_find(from, none[k].key);
+    if (!key) continue;
+    diag_report(r->d, DIAG_CONFLICT, key->name_where, "particles that stand on no lattice %s",
+                none[k].reason);
+    good = false;
+  }
+  return good;
+}
+
+static bool has_spacing(deck_reader *r, const namelist_group *from, int arrangement) {
+  if (arrangement == FROM_FILE || namelist_find(from, "spacing")) return true;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&lattice` has no `spacing`");
+  diag_hint(r->d, "spacing: distance of nearest neighbours (m)");
+  return false;
+}
+
+static void check_neighbours(deck_reader *r, const namelist_group *from, deck_lattice *item,
+                             int dimensions) {
+  refuse_both(r, from, "horizon", "neighbours");
+  if (namelist_find(from, "neighbours") && item->neighbours == 0)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "neighbours"),
+                "a particle has at least one neighbour");
+  if (!namelist_find(from, "neighbours") && !namelist_find(from, "horizon"))
+    item->neighbours = dimensions == 2 ? 12 : 18;
+}
+
+static bool setting_suits(deck_reader *r, const deck_lattice *item, int dimensions) {
+  if (dimensions != 2 || !item->setting || strcmp(item->setting, "space") != 0) return true;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "setting"),
+              "a %s lattice lies in the plane", item->kind);
+  diag_hint(r->d, "lattices in space are 'cubic', 'fcc', 'blue_noise' and 'particles'");
+  return false;
+}
+
+/* Which keys a lattice has depends on its dimensions and on whether there are sites at all. */
+static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  const int dimensions = deck_lattice_dimensions(item), arrangement = arrangement_of(item);
+  const int kind = arrangement != REGULAR && dimensions == 3 ? IRREGULAR_SPACE : dimensions;
+  if (arrangement != REGULAR && !refuse_keys_of_sites(r, from)) return;
+  if (!has_spacing(r, from, arrangement) || !setting_suits(r, item, dimensions) ||
+      !deck_keys_fit(from, arrangement_uses, 3, arrangement, arrangement_words[arrangement],
+                     r->d) ||
+      !deck_keys_fit(from, dimension_uses, 5, kind, dimension_words[kind], r->d))
+    return;
   check_place(r, from, "origin", dimensions);
   if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";
+  if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
 }
 
 void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
   static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
                                       "force", "damage",     "rotation",     "."};
-  check_dimensions(r, from, item);
+  check_kind(r, from, item);
   refuse_both(r, from, "horizon", "shells");
   if (namelist_find(from, "shells") && item->shells == 0)
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "shells"),
@@ -479,14 +558,30 @@ void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *it
     if (same(r->k->materials[i].lattice, item->lattice)) add_varying(r, &r->k->materials[i], item);
 }
 
+/* Irregular particles fill areas and volumes; a notch may be a slit. */
+static void check_can_be_filled(deck_reader *r, const deck_item *item, const deck_shape *shape,
+                                const char *lattice, bool is_body) {
+  const int l = deck_find_lattice(r->k, lattice);
+  const unsigned empty = is_body ? A_POINT | A_SEGMENT | A_FACE : A_POINT;
+  if (l < 0 || r->k->lattices[l].item.faulty || !(1u << shape->kind & empty) ||
+      !deck_lattice_is_irregular(&r->k->lattices[l]))
+    return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
+              shape->kind == SHAPE_POINT ? "%s means a site of a lattice, but here are none"
+                                         : "%s cannot be filled with particles",
+              shape_words[shape->kind]);
+}
+
 void deck_check_body(deck_reader *r, const namelist_group *from, deck_body *item) {
   lattice_known(r, &item->item, item->lattice);
   check_shape(r, from, &item->item, &item->shape, item->lattice);
+  check_can_be_filled(r, &item->item, &item->shape, item->lattice, true);
 }
 
 void deck_check_notch(deck_reader *r, const namelist_group *from, deck_notch *item) {
   lattice_known(r, &item->item, item->lattice);
   check_shape(r, from, &item->item, &item->shape, item->lattice);
+  check_can_be_filled(r, &item->item, &item->shape, item->lattice, false);
 }
 
 void deck_check_region(deck_reader *r, const namelist_group *from, deck_region *item) {
@@ -799,11 +894,11 @@ void deck_check_checkpoint(deck_reader *r, const namelist_group *from, deck_chec
 
 /* --- the whole deck --------------------------------------------------------------------------- */
 
-/* A faulty item may be the one that is missed. */
-static bool has_body(const deck *k, const char *lattice) {
+/* A faulty item may be the one that is missed. Particles of a file need no body. */
+static bool has_body(const deck *k, const deck_lattice *lattice) {
   for (int i = 0; i < k->body_count; i++)
-    if (k->bodys[i].item.faulty || same(k->bodys[i].lattice, lattice)) return true;
-  return false;
+    if (k->bodys[i].item.faulty || same(k->bodys[i].lattice, lattice->name)) return true;
+  return same(lattice->kind, "particles");
 }
 
 static bool has_material(const deck *k, const char *lattice) {
@@ -839,7 +934,7 @@ void deck_check_whole(deck_reader *r) {
     if (!has_material(k, lattice->name))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
                   "the lattice `%s` has no `&material`", name);
-    if (!has_body(k, lattice->name))
+    if (!has_body(k, lattice))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
                   name);
   }

@@ -124,7 +124,7 @@ bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
               "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
               l->name, sites, SITE_MOST);
   diag_hint(d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * l->spacing * (bravais_dimensions(l->kind) == 2 ? sqrt(part) : cbrt(part)) * 1.01);
+            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : cbrt(part)) * 1.01);
   return true;
 }
 
