@@ -18,7 +18,7 @@ enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 
   X(S, "s", "m", SCALAR, BOND, IN_ANY, "reference length of the bond")                             \
   X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, "distance of nearest sites of the lattice")     \
   X(T, "t", "m", SCALAR, BODY, IN_ANY, "thickness used for stiffness")                             \
-  X(V, "V", "m^3", SCALAR, BODY, IN_ANY, "volume of a particle")                                   \
+  X(V, "V", "m^3", SCALAR, PARTICLE, IN_ANY, "volume of the particle; all have the same on a lattice") \
   X(M_BOND, "m", "kg", SCALAR, BOND, IN_ANY, "smaller mass of the two particles of the bond")      \
   X(M_END_I, "m_i", "kg", SCALAR, BOND, IN_ANY, "mass of particle i")                              \
   X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, "mass of particle j")                              \
@@ -27,6 +27,7 @@ enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 
   X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, "distance up to which particles are neighbours")   \
   X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes") \
   X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, "number of bonds of the particle")               \
+  X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE, "1 where the particle's bonds resolve all strains, else 0") \
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, "unit vector along the reference bond")
 
 typedef enum builtin_quantity {
@@ -61,6 +62,9 @@ typedef enum builtin_quantity {
   X(DEVIATOR, "deviator", 1, 1, "directed quantity less its mean")                                 \
   X(VIRTUAL_WORK, "virtual_work", 1, 1, "stress tensor of a force state")                          \
   X(FIT, "fit", 1, 1, "strain tensor that fits the family's stretches best")                       \
+  X(FORCE_OF, "force_of", 1, 1, "force state toward each neighbour whose virtual work is a stress") \
+  X(STRETCH_OF, "stretch_of", 1, 1, "stretch toward each neighbour under a uniform strain")        \
+  X(HOOKE, "hooke", 3, 3, "stress of a strain: hooke(eps, E, nu), isotropic")                      \
   X(PRINCIPAL, "principal", 2, 2, "principal value 1, 2 or 3 of a tensor, largest first")          \
   X(TRACE, "trace", 1, 1, "trace of a tensor")                                                     \
   X(DEV, "dev", 1, 1, "deviator of a tensor")                                                      \

@@ -264,6 +264,39 @@ static value fit(checker *ck, expr *e) {
   return with_shape(v, v.dim, SHAPE_TENSOR);
 }
 
+static value tensor_argument(checker *ck, expr *e);
+
+/* A number toward each neighbour, out of a tensor of the particle. */
+static value toward_neighbours(checker *ck, expr *e, const char *unit_in, const char *unit_out,
+                               const char *what) {
+  value v = tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  if (!expect(ck, operand(e, 0), v, dimension_of(unit_in), SHAPE_TENSOR, what)) return BROKEN;
+  v.place = ON_NEIGHBOUR;
+  return with_shape(v, dimension_of(unit_out), SHAPE_SCALAR);
+}
+
+static value force_of(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "Pa", "N", "the argument of `force_of`, a stress");
+}
+
+static value stretch_of(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "1", "1", "the argument of `stretch_of`, a strain");
+}
+
+static value hooke(checker *ck, expr *e) {
+  value v = tensor_argument(ck, e);
+  value E = check_number(ck, operand(e, 1)), nu = check_number(ck, operand(e, 2));
+  if (v.broken || v.unknown || E.broken || E.unknown || nu.broken || nu.unknown)
+    return v.broken || E.broken || nu.broken ? BROKEN : v;
+  if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_TENSOR, "a strain") ||
+      !expect(ck, operand(e, 1), E, dimension_of("Pa"), SHAPE_SCALAR, "Young's modulus") ||
+      !expect(ck, operand(e, 2), nu, DIMENSIONLESS, SHAPE_SCALAR, "Poisson's ratio"))
+    return BROKEN;
+  v.place = place_join(ck, v.place, place_join(ck, E.place, nu.place));
+  return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
+}
+
 static value tensor_argument(checker *ck, expr *e) {
   if (!needs_state_law(ck, e)) return BROKEN;
   value v = check_number(ck, operand(e, 0));
@@ -302,7 +335,8 @@ static value principal(checker *ck, expr *e) {
   X(TAN, pure) X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure)                 \
       X(MACAULAY, same_unit) X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous)   \
           X(DIFF, derivative) X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator)                      \
-              X(VIRTUAL_WORK, virtual_work) X(FIT, fit) X(PRINCIPAL, principal)                    \
+              X(VIRTUAL_WORK, virtual_work) X(FIT, fit) X(FORCE_OF, force_of)                    \
+              X(STRETCH_OF, stretch_of) X(HOOKE, hooke) X(PRINCIPAL, principal)                    \
                   X(TRACE, tensor_to_scalar) X(DEV, tensor_argument) X(J2, tensor_to_scalar)       \
                       X(VON_MISES, tensor_to_scalar)
 

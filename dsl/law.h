@@ -67,6 +67,7 @@ typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_S
 typedef struct law {
   tree *tree;
   law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  bool irregular; /* lowered for particles that stand on no lattice */
   arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;

@@ -8,7 +8,7 @@
 /* Words of the deck's material group, which a law's parameters and options stand beside. */
 static const char *const deck_words[] = {"name", "model", "lattice"};
 
-static const char *const settings[] = {"plane_stress", "plane_strain", "space"};
+static const char *const settings[] = {"plane_stress", "plane_strain", "space", LAW_IRREGULAR};
 
 enum { SETTING_COUNT = sizeof(settings) / sizeof(settings[0]), MOST_SUGGESTIONS = 100 };
 
@@ -59,16 +59,17 @@ static void add_builtins(checker *ck) {
   for (int i = 0; i < QUANTITY_COUNT; i++) {
     const builtin_quantity_info *q = &builtin_quantities[i];
     dimension dim = dimension_of(q->unit);
+    const placement on = is_pairwise(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
     entry *e = add(ck, SPACE_QUANTITIES, q->name,
                    (symbol){.kind = SYMBOL_QUANTITY,
                             .name = q->name,
                             .index = i,
                             .dim = dim,
                             .shape = q->shape,
-                            .place = q->place,
+                            .place = on,
                             .doc = q->meaning,
                             .used = true});
-    e->type = (value){.dim = dim, .shape = q->shape, .place = q->place};
+    e->type = (value){.dim = dim, .shape = q->shape, .place = on};
     e->known = true;
   }
   for (int i = 0; i < SETTING_COUNT; i++) {

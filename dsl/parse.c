@@ -103,7 +103,7 @@ void line_law(parsing *p, word first, word second, span where) {
 }
 
 void line_settings(parsing *p, const words *list, span where) {
-  static const char *const known[] = {"plane_stress", "plane_strain", "space"};
+  static const char *const known[] = {"plane_stress", "plane_strain", "space", LAW_IRREGULAR};
   if (refuse_in_include(p, where) || !inside_model(p, where)) return;
   if (p->setting_seen) {
     complain(p, where, "the settings are given twice", "put them all into one `for` line");
@@ -112,12 +112,12 @@ void line_settings(parsing *p, const words *list, span where) {
   p->setting_seen = true;
   for (int i = 0; i < list->count; i++) {
     bool found = false;
-    for (int k = 0; k < 3; k++)
+    for (size_t k = 0; k < sizeof known / sizeof *known; k++)
       found |= strcmp(list->items[i], known[k]) == 0;
     if (found || !first_complaint(p)) continue;
     diag_report(p->messages, DIAG_SYNTAX, list->where[i], "there is no setting `%s`",
                 list->items[i]);
-    diag_hint(p->messages, "the settings are plane_stress, plane_strain and space");
+    diag_hint(p->messages, "the settings are plane_stress, plane_strain, space and " LAW_IRREGULAR);
   }
   p->model->settings = list->items;
   p->model->setting_where = list->where;

@@ -3,6 +3,9 @@
 #ifndef PERILAT_DSL_TREE_H
 #define PERILAT_DSL_TREE_H
 
+/* `for irregular`, `when irregular`: particles that stand on no lattice */
+#define LAW_IRREGULAR "irregular"
+
 #include <stdbool.h>
 #include <stdio.h>
 

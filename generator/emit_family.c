@@ -26,26 +26,58 @@ static bool is_of_particle(const emitter *e, int field) {
   return e->plan->law->fields.items[field]->place <= ON_PARTICLE;
 }
 
+static bool is_list(const emitter *e) {
+  return e->plan->law->irregular;
+}
+
+/* The value is of the neighbour. */
+static bool is_of_neighbour(const emitter *e, ir_node n) {
+  switch (ir_input_source(e->graph, n)) {
+  case IR_FROM_NEIGHBOUR_FIELD:
+  case IR_FROM_NEIGHBOUR_LINK:
+  case IR_FROM_NEIGHBOUR_BOND_LINK:
+    return true;
+  case IR_FROM_ENDS:
+    return ends_origins[ir_input_index(e->graph, n)].owner == OF_J;
+  default:
+    return false;
+  }
+}
+
 void emit_segment_input(emitter *e, ir_node n) {
+  const char *at = is_list(e) && is_of_neighbour(e, n) ? "q + to[q]" : "q";
   if (is_time_step(e, n))
     c_text_add(e->out, "family->time_step");
-  else if (is_held(e, n))
-    c_text_add(e->out, "at_%s[q] != 0 ? 1.0 : 0.0", e->name[n]);
   else
-    c_text_add(e->out, "at_%s[q]", e->name[n]);
+    c_text_add(e->out, "at_%s[%s]%s", e->name[n], at, is_held(e, n) ? " != 0 ? 1.0 : 0.0" : "");
 }
 
-/* Where the array of an input of particle positions, velocities or flags begins. */
+/* Where the array of an input of particle positions, velocities, flags, volumes or masses begins, or of bonds' chords. */
 static void write_ends_array(emitter *e, ir_node n) {
   const ends_origin *o = &ends_origins[ir_input_index(e->graph, n)];
-  const char *to = o->owner == OF_J ? " + to" : "";
-  if (o->array == FROM_HELD)
-    c_text_add(e->out, "family->held + first%s", to);
-  else
-    c_text_add(e->out, "family->%s[%d] + first%s",
-               o->array == FROM_DISPLACEMENT ? "displacement" : "velocity", o->component, to);
+  switch (o->array) {
+  case FROM_HELD:
+    c_text_add(e->out, "family->held + first");
+    break;
+  case FROM_VOLUME:
+    c_text_add(e->out, "family->volume + first");
+    break;
+  case FROM_MASS:
+    c_text_add(e->out, "family->mass + first");
+    break;
+  case FROM_LENGTH:
+    c_text_add(e->out, "family->length + first + k*family->plane");
+    break;
+  case FROM_CHORD:
+    c_text_add(e->out, "family->chord[%d] + first + k*family->plane", o->component);
+    break;
+  default:
+    c_text_add(e->out, "family->%s[%d] + first",
+               o->array == FROM_DISPLACEMENT ? "displacement" : "velocity", o->component);
+  }
 }
 
+/* Of the particle at hand, or at lane 0 of the chunk's neighbours; on lists the loop adds the way to the neighbour. */
 static void write_array(emitter *e, ir_node n) {
   const int index = ir_input_index(e->graph, n);
   const bool own = ir_place(e->graph, n) != ON_BOND; /* of a neighbour's fields: toward me */
@@ -55,20 +87,18 @@ static void write_array(emitter *e, ir_node n) {
                is_of_particle(e, index) ? "" : " + k*family->plane");
     break;
   case IR_FROM_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "family->old_field[%d] + first + to%s", index,
+    c_text_add(e->out, "family->old_field[%d] + first%s", index,
                own ? " + back*family->plane" : "");
     break;
   case IR_FROM_LINK:
-    c_text_add(e->out, "family->link[%d] + first", index);
-    break;
   case IR_FROM_NEIGHBOUR_LINK:
-    c_text_add(e->out, "family->link[%d] + first + to", index);
+    c_text_add(e->out, "family->link[%d] + first", index);
     break;
   case IR_FROM_BOND_LINK:
     c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", index);
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d] + first + to + back*family->plane", index);
+    c_text_add(e->out, "family->bond_link[%d] + first + back*family->plane", index);
     break;
   case IR_FROM_SHAPE:
     c_text_add(e->out, "family->shape[%d] + first", index);
@@ -82,6 +112,7 @@ static void write_array(emitter *e, ir_node n) {
   default:
     write_ends_array(e, n);
   }
+  if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + to");
 }
 
 static void write_inputs(emitter *e) {
@@ -90,7 +121,8 @@ static void write_inputs(emitter *e) {
     if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT) continue;
     if (emit_is_uniform(e, n)) {
       c_text_add(e->out, "%sconst double %s = uniforms[%s%d]", indent, e->name[n],
-                 e->scope == IN_NEIGHBOURS ? "k*UNIFORMS + " : "", e->uniform_of[n]);
+                 e->scope == IN_NEIGHBOURS && !is_list(e) ? "k*UNIFORMS + " : "",
+                 e->uniform_of[n]);
       emit_line_end(e, n);
     } else if (emit_is_input(e, n) && !is_time_step(e, n)) {
       c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
@@ -219,12 +251,19 @@ static void write_starts(emitter *e, const segment *a) {
 
 static void write_neighbours(emitter *e, const segment *a) {
   write_starts(e, a);
-  c_text_add(e->out,
-             "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
-             "      const long to = family->offset[k], back = k < half ? k + half : k - half;\n"
-             "      const uint64_t *restrict bonds = family->bonds + first + (k < half ? 0 : to);\n"
-             "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n"
-             "      (void)to, (void)back;\n");
+  c_text_add(
+      e->out,
+      "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
+      "      const long back = k < half ? k + half : k - half;\n"
+      "%s"
+      "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n"
+      "      (void)to, (void)back;\n",
+      is_list(e)
+          ? "      const int32_t *restrict to = family->neighbour + first + k*family->plane;\n"
+            "      const uint64_t *restrict bonds = (k < half ? family->bonds : family->incoming) + "
+            "first;\n"
+          : "      const long to = family->offset[k];\n"
+            "      const uint64_t *restrict bonds = family->bonds + first + (k < half ? 0 : to);\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");
@@ -283,9 +322,9 @@ void emit_programs(emitter *e) {
 
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
-             "    .link_count = %d,\n    .bond_link_count = %d,\n    .reads_shape = %d,\n    .step "
+             "    .topology = %s,\n    .link_count = %d,\n    .bond_link_count = %d,\n    .reads_shape = %d,\n    .step "
              "= {%d, step_passes},\n"
              "    .observe = {%d, observe_passes},\n",
-             e->plan->links.of_particles, e->plan->links.of_bonds, e->plan->reads_shape,
-             e->plan->step.pass_count, e->plan->observe.pass_count);
+             is_list(e) ? "PL_LIST" : "PL_ROWS", e->plan->links.of_particles,
+             e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count, e->plan->observe.pass_count);
 }

@@ -381,6 +381,7 @@ static void describe(interpreted *p, const char *key) {
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
   p->law.reads_shape = plan->reads_shape;
+  p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step = (pl_program){plan->step.pass_count, step_passes};
   p->law.observe = (pl_program){plan->observe.pass_count, observe_passes};
 }

@@ -16,10 +16,12 @@ struct family_runner {
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
   const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
-      **neighbour_bond_links, **slots, **planes, *shape[PL_SHAPE_VALUES(3)], *ends[ENDS_COUNT];
+      **neighbour_bond_links, **slots, **planes, *shape[PL_SHAPE_PLANES(3)], *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
+  double *gathered; /* [most][LANES] values of neighbours, on lists */
+  int gathered_count;
   double *results, **result; /* [most roots][LANES] */
   unsigned char *ones, ends_stride[ENDS_COUNT];
 };
@@ -85,6 +87,9 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
   r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
+  r->gathered = must_calloc(
+      (size_t)(p->links.of_particles + p->links.of_bonds + fields + ENDS_COUNT) * LANES,
+      sizeof(double));
   r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
   r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
   for (int k = 0; k < roots; k++)
@@ -92,7 +97,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   for (int k = 0; k < slots; k++)
     r->slots[k] = r->slot + (size_t)k * LANES;
   const int most = larger(larger(fields, larger(p->links.of_particles, p->links.of_bonds)),
-                          larger(slots, larger(planes, 21)));
+                          larger(slots, larger(planes, PL_SHAPE_PLANES(3))));
   r->ones = arena_alloc(r->memory, (size_t)most + 1);
   memset(r->ones, 1, (size_t)most + 1);
   memset(r->ends_stride, 1, sizeof r->ends_stride);
@@ -110,6 +115,7 @@ void family_runner_free(family_runner *r) {
   }
   free(r->slot);
   free(r->plane);
+  free(r->gathered);
   free(r->results);
   arena_free(r->memory);
   free(r);
@@ -127,7 +133,7 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
     r->links[k] = f->link[k] + first;
   for (int k = 0; k < r->plan->law->fields.count; k++)
     r->fields[k] = f->old_field[k] + first;
-  for (int k = 0; r->plan->reads_shape && k < PL_SHAPE_VALUES(r->plan->dimensions); k++)
+  for (int k = 0; r->plan->reads_shape && k < PL_SHAPE_PLANES(r->plan->dimensions); k++)
     r->shape[k] = f->shape[k] + first;
   for (int k = 0; k < ENDS_COUNT; k++) {
     const ends_origin *o = &ends_origins[k];
@@ -138,36 +144,72 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
   for (long q = 0; q < LANES && first + q < f->count; q++)
     r->held[0][q] = f->held[first + q] ? 1 : 0;
   r->ends[ENDS_HELD_I] = r->held[0];
+  if (f->neighbour) {
+    r->ends[ENDS_VOLUME_I] = f->volume + first;
+    r->ends[ENDS_MASS_I] = f->mass + first;
+  }
   r->ends[ENDS_TIME_STEP] = &f->time_step;
+}
+
+/* Where the values of neighbour k of the chunk's particles stand, given where those of the run's particles begin: on rows
+   further along the same array, on lists gathered into the next buffer. */
+static const double *at_neighbours(family_runner *r, const pl_family *f, const double *values,
+                                   long first, long k) {
+  if (!f->neighbour) return values + first + f->offset[k];
+  const int32_t *to = f->neighbour + k * f->plane + first;
+  double *buffer = r->gathered + (size_t)r->gathered_count++ * LANES;
+  for (long q = 0; q < LANES && first + q < f->count; q++)
+    buffer[q] = values[first + q + to[q]];
+  return buffer;
+}
+
+static void point_at_motion(family_runner *r, const pl_family *f, long first, long k) {
+  for (int e = 0; e < ENDS_COUNT; e++) {
+    const ends_origin *o = &ends_origins[e];
+    if (o->owner != OF_J || o->component >= r->plan->dimensions) continue;
+    if (o->array == FROM_DISPLACEMENT)
+      r->ends[e] = at_neighbours(r, f, f->displacement[o->component], first, k);
+    if (o->array == FROM_VELOCITY)
+      r->ends[e] = at_neighbours(r, f, f->velocity[o->component], first, k);
+  }
+  for (long q = 0; q < LANES && first + q < f->count; q++) {
+    const long to = f->neighbour ? f->neighbour[k * f->plane + first + q] : f->offset[k];
+    r->held[1][q] = f->held[first + q + to] ? 1 : 0;
+  }
+  r->ends[ENDS_HELD_J] = r->held[1];
+}
+
+static void point_at_list(family_runner *r, const pl_family *f, long first, long k) {
+  static const ends_input chord[] = {ENDS_CHORD_X, ENDS_CHORD_Y, ENDS_CHORD_Z};
+  for (int d = 0; d < r->plan->dimensions; d++)
+    r->ends[chord[d]] = f->chord[d] + k * f->plane + first;
+  r->ends[ENDS_REFERENCE_LENGTH] = f->length + k * f->plane + first;
+  r->ends[ENDS_VOLUME_J] = at_neighbours(r, f, f->volume, first, k);
+  r->ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
 }
 
 static void point_at_neighbour(family_runner *r, const pl_family *f, long first, long k,
                                const double *uniforms) {
-  const long half = f->neighbours / 2, to = f->offset[k], back = k < half ? k + half : k - half;
+  const long half = f->neighbours / 2, back = k < half ? k + half : k - half;
   const kernel_plan *p = r->plan;
   const int parameters = p->law->parameters.count;
-  for (int u = 0; u < p->uniform_count; u++)
+  r->gathered_count = 0;
+  for (int u = 0; u < p->uniform_count && !f->neighbour; u++)
     r->parameters[parameters + u] = uniforms + k * p->uniform_count + u;
   for (int n = 0; n < p->links.of_particles; n++)
-    r->neighbour_links[n] = f->link[n] + first + to;
+    r->neighbour_links[n] = at_neighbours(r, f, f->link[n], first, k);
   for (int n = 0; n < p->links.of_bonds; n++) {
     r->bond_links[n] = f->bond_link[n] + first + k * f->plane;
-    r->neighbour_bond_links[n] = f->bond_link[n] + first + to + back * f->plane;
+    r->neighbour_bond_links[n] =
+        at_neighbours(r, f, f->bond_link[n] + back * f->plane, first, k);
   }
   for (int n = 0; n < p->law->fields.count; n++) {
-    const bool of_particle = is_of_particle(r, n);
-    r->fields[n] = f->old_field[n] + first + (of_particle ? 0 : k * f->plane);
-    r->neighbour_fields[n] = f->old_field[n] + first + to + (of_particle ? 0 : back * f->plane);
+    const long plane = is_of_particle(r, n) ? 0 : f->plane;
+    r->fields[n] = f->old_field[n] + first + k * plane;
+    r->neighbour_fields[n] = at_neighbours(r, f, f->old_field[n] + back * plane, first, k);
   }
-  for (int e = 0; e < ENDS_COUNT; e++) {
-    const ends_origin *o = &ends_origins[e];
-    if (o->owner != OF_J || o->component >= p->dimensions) continue;
-    if (o->array == FROM_DISPLACEMENT) r->ends[e] = f->displacement[o->component] + first + to;
-    if (o->array == FROM_VELOCITY) r->ends[e] = f->velocity[o->component] + first + to;
-  }
-  for (long q = 0; q < LANES && first + q < f->count; q++)
-    r->held[1][q] = f->held[first + to + q] ? 1 : 0;
-  r->ends[ENDS_HELD_J] = r->held[1];
+  point_at_motion(r, f, first, k);
+  if (f->neighbour) point_at_list(r, f, first, k);
 }
 
 static void point_at_planes(family_runner *r, const family_pass *now, long k) {
@@ -226,6 +268,8 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
 }
 
 static bool is_present(const pl_family *f, long first, long k, long q) {
+  if (f->neighbour && k >= f->neighbours / 2)
+    return f->incoming[first + q] >> (k - f->neighbours / 2) & 1;
   const long half = f->neighbours / 2, to = k < half ? 0 : f->offset[k];
   return f->bonds[first + to + q] >> (k < half ? k : k - half) & 1;
 }

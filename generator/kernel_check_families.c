@@ -18,12 +18,19 @@ typedef struct body {
   const pl_law *law;
   int neighbours;
   double **motion; /* [2 * dimensions][SIZE] displacements, velocities */
-  double **shape;  /* [PL_SHAPE_VALUES][SIZE] */
+  double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
   double **before; /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2];
-  uint64_t *bonds, *held; /* [SIZE] */
-  long offset[2 * PL_MAX_DIRECTIONS];
+  uint64_t *bonds, *incoming, *held; /* [SIZE] */
+  long offset[2 * PL_MAX_DIRECTIONS]; /* rows */
+  int32_t *neighbour;                 /* [neighbours][SIZE] lists; NULL on rows */
+  double **chord;                     /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
+  double **particle;                  /* [2][SIZE] lists: volumes, masses */
 } body;
+
+static bool is_list(const body *b) {
+  return b->law->topology == PL_LIST;
+}
 
 static long planes_of(const body *b, const pl_field *f) {
   return f->place == PL_ON_PARTICLE ? 1 : b->neighbours;
@@ -54,7 +61,7 @@ static double **observed_new(const body *b) {
 static body body_new(const pl_law *law, int neighbours) {
   body b = {.law = law, .neighbours = neighbours};
   b.motion = planes_new(2 * law->dimensions, SIZE);
-  b.shape = planes_new(PL_SHAPE_VALUES(law->dimensions), SIZE);
+  b.shape = planes_new(PL_SHAPE_PLANES(law->dimensions), SIZE);
   b.before = values_new(&b, law->fields, law->field_count);
   for (int side = 0; side < 2; side++) {
     b.after[side] = values_new(&b, law->fields, law->field_count);
@@ -64,13 +71,18 @@ static body body_new(const pl_law *law, int neighbours) {
     b.observed[side] = observed_new(&b);
   }
   b.bonds = must_calloc(SIZE, sizeof *b.bonds);
+  b.incoming = must_calloc(SIZE, sizeof *b.incoming);
   b.held = must_calloc(SIZE, sizeof *b.held);
+  if (!is_list(&b)) return b;
+  b.neighbour = must_calloc((size_t)neighbours * SIZE, sizeof *b.neighbour);
+  b.chord = planes_new(law->dimensions + 1, (long)neighbours * SIZE);
+  b.particle = planes_new(2, SIZE);
   return b;
 }
 
 static void body_free(body *b) {
   planes_free(b->motion, 2 * b->law->dimensions);
-  planes_free(b->shape, PL_SHAPE_VALUES(b->law->dimensions));
+  planes_free(b->shape, PL_SHAPE_PLANES(b->law->dimensions));
   planes_free(b->before, b->law->field_count);
   for (int side = 0; side < 2; side++) {
     planes_free(b->after[side], b->law->field_count);
@@ -80,7 +92,12 @@ static void body_free(body *b) {
     planes_free(b->observed[side], 1 + b->law->output_count);
   }
   free(b->bonds);
+  free(b->incoming);
   free(b->held);
+  if (!is_list(b)) return;
+  free(b->neighbour);
+  planes_free(b->chord, b->law->dimensions + 1);
+  planes_free(b->particle, 2);
 }
 
 /* --- a random body ---------------------------------------------------------------------------- */
@@ -104,17 +121,74 @@ static void draw_bonds(body *b, uint64_t *seed) {
   }
 }
 
-static void draw_body(body *b, double s, uint64_t *seed) {
+static void draw_offsets(body *b, uint64_t *seed) {
   const int half = b->neighbours / 2;
   for (int k = 0; k < half; k++) {
     b->offset[k] = 1 + (long)(draw_bits(seed) % MARGIN);
     b->offset[k + half] = -b->offset[k];
   }
-  draw_motion(b, s, seed);
+}
+
+/* Bond k of site q leads to site q of a random permutation, or nowhere. */
+static void draw_permutation(body *b, int k, uint64_t *seed) {
+  const int back = k + b->neighbours / 2;
+  const uint64_t bit = UINT64_C(1) << k;
+  int32_t to[SIZE];
+  for (int32_t q = 0; q < SIZE; q++)
+    to[q] = q;
+  for (int q = SIZE - 1; q > 0; q--) {
+    const int other = (int)(draw_bits(seed) % (uint64_t)(q + 1));
+    const int32_t kept = to[q];
+    to[q] = to[other];
+    to[other] = kept;
+  }
+  for (int32_t q = 0; q < SIZE; q++) {
+    b->neighbour[k * SIZE + q] = to[q] - q;
+    b->neighbour[back * SIZE + to[q]] = q - to[q];
+    if (to[q] == q) b->bonds[q] &= ~bit;
+    b->incoming[to[q]] |= b->bonds[q] & bit;
+  }
+}
+
+/* Of chord and length the two sides have the same. */
+static void draw_chords(body *b, int k, double s, uint64_t *seed) {
+  const int back = k + b->neighbours / 2, dimensions = b->law->dimensions;
+  for (int q = 0; q < SIZE; q++) {
+    const long here = (long)k * SIZE + q, there = (long)back * SIZE + q + b->neighbour[here];
+    double square = 0;
+    for (int d = 0; d < dimensions; d++) {
+      const double component = s * draw_uniform(seed, d ? -1 : 0.5, 1);
+      b->chord[d][here] = component;
+      b->chord[d][there] = -component;
+      square += component * component;
+    }
+    b->chord[dimensions][here] = b->chord[dimensions][there] = sqrt(square);
+  }
+}
+
+static void draw_list(body *b, double s, double mass, uint64_t *seed) {
+  memset(b->incoming, 0, SIZE * sizeof *b->incoming);
+  for (int k = 0; k < b->neighbours / 2; k++) {
+    draw_permutation(b, k, seed);
+    draw_chords(b, k, s, seed);
+  }
+  for (int q = 0; q < SIZE; q++) {
+    b->particle[0][q] = s * s * s * draw_uniform(seed, 0.5, 1.5);
+    b->particle[1][q] = mass * draw_uniform(seed, 0.5, 1.5);
+  }
+}
+
+static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
+  const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
+  draw_motion(b, bonds->s, seed);
   draw_bonds(b, seed);
-  for (int v = 0; v < PL_SHAPE_VALUES(b->law->dimensions); v++)
+  if (is_list(b))
+    draw_list(b, bonds->s, bonds->mass_i, seed);
+  else
+    draw_offsets(b, seed);
+  for (int v = 0; v <= resolved; v++)
     for (int q = 0; q < SIZE; q++)
-      b->shape[v][q] = draw_uniform(seed, -1, 1);
+      b->shape[v][q] = v == resolved ? (double)(draw_bits(seed) & 1) : draw_uniform(seed, -1, 1);
   for (int f = 0; f < b->law->field_count; f++)
     for (long q = 0; q < planes_of(b, &b->law->fields[f]) * SIZE; q++)
       b->before[f][q] = draw_field(seed, &b->law->fields[f]);
@@ -126,8 +200,13 @@ static void draw_body(body *b, double s, uint64_t *seed) {
       b->bond_link[0][k][q] = b->bond_link[1][k][q] = draw_size(seed, -6, 0);
 }
 
+static long neighbour_of(const body *b, long k, long q) {
+  return q + (is_list(b) ? b->neighbour[k * SIZE + q] : b->offset[k]);
+}
+
 static bool has_bond(const body *b, int k, long q) {
   const int half = b->neighbours / 2;
+  if (is_list(b) && k >= half) return b->incoming[q] >> (k - half) & 1;
   return k < half ? b->bonds[q] >> k & 1 : b->bonds[q + b->offset[k]] >> (k - half) & 1;
 }
 
@@ -161,6 +240,17 @@ static double *const *from_site(site_arrays *s, double *const *arrays, int count
   return list;
 }
 
+static void point_at_list(const body *b, long site, pl_family *f) {
+  const int dimensions = b->law->dimensions;
+  f->neighbour = b->neighbour + site;
+  f->incoming = b->incoming + site;
+  for (int d = 0; d < dimensions; d++)
+    f->chord[d] = b->chord[d] + site;
+  f->length = b->chord[dimensions] + site;
+  f->volume = b->particle[0] + site;
+  f->mass = b->particle[1] + site;
+}
+
 static void run_part(const law_readers *l, const body *b, int side, pl_family_function pass,
                      long first, long count) {
   const pl_law *law = b->law;
@@ -169,7 +259,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
   pl_family f = {.count = count,
                  .neighbours = b->neighbours,
                  .plane = SIZE,
-                 .offset = b->offset,
+                 .offset = is_list(b) ? NULL : b->offset,
                  .bonds = b->bonds + site,
                  .held = b->held + site,
                  .new_field = from_site(&s, b->after[side], law->field_count, site),
@@ -178,8 +268,9 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .force = from_site(&s, b->force[side], law->dimensions, site),
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
                  .time_step = 1.7e-7};
-  f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_VALUES(law->dimensions), site);
+  f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
+  if (is_list(b)) point_at_list(b, site, &f);
   for (int d = 0; d < law->dimensions; d++) {
     f.displacement[d] = b->motion[d] + site;
     f.velocity[d] = b->motion[law->dimensions + d] + site;
@@ -256,7 +347,7 @@ static long changed_where_held(const body *b, int field) {
   for (long k = 0; k < planes_of(b, f); k++)
     for (long q = MARGIN; q < MARGIN + SITES; q++) {
       const bool toward = f->place != PL_ON_PARTICLE;
-      const bool held = b->held[q] || (toward && b->held[q + b->offset[k]]);
+      const bool held = b->held[q] || (toward && b->held[neighbour_of(b, k, q)]);
       if (!held || (toward && !has_bond(b, (int)k, q))) continue;
       count += memcmp(&before[k * SIZE + q], &after[k * SIZE + q], sizeof *before) != 0;
     }
@@ -291,7 +382,7 @@ long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, co
   body b = body_new(l->law[0], l->classes);
   long done = 0;
   for (; done < wanted; done += (long)SITES * l->classes) {
-    draw_body(&b, l->bonds->s, seed);
+    draw_body(&b, l->bonds, seed);
     for (int side = 0; side < 2; side++)
       run_program(l, &b, side, false);
     compare_step(c, &b);

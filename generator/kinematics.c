@@ -10,9 +10,11 @@ const ends_origin ends_origins[ENDS_COUNT] = {
 
 ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
-  placement on = o->array == FROM_CLASS                      ? ON_BODY
-                 : o->array == FROM_HELD && o->owner == OF_I ? ON_PARTICLE
-                                                             : ON_BOND;
+  const bool of_particle =
+      o->array == FROM_HELD || o->array == FROM_VOLUME || o->array == FROM_MASS;
+  placement on = o->array == FROM_CLASS           ? ON_BODY
+                 : of_particle && o->owner == OF_I ? ON_PARTICLE
+                                                   : ON_BOND;
   ir_node n = ir_input(g, IR_FROM_ENDS, (int)which, o->name, on);
   return o->array == FROM_CLASS ? ir_mark_class(g, n) : n;
 }

@@ -7,8 +7,9 @@
 #include "generator/ir.h"
 
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
-   rate of end i or j. CHORD: reference chord of this bond (lists); CLASS_CHORD: the same chord for
-   a whole strip (rows; pl_bond_class). PROTECTED: 1 where the damage of the bond stays as it is,
+   rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists);
+   CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS: of the particles (lists of
+   families). PROTECTED: 1 where the damage of the bond stays as it is,
    else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families; what belongs to particle
    i is ON_PARTICLE there. Rotations and third directions share component 2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because
    `prepare` does not know it. */
@@ -28,6 +29,12 @@
   X(OMEGA_J, "omega_j", FROM_VELOCITY, OF_J, 2)                                                    \
   X(CHORD_X, "chord_x", FROM_CHORD, OF_BOND, 0)                                                    \
   X(CHORD_Y, "chord_y", FROM_CHORD, OF_BOND, 1)                                                    \
+  X(CHORD_Z, "chord_z", FROM_CHORD, OF_BOND, 2)                                                    \
+  X(REFERENCE_LENGTH, "s", FROM_LENGTH, OF_BOND, 0)                                                \
+  X(VOLUME_I, "V", FROM_VOLUME, OF_I, 0)                                                           \
+  X(VOLUME_J, "V_j", FROM_VOLUME, OF_J, 0)                                                         \
+  X(MASS_I, "m_i", FROM_MASS, OF_I, 0)                                                             \
+  X(MASS_J, "m_j", FROM_MASS, OF_J, 0)                                                             \
   X(CLASS_CHORD_X, "class_chord_x", FROM_CLASS, OF_STRIP, 0)                                       \
   X(CLASS_CHORD_Y, "class_chord_y", FROM_CLASS, OF_STRIP, 1)                                       \
   X(U_IZ, "u_iz", FROM_DISPLACEMENT, OF_I, 2)                                                      \
@@ -52,6 +59,9 @@ typedef enum ends_array {
   FROM_DISPLACEMENT,
   FROM_VELOCITY,
   FROM_CHORD,
+  FROM_LENGTH,
+  FROM_VOLUME,
+  FROM_MASS,
   FROM_CLASS,
   FROM_FLAGS,
   FROM_HELD, /* families: a particle's damage stays as it is */
@@ -67,8 +77,8 @@ typedef struct ends_origin {
 } ends_origin;
 extern const ends_origin ends_origins[ENDS_COUNT];
 
-/* The input node. Its placement follows from what it is: CLASS_CHORD on the body, HELD_I on the particle, all others on
-   the bond. */
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I and MASS_I on the
+   particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
 typedef struct bond_kinematics {

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "generator/kinematics.h"
+#include "runtime/kernel.h"
 
 static ir_node number(lowering *c, double value) {
   return ir_constant(c->graph, value);
@@ -18,9 +19,15 @@ static bool is_plane(const lowering *c) {
 
 /* --- families --------------------------------------------------------------------------------- */
 
+static ir_node neighbour_of(lowering *c, ir_node n) {
+  const ir *g = c->graph;
+  const bool of_body = ir_place(g, n) <= ON_BODY && !ir_is_of_class(g, n);
+  return of_body ? n : unary(c->graph, IR_NEIGHBOUR, n);
+}
+
 components lower_neighbour(lowering *c, components value) {
   for (int k = 0; k < value.count; k++)
-    value.of[k] = unary(c->graph, IR_NEIGHBOUR, value.of[k]);
+    value.of[k] = neighbour_of(c, value.of[k]);
   return value;
 }
 
@@ -234,14 +241,15 @@ bool lower_is_per_volumes(dimension d) {
 }
 
 ir_node lower_force_of_density(lowering *c, ir_node density) {
-  ir_node V = lower_quantity(c->graph, QUANTITY_V);
-  return ir_mul(c->graph, ir_mul(c->graph, number(c, 2), ir_mul(c->graph, V, V)), density);
+  ir_node V = lower_volume(c);
+  ir_node both = ir_mul(c->graph, V, neighbour_of(c, V));
+  return ir_mul(c->graph, ir_mul(c->graph, number(c, 2), both), density);
 }
 
 static components virtual_work(lowering *c, const expr *e, ir_node force) {
   ir *g = c->graph;
   components n = dyad(c), v = {TENSOR_COUNT, {0}};
-  ir_node V = lower_quantity(g, QUANTITY_V);
+  ir_node V = lower_volume(c);
   if (lower_is_per_volumes(e->arguments[0].value->dim)) force = lower_force_of_density(c, force);
   ir_node moment = ir_mul(g, lower_quantity(g, QUANTITY_S), force);
   ir_node twice = ir_mul(g, number(c, 2), V);
@@ -266,7 +274,12 @@ static ir_node inverse_shape(lowering *c, int row, int column) {
   return ir_input(c->graph, IR_FROM_SHAPE, at, names[at], ON_PARTICLE);
 }
 
-/* eps = G sum(n S) with n = (x^2, y^2, x y), in space (x^2, y^2, z^2, x y, y z, x z), and
+ir_node lower_resolved(lowering *c) {
+  return ir_input(c->graph, IR_FROM_SHAPE, PL_SHAPE_VALUES(is_plane(c) ? 2 : 3), "resolved",
+                  ON_PARTICLE);
+}
+
+/* eps = G sum(w n S) with weight w = 1 on lattices and w = s on irregular families, n = (x^2, y^2, x y), in space (x^2, y^2, z^2, x y, y z, x z), and
    engineering shear. */
 static components fit(lowering *c, const expr *e, ir_node stretch) {
   ir *g = c->graph;
@@ -274,6 +287,7 @@ static components fit(lowering *c, const expr *e, ir_node stretch) {
   int size = is_plane(c) ? 3 : TENSOR_COUNT;
   components n = dyad(c), v = {TENSOR_COUNT, {0}};
   ir_node sums[TENSOR_COUNT];
+  if (c->law->irregular) stretch = ir_mul(g, lower_quantity(g, QUANTITY_S), stretch);
   for (int k = 0; k < size; k++)
     sums[k] = family_sum(c, ir_mul(g, n.of[is_plane(c) ? plane_parts[k] : k], stretch));
   for (int k = 0; k < TENSOR_COUNT; k++)
@@ -291,6 +305,46 @@ static components fit(lowering *c, const expr *e, ir_node stretch) {
     v.of[TENSOR_ZZ] = ir_neg(g, ir_mul(g, ratio, ir_add(g, v.of[TENSOR_XX], v.of[TENSOR_YY])));
   }
   return v;
+}
+
+/* F = 2 V (w/s) n.(G sigma) with the weights of `fit`: the force state, linear in n n^T, whose virtual work is sigma. */
+static ir_node force_of(lowering *c, components sigma) {
+  ir *g = c->graph;
+  static const int plane_parts[] = {TENSOR_XX, TENSOR_YY, TENSOR_XY};
+  int size = is_plane(c) ? 3 : TENSOR_COUNT;
+  components n = dyad(c);
+  ir_node along = number(c, 0);
+  for (int row = 0; row < size; row++) {
+    ir_node value = number(c, 0);
+    for (int k = 0; k < size; k++)
+      value =
+          ir_add(g, value, ir_mul(g, inverse_shape(c, row, k), sigma.of[is_plane(c) ? plane_parts[k] : k]));
+    along = ir_add(g, along, ir_mul(g, n.of[is_plane(c) ? plane_parts[row] : row], value));
+  }
+  ir_node force = ir_mul(g, ir_mul(g, number(c, 2), lower_volume(c)), along);
+  return c->law->irregular ? force : ir_div(g, force, lower_quantity(g, QUANTITY_S));
+}
+
+/* Isotropic elasticity. In plane stress the third direction is free: sigma_zz = 0 whatever eps_zz says. */
+static components hooke(lowering *c, components eps, ir_node E, ir_node nu) {
+  ir *g = c->graph;
+  ir_node one = number(c, 1), two = number(c, 2);
+  ir_node twice_mu = ir_div(g, E, ir_add(g, one, nu)), lambda, sum;
+  if (c->law->setting == SETTING_PLANE_STRESS) {
+    lambda = ir_div(g, ir_mul(g, E, nu), ir_sub(g, one, ir_mul(g, nu, nu)));
+    sum = ir_add(g, eps.of[TENSOR_XX], eps.of[TENSOR_YY]);
+  } else {
+    ir_node below = ir_mul(g, ir_add(g, one, nu), ir_sub(g, one, ir_mul(g, two, nu)));
+    lambda = ir_div(g, ir_mul(g, E, nu), below);
+    sum = trace(c, eps);
+  }
+  ir_node pressure = ir_mul(g, lambda, sum);
+  for (int k = 0; k < TENSOR_COUNT; k++) {
+    eps.of[k] = ir_mul(g, twice_mu, eps.of[k]);
+    if (k < TENSOR_XY) eps.of[k] = ir_add(g, pressure, eps.of[k]);
+  }
+  if (c->law->setting == SETTING_PLANE_STRESS) eps.of[TENSOR_ZZ] = number(c, 0);
+  return eps;
 }
 
 /* --- calls ------------------------------------------------------------------------------------ */
@@ -348,6 +402,17 @@ bool lower_family_call(lowering *c, const expr *e, components *out) {
   case FUNCTION_FIT:
     *out = fit(c, e, a.of[0]);
     break;
+  case FUNCTION_FORCE_OF:
+    *out = scalar(force_of(c, a));
+    break;
+  case FUNCTION_STRETCH_OF:
+    *out = scalar(contract(c, dyad(c), a));
+    break;
+  case FUNCTION_HOOKE: {
+    ir_node E = lower_expr(c, e->arguments[1].value);
+    *out = hooke(c, a, E, lower_expr(c, e->arguments[2].value));
+    break;
+  }
   case FUNCTION_PRINCIPAL:
     *out = scalar(principal(c, a, (int)e->arguments[1].value->number));
     break;

@@ -97,6 +97,10 @@ bool lower_is_per_volumes(dimension d);
 ir_node lower_force_of_density(lowering *c, ir_node density);
 /* Unit vector along the reference bond, from i to j. */
 components lower_direction(lowering *c);
+/* Of the particle at hand, m^3. */
+ir_node lower_volume(lowering *c);
+/* 1 where the bonds of the particle resolve all strains, else 0. */
+ir_node lower_resolved(lowering *c);
 /* Functions of families and tensors. False: it is neither. */
 bool lower_family_call(lowering *c, const expr *e, components *out);
 components lower_tensor_binary(lowering *c, const expr *e, components a, components b);

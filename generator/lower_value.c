@@ -65,7 +65,14 @@ ir_node lower_field(ir *g, const law *l, int k) {
   return ir_input(g, IR_FROM_FIELD, k, l->fields.items[k]->name, l->fields.items[k]->place);
 }
 
+ir_node lower_volume(lowering *c) {
+  return c->law->irregular ? kinematics_input(c->graph, ENDS_VOLUME_I)
+                           : lower_quantity(c->graph, QUANTITY_V);
+}
+
 static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
+  if (q == QUANTITY_V) return scalar(lower_volume(c));
+  if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c));
   if (q == QUANTITY_TWIST) return scalar(ir_constant(c->graph, 0)); /* no bond twists in a plane */
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
   if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c);
@@ -130,7 +137,10 @@ static ir_node lower_choice_name(lowering *c, const expr *e) {
   if (e->symbol->option)
     return lower_fail(c, e->where,
                       "an option's choice stands in a comparison with its option only");
-  return ir_constant(c->graph, strcmp(e->symbol->name, law_setting_name(c->law->setting)) == 0);
+  const bool holds = strcmp(e->symbol->name, LAW_IRREGULAR) == 0
+                         ? c->law->irregular
+                         : strcmp(e->symbol->name, law_setting_name(c->law->setting)) == 0;
+  return ir_constant(c->graph, holds);
 }
 
 /* Of the particle, or of the bond seen from it. */

@@ -237,11 +237,18 @@ bool model_suits(const model *m, const char *setting, char *meant, size_t size) 
   const tree *t = m->tree;
   size_t n = 0;
   meant[0] = 0;
-  for (int k = 0; k < t->setting_count; k++)
+  for (int k = 0; k < t->setting_count; k++) {
     if (strcmp(t->settings[k], setting) == 0) return true;
-  for (int k = 0; k < t->setting_count && n < size; k++)
-    n += (size_t)snprintf(meant + n, size - n, "%s%s", k ? ", " : "", t->settings[k]);
-  return t->setting_count == 0;
+    if (strcmp(t->settings[k], LAW_IRREGULAR) == 0 || n >= size) continue;
+    n += (size_t)snprintf(meant + n, size - n, "%s%s", n ? ", " : "", t->settings[k]);
+  }
+  return n == 0;
+}
+
+bool model_suits_irregular(const model *m) {
+  for (int k = 0; k < m->tree->setting_count; k++)
+    if (strcmp(m->tree->settings[k], LAW_IRREGULAR) == 0) return true;
+  return false;
 }
 
 bool model_plan(model *m) {

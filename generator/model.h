@@ -53,6 +53,8 @@ bool model_open_text(model *m, const char *path, const char *text, const law_cho
 /* True when the law is meant for a setting of the lattice, `plane_stress` say: its line `for` names it or is missing.
    Otherwise `meant` says what it is meant for: "plane_strain, space". */
 bool model_suits(const model *m, const char *setting, char *meant, size_t size);
+/* True when the law's line `for` names particles that stand on no lattice. */
+bool model_suits_irregular(const model *m);
 /* Plans the kernel and emits its C (m->said on errors). */
 bool model_plan(model *m);
 /* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */

@@ -126,6 +126,43 @@ program_motion plan_motion(const kernel_plan *plan, bool reference) {
   return (program_motion){from, to, n};
 }
 
+/* --- lists ------------------------------------------------------------------------------------ */
+
+enum { LIST_INPUTS = 9 };
+
+/* What a row knows for a whole direction, a list knows for each bond. */
+static program_motion list_inputs(const kernel_plan *plan) {
+  static const ends_input row_chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z},
+                          chord[] = {ENDS_CHORD_X, ENDS_CHORD_Y, ENDS_CHORD_Z};
+  ir *g = plan->graph;
+  ir_node *from = arena_alloc(plan->memory, LIST_INPUTS * sizeof *from);
+  ir_node *to = arena_alloc(plan->memory, LIST_INPUTS * sizeof *to);
+  ir_node mine = kinematics_input(g, ENDS_MASS_I), other = kinematics_input(g, ENDS_MASS_J);
+  int n = 0;
+  for (int d = 0; d < 3; d++)
+    from[n] = kinematics_input(g, row_chord[d]), to[n++] = kinematics_input(g, chord[d]);
+  from[n] = lower_quantity(g, QUANTITY_S), to[n++] = kinematics_input(g, ENDS_REFERENCE_LENGTH);
+  from[n] = lower_quantity(g, QUANTITY_M_END_I), to[n++] = mine;
+  from[n] = lower_quantity(g, QUANTITY_M_END_J), to[n++] = other;
+  from[n] = lower_quantity(g, QUANTITY_M_BOND), to[n++] = ir_make(g, IR_MIN, mine, other, IR_NONE);
+  from[n] = lower_quantity(g, QUANTITY_SHELL), to[n++] = ir_constant(g, 1);
+  from[n] = lower_quantity(g, QUANTITY_WEIGHT), to[n++] = ir_constant(g, 1);
+  return (program_motion){from, to, n};
+}
+
+static void read_from_lists(const kernel_plan *plan, const program_motion *of, root_list *r) {
+  for (int k = 0; k < r->count; k++)
+    ir_substitute(plan->graph, &r->items[k].node, 1, of->from, of->to, of->count,
+                  &r->items[k].node);
+}
+
+static void motion_from_lists(const kernel_plan *plan, const program_motion *of,
+                              program_motion *motion) {
+  ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
+  ir_substitute(plan->graph, motion->to, motion->count, of->from, of->to, of->count, to);
+  motion->to = to;
+}
+
 /* --- the plan --------------------------------------------------------------------------------- */
 
 /* The same reciprocals in all that a step computes. */
@@ -215,6 +252,12 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   root_list step = step_roots(&p), observe = observe_roots(&p);
   share_reciprocals_of_roots(p.g, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);
+  if (l->irregular) {
+    const program_motion list = list_inputs(plan);
+    read_from_lists(plan, &list, &step);
+    read_from_lists(plan, &list, &observe);
+    motion_from_lists(plan, &list, &motion);
+  }
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 &plan->links);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,

@@ -149,11 +149,22 @@ static ir_node mirror_ends(builder *b, ir_node n) {
   case ENDS_CLASS_CHORD_X:
   case ENDS_CLASS_CHORD_Y:
   case ENDS_CLASS_CHORD_Z:
+  case ENDS_CHORD_X:
+  case ENDS_CHORD_Y:
+  case ENDS_CHORD_Z:
     return ir_neg(b->g, n);
   case ENDS_HELD_I:
     return kinematics_input(b->g, ENDS_HELD_J);
   case ENDS_HELD_J:
     return kinematics_input(b->g, ENDS_HELD_I);
+  case ENDS_VOLUME_I:
+    return kinematics_input(b->g, ENDS_VOLUME_J);
+  case ENDS_VOLUME_J:
+    return kinematics_input(b->g, ENDS_VOLUME_I);
+  case ENDS_MASS_I:
+    return kinematics_input(b->g, ENDS_MASS_J);
+  case ENDS_MASS_J:
+    return kinematics_input(b->g, ENDS_MASS_I);
   default:
     return n; /* the time step; positions appear only after this */
   }

@@ -133,6 +133,16 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   if (!l && out->law->tree->law == LAW_STATE) return true;
   out->law->setting = setting_of(l);
   const char *name = law_setting_name(out->law->setting);
+  out->law->irregular = l && deck_lattice_is_irregular(l);
+  if (out->law->irregular && !model_suits_irregular(out)) {
+    diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+                "the law `%s` is meant for lattices, but these particles are irregular",
+                out->law->tree->name);
+    diag_hint(said,
+              "take another law such as `splm_elastic`; where the equations hold for families of "
+              "any shape add `irregular` to the law's line `for`");
+    return false;
+  }
   if (model_suits(out, name, meant, sizeof meant)) return true;
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
               "the law `%s` is meant for %s, but this lattice is in %s", out->law->tree->name,
