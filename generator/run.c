@@ -101,9 +101,10 @@ static int set_up(run *r) {
   if (status) return status;
   if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
   if (!result_spares_inputs(r)) return INPUT_WRONG;
-  fingerprint(r);
   r->simulation = simulation_new(r->deck, r->laws, &r->said);
-  return r->simulation ? 0 : INPUT_WRONG;
+  if (!r->simulation) return INPUT_WRONG;
+  fingerprint(r);
+  return 0;
 }
 
 static void let_go(run *r) {

@@ -156,7 +156,7 @@ void report_bad(const run *r) {
   char place_text[ROWS_PLACE_TEXT];
   fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld, %s\n", b.what,
           b.step, 1e3 * b.time, b.particle,
-          rows_place_text(simulation_rows(r->simulation, 0), b.place, place_text));
+          rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,

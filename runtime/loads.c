@@ -22,7 +22,7 @@ static void hint_nearest(const double at[3], const rows *w, diagnostics *d) {
   }
   diag_hint(d,
             "the nearest particle stands %.4g mm away at %s; `within` says how far is near enough",
-            1e3 * best, rows_place_text(w, nearest, text));
+            1e3 * best, rows_place_text(w->dimensions, nearest, text));
 }
 
 static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
@@ -109,7 +109,7 @@ static span motion_where(const deck *k, const constraint *c, const int *supports
 static const char *place_of(const loads *l, int64_t site, char text[ROWS_PLACE_TEXT]) {
   double at[3];
   rows_place(l->lattice, site, at);
-  return rows_place_text(l->lattice, at, text);
+  return rows_place_text(l->lattice->dimensions, at, text);
 }
 
 /* Two supports may share a particle: both hold it where it is. Anything else is two motions at
@@ -421,8 +421,10 @@ void loads_begin(loads *l, sweep *w) {
    the way of a free particle: the velocity after the step turns out to be larger by `change`. */
 static void correct_free_way(loads *l, const sweep *w, int component, int64_t site, double before,
                              double change) {
-  if (component < w->dimensions) l->work += w->push_work[component] * change;
-  l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
+  const double mass = sweep_mass(w, component, site);
+  if (component < w->dimensions)
+    l->work += w->push_work[component] * (mass / w->mass[component]) * change;
+  l->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
   if (w->law->kind == PL_STATE)
     l->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
@@ -430,7 +432,7 @@ static void correct_free_way(loads *l, const sweep *w, int component, int64_t si
 static void apply_forces(loads *l, const sweep *w) {
   for (long i = 0; i < l->force_count; i++) {
     const applied *f = &l->forces[i];
-    const double change = w->time_step / w->mass[f->component] * f->now;
+    const double change = w->time_step / sweep_mass(w, f->component, f->site) * f->now;
     w->velocity[f->component][f->site] += change;
     w->displacement[f->component][f->site] += w->time_step * change;
     correct_free_way(l, w, f->component, f->site, f->velocity, change);
@@ -446,7 +448,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
   if (c->active) {
     const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
     const double prescribed = (target - c->held) / w->time_step;
-    c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
+    c->reaction = sweep_mass(w, c->component, c->site) * (prescribed - *v) / w->time_step;
     correct_free_way(l, w, c->component, c->site, before, prescribed - *v);
     c->held = target;
     *v = prescribed;
@@ -483,7 +485,8 @@ void loads_apply(loads *l, sweep *w, long step) {
 static double free_velocity(const sweep *w, const constraint *c) {
   const double force = w->force[c->component][c->site];
   const double push = c->component < w->dimensions ? w->push[c->component] : 0;
-  return w->decay * c->velocity + w->time_step / w->mass[c->component] * force + push;
+  return w->decay * c->velocity + w->time_step / sweep_mass(w, c->component, c->site) * force +
+         push;
 }
 
 void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work) {
@@ -501,7 +504,8 @@ void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, d
     const constraint *c = &l->constraints[i];
     if (!c->active) continue;
     const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
-    const double prescribed = (target - c->held) / w->time_step, mass = w->mass[c->component];
+    const double prescribed = (target - c->held) / w->time_step;
+    const double mass = sweep_mass(w, c->component, c->site);
     const double change = prescribed - free_velocity(w, c);
     *kinetic += 0.5 * mass * c->velocity * change;
     *work += 0.5 * mass * c->velocity * change;

@@ -307,9 +307,10 @@ static void report_fault(const rows *w, const rows_bond *bond, const pl_law *law
       "`%s` = %.6g%s%s in the bond from %s to %s is not in %c%.6g, %.6g%c, the range of the "
       "law `%s`; so are %ld of %ld bonds",
       law->parameters[fault].name, b->values[fault], pure ? "" : " ", pure ? "" : in,
-      rows_place_text(w, ends[0], texts[0]), rows_place_text(w, ends[1], texts[1]),
-      b->low_open[fault] ? '(' : '[', b->lower[fault], b->upper[fault],
-      b->high_open[fault] ? ')' : ']', law->name, count, w->bond_count);
+      rows_place_text(w->dimensions, ends[0], texts[0]),
+      rows_place_text(w->dimensions, ends[1], texts[1]), b->low_open[fault] ? '(' : '[',
+      b->lower[fault], b->upper[fault], b->high_open[fault] ? ')' : ']', law->name, count,
+      w->bond_count);
   diag_hint(d, "take a distribution that stays inside, a smaller `cv`, or clip = .true. for the "
                "nearest allowed value");
 }

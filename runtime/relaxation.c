@@ -87,7 +87,7 @@ static void adapt(relaxation *r) {
       const long q = w->lattice->particle_site[p];
       const double way = w->displacement[d][q] - r->displacement[d][q];
       work -= way * (w->force[d][q] - r->force[d][q]);
-      motion += w->mass[d] * way * way;
+      motion += sweep_mass(w, d, q) * way * way;
       r->displacement[d][q] = w->displacement[d][q];
       r->force[d][q] = w->force[d][q];
     }
@@ -102,12 +102,13 @@ static void add_component(const relaxation *r, int d, squares *sum) {
   const sweep *w = r->sweep;
   const loads *l = r->loads;
   const double arm = d < w->dimensions ? 1 : w->lattice->spacing;
-  const double weight = d < w->dimensions ? w->push[d] * w->mass[d] / w->time_step : 0;
+  const double gravity = d < w->dimensions ? w->push[d] / w->time_step : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
+    const double weight = gravity * sweep_mass(w, d, q);
     r->total[q] = w->force[d][q] + weight;
+    sum->applied += weight * weight;
   }
-  sum->applied += weight * weight * (double)w->lattice->particle_count;
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
     r->total[l->forces[i].site] += l->forces[i].now;

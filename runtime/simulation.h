@@ -48,7 +48,8 @@ void simulation_free(simulation *s);
 const struct random_fields *simulation_fields(const simulation *s);
 const rows *simulation_rows(const simulation *s, int lattice);
 const step_limit *simulation_step_limit(const simulation *s);
-long simulation_step_count(const simulation *s); /* planned; without meaning for quasi-static runs */
+long simulation_step_count(
+    const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
 double simulation_progress(const simulation *s); /* part of the run that is done, 0 to 1 */
 /* Increments done of a quasi-static run, and how many of them ended without balance; 0 else. */
