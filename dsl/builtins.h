@@ -62,8 +62,8 @@ typedef enum builtin_quantity {
   X(DEVIATOR, "deviator", 1, 1, "directed quantity less its mean")                                 \
   X(VIRTUAL_WORK, "virtual_work", 1, 1, "stress tensor of a force state")                          \
   X(FIT, "fit", 1, 1, "strain tensor that fits the family's stretches best")                       \
-  X(FORCE_OF, "force_of", 1, 1, "force state toward each neighbour whose virtual work is a stress") \
-  X(STRETCH_OF, "stretch_of", 1, 1, "stretch toward each neighbour under a uniform strain")        \
+  X(UNIFORM_FORCE, "uniform_force", 1, 1, "force state toward each neighbour of a uniform stress")   \
+  X(UNIFORM_STRETCH, "uniform_stretch", 1, 1, "stretch toward each neighbour of a uniform strain")  \
   X(HOOKE, "hooke", 3, 3, "stress of a strain: hooke(eps, E, nu), isotropic")                      \
   X(PRINCIPAL, "principal", 2, 2, "principal value 1, 2 or 3 of a tensor, largest first")          \
   X(TRACE, "trace", 1, 1, "trace of a tensor")                                                     \

@@ -276,12 +276,12 @@ static value toward_neighbours(checker *ck, expr *e, const char *unit_in, const 
   return with_shape(v, dimension_of(unit_out), SHAPE_SCALAR);
 }
 
-static value force_of(checker *ck, expr *e) {
-  return toward_neighbours(ck, e, "Pa", "N", "the argument of `force_of`, a stress");
+static value uniform_force(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "Pa", "N", "the argument of `uniform_force`, a stress");
 }
 
-static value stretch_of(checker *ck, expr *e) {
-  return toward_neighbours(ck, e, "1", "1", "the argument of `stretch_of`, a strain");
+static value uniform_stretch(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "1", "1", "the argument of `uniform_stretch`, a strain");
 }
 
 static value hooke(checker *ck, expr *e) {
@@ -332,13 +332,14 @@ static value principal(checker *ck, expr *e) {
   X(LOG, pure)                                                                                     \
   X(SIN, pure)                                                                                     \
   X(COS, pure)                                                                                     \
-  X(TAN, pure) X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure)                 \
-      X(MACAULAY, same_unit) X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous)   \
-          X(DIFF, derivative) X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator)                      \
-              X(VIRTUAL_WORK, virtual_work) X(FIT, fit) X(FORCE_OF, force_of)                    \
-              X(STRETCH_OF, stretch_of) X(HOOKE, hooke) X(PRINCIPAL, principal)                    \
-                  X(TRACE, tensor_to_scalar) X(DEV, tensor_argument) X(J2, tensor_to_scalar)       \
-                      X(VON_MISES, tensor_to_scalar)
+  X(TAN, pure)                                                                                     \
+  X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure) X(MACAULAY, same_unit)       \
+      X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous) X(DIFF, derivative)      \
+          X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator) X(VIRTUAL_WORK, virtual_work)            \
+              X(FIT, fit) X(UNIFORM_FORCE, uniform_force) X(UNIFORM_STRETCH, uniform_stretch)      \
+                  X(HOOKE, hooke) X(PRINCIPAL, principal) X(TRACE, tensor_to_scalar)               \
+                      X(DEV, tensor_argument) X(J2, tensor_to_scalar)                              \
+                          X(VON_MISES, tensor_to_scalar)
 
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
 #define X(code, function) [FUNCTION_##code] = function,

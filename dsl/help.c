@@ -30,6 +30,9 @@
   X(DEVIATOR, "x[j] = deviator(F[j])")                                                             \
   X(VIRTUAL_WORK, "stress x = virtual_work(F)")                                                    \
   X(FIT, "strain x = fit(stretch)")                                                                \
+  X(UNIFORM_FORCE, "x[j] = uniform_force(virtual_work(F))")                                        \
+  X(UNIFORM_STRETCH, "x[j] = stretch[j] - uniform_stretch(fit(stretch))")                          \
+  X(HOOKE, "stress x = hooke(fit(stretch), 30 [GPa], 0.2)")                                        \
   X(PRINCIPAL, "x = principal(fit(stretch), 1)")                                                   \
   X(TRACE, "x = trace(fit(stretch))")                                                              \
   X(DEV, "x = norm(dev(fit(stretch)))")                                                            \
@@ -55,6 +58,7 @@
   X(SHELL, "x = | 1 when shell == 1 | 0.5 otherwise")                                              \
   X(HORIZON, "x = s/horizon")                                                                      \
   X(WEIGHT, "x = sum(weight*stretch[j])")                                                          \
+  X(RESOLVED, "x = | 1 when resolved >= 1 | 0 otherwise")                                          \
   X(N_FAMILY, "x = sum(stretch[j])/n")                                                             \
   X(DIRECTION, "x = norm(direction)")
 

@@ -3,15 +3,15 @@
 #ifndef PERILAT_DSL_TREE_H
 #define PERILAT_DSL_TREE_H
 
-/* `for irregular`, `when irregular`: particles that stand on no lattice */
-#define LAW_IRREGULAR "irregular"
-
 #include <stdbool.h>
 #include <stdio.h>
 
 #include "dsl/arena.h"
 #include "dsl/source.h"
 #include "dsl/units.h"
+
+/* `for irregular`, `when irregular`: particles that stand on no lattice. */
+#define LAW_IRREGULAR "irregular"
 
 typedef enum expr_kind {
   EXPR_NUMBER,   /* 30 [GPa] */

@@ -70,7 +70,8 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   diag_begin(&said, &sources);
   int file = source_add(&sources, deck_path, deck_text, strlen(deck_text));
   deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
-  bool good = k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
+  bool good =
+      k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
   if (good) {
     snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);

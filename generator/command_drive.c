@@ -55,9 +55,7 @@ static bool take_file(drive_options *o, const char *file) {
   if (!file_suits(file, FILES(LAW) | FILES(DECK), "perilat drive", "a law and a path"))
     return false;
   if (kind == FILE_DECK && drive_is_deck(file) && !drive_is_path(file)) {
-    fprintf(stderr,
-            "perilat: error: `%s` is a deck, not a path\n  perilat run %s\n",
-            file, file);
+    fprintf(stderr, "perilat: error: `%s` is a deck, not a path\n  perilat run %s\n", file, file);
     return false;
   }
   const char **slot = kind == FILE_DECK ? &o->path : &o->law;

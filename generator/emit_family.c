@@ -121,8 +121,7 @@ static void write_inputs(emitter *e) {
     if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT) continue;
     if (emit_is_uniform(e, n)) {
       c_text_add(e->out, "%sconst double %s = uniforms[%s%d]", indent, e->name[n],
-                 e->scope == IN_NEIGHBOURS && !is_list(e) ? "k*UNIFORMS + " : "",
-                 e->uniform_of[n]);
+                 e->scope == IN_NEIGHBOURS && !is_list(e) ? "k*UNIFORMS + " : "", e->uniform_of[n]);
       emit_line_end(e, n);
     } else if (emit_is_input(e, n) && !is_time_step(e, n)) {
       c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
@@ -249,26 +248,39 @@ static void write_starts(emitter *e, const segment *a) {
   c_text_add(e->out, "    }\n");
 }
 
+/* Some value is another one where the bond is absent. */
+static bool asks_for_presence(const segment *a) {
+  bool asks = false;
+  for (int k = 0; k < a->root_count; k++)
+    asks = asks || (a->roots[k].target != TO_PLANE && a->roots[k].target != TO_BOND_LINK);
+  return asks;
+}
+
+static void write_presence(emitter *e) {
+  c_text_add(e->out, "      const uint64_t *restrict bonds = ");
+  c_text_add(e->out, is_list(e) ? "(k < half ? family->bonds : family->incoming) + first;\n"
+                                : "family->bonds + first + (k < half ? 0 : to);\n");
+  c_text_add(e->out, "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n");
+}
+
 static void write_neighbours(emitter *e, const segment *a) {
   write_starts(e, a);
+  c_text_add(e->out,
+             "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
+             "      const long back = k < half ? k + half : k - half;\n");
   c_text_add(
       e->out,
-      "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
-      "      const long back = k < half ? k + half : k - half;\n"
-      "%s"
-      "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n"
-      "      (void)to, (void)back;\n",
       is_list(e)
           ? "      const int32_t *restrict to = family->neighbour + first + k*family->plane;\n"
-            "      const uint64_t *restrict bonds = (k < half ? family->bonds : family->incoming) + "
-            "first;\n"
-          : "      const long to = family->offset[k];\n"
-            "      const uint64_t *restrict bonds = family->bonds + first + (k < half ? 0 : to);\n");
+          : "      const long to = family->offset[k];\n");
+  c_text_add(e->out, "      (void)to, (void)back;\n");
+  if (asks_for_presence(a)) write_presence(e);
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");
   emit_lines(e);
-  c_text_add(e->out, "        const int32_t present = (bonds[q] & present_bit) != 0;\n");
+  if (asks_for_presence(a))
+    c_text_add(e->out, "        const int32_t present = (bonds[q] & present_bit) != 0;\n");
   for (int k = 0; k < a->root_count; k++)
     write_store(e, &a->roots[k], k);
   c_text_add(e->out, "      }\n    }\n");
@@ -322,9 +334,11 @@ void emit_programs(emitter *e) {
 
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
-             "    .topology = %s,\n    .link_count = %d,\n    .bond_link_count = %d,\n    .reads_shape = %d,\n    .step "
+             "    .topology = %s,\n    .link_count = %d,\n    .bond_link_count = %d,\n    "
+             ".reads_shape = %d,\n    .step "
              "= {%d, step_passes},\n"
              "    .observe = {%d, observe_passes},\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS", e->plan->links.of_particles,
-             e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count, e->plan->observe.pass_count);
+             e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count,
+             e->plan->observe.pass_count);
 }

@@ -87,9 +87,9 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
   r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
-  r->gathered = must_calloc(
-      (size_t)(p->links.of_particles + p->links.of_bonds + fields + ENDS_COUNT) * LANES,
-      sizeof(double));
+  r->gathered =
+      must_calloc((size_t)(p->links.of_particles + p->links.of_bonds + fields + ENDS_COUNT) * LANES,
+                  sizeof(double));
   r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
   r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
   for (int k = 0; k < roots; k++)
@@ -200,8 +200,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
     r->neighbour_links[n] = at_neighbours(r, f, f->link[n], first, k);
   for (int n = 0; n < p->links.of_bonds; n++) {
     r->bond_links[n] = f->bond_link[n] + first + k * f->plane;
-    r->neighbour_bond_links[n] =
-        at_neighbours(r, f, f->bond_link[n] + back * f->plane, first, k);
+    r->neighbour_bond_links[n] = at_neighbours(r, f, f->bond_link[n] + back * f->plane, first, k);
   }
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;

@@ -21,11 +21,11 @@ typedef struct body {
   double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
   double **before; /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2];
-  uint64_t *bonds, *incoming, *held; /* [SIZE] */
+  uint64_t *bonds, *incoming, *held;  /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS]; /* rows */
   int32_t *neighbour;                 /* [neighbours][SIZE] lists; NULL on rows */
-  double **chord;                     /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
-  double **particle;                  /* [2][SIZE] lists: volumes, masses */
+  double **chord;    /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
+  double **particle; /* [2][SIZE] lists: volumes, masses */
 } body;
 
 static bool is_list(const body *b) {

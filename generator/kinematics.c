@@ -12,7 +12,7 @@ ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
   const bool of_particle =
       o->array == FROM_HELD || o->array == FROM_VOLUME || o->array == FROM_MASS;
-  placement on = o->array == FROM_CLASS           ? ON_BODY
+  placement on = o->array == FROM_CLASS            ? ON_BODY
                  : of_particle && o->owner == OF_I ? ON_PARTICLE
                                                    : ON_BOND;
   ir_node n = ir_input(g, IR_FROM_ENDS, (int)which, o->name, on);

@@ -51,7 +51,7 @@ typedef enum ends_input {
 #define X(code, name, array, owner, component) ENDS_##code,
   ENDS_INPUTS(X)
 #undef X
-  ENDS_COUNT
+      ENDS_COUNT
 } ends_input;
 
 /* Members of pl_strip, of each end where there are two; pl_bond_class; a bit of the flags. */

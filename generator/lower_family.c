@@ -308,7 +308,7 @@ static components fit(lowering *c, const expr *e, ir_node stretch) {
 }
 
 /* F = 2 V (w/s) n.(G sigma) with the weights of `fit`: the force state, linear in n n^T, whose virtual work is sigma. */
-static ir_node force_of(lowering *c, components sigma) {
+static ir_node uniform_force(lowering *c, components sigma) {
   ir *g = c->graph;
   static const int plane_parts[] = {TENSOR_XX, TENSOR_YY, TENSOR_XY};
   int size = is_plane(c) ? 3 : TENSOR_COUNT;
@@ -318,7 +318,8 @@ static ir_node force_of(lowering *c, components sigma) {
     ir_node value = number(c, 0);
     for (int k = 0; k < size; k++)
       value =
-          ir_add(g, value, ir_mul(g, inverse_shape(c, row, k), sigma.of[is_plane(c) ? plane_parts[k] : k]));
+          ir_add(g, value,
+                 ir_mul(g, inverse_shape(c, row, k), sigma.of[is_plane(c) ? plane_parts[k] : k]));
     along = ir_add(g, along, ir_mul(g, n.of[is_plane(c) ? plane_parts[row] : row], value));
   }
   ir_node force = ir_mul(g, ir_mul(g, number(c, 2), lower_volume(c)), along);
@@ -402,10 +403,10 @@ bool lower_family_call(lowering *c, const expr *e, components *out) {
   case FUNCTION_FIT:
     *out = fit(c, e, a.of[0]);
     break;
-  case FUNCTION_FORCE_OF:
-    *out = scalar(force_of(c, a));
+  case FUNCTION_UNIFORM_FORCE:
+    *out = scalar(uniform_force(c, a));
     break;
-  case FUNCTION_STRETCH_OF:
+  case FUNCTION_UNIFORM_STRETCH:
     *out = scalar(contract(c, dyad(c), a));
     break;
   case FUNCTION_HOOKE: {

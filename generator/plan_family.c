@@ -132,7 +132,8 @@ enum { LIST_INPUTS = 9 };
 
 /* What a row knows for a whole direction, a list knows for each bond. */
 static program_motion list_inputs(const kernel_plan *plan) {
-  static const ends_input row_chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z},
+  static const ends_input row_chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y,
+                                         ENDS_CLASS_CHORD_Z},
                           chord[] = {ENDS_CHORD_X, ENDS_CHORD_Y, ENDS_CHORD_Z};
   ir *g = plan->graph;
   ir_node *from = arena_alloc(plan->memory, LIST_INPUTS * sizeof *from);

@@ -34,11 +34,12 @@ static const pl_bond_class bonds = {.s = 6.35e-3,
                                     .chord = {6.35e-3 * 0.5, 6.35e-3 * 0.8660254037844386, 0}};
 
 static const pl_law *open_kernel_for(model *m, const char *path, const law_choice *choice,
-                                     const law_setting *setting) {
+                                     const law_setting *setting, bool irregular) {
   char error[2000] = "";
   const char *note;
   bool good = model_open(m, path, choice, choice ? 1 : 0);
   if (good && setting) m->law->setting = *setting;
+  if (good) m->law->irregular = irregular;
   if (!good || !model_plan(m)) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
@@ -50,7 +51,7 @@ static const pl_law *open_kernel_for(model *m, const char *path, const law_choic
 }
 
 static const pl_law *open_kernel(model *m, const char *path, const law_choice *choice) {
-  return open_kernel_for(m, path, choice, NULL);
+  return open_kernel_for(m, path, choice, NULL, false);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -169,7 +170,8 @@ static kernel_check check_family(const kernel_plan *p, const pl_law *kernel, int
 
 static void assert_same_families(const kernel_plan *p, const pl_law *kernel, long states) {
   static const int neighbours[] = {6, 18, 122};
-  for (size_t k = 0; k < sizeof neighbours / sizeof *neighbours; k++) {
+  const size_t sizes = kernel->topology == PL_LIST ? 2 : 3; /* a list has no other code for more */
+  for (size_t k = 0; k < sizes; k++) {
     kernel_check c = check_family(p, kernel, neighbours[k], states);
     printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);
     kernel_check_report(&c, kernel->name, stdout);
@@ -185,21 +187,31 @@ static void assert_text_is_clean(const model *m) {
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }
 
-/* In every setting that the law names; the text goes through both compilers with the first choices. */
+static void check_family_law_in(const char *path, const law_choice *choice, law_setting setting,
+                                bool irregular, long states) {
+  model m;
+  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, irregular);
+  assert_int_equal(kernel->topology, irregular ? PL_LIST : PL_ROWS);
+  if (choice) printf("%s = %s, ", choice->option, choice->choice);
+  if (irregular) printf("irregular, ");
+  if (!choice) assert_text_is_clean(&m);
+  assert_same_families(m.plan, kernel, states);
+  model_close(&m);
+}
+
+/* In every setting that the law names, on rows and on lists (whether it names these or not); the text goes through both
+   compilers with the first choices. */
 static void check_family_law(const char *path, const law_choice *choice, long states) {
   for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++) {
-    law_setting setting = (law_setting)k;
     model m;
     assert_true(model_open(&m, path, choice, choice ? 1 : 0));
     char meant[96];
-    const bool allowed = model_suits(&m, law_setting_name(setting), meant, sizeof meant);
+    const bool allowed = model_suits(&m, law_setting_name((law_setting)k), meant, sizeof meant);
+    const bool on_lists = !choice || model_suits_irregular(&m);
     model_close(&m);
     if (!allowed) continue;
-    const pl_law *kernel = open_kernel_for(&m, path, choice, &setting);
-    if (choice) printf("%s = %s, ", choice->option, choice->choice);
-    if (!choice) assert_text_is_clean(&m);
-    assert_same_families(m.plan, kernel, states);
-    model_close(&m);
+    check_family_law_in(path, choice, (law_setting)k, false, states);
+    if (on_lists) check_family_law_in(path, choice, (law_setting)k, true, states / 3);
   }
 }
 
