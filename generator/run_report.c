@@ -70,6 +70,15 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* Loads come in the deck's time, which has nothing to do with that of the steps. */
+static void announce_increments(const run *r) {
+  const deck_relaxation *k = &r->deck->relaxation;
+  printf("  increments %d quasi-static ones up to time %.6g, each until the unbalanced force is %.4g of the "
+         "reactions or loads\n",
+         k->increments, r->deck->simulation.end_time, k->tolerance);
+  fputs("  steps      of ", stdout);
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &r->deck->simulation;
   const step_limit *limit = simulation_step_limit(r->simulation);
@@ -79,21 +88,29 @@ void announce(const run *r) {
     announce_law(r, k);
   }
   announce_fields(r);
-  const int increments = r->deck->relaxation.increments;
-  char parts[64];
-  if (increments > 0)
-    snprintf(parts, sizeof parts, "%d quasi-static increments, steps", increments);
+  if (r->deck->relaxation.increments > 0)
+    announce_increments(r);
   else
-    snprintf(parts, sizeof parts, "%ld steps", simulation_step_count(r->simulation));
-  printf("  time       %.6g ms in %s of %.4g us: %.3g of the stable step %.4g us (%s mode "
-         "rules)\n",
-         1e3 * s->end_time, parts, 1e6 * limit->step, limit->step / limit->limit,
-         1e6 * limit->limit, limit->mode);
+    printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
+           simulation_step_count(r->simulation));
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode rules)\n", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
   printf("  result     %s\n", r->result_path);
   fflush(stdout);
+}
+
+/* "t = 4.1 ms", or "increment 170 of 480": a time of the deck, s, as a moment of the run. */
+static const char *moment(const run *r, double time, char text[MOMENT_TEXT]) {
+  const int increments = r->deck->relaxation.increments;
+  if (increments > 0)
+    snprintf(text, MOMENT_TEXT, "increment %ld of %d",
+             lround(time / r->deck->simulation.end_time * increments), increments);
+  else
+    snprintf(text, MOMENT_TEXT, "t = %.5g ms", 1e3 * time);
+  return text;
 }
 
 /* --- during the run, and when it goes wrong --------------------------------------------------- */
