@@ -9,6 +9,7 @@
 #include "runtime/checkpoint.h"
 #include "runtime/implied.h"
 #include "runtime/random_field.h"
+#include "runtime/uniform_strain.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -23,6 +24,23 @@ static void print_quantity(const char *text, double value, const char *unit_name
   printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
 }
 
+/* Irregular particles have no lattice that implies anything: they are asked. */
+static void announce_uniform_strain(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  uniform_response u;
+  if (!uniform_strain_response(r->laws[lattice].law, r->laws[lattice].parameters, w, plane_strain,
+                               &u)) {
+    printf(": no stiffness\n");
+    return;
+  }
+  print_quantity(": under uniform strain E = ", u.E, "Pa");
+  printf(
+      ", nu = %.4f\n  residuals  force left on a particle %.2g %% of stress times its face "
+      "(median), sum of forces %.1g of all; %ld particles whose bonds do not resolve all strains\n",
+      u.nu, 100 * u.left_force, u.momentum, u.unresolved);
+}
+
 static void announce_law(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const pl_law *kernel = r->laws[lattice].law;
@@ -31,6 +49,10 @@ static void announce_law(const run *r, int lattice) {
   if (r->open_models > lattice && r->models[lattice].path) {
     const char *path = r->models[lattice].path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
+  }
+  if (w->list) {
+    announce_uniform_strain(r, lattice);
+    return;
   }
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
