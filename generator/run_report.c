@@ -9,6 +9,7 @@
 #include "runtime/checkpoint.h"
 #include "runtime/implied.h"
 #include "runtime/random_field.h"
+#include "runtime/residuals.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -32,7 +33,7 @@ static void announce_law(const run *r, int lattice) {
     const char *path = r->models[lattice].path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
-  if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
+  if (!w->list && implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
     printf(", nu = %.4f", e.nu[0]);
     double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
@@ -56,6 +57,26 @@ static void announce_fields(const run *r) {
   }
 }
 
+/* Particles that stand on no lattice: what is not exact there. */
+static void announce_particles(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  const residuals *e = simulation_residuals(r->simulation);
+  char depth[32] = "";
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n",
+         k->name, w->particle_count, strcmp(k->kind, "particles") == 0 ? k->file : "blue noise",
+         1e3 * w->spacing, 1e3 * w->width, 1e3 * w->height, depth);
+  printf(
+      "  neighbours %d to %d, mean %.4g, %ld bonds; %ld particle%s without a fit of all strains\n",
+      e->fewest, e->most, e->mean, w->bond_count, e->unresolved, e->unresolved == 1 ? "" : "s");
+  printf("  residuals  ");
+  if (isfinite(e->patch))
+    printf("uniform strain leaves forces inside, %.2g %% of those at the surface; ",
+           100 * e->patch);
+  printf("the sum of all forces is %.1g of them\n", e->unbalanced);
+}
+
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
@@ -75,7 +96,10 @@ void announce(const run *r) {
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
-    announce_lattice(r, k);
+    if (simulation_rows(r->simulation, k)->list)
+      announce_particles(r, k);
+    else
+      announce_lattice(r, k);
     announce_law(r, k);
   }
   announce_fields(r);

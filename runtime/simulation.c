@@ -228,6 +228,7 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
                        k->output.energy, quasi_static || frames_want(s, "force"));
+  if (s->lattice->list) s->residuals = residuals_find(s->state);
   if (s->fields) s->state->parameter = s->fields->value;
   if (k->gravity_count > 0) sweep_add_gravity(s->state);
   if (!loads_initial_velocity(s->loads, s->state, d)) return false;
@@ -276,6 +277,10 @@ void simulation_free(simulation *s) {
   free(s);
 }
 
+const residuals *simulation_residuals(const simulation *s) {
+  return s->lattice->list ? &s->residuals : NULL;
+}
+
 const random_fields *simulation_fields(const simulation *s) {
   return s->fields;
 }
@@ -321,8 +326,13 @@ sweep *simulation_state(simulation *s) {
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
   const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->state->dof + 1) : 0;
-  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) +
-         looks * (double)s->lattice->size + site * (double)s->lattice->size +
+  const rows *g = s->lattice;
+  const double list =
+      g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
+              : 0;
+  return (double)s->state->bytes + list * (double)g->size +
+         (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
+         site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
