@@ -77,6 +77,8 @@ void result_close(result *r); /* frees; keeps files */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
+/* The run was quasi-static: its samples are increments, its time is only an order. */
+bool result_is_quasi_static(result_file *f);
 
 typedef struct result_names {
   char **items;

@@ -50,6 +50,13 @@ void result_read_close(result_file *f) {
   free(f);
 }
 
+bool result_is_quasi_static(result_file *f) {
+  result_names series = result_members(f, "/history");
+  const bool found = result_names_find(&series, "relaxation_steps") >= 0;
+  result_names_free(&series);
+  return found;
+}
+
 /* Every part of the path must exist before H5Dopen may be asked. */
 static hid_t open_set(const result_file *f, const char *name) {
   char part[512];

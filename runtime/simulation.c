@@ -409,7 +409,7 @@ const char *simulation_series(const simulation *s, int k, const char **symbol,
 double simulation_monitor_peak(const simulation *s, int index, double *time) {
   const monitor_state *m = &s->monitors->items[index].state;
   if (time) *time = m->peak_time;
-  return fabs(m->peak);
+  return m->peak;
 }
 
 /* --- time loop -------------------------------------------------------------------------------- */

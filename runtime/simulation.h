@@ -111,7 +111,7 @@ long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
 double simulation_monitor_peak(const simulation *s, int monitor,
-                               double *time); /* largest absolute value */
+                               double *time); /* value that is largest in size, its sign kept */
 
 /* Fields of the present state in the order of results, for frames. "force" and outputs are
  * evaluated on demand. */

@@ -313,6 +313,19 @@ bool sweep_step(sweep *w) {
   return true;
 }
 
+void sweep_find_forces(sweep *w) {
+#pragma omp parallel
+  {
+    const unsigned environment = sweep_enter();
+    for (int stage = 0; stage < w->law->step.pass_count; stage++) {
+#pragma omp for schedule(static)
+      for (int block = 0; block < w->block_count; block++)
+        w->engine.step(w, stage, block);
+    }
+    sweep_leave(environment);
+  }
+}
+
 /* --- sampling --------------------------------------------------------------------------------- */
 
 void sweep_observe_motion(sweep *w, const sweep_block *b, int row) {

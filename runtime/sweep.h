@@ -110,6 +110,9 @@ void sweep_turn(sweep *w);
  * bad. */
 bool sweep_step(sweep *w);
 
+/* Forces of the present state by a law of families, with all threads offered; nothing moves, and the fields stay. */
+void sweep_find_forces(sweep *w);
+
 /* Observing is done in stages too: forces on the particles in the present state, and the energies;
    it changes no state. The velocity after the coming kick is needed for the kinetic energy: that of
    free particles without applied forces is taken. This does all stages and blocks. */
