@@ -9,7 +9,6 @@
 #include "runtime/checkpoint.h"
 #include "runtime/implied.h"
 #include "runtime/random_field.h"
-#include "runtime/residuals.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -33,7 +32,7 @@ static void announce_law(const run *r, int lattice) {
     const char *path = r->models[lattice].path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
-  if (!w->list && implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
+  if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
     printf(", nu = %.4f", e.nu[0]);
     double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
@@ -57,24 +56,22 @@ static void announce_fields(const run *r) {
   }
 }
 
-/* Particles that stand on no lattice: what is not exact there. */
 static void announce_particles(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
-  const residuals *e = simulation_residuals(r->simulation);
   char depth[32] = "";
+  int fewest = ROWS_MAX_NEIGHBOURS, most = 0;
   if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
-  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n",
-         k->name, w->particle_count, strcmp(k->kind, "particles") == 0 ? k->file : "blue noise",
-         1e3 * w->spacing, 1e3 * w->width, 1e3 * w->height, depth);
-  printf(
-      "  neighbours %d to %d, mean %.4g, %ld bonds; %ld particle%s without a fit of all strains\n",
-      e->fewest, e->most, e->mean, w->bond_count, e->unresolved, e->unresolved == 1 ? "" : "s");
-  printf("  residuals  ");
-  if (isfinite(e->patch))
-    printf("uniform strain leaves forces inside, %.2g %% of those at the surface; ",
-           100 * e->patch);
-  printf("the sum of all forces is %.1g of them\n", e->unbalanced);
+  for (long p = 0; p < w->particle_count; p++) {
+    const int degree = rows_degree(w, w->particle_site[p]);
+    fewest = degree < fewest ? degree : fewest;
+    most = degree > most ? degree : most;
+  }
+  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n"
+         "  neighbours %d to %d, mean %.4g, %ld bonds\n",
+         k->name, w->particle_count, k->file ? k->file : "blue noise", 1e3 * w->spacing,
+         1e3 * w->width, 1e3 * w->height, depth, fewest, most,
+         2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
 }
 
 static void announce_lattice(const run *r, int lattice) {

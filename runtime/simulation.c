@@ -228,7 +228,6 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
                        k->output.energy, quasi_static || frames_want(s, "force"));
-  if (s->lattice->list) s->residuals = residuals_find(s->state);
   if (s->fields) s->state->parameter = s->fields->value;
   if (k->gravity_count > 0) sweep_add_gravity(s->state);
   if (!loads_initial_velocity(s->loads, s->state, d)) return false;
@@ -275,10 +274,6 @@ void simulation_free(simulation *s) {
   free(s->bad_family);
   free(s->bad_parameters);
   free(s);
-}
-
-const residuals *simulation_residuals(const simulation *s) {
-  return s->lattice->list ? &s->residuals : NULL;
 }
 
 const random_fields *simulation_fields(const simulation *s) {

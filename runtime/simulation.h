@@ -44,8 +44,6 @@ typedef struct step_limit {
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
 void simulation_free(simulation *s);
 
-/* What is not exact because the particles stand on no lattice; NULL on lattices. */
-const struct residuals *simulation_residuals(const simulation *s);
 /* Random fields of the law's parameters; NULL without. */
 const struct random_fields *simulation_fields(const simulation *s);
 const rows *simulation_rows(const simulation *s, int lattice);

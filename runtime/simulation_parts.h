@@ -11,7 +11,6 @@
 #include "runtime/monitor.h"
 #include "runtime/random_field.h"
 #include "runtime/relaxation.h"
-#include "runtime/residuals.h"
 #include "runtime/simulation.h"
 #include "runtime/sweep.h"
 
@@ -51,7 +50,6 @@ struct simulation {
   relaxation *relaxation; /* NULL: a dynamic run */
   ledger ledger;
   step_limit limit;
-  residuals residuals; /* on lists */
   double sample_interval; /* s */
   int64_t step_count, history_capacity;
   int series_count;
