@@ -170,10 +170,12 @@ static bool topology_serves(const simulation *s, diagnostics *d) {
     diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
     return false;
   }
-  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
-              "`%s` is a law of bonds with rotations: it runs on a hexagonal lattice alone",
-              s->law->name);
-  diag_hint(d, "on particles that stand on no lattice run laws of families and central laws");
+  diag_report(
+      d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+      "as a law of bonds `%s` runs on a hexagonal lattice, not on particles that stand on none",
+      s->law->name);
+  diag_hint(d,
+            "laws of families, `law state`, run on them, and central laws without random fields");
   return false;
 }
 
