@@ -387,6 +387,12 @@ double *result_read_reference(result_file *f, long *particles, int *dimensions) 
                     dimensions);
 }
 
+double *result_read_volume(result_file *f, long *particles) {
+  int columns;
+  return read_table(f, "/particles/volume", H5T_NATIVE_DOUBLE, sizeof(double), 1, 1, particles,
+                    &columns);
+}
+
 /* Pairs that name particles which do not exist make the table unusable. */
 int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
   char path[512];
