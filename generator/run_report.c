@@ -78,6 +78,24 @@ static void announce_fields(const run *r) {
   }
 }
 
+static void announce_particles(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  char depth[32] = "";
+  int fewest = ROWS_MAX_NEIGHBOURS, most = 0;
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  for (long p = 0; p < w->particle_count; p++) {
+    const int degree = rows_degree(w, w->particle_site[p]);
+    fewest = degree < fewest ? degree : fewest;
+    most = degree > most ? degree : most;
+  }
+  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n"
+         "  neighbours %d to %d, mean %.4g, %ld bonds\n",
+         k->name, w->particle_count, k->file ? k->file : "blue noise", 1e3 * w->spacing,
+         1e3 * w->width, 1e3 * w->height, depth, fewest, most,
+         2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
+}
+
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
@@ -107,7 +125,10 @@ void announce(const run *r) {
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
-    announce_lattice(r, k);
+    if (simulation_rows(r->simulation, k)->list)
+      announce_particles(r, k);
+    else
+      announce_lattice(r, k);
     announce_law(r, k);
   }
   announce_fields(r);

@@ -9,6 +9,7 @@
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
+#include "runtime/shape_matrix.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 
@@ -123,6 +124,11 @@ static void particle_table(run *r, const rows *w, result_header *h) {
     volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
   }
   rows_bodies(w, r->deck, 0, body);
+  if (w->list) {
+    int32_t *resolved = arena_alloc(r->memory, n * sizeof *resolved);
+    shape_unresolved(w, resolved);
+    h->resolved = resolved;
+  }
   h->dimensions = w->dimensions;
   h->particle_count = w->particle_count;
   h->reference = reference;

@@ -18,7 +18,7 @@ static const double tiny = 1e-7;         /* spacings */
 static const double tiny_rate = 1e-3;    /* spacings a second */
 static const double nominal_step = 1e-9; /* s; what a step is to a law at rest */
 static const double accuracy = 1e-3;     /* of the largest eigenvalue, a frequency's square */
-enum { MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
+enum { ROWS_A_THREAD = 8, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
@@ -34,9 +34,10 @@ static double *vector_of(const body *b) {
 }
 
 static body body_new(const pl_law *law, const double *parameters, const rows *w) {
-  const int offered = omp_get_max_threads();
+  const int offered = omp_get_max_threads(), sensible = 1 + w->row_count / ROWS_A_THREAD;
+  const int threads = offered < sensible ? offered : sensible;
   body b = {.size = w->size, .length = law->dof * w->size};
-  b.sweep = sweep_new(w, law, parameters, nominal_step, offered, false, true);
+  b.sweep = sweep_new(w, law, parameters, nominal_step, threads, false, true);
   b.scale = vector_of(&b);
   b.probe = vector_of(&b);
   for (int d = 0; d < law->dof; d++)
@@ -53,7 +54,7 @@ static void body_free(body *b) {
 
 /* Of the present state; nothing moves, and the fields stay as they are. */
 static void find_forces(sweep *w) {
-#pragma omp parallel
+#pragma omp parallel num_threads(w->block_count) if (w->block_count > 1)
   {
     const unsigned environment = sweep_enter();
     for (int stage = 0; stage < w->law->step.pass_count; stage++) {

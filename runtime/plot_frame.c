@@ -26,6 +26,24 @@ static double bond_length(const plot_frame *m, long b) {
   return n == 2 ? plane : hypot(plane, j[2] - i[2]);
 }
 
+/* Mean over the particles of the distance to the nearest bonded one: on a lattice its spacing. */
+static double spacing_of(const plot_frame *m) {
+  double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest), sum = 0;
+  long count = 0;
+  for (long b = 0; b < m->bonds; b++)
+    for (int e = 0; e < 2; e++) {
+      double *known = &nearest[m->pairs[2 * b + e]];
+      const double length = bond_length(m, b);
+      if (*known == 0 || length < *known) *known = length;
+    }
+  for (long p = 0; p < m->particles; p++) {
+    count += nearest[p] > 0;
+    sum += nearest[p];
+  }
+  free(nearest);
+  return count ? sum / (double)count : 0;
+}
+
 /* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of the body. */
 static void move_particles(plot_frame *m, const double *displacement, double wanted) {
   const int n = m->dimensions;
@@ -159,8 +177,7 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   m->time = times && k >= 0 && k < frames ? times[k] : NAN;
   free(times);
   m->increment = increment_at(f, m->time);
-  for (long b = 0; b < m->bonds; b++)
-    m->spacing = b == 0 ? bond_length(m, 0) : fmin(m->spacing, bond_length(m, b));
+  m->spacing = spacing_of(m);
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);

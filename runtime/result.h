@@ -5,6 +5,7 @@
      /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
      /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
+     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
      /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
      /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
@@ -47,6 +48,7 @@ typedef struct result_header {
   const double *reference; /* [N][dimensions] */
   const int32_t *body;     /* [N] number of the body in the deck, from 0 */
   const double *volume;    /* [N] */
+  const int32_t *resolved; /* [N]; NULL on lattices */
   const char *interaction; /* name of the bonds: the lattice's name */
   long bond_count;
   const int32_t *bonds; /* [M][2] */

@@ -144,14 +144,14 @@ void shape_matrix_full(const rows *w, double *values) {
   memcpy(values, f.matrix, (size_t)PL_SHAPE_PLANES(w->dimensions) * sizeof *values);
 }
 
-long shape_unresolved(const rows *w, long *first) {
+long shape_unresolved(const rows *w, int32_t *resolved) {
   double here[MOST_PLANES];
   long count = 0;
-  if (first) *first = -1;
   for (long p = 0; p < w->particle_count; p++) {
     list_matrix(w, w->particle_site[p], here);
-    if (here[PL_SHAPE_VALUES(w->dimensions)] > 0) continue;
-    if (count++ == 0 && first) *first = p;
+    const bool all = here[PL_SHAPE_VALUES(w->dimensions)] > 0;
+    if (resolved) resolved[p] = all;
+    count += !all;
   }
   return count;
 }

@@ -16,7 +16,8 @@ void shape_matrices(const rows *w, double *const *matrix);
 /* The same of a particle of a lattice whose neighbours are all there: values[PL_SHAPE_PLANES]. */
 void shape_matrix_full(const rows *w, double *values);
 
-/* Particles of a list whose families do not resolve all strains; `first` (may be NULL) becomes the first of them, or -1. */
-long shape_unresolved(const rows *w, long *first);
+/* Particles of a list whose families do not resolve all strains. resolved[particle_count] (may be NULL) becomes 0 for these, 1
+   for the others. */
+long shape_unresolved(const rows *w, int32_t *resolved);
 
 #endif

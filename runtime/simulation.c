@@ -170,10 +170,12 @@ static bool topology_serves(const simulation *s, diagnostics *d) {
     diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
     return false;
   }
-  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
-              "`%s` is a law of bonds with rotations: it runs on a hexagonal lattice alone",
-              s->law->name);
-  diag_hint(d, "on particles that stand on no lattice run laws of families and central laws");
+  diag_report(
+      d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+      "as a law of bonds `%s` runs on a hexagonal lattice, not on particles that stand on none",
+      s->law->name);
+  diag_hint(d,
+            "laws of families, `law state`, run on them, and central laws without random fields");
   return false;
 }
 
@@ -321,8 +323,13 @@ sweep *simulation_state(simulation *s) {
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
   const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->state->dof + 1) : 0;
-  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) +
-         looks * (double)s->lattice->size + site * (double)s->lattice->size +
+  const rows *g = s->lattice;
+  const double list =
+      g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
+              : 0;
+  return (double)s->state->bytes + list * (double)g->size +
+         (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
+         site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
