@@ -212,9 +212,21 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
+/* Of irregular particles the checks take the lattice that has their volume. */
+static deck_lattice lattice_to_check(const deck_lattice *l) {
+  deck_lattice like = *l;
+  if (!deck_lattice_is_irregular(l)) return like;
+  const bool space = deck_lattice_dimensions(l) == 3;
+  like.kind = space ? "fcc" : "hexagonal";
+  like.shells = space ? 2 : 1;
+  like.horizon = 0;
+  if (!(like.spacing > 0)) like.spacing = 0.01;
+  return like;
+}
+
 /* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
 static bool obeys_mechanics(run *r, int lattice, model *opened) {
-  const deck_lattice *d = &r->deck->lattices[lattice];
+  const deck_lattice like = lattice_to_check(&r->deck->lattices[lattice]), *d = &like;
   const double *parameters = r->laws[lattice].parameters;
   const symbol *rho = opened->law->rho;
   double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
@@ -230,10 +242,13 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
                                .weight = 1};
   diagnostics found;
   diag_begin(&found, &opened->sources);
+  const bool irregular = opened->law->irregular;
+  opened->law->irregular = false;
   bool good = physics_check(
       opened->law,
       &(physics_options){.parameters = parameters, .bonds = &bonds, .lattice = d, .effort = 0.5},
       &found, NULL);
+  opened->law->irregular = irregular;
   tell(r, &found);
   diag_clear(&found);
   return good;
