@@ -212,21 +212,23 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
-/* Of irregular particles the checks take the lattice that has their volume. */
-static deck_lattice lattice_to_check(const deck_lattice *l) {
-  deck_lattice like = *l;
-  if (!deck_lattice_is_irregular(l)) return like;
-  const bool space = deck_lattice_dimensions(l) == 3;
+/* Laws are checked on perfect lattices: for particles that stand on none, on that of particles as large, with the neighbours
+   that the law counts on there. */
+static deck_lattice lattice_like(const deck_lattice *d) {
+  deck_lattice like = *d;
+  if (!deck_lattice_is_irregular(d)) return like;
+  const bool space = deck_lattice_dimensions(d) == 3;
   like.kind = space ? "fcc" : "hexagonal";
-  like.shells = space ? 2 : 1;
-  like.horizon = 0;
-  if (!(like.spacing > 0)) like.spacing = 0.01;
+  like.spacing = d->spacing > 0 ? d->spacing : 0.01; /* what a file will say is not known yet */
+  like.shells = d->horizon > 0 || !space ? 0 : 2;
+  like.neighbours = 0;
   return like;
 }
 
 /* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
 static bool obeys_mechanics(run *r, int lattice, model *opened) {
-  const deck_lattice like = lattice_to_check(&r->deck->lattices[lattice]), *d = &like;
+  const deck_lattice like = lattice_like(&r->deck->lattices[lattice]), *d = &like;
+  const bool irregular = opened->law->irregular;
   const double *parameters = r->laws[lattice].parameters;
   const symbol *rho = opened->law->rho;
   double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
@@ -242,7 +244,6 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
                                .weight = 1};
   diagnostics found;
   diag_begin(&found, &opened->sources);
-  const bool irregular = opened->law->irregular;
   opened->law->irregular = false;
   bool good = physics_check(
       opened->law,
