@@ -16,6 +16,8 @@ enum {
   ALWAYS_SPLIT_TO = 6
 };
 
+#define ROUGH 1e-3 /* tolerance of cells whose volumes are not kept */
+
 /* --- the set ---------------------------------------------------------------------------------- */
 
 static void widen(solid *s, const deck_shape *shape) {
@@ -294,15 +296,19 @@ static cell_moments fill_polygon(const filling *f) {
 
 /* --- in space: along rays from the point to the faces ----------------------------------------- */
 
+typedef struct beam { /* to a triangle */
+  cell_moments filled;
+  bool whole; /* no ray leaves the solid */
+} beam;
+
 /* The rays to a triangle of a face, corners seen from the point: what of their tetrahedron is filled, by the rule of
    three points that is exact to the second power (Strang and Fix 1973). */
-static cell_moments rays(const filling *f, const double corners[3][3], bool *whole) {
+static beam rays(const filling *f, const double corners[3][3]) {
   const double *p = corners[0], *q = corners[1], *r = corners[2];
   const double volume = (p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) +
                          p[2] * (q[0] * r[1] - q[1] * r[0])) /
                         6;
-  cell_moments m = {0};
-  *whole = true;
+  beam b = {.whole = true};
   for (int k = 0; k < 3; k++) {
     double to[3], end[3], sum[2];
     for (int c = 0; c < 3; c++) {
@@ -310,12 +316,12 @@ static cell_moments rays(const filling *f, const double corners[3][3], bool *who
       end[c] = f->at[c] + to[c];
     }
     fill_line(f->desk, f->at, end, 3, sum);
-    *whole &= sum[0] > 1 - 1e-9;
-    m.size += volume * sum[0] / 3;
+    b.whole &= sum[0] > 1 - 1e-9;
+    b.filled.size += volume * sum[0] / 3;
     for (int c = 0; c < 3; c++)
-      m.first[c] += 0.75 * to[c] * volume * sum[1] / 3;
+      b.filled.first[c] += 0.75 * to[c] * volume * sum[1] / 3;
   }
-  return m;
+  return b;
 }
 
 /* Corner triangles and the middle one of a triangle halved at its sides. */
@@ -328,21 +334,21 @@ static void quarter(const double corners[3][3], double parts[4][3][3]) {
     }
 }
 
-static cell_moments refine(const filling *f, const double corners[3][3], int quarterings) {
+static cell_moments refine(const filling *f, const double corners[3][3], const beam *first,
+                           int quarterings) {
   double parts[4][3][3];
-  bool whole, ignored;
-  const cell_moments first = rays(f, corners, &whole);
-  if (quarterings == 0 || (whole && f->roughly)) return first;
+  beam part[4];
   cell_moments sum = {0};
+  if (quarterings == 0 || (first->whole && f->roughly)) return first->filled;
   quarter(corners, parts);
   for (int k = 0; k < 4; k++) {
-    const cell_moments m = rays(f, parts[k], &ignored);
-    add_scaled(&sum, 1, &m);
+    part[k] = rays(f, parts[k]);
+    add_scaled(&sum, 1, &part[k].filled);
   }
-  if (agree(f, &sum, &first)) return sum;
+  if (agree(f, &sum, &first->filled)) return sum;
   sum = (cell_moments){0};
   for (int k = 0; k < 4; k++) {
-    const cell_moments m = refine(f, parts[k], quarterings - 1);
+    const cell_moments m = refine(f, parts[k], &part[k], quarterings - 1);
     add_scaled(&sum, 1, &m);
   }
   return sum;
@@ -360,7 +366,8 @@ static cell_moments fill_polyhedron(const filling *f) {
       double corners[3][3];
       for (int c = 0; c < 3; c++)
         memcpy(corners[c], p->point[ends[c]], sizeof corners[c]);
-      const cell_moments part = refine(f, corners, MOST_QUARTERINGS);
+      const beam first = rays(f, corners);
+      const cell_moments part = refine(f, corners, &first, MOST_QUARTERINGS);
       add_scaled(&sum, 1, &part);
     }
   return sum;
