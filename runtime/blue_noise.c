@@ -166,14 +166,14 @@ static void move(voronoi_points *p, const solid *s, double *const centroid[3]) {
   }
 }
 
-void blue_noise_fill(voronoi_points *p, const solid *s, double size, uint64_t seed) {
+void blue_noise_fill(voronoi_points *p, const solid *s, uint64_t seed) {
   const size_t bytes = (size_t)p->count * sizeof(double);
   double *volume = must_alloc(bytes), *centroid[3] = {0};
   for (int c = 0; c < p->dimensions; c++)
     centroid[c] = must_alloc(bytes);
   throw_all(p, s, seed);
   for (int n = 0; n < LLOYD_STEPS; n++) {
-    voronoi_measure(p, s, size, lloyd_tolerance[p->dimensions], volume, centroid);
+    voronoi_measure(p, s, lloyd_tolerance[p->dimensions], volume, centroid);
     move(p, s, centroid);
   }
   free(volume);

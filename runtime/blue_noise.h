@@ -8,8 +8,8 @@
 #include "runtime/solid.h"
 #include "runtime/voronoi.h"
 
-/* Places p->count points in the body, whose size is given, at p->at[dimensions][count]; p->spacing is that of the hexagonal
+/* Places p->count points in the body at p->at[dimensions][count]; p->spacing is that of the hexagonal
    or fcc lattice of as many. All lie in the body. The same bits for the same seed, whatever the number of threads. */
-void blue_noise_fill(voronoi_points *p, const solid *s, double size, uint64_t seed);
+void blue_noise_fill(voronoi_points *p, const solid *s, uint64_t seed);
 
 #endif

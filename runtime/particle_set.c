@@ -59,7 +59,7 @@ typedef struct maker {
 
 static void measure_cells(const maker *m, particle_set *set) {
   const voronoi_points p = points_of(set);
-  voronoi_measure(&p, &m->solid, m->size, cell_tolerance[set->dimensions], set->volume, NULL);
+  voronoi_measure(&p, &m->solid, cell_tolerance[set->dimensions], set->volume, NULL);
 }
 
 /* --- bodies ----------------------------------------------------------------------------------- */
@@ -129,7 +129,7 @@ static particle_set *fill(maker *m) {
   particle_set *set = set_new(dimensions, count);
   set->spacing = m->lattice->spacing;
   voronoi_points p = points_of(set);
-  blue_noise_fill(&p, &m->solid, m->size, (uint64_t)m->lattice->seed);
+  blue_noise_fill(&p, &m->solid, (uint64_t)m->lattice->seed);
   measure_cells(m, set);
   if (bodies_have_particles(m, set)) return set;
   particle_set_free(set);

@@ -8,7 +8,13 @@
 #include "runtime/shape.h"
 #include "runtime/site_marks.h"
 
-enum { MOST_HALVINGS = 40, MOST_QUARTERINGS = 6, FEW_SHAPES = 6, MOST_SPLITS = 12 };
+enum {
+  MOST_HALVINGS = 40,
+  MOST_QUARTERINGS = 6,
+  FEW_SHAPES = 6,
+  MOST_SPLITS = 15,
+  ALWAYS_SPLIT_TO = 6
+};
 
 /* --- the set ---------------------------------------------------------------------------------- */
 
@@ -149,12 +155,20 @@ static void fill_line(solid_desk *w, const double *a, const double *b, int power
   }
 }
 
+bool solid_meets(solid_desk *w, const double a[3], const double b[3]) {
+  double sum[2];
+  if (w->near.body_count == 0) return false;
+  fill_line(w, a, b, 1, sum);
+  return sum[0] > 0;
+}
+
 /* A cell that is being measured. */
 typedef struct filling {
   solid_desk *desk;
   const cell *cell;
   const double *at;
   double tolerance; /* m^2, m^3 */
+  bool roughly;     /* a triangle all of whose rays are whole is not looked at again */
 } filling;
 
 static void add_scaled(cell_moments *sum, double factor, const cell_moments *m) {
@@ -282,12 +296,13 @@ static cell_moments fill_polygon(const filling *f) {
 
 /* The rays to a triangle of a face, corners seen from the point: what of their tetrahedron is filled, by the rule of
    three points that is exact to the second power (Strang and Fix 1973). */
-static cell_moments rays(const filling *f, const double corners[3][3]) {
+static cell_moments rays(const filling *f, const double corners[3][3], bool *whole) {
   const double *p = corners[0], *q = corners[1], *r = corners[2];
   const double volume = (p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) +
                          p[2] * (q[0] * r[1] - q[1] * r[0])) /
                         6;
   cell_moments m = {0};
+  *whole = true;
   for (int k = 0; k < 3; k++) {
     double to[3], end[3], sum[2];
     for (int c = 0; c < 3; c++) {
@@ -295,6 +310,7 @@ static cell_moments rays(const filling *f, const double corners[3][3]) {
       end[c] = f->at[c] + to[c];
     }
     fill_line(f->desk, f->at, end, 3, sum);
+    *whole &= sum[0] > 1 - 1e-9;
     m.size += volume * sum[0] / 3;
     for (int c = 0; c < 3; c++)
       m.first[c] += 0.75 * to[c] * volume * sum[1] / 3;
@@ -312,20 +328,22 @@ static void quarter(const double corners[3][3], double parts[4][3][3]) {
     }
 }
 
-static cell_moments refine(const filling *f, const double corners[3][3], cell_moments whole,
-                           int quarterings) {
+static cell_moments refine(const filling *f, const double corners[3][3], int quarterings) {
   double parts[4][3][3];
-  cell_moments m[4], sum = {0};
+  bool whole, ignored;
+  const cell_moments first = rays(f, corners, &whole);
+  if (quarterings == 0 || (whole && f->roughly)) return first;
+  cell_moments sum = {0};
   quarter(corners, parts);
   for (int k = 0; k < 4; k++) {
-    m[k] = rays(f, parts[k]);
-    add_scaled(&sum, 1, &m[k]);
+    const cell_moments m = rays(f, parts[k], &ignored);
+    add_scaled(&sum, 1, &m);
   }
-  if (quarterings == 0 || agree(f, &sum, &whole)) return sum;
+  if (agree(f, &sum, &first)) return sum;
   sum = (cell_moments){0};
   for (int k = 0; k < 4; k++) {
-    m[k] = refine(f, parts[k], m[k], quarterings - 1);
-    add_scaled(&sum, 1, &m[k]);
+    const cell_moments m = refine(f, parts[k], quarterings - 1);
+    add_scaled(&sum, 1, &m);
   }
   return sum;
 }
@@ -342,7 +360,7 @@ static cell_moments fill_polyhedron(const filling *f) {
       double corners[3][3];
       for (int c = 0; c < 3; c++)
         memcpy(corners[c], p->point[ends[c]], sizeof corners[c]);
-      const cell_moments part = refine(f, corners, rays(f, corners), MOST_QUARTERINGS);
+      const cell_moments part = refine(f, corners, MOST_QUARTERINGS);
       add_scaled(&sum, 1, &part);
     }
   return sum;
@@ -374,13 +392,13 @@ cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const doub
   const cell_moments whole = cell_measure(c);
   if (w->near.body_count == 0) return (cell_moments){0};
   if (lies_inside(&w->near, c, at)) return whole;
-  const filling f = {w, c, at, tolerance * whole.size};
+  const filling f = {w, c, at, tolerance * whole.size, tolerance >= ROUGH};
   return s->dimensions == 2 ? fill_polygon(&f) : fill_polyhedron(&f);
 }
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
-/* Boxes with several shapes are halved across their longest side: their parts have fewer. */
+/* Boxes are halved across their longest side: parts are even, and have fewer shapes. */
 static double size_in_box(const solid *s, solid_desk *w, cell *c, const double lower[3],
                           const double upper[3], double tolerance, int splits) {
   double at[3] = {0, 0, 0}, below[3] = {0, 0, 0}, above[3] = {0, 0, 0};
@@ -393,7 +411,8 @@ static double size_in_box(const solid *s, solid_desk *w, cell *c, const double l
   }
   cell_set_box(c, below, above);
   find_near(s, w, at, c->reach);
-  if (w->near.body_count + w->near.notch_count <= FEW_SHAPES || splits == 0)
+  if ((splits <= ALWAYS_SPLIT_TO && w->near.body_count + w->near.notch_count <= FEW_SHAPES) ||
+      splits == 0)
     return solid_fill(s, w, c, at, tolerance).size;
   double middle[3] = {lower[0], lower[1], lower[2]}, end[3] = {upper[0], upper[1], upper[2]};
   middle[longest] = end[longest] = at[longest];

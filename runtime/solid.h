@@ -37,6 +37,9 @@ void solid_desk_end(solid_desk *w);
 cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const double at[3],
                         double tolerance);
 
+/* True when some of the straight line a-b lies in the solid; both lie in the cell that was filled last. */
+bool solid_meets(solid_desk *w, const double a[3], const double b[3]);
+
 /* m^2 or m^3 of the whole, to `tolerance` of it. */
 double solid_size(const solid *s, double tolerance);
 

@@ -147,12 +147,54 @@ static void begin_cell(cutter *w, const solid *s, const double at[3], double rea
   cell_set_box(&w->cell, lower, upper);
 }
 
-/* The cell reaches a side of the box that it was begun with, not one of the bodies': more may belong to it. */
-static bool is_open(const cutter *w, double reach) {
-  double lower[3], upper[3];
-  cell_extent(&w->cell, lower, upper);
-  for (int c = 0; c < w->cell.dimensions; c++)
-    if (lower[c] <= -reach || upper[c] >= reach) return true;
+/* Side of the box that the cell was begun with, 2 c for the lower one along axis c, 2 c + 1 for the upper, on which all
+   these points lie; -1 when there is none. Sides that were drawn in to the bodies' box do not count. */
+static int side_of(const cell *c, const int *points, int count, double reach) {
+  for (int side = 0; side < 2 * c->dimensions; side++) {
+    const double sign = side % 2 ? 1 : -1;
+    int on = 0;
+    while (on < count && sign * c->now.point[points[on]][side / 2] >= reach)
+      on++;
+    if (on == count) return side;
+  }
+  return -1;
+}
+
+static bool line_is_filled(cutter *w, const double at[3], const double *p, const double *q) {
+  const double a[3] = {at[0] + p[0], at[1] + p[1], at[2] + p[2]};
+  const double b[3] = {at[0] + q[0], at[1] + q[1], at[2] + q[2]};
+  return solid_meets(&w->desk, a, b);
+}
+
+/* Lines to the corners from their mean, and from corner to corner. */
+static bool face_is_filled(cutter *w, const double at[3], const int *points, int count) {
+  double mean[3] = {0, 0, 0};
+  for (int k = 0; k < count; k++)
+    for (int c = 0; c < 3; c++)
+      mean[c] += w->cell.now.point[points[k]][c] / count;
+  for (int k = 0; k < count; k++) {
+    const double *p = w->cell.now.point[points[k]];
+    const double *q = w->cell.now.point[points[k + 1 < count ? k + 1 : 0]];
+    if (line_is_filled(w, at, mean, p) || line_is_filled(w, at, p, q)) return true;
+  }
+  return false;
+}
+
+/* The cell ends inside the body at a side of the box that it was begun with: more belongs to it. */
+static bool is_open(cutter *w, const double at[3], double reach) {
+  const cell_part *part = &w->cell.now;
+  if (w->cell.reach < reach) return false;
+  for (int k = 0; w->cell.dimensions == 2 && k < part->point_count; k++) {
+    const int ends[2] = {k, k + 1 < part->point_count ? k + 1 : 0};
+    if (side_of(&w->cell, ends, 2, reach) >= 0 &&
+        line_is_filled(w, at, part->point[ends[0]], part->point[ends[1]]))
+      return true;
+  }
+  for (int f = 0; f < part->face_count; f++) {
+    const int *points = part->corner + part->face[f], count = part->face[f + 1] - part->face[f];
+    if (side_of(&w->cell, points, count, reach) >= 0 && face_is_filled(w, at, points, count))
+      return true;
+  }
   return false;
 }
 
@@ -176,7 +218,7 @@ static void measure_cell(const diagram *g, cutter *w, long k) {
   cut_by_neighbours(w, g->points, &g->bins, &g->vicinity, k, at);
   const cell_moments m = solid_fill(g->solid, &w->desk, &w->cell, at, g->tolerance);
   g->volume[k] = m.size;
-  g->open[k] = is_open(w, g->reach);
+  g->open[k] = is_open(w, at, g->reach);
   for (int c = 0; g->centroid && c < g->points->dimensions; c++)
     g->centroid[c][k] = m.size > 0 ? at[c] + m.first[c] / m.size : at[c];
 }
@@ -204,13 +246,6 @@ static bool any_open(const diagram *g) {
   return false;
 }
 
-static double sum_of(const double *x, long count) {
-  double sum = 0;
-  for (long k = 0; k < count; k++)
-    sum += x[k];
-  return sum;
-}
-
 /* Farther than this from each other are no two places of the body and the points. */
 static double farthest(const diagram *g) {
   double square = 0;
@@ -223,8 +258,8 @@ static double farthest(const diagram *g) {
   return sqrt(square);
 }
 
-void voronoi_measure(const voronoi_points *p, const solid *s, double size, double tolerance,
-                     double *volume, double *const centroid[3]) {
+void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, double *volume,
+                     double *const centroid[3]) {
   diagram g = {p, s, .tolerance = tolerance, .volume = volume, .centroid = centroid};
   if (p->count == 0) return;
   bins_begin(&g.bins, p->dimensions, p->at, p->count, BOX_SIZE * p->spacing);
@@ -235,8 +270,7 @@ void voronoi_measure(const voronoi_points *p, const solid *s, double size, doubl
     g.vicinity = vicinity_of(&g.bins, 2 * g.reach * sqrt(p->dimensions) / g.bins.size);
     measure_open_cells(&g);
     free(g.vicinity.boxes);
-    if (g.reach >= all || !any_open(&g) || sum_of(volume, p->count) >= (1 - 10 * tolerance) * size)
-      break;
+    if (g.reach >= all || !any_open(&g)) break;
   }
   free(g.open);
   bins_end(&g.bins);

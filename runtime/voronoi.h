@@ -16,10 +16,10 @@ typedef struct voronoi_points {
 
 /* volume[count] in m^2 or m^3 and, unless that is NULL, centroid[dimensions][count], which may lie out of a body that is
    not convex. Cells are exact up to rounding in a box and wherever they lie wholly inside a body; others are so to
-   `tolerance` of a cell. A point outside of the body has what of the body is nearest to it. `size` is the body's (solid_size):
-   cells are let grow until they add up to it. No two points coincide. */
-void voronoi_measure(const voronoi_points *p, const solid *s, double size, double tolerance,
-                     double *volume, double *const centroid[3]);
+   `tolerance` of a cell. A point outside of the body has what of the body is nearest to it.
+   Where points leave gaps, cells are let grow until they end. No two points coincide. */
+void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, double *volume,
+                     double *const centroid[3]);
 
 /* The first pair of points, by the number of the first, that are less than `distance` apart. False when there is none. */
 bool voronoi_too_near(const voronoi_points *p, double distance, long pair[2]);
