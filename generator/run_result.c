@@ -86,11 +86,12 @@ void fingerprint(run *r) {
   for (int k = 0; k < r->deck->lattice_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
                         r->laws[k].law->key);
-  for (int k = 0; k < r->deck->lattice_count; k++) {
+  text = arena_printf(r->memory, "%s%s", text, r->deck->identity);
+  for (int k = 0; k < r->deck->lattice_count; k++) { /* a file may have changed */
     const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
-    if (particles) text = arena_printf(r->memory, "%sparticles %016" PRIx64 "\n", text, particles);
+    if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
   }
-  r->fingerprint = arena_printf(r->memory, "%s%s", text, r->deck->identity);
+  r->fingerprint = text;
 }
 
 /* --- result ----------------------------------------------------------------------------------- */

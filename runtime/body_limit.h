@@ -1,6 +1,7 @@
 /* Largest stable time step of a law of families on the particles at hand, all of them as they stand: where no lattice repeats
    itself there is no wave to look for. Forces come from the law's own step in the virgin state; the largest frequency is the
-   largest eigenvalue of M^-1/2 K M^-1/2 by the method of Lanczos (1950), from the same start every time. */
+   largest eigenvalue of M^-1/2 K M^-1/2 by the method of Lanczos (1950), from the same start every time. K is taken to be
+   symmetric, as it is where forces follow from an energy. */
 #ifndef PERILAT_RUNTIME_BODY_LIMIT_H
 #define PERILAT_RUNTIME_BODY_LIMIT_H
 
