@@ -7,7 +7,11 @@
 
    Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first `directions`, in the
    order of bravais_family, are those whose bonds a site owns: they lie in a higher layer, else in a higher row, else
-   further along the row. */
+   further along the row.
+
+   Particles that stand on no lattice are rows with a list (scattered.h): sites of all rows one after the other, each with
+   neighbours of its own. Particles, and with them results, are in the order of rows; on lists in that in which they were
+   given. */
 #ifndef PERILAT_RUNTIME_ROWS_H
 #define PERILAT_RUNTIME_ROWS_H
 
@@ -21,12 +25,11 @@
 
 /* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the bonds of a particle those
    it owns have different numbers below `directions`, those others own have different numbers from there on, and
-   a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. */
+   a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. Where there
+   is no neighbour of a number, an absent site without bonds stands for it, at a chord of a spacing along x. */
 typedef struct neighbour_list {
-  int32_t *
-      neighbour; /* [2 directions][size] from a site to its neighbour: how much further; where there is none, to an
-                         absent site without bonds */
-  uint64_t *incoming;        /* [size] bit k: bond k + directions exists */
+  int32_t *neighbour; /* [2 directions][size] how much further the neighbour stands than the site */
+  uint64_t *incoming; /* [size] bit k: bond k + directions exists */
   double *length, *chord[3]; /* [2 directions][size] m; of reference chords to the neighbours */
 } neighbour_list;
 
@@ -52,9 +55,8 @@ typedef struct rows {
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space */
-  double mass,
-      inertia; /* set from rho by the simulation: kg, kg m^2; of the mean particle on lists */
-  neighbour_list *list;            /* NULL on lattices */
+  double mass, inertia;       /* kg, kg m^2: set from rho by the simulation; on lists their mean */
+  neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
   uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
   uint64_t *held_bonds;            /* [size] bit k: the damage of the owned bond k stays as it is */
@@ -62,9 +64,7 @@ typedef struct rows {
   unsigned char *present;          /* [size] the site exists */
   double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
   long particle_count, bond_count;
-  int32_t *
-      particle_site; /* [particle_count] site of each particle, in the order of results: that of rows, on lists that in
-                             which the particles were given */
+  int32_t *particle_site;      /* [particle_count] site of each particle, in the order of results */
   int32_t *site_particle;      /* [size] particle of each site, or -1 */
   double width, height, depth; /* extent of the present sites along x, y and z, m */
 } rows;
