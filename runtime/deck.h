@@ -33,7 +33,8 @@ typedef struct deck_lattice {
   deck_item item;
   const char *name;
   const char *kind; /* "hexagonal", "square", "cubic", "fcc"; "blue_noise", "particles" */
-  double spacing;   /* m; of particles on no lattice: of the hexagonal or fcc lattice with as large particles; 0: from
+  double
+      spacing; /* m; of particles on no lattice: of the hexagonal or fcc lattice with as large particles; 0: from
                        the file */
   double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
   int shells;       /* 0: the nearest neighbours */

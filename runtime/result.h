@@ -101,7 +101,7 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit, size_t unit_size, char *error, size_t size);
 double *result_read_reference(result_file *f, long *particles,
-                              int *dimensions); /* [N][2] or [N][3] */
+                              int *dimensions);              /* [N][2] or [N][3] */
 double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: the first */
