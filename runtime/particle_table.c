@@ -13,7 +13,8 @@
 #include "dsl/units.h"
 #include "runtime/result.h"
 
-#define LONGEST ((long long)1 << 31) /* bytes: places in the text are spans */
+#define FARTHEST 1e30                 /* m, m^2, m^3: squares and cubes of sums are finite */
+#define LONGEST  ((long long)1 << 31) /* bytes: places in the text are spans */
 
 enum { X, Y, Z, VOLUME, AREA, COLUMNS };
 static const char *const column_names[] = {"x", "y", "z", "volume", "area"};
@@ -245,6 +246,9 @@ static bool read_number(const reader *r, field f, int column, double *value) {
   } else if (!isfinite(*value)) {
     diag_report(r->d, DIAG_BAD_NUMBER, text_span(r, f.from, f.to), "`%s` is not finite here",
                 column_names[column]);
+  } else if (fabs(*value) > FARTHEST) {
+    diag_report(r->d, DIAG_BAD_NUMBER, text_span(r, f.from, f.to), "`%s` is too large here",
+                column_names[column]);
   } else if (column >= VOLUME && !(*value > 0)) {
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, text_span(r, f.from, f.to), "`%s` must be positive",
                 column_names[column]);
@@ -330,12 +334,13 @@ static bool take_places(const reader *r, const double *reference, int dimensions
     t->at[c] = must_alloc(((size_t)t->count + 1) * sizeof(double));
     for (long k = 0; k < t->count; k++) {
       t->at[c][k] = reference[k * dimensions + c];
-      if (!isfinite(t->at[c][k])) return refuse_file(r, "a place in it is not finite");
+      if (!(fabs(t->at[c][k]) <= FARTHEST))
+        return refuse_file(r, "a place in it is not finite, or too far away");
     }
   }
   for (long k = 0; t->volume && k < t->count; k++) {
     if (t->dimensions == 2) t->volume[k] /= r->thickness;
-    if (!(t->volume[k] > 0) || !isfinite(t->volume[k]))
+    if (!(t->volume[k] > 0 && t->volume[k] <= FARTHEST))
       return refuse_file(r, "a volume in it is not positive");
   }
   return true;

@@ -8,7 +8,8 @@
 #include "runtime/bins.h"
 
 #define FIRST_REACH 2.5 /* spacings: half the side of the box that a cell begins with */
-#define BOX_SIZE    1.0 /* spacings: of the boxes that points are sorted into */
+enum { FEW = 48 };
+#define BOX_SIZE 1.0 /* spacings: of the boxes that points are sorted into */
 
 /* --- boxes around a box, nearest first -------------------------------------------------------- */
 
@@ -84,12 +85,13 @@ static void place_of(const voronoi_points *p, long k, double at[3]) {
     at[c] = p->at[c][k];
 }
 
+/* Unless the plane half way to it passes by the cell. */
 static void add_candidate(cutter *w, const voronoi_points *p, long k, const double at[3]) {
   if (w->count == w->room) {
     w->room = 2 * w->room + 64;
     w->list = must_realloc(w->list, (size_t)w->room * sizeof *w->list);
   }
-  candidate *c = &w->list[w->count++];
+  candidate *c = &w->list[w->count];
   place_of(p, k, c->to);
   c->point = k;
   c->square = 0;
@@ -97,6 +99,7 @@ static void add_candidate(cutter *w, const voronoi_points *p, long k, const doub
     c->to[d] -= at[d];
     c->square += c->to[d] * c->to[d];
   }
+  if (c->square < 4 * w->cell.reach * w->cell.reach) w->count++;
 }
 
 static int nearest_first(const void *p, const void *q) {
@@ -105,8 +108,23 @@ static int nearest_first(const void *p, const void *q) {
   return (a->point > b->point) - (a->point < b->point);
 }
 
+/* The same order as nearest_first gives; short lists, as nearly all are, in less time. */
+static void sort_candidates(candidate *list, int count) {
+  if (count > FEW) {
+    qsort(list, (size_t)count, sizeof *list, nearest_first);
+    return;
+  }
+  for (int k = 1; k < count; k++) {
+    const candidate c = list[k];
+    int m = k;
+    for (; m > 0 && nearest_first(&c, &list[m - 1]) < 0; m--)
+      list[m] = list[m - 1];
+    list[m] = c;
+  }
+}
+
 static void cut_by_candidates(cutter *w) {
-  qsort(w->list, (size_t)w->count, sizeof *w->list, nearest_first);
+  sort_candidates(w->list, w->count);
   for (int k = 0; k < w->count; k++) {
     const candidate *c = &w->list[k];
     if (c->square >= 4 * w->cell.reach * w->cell.reach) break;

@@ -17,7 +17,8 @@ typedef struct voronoi_points {
 /* volume[count] in m^2 or m^3 and, unless that is NULL, centroid[dimensions][count], which may lie out of a body that is
    not convex. Cells are exact up to rounding in a box and wherever they lie wholly inside a body; others are so to
    `tolerance` of a cell. A point outside of the body has what of the body is nearest to it.
-   Where points leave gaps, cells are let grow until they end. No two points coincide. */
+   Where points leave gaps, cells are let grow until they end; a part of the body without any point of its own, more than two
+   spacings of void away from all, may belong to none. No two points coincide. */
 void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, double *volume,
                      double *const centroid[3]);
 

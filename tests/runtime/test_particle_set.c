@@ -256,6 +256,7 @@ static const bad_table bad_tables[] = {
     {"x,y,area\n1,2,3\n4,,6\n", "bad-value", "no value of `y`", 3, 3},
     {"x,y,area\n1,2,3\n4,5 mm,6\n", "bad-number", "`y` is not a number", 3, 3},
     {"x,y,area\n1,2,3\n4,1e999,6\n", "bad-number", "`y` is not finite", 3, 3},
+    {"x,y,area\n1,2,3\n4,5,1e40\n", "bad-number", "`area` is too large", 3, 5},
     {"x,y,area\n1,2,3\nnan,1,6\n", "bad-number", "`x` is not finite", 3, 1},
     {"x,y,area\n1,2,3\n4,5,0\n", "out-of-bounds", "`area` must be positive", 3, 5},
     {"x,y,area\n1,2,3\n4,5,6\n# here\n1,2.000001,9\n", "conflict", "line 2 and line 5", 5, 1},

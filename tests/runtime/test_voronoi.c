@@ -288,41 +288,52 @@ static void volumes_add_up_to_the_body(void **state) {
   }
 }
 
-/* Of places on a grid, each belongs to the cell of its nearest point; by all pairs. */
+enum { FEW_POINTS = 25, PLANE_STEPS = 600, SPACE_STEPS = 90 };
+
+static int nearest_of(const bench *b, const double at[3]) {
+  double least = INFINITY;
+  int nearest = 0;
+  for (int m = 0; m < FEW_POINTS; m++) {
+    double square_of = 0;
+    for (int d = 0; d < b->points.dimensions; d++)
+      square_of += (b->x[d][m] - at[d]) * (b->x[d][m] - at[d]);
+    if (square_of >= least) continue;
+    least = square_of;
+    nearest = m;
+  }
+  return nearest;
+}
+
+/* Of places on a grid, each counts for its nearest point; by all pairs. */
+static void count_places(const bench *b, double found[FEW_POINTS]) {
+  const int dimensions = b->points.dimensions;
+  const long steps = dimensions == 2 ? PLANE_STEPS : SPACE_STEPS;
+  double each = 1, step[3] = {0, 0, 0}, at[3] = {0, 0, 0};
+  for (int d = 0; d < dimensions; d++) {
+    step[d] = (b->solid.upper[d] - b->solid.lower[d]) / (double)steps;
+    each *= step[d];
+  }
+  for (long k = 0; k < (dimensions == 2 ? steps * steps : steps * steps * steps); k++) {
+    const long i[3] = {k % steps, k / steps % steps, k / (steps * steps)};
+    for (int d = 0; d < dimensions; d++)
+      at[d] = b->solid.lower[d] + ((double)i[d] + 0.5) * step[d];
+    if (solid_holds(&b->solid, at)) found[nearest_of(b, at)] += each;
+  }
+}
+
 static void cells_hold_what_is_nearest(void **state) {
   (void)state;
   body_case cases[32];
   const int count = body_cases(cases);
   for (int n = 0; n < count; n++) {
     const body_case *c = &cases[n];
+    double found[FEW_POINTS] = {0};
     bench *b = fill(c);
-    b->points.count = 25;
+    b->points.count = FEW_POINTS;
     measure(b, 1e-4);
-    enum { PLANE_STEPS = 600, SPACE_STEPS = 90 };
-    const int steps = c->dimensions == 2 ? PLANE_STEPS : SPACE_STEPS;
-    double found[25] = {0}, each = 1, step[3] = {0, 0, 0};
-    for (int d = 0; d < c->dimensions; d++) {
-      step[d] = (b->solid.upper[d] - b->solid.lower[d]) / steps;
-      each *= step[d];
-    }
-    for (long k = 0; k < (long)pow(steps, c->dimensions); k++) {
-      const long i[3] = {k % steps, k / steps % steps, k / ((long)steps * steps)};
-      double at[3] = {0, 0, 0}, least = INFINITY;
-      int nearest = 0;
-      for (int d = 0; d < c->dimensions; d++)
-        at[d] = b->solid.lower[d] + ((double)i[d] + 0.5) * step[d];
-      if (!solid_holds(&b->solid, at)) continue;
-      for (int m = 0; m < 25; m++) {
-        const double dx = b->x[0][m] - at[0], dy = b->x[1][m] - at[1],
-                     dz = c->dimensions == 3 ? b->x[2][m] - at[2] : 0;
-        const double square_of = dx * dx + dy * dy + dz * dz;
-        if (square_of >= least) continue;
-        least = square_of;
-        nearest = m;
-      }
-      found[nearest] += each;
-    }
-    for (int m = 0; m < 25; m++) /* the surface of a cell, a grid step thick, at random signs */
+    count_places(b, found);
+    for (int m = 0; m < FEW_POINTS;
+         m++) /* the surface of a cell, a grid step thick, at random signs */
       if (fabs(found[m] - b->volume[m]) > 0.004 * c->size)
         fail_msg("%s: cell %d has %.6g, by counting %.6g", c->what, m, b->volume[m], found[m]);
     end(b);
