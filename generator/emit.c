@@ -674,7 +674,7 @@ static void write_prelude(emitter *e) {
   c_text_add(e->out, "#pragma GCC diagnostic pop\n%s", own_macros);
 }
 
-static void find_uniforms(emitter *e) {
+void emit_find_uniforms(emitter *e) {
   e->uniform_of = must_calloc((size_t)e->node_count + 1, sizeof *e->uniform_of);
   for (int n = 0; n < e->node_count; n++)
     e->uniform_of[n] = -1;
@@ -685,7 +685,7 @@ static void find_uniforms(emitter *e) {
 char *emit_kernel(const kernel_plan *p, const char *key) {
   c_text out = {0};
   emitter e = {.plan = p, .graph = p->graph, .out = &out, .node_count = ir_count(p->graph)};
-  find_uniforms(&e);
+  emit_find_uniforms(&e);
   write_prelude(&e);
   write_parameters(&e);
   write_varying(&e);

@@ -58,6 +58,9 @@ const pass_root *emit_find_root(const emitter *e, pass_target target, int index)
 /* "; / * line 12 * /" and the end of the line. */
 void emit_line_end(emitter *e, ir_node n);
 
+/* Fills uniform_of; the caller frees it. */
+void emit_find_uniforms(emitter *e);
+
 /* --- emit_strip.c --- */
 
 void emit_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/emit.h"
 #include "generator/emit_parts.h"
 #include "generator/stages.h"
 
@@ -220,4 +221,39 @@ void emit_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *na
   c_text_add(e->out, "}\n\n");
   stages_free(s);
   emit_close(e);
+}
+
+/* --- what --dump=passes says ------------------------------------------------------------------ */
+
+static void describe_stages(const emitter *e, const stages *s, FILE *out) {
+  for (int k = 0; k < s->count; k++) {
+    const stage_cost *c = &s->cost[k];
+    fprintf(out,
+            "    loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
+            "%.0f cycles for eight bonds%s\n",
+            k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
+            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected" : "");
+  }
+}
+
+void emit_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out) {
+  static const signed char scopes[PASS_COUNT] = {
+#define X(pass, member, topology, task) [pass] = (topology) == STRIP_LIST ? IN_LIST : IN_ROWS,
+      STRIP_PASSES(X)
+#undef X
+  };
+  const pass *a = &p->passes[kind];
+  if (!scopes[kind] || !a->root_count) return;
+  c_text text = {0};
+  emitter e = {.plan = p, .graph = p->graph, .out = &text, .node_count = ir_count(p->graph)};
+  emit_find_uniforms(&e);
+  emit_open_roots(&e, (scope_kind)scopes[kind], a->roots, a->root_count);
+  stages *s = stages_plan(&e, p->cutting);
+  describe(s, &text);
+  fprintf(out, "  loops  %s\n", text.text);
+  describe_stages(&e, s, out);
+  stages_free(s);
+  emit_close(&e);
+  free(e.uniform_of);
+  free(text.text);
 }

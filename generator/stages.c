@@ -13,7 +13,13 @@ typedef struct price {
   int latency, operations, divisions;
 } price;
 
-enum { LOAD_LATENCY = 7, DIVIDER_CYCLES = 16, OPERATIONS_IN_FLIGHT = 130, STRIP_VECTORS = 18 };
+enum {
+  LOAD_LATENCY = 7,
+  DIVIDER_CYCLES = 16,
+  LOOP_CYCLES = 4, /* counting and addresses */
+  OPERATIONS_IN_FLIGHT = 130,
+  STRIP_VECTORS = 18 /* of a common row: a chain is waited for once at its end */
+};
 
 static price price_of(ir_op op) {
   switch (op) {
@@ -271,7 +277,7 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
   const int all = c.operations + c.loads + c.stores;
   c.cycles = most(most(0.5 * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   c.cycles = most(c.cycles, (double)c.chain * all / OPERATIONS_IN_FLIGHT);
-  c.cycles += (double)c.chain / STRIP_VECTORS;
+  c.cycles += LOOP_CYCLES + (double)c.chain / STRIP_VECTORS;
   return c;
 }
 

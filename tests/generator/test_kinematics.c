@@ -167,6 +167,29 @@ static void small_displacements_lose_nothing(void **state) {
   }
 }
 
+/* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord turned by about
+   atan(1/16), ends by about half a turn. */
+static void expected_and_far_rotations_meet(void **state) {
+  (void)state;
+  int near = 0, wrapped_ends = 0;
+  for (int n = 0; n < 20000; n++) {
+    bond_state b = random_state(1e-6);
+    double value[VALUE_COUNT], turn = atan(1.0 / 16) * (1 + spread(1e-9, 1e-1));
+    if (n % 2) turn = -turn;
+    b.u[1][0] = b.u[0][0] + cos(turn) * b.chord[0] - sin(turn) * b.chord[1] - b.chord[0];
+    b.u[1][1] = b.u[0][1] + sin(turn) * b.chord[0] + cos(turn) * b.chord[1] - b.chord[1];
+    b.phi[0] = turn + (double)PI * (1 + spread(1e-9, 1e-1));
+    b.phi[1] = turn + spread(1e-9, 1);
+    evaluate(&b, n % 4 < 2, value);
+    exact_bond x = exact(&b, 0);
+    assert_near(value[VALUE_THETA_I], x.theta[0], 8 * 0x1p-52 * (double)PI);
+    assert_near(value[VALUE_THETA_J], x.theta[1], 8 * 0x1p-52);
+    near += fabs(turn) < atan(1.0 / 16);
+    wrapped_ends += value[VALUE_THETA_I] < 0;
+  }
+  assert_true(near > 5000 && near < 15000 && wrapped_ends > 5000 && wrapped_ends < 15000);
+}
+
 static void rates_are_time_derivatives(void **state) {
   (void)state;
   for (int n = 0; n < 2000; n++) {
@@ -278,6 +301,7 @@ static void divides_nothing_on_rows(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(small_displacements_lose_nothing),
+      cmocka_unit_test(expected_and_far_rotations_meet),
       cmocka_unit_test(rates_are_time_derivatives),
       cmocka_unit_test(rigid_rotation_gives_nothing),
       cmocka_unit_test(exchanging_the_ends_changes_no_bit),
