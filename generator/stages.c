@@ -21,53 +21,18 @@ enum {
   STRIP_VECTORS = 18 /* of a common row: a chain is waited for once at its end */
 };
 
-static price price_of(ir_op op) {
-  switch (op) {
-  case IR_CONSTANT:
-  case IR_INPUT:
-    return (price){0, 0, 0};
-  case IR_NEG:
-  case IR_ABS:
-  case IR_AND:
-  case IR_OR:
-  case IR_NOT:
-    return (price){1, 1, 0};
-  case IR_SELECT:
-    return (price){2, 1, 0};
-  case IR_SIGN:
-    return (price){6, 4, 0};
-  case IR_MIN:
-  case IR_MAX:
-    return (price){8, 3, 0};
-  case IR_DIV:
-    return (price){24, 3, 1};
-  case IR_SQRT:
-    return (price){32, 3, 2};
-  case IR_INVERSE_ROOT:
-    return (price){48, 14, 0};
-  case IR_EXP:
-    return (price){75, 25, 0};
-  case IR_LOG:
-    return (price){100, 25, 1};
-  case IR_POW:
-    return (price){230, 90, 1};
-  case IR_CBRT:
-    return (price){110, 35, 0};
-  case IR_SIN:
-  case IR_COS:
-    return (price){75, 35, 0};
-  case IR_TAN:
-    return (price){110, 60, 1};
-  case IR_TANH:
-    return (price){110, 35, 1};
-  case IR_ATAN2:
-    return (price){100, 50, 1};
-  case IR_WRAP_ANGLE:
-    return (price){35, 10, 0};
-  default:
-    return (price){4, 1, 0}; /* additions, multiplications, comparisons */
-  }
-}
+/* clang-format off */
+static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
+    [IR_ADD] = {4, 1, 0},    [IR_SUB] = {4, 1, 0},    [IR_MUL] = {4, 1, 0},   [IR_DIV] = {24, 3, 1},
+    [IR_NEG] = {1, 1, 0},    [IR_ABS] = {1, 1, 0},    [IR_SQRT] = {32, 3, 2}, [IR_INVERSE_ROOT] = {48, 14, 0},
+    [IR_MIN] = {8, 3, 0},    [IR_MAX] = {8, 3, 0},    [IR_SIGN] = {6, 4, 0},  [IR_EXP] = {75, 25, 0},
+    [IR_LOG] = {100, 25, 1}, [IR_POW] = {230, 90, 1}, [IR_CBRT] = {110, 35, 0}, [IR_SIN] = {75, 35, 0},
+    [IR_COS] = {75, 35, 0},  [IR_TAN] = {110, 60, 1}, [IR_TANH] = {110, 35, 1}, [IR_ATAN2] = {100, 50, 1},
+    [IR_WRAP_ANGLE] = {35, 10, 0},
+    [IR_LT] = {4, 1, 0},     [IR_LE] = {4, 1, 0},     [IR_EQ] = {4, 1, 0},    [IR_AND] = {1, 1, 0},
+    [IR_OR] = {1, 1, 0},     [IR_NOT] = {1, 1, 0},    [IR_SELECT] = {2, 1, 0},
+};
+/* clang-format on */
 
 /* --- lines and their operands ----------------------------------------------------------------- */
 
@@ -132,7 +97,7 @@ static int finish_in(const planner *p, ir_node n, int stage) {
                                              : LOAD_LATENCY;
     start = larger(start, ready);
   }
-  return count ? start + price_of(ir_operation(p->e->graph, n)).latency : 0;
+  return count ? start + prices[ir_operation(p->e->graph, n)].latency : 0;
 }
 
 /* Every line as early as chains of at most `longest` cycles allow. */
@@ -267,7 +232,7 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
     c.loads += taken[n] || (mask[n] && is_loaded(e, n));
     c.stores += p->s->of[n] == stage && p->s->buffer[n] >= 0;
     if (!mask[n] || emit_is_uniform(e, n)) continue;
-    const price of = price_of(ir_operation(e->graph, n));
+    const price of = prices[ir_operation(e->graph, n)];
     c.operations += of.operations;
     c.divisions += of.divisions;
     c.chain = larger(c.chain, finish_in(p, n, stage));

@@ -13,7 +13,10 @@
 
 #include "generator/emit_parts.h"
 
-enum { STAGES_PART = 256, STAGES_PITCH = 280 /* not near a part of 4 KiB: stores would hold up loads */ };
+enum {
+  STAGES_PART = 256, /* bonds */
+  STAGES_PITCH = 280 /* doubles of a buffer; not near a part of 4 KiB: stores would hold up loads */
+};
 
 typedef struct stage_cost {
   int operations, divisions, loads, stores;
