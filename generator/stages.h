@@ -26,11 +26,11 @@ typedef struct stage_cost {
 
 typedef struct stages {
   int count;
-  int *of;      /* [node_count] stage that computes a node that has a line; -1: has none */
-  int *buffer;  /* [node_count] where it is kept for later stages; -1: it is not */
-  int *until;   /* [node_count] last stage that it is kept for; -1 */
+  int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
+  int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
+  int *until;  /* [node_count] last stage that it is kept for; -1 */
   int buffers;
-  int conditions; /* expected ones */
+  int conditions;   /* expected ones */
   stage_cost *cost; /* [count] */
   double cycles;    /* sum of the stages' */
   int whole_chain;  /* cycles of the chain of an uncut loop */
