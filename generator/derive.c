@@ -136,6 +136,8 @@ static ir_node of_operation(ir *g, const term *t) {
     return over(g, t->da, t->a);
   case IR_POW:
     return of_power(g, t);
+  case IR_INVERSE_ROOT:
+    return times(g, ir_mul(g, number(g, -0.5), ir_mul(g, t->q, ir_mul(g, t->q, t->q))), t->da);
   case IR_CBRT:
     return of_cube_root(g, t);
   case IR_SIN:

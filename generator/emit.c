@@ -158,7 +158,10 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
                                     "k",
                                     "to",
                                     "half",
-                                    "back"};
+                                    "back",
+                                    "last",
+                                    "kept",
+                                    "unusual"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -175,7 +178,7 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
   choose_names(e);
 }
 
-static void scope_open(emitter *e, scope_kind scope, const pass_root *roots, int root_count) {
+void emit_open_roots(emitter *e, scope_kind scope, const pass_root *roots, int root_count) {
   ir_node *nodes = must_alloc(((size_t)root_count + 1) * sizeof *nodes);
   for (int k = 0; k < root_count; k++)
     nodes[k] = roots[k].node;
@@ -257,13 +260,13 @@ static void write_comparison(emitter *e, ir_node n) {
 /* Logical nodes are doubles, 0 or 1, made by choices: gcc turns integers made of several
    comparisons into branches, and then the loop does not vectorise. This writes node n as C's
    condition. */
-static void write_condition(emitter *e, ir_node n) {
+void emit_condition(emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
   if (!e->name[n] && (op == IR_LT || op == IR_LE || op == IR_EQ)) {
     write_comparison(e, n);
   } else if (!e->name[n] && op == IR_NOT) {
     c_text_add(e->out, "!(");
-    write_condition(e, ir_operand(e->graph, n, 0));
+    emit_condition(e, ir_operand(e->graph, n, 0));
     c_text_add(e->out, ")");
   } else {
     write_operand(e, n, LEVEL_SUM);
@@ -274,18 +277,18 @@ static void write_condition(emitter *e, ir_node n) {
 static void write_logical(emitter *e, ir_node n) {
   switch (ir_operation(e->graph, n)) {
   case IR_AND:
-    write_condition(e, ir_operand(e->graph, n, 0));
+    emit_condition(e, ir_operand(e->graph, n, 0));
     c_text_add(e->out, " ? ");
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
     c_text_add(e->out, " : 0.0");
     break;
   case IR_OR:
-    write_condition(e, ir_operand(e->graph, n, 0));
+    emit_condition(e, ir_operand(e->graph, n, 0));
     c_text_add(e->out, " ? 1.0 : ");
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
     break;
   case IR_NOT:
-    write_condition(e, ir_operand(e->graph, n, 0));
+    emit_condition(e, ir_operand(e->graph, n, 0));
     c_text_add(e->out, " ? 0.0 : 1.0");
     break;
   default:
@@ -295,7 +298,11 @@ static void write_logical(emitter *e, ir_node n) {
 }
 
 static void write_select(emitter *e, ir_node n) {
-  write_condition(e, ir_operand(e->graph, n, 0));
+  if (e->usual && ir_is_expected(e->graph, ir_operand(e->graph, n, 0))) {
+    write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
+    return;
+  }
+  emit_condition(e, ir_operand(e->graph, n, 0));
   c_text_add(e->out, " ? ");
   write_operand(e, ir_operand(e->graph, n, 1), LEVEL_SUM);
   ir_node otherwise = ir_operand(e->graph, n, 2);
@@ -391,7 +398,7 @@ static void write_array(emitter *e, ir_node n) {
 
 /* What stands before the loop: values that are the same for all bonds, and the arrays of the
  * others. */
-static void write_inputs_before_loop(emitter *e) {
+void emit_inputs_before_loop(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
     if (!e->needed[n] || is_constant(e, n)) continue;
     if (emit_is_uniform(e, n)) {
@@ -456,140 +463,35 @@ void emit_lines(emitter *e) {
   }
 }
 
-/* --- passes over strips ----------------------------------------------------------------------- */
+/* --- roots and loops --------------------------------------------------------------------------- */
 
-static const pass_root *find_root(const emitter *e, pass_target target, int index) {
+const pass_root *emit_find_root(const emitter *e, pass_target target, int index) {
   for (int k = 0; k < e->root_count; k++)
     if (e->roots[k].target == target && e->roots[k].index == index) return &e->roots[k];
   return NULL;
 }
 
-static bool reads(const emitter *e, ir_source from, int index) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && emit_is_input(e, n) && ir_input_source(e->graph, n) == from &&
-        ir_input_index(e->graph, n) == index)
-      return true;
-  return false;
-}
-
-/* X(target, member, array name, how it is stored) */
-#define STRIP_TARGETS(X)                                                                           \
-  X(TO_FORCE, "force[%d]", "at_force_%d", ZERO)                                                    \
-  X(TO_FIELD, "field[%d]", "at_field_%d", KEEP)                                                    \
-  X(TO_DISSIPATED_STATE, "dissipated_state", "at_dissipated_state", ADD)                           \
-  X(TO_DISSIPATED_RATE, "dissipated_rate", "at_dissipated_rate", ADD)                              \
-  X(TO_OBSERVED, "observed[%d]", "at_observed_%d", ZERO)
-
-typedef enum store_kind { ZERO, KEEP, ADD } store_kind; /* what an absent bond leaves behind */
-
-typedef struct strip_target {
-  const char *member, *array;
-  store_kind store;
-} strip_target;
-
-static const strip_target strip_targets[] = {
-#define X(target, member, array, store) [target] = {member, array, store},
-    STRIP_TARGETS(X)
-#undef X
-};
-
-/* A format of the table with its index, where it has one. */
-static void write_indexed(emitter *e, const char *format, int index) {
-  const char *mark = strstr(format, "%d");
-  if (mark)
-    c_text_add(e->out, "%.*s%d%s", (int)(mark - format), format, index, mark + 2);
-  else
-    c_text_add(e->out, "%s", format);
-}
-
-static void write_target_array(emitter *e, pass_target target, int index, const char *qualifier) {
-  c_text_add(e->out, "  %sdouble *restrict ", qualifier);
-  write_indexed(e, strip_targets[target].array, index);
-  c_text_add(e->out, " = strip->");
-  write_indexed(e, strip_targets[target].member, index);
-  c_text_add(e->out, ";\n");
-}
-
-static void write_output_arrays(emitter *e) {
-  for (int f = 0; f < e->plan->law->fields.count; f++)
-    if (!find_root(e, TO_FIELD, f) && reads(e, IR_FROM_FIELD, f))
-      write_target_array(e, TO_FIELD, f, "const ");
-  for (int k = 0; k < e->root_count; k++)
-    write_target_array(e, e->roots[k].target, e->roots[k].index, "");
-}
-
-/* Absent bonds are evaluated too (no branch), and what they gave is dropped here. */
-static void write_store(emitter *e, const pass_root *r) {
-  const strip_target *target = &strip_targets[r->target];
-  c_text_add(e->out, "    ");
-  write_indexed(e, target->array, r->index);
-  c_text_add(e->out, target->store == ADD ? "[q] += present != 0 ? " : "[q] = present != 0 ? ");
-  write_operand(e, r->node, LEVEL_SUM);
-  c_text_add(e->out, " : ");
-  if (target->store == KEEP) {
-    write_indexed(e, target->array, r->index);
-    c_text_add(e->out, "[q];\n");
-  } else
-    c_text_add(e->out, "0.0;\n");
-}
-
-static void write_loop_begin(emitter *e) {
+void emit_loop_begin(emitter *e) {
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
-}
-
-/* `present` has 32 bits on purpose: gcc then takes twice as many bonds at a time, as pairs of
-   vectors, and the divisions of one hide those of the other (5 to 40 % faster on all laws tried).
- */
-static void write_strip_head(emitter *e, const char *name, bool rare) {
-  c_text_add(
-      e->out,
-      "%sstatic void %s(const pl_law *law, const double *uniforms, const pl_strip *strip) {\n"
-      "  (void)law, (void)uniforms;\n"
-      "  const long count = %s;\n"
-      "  const int64_t *restrict flags = strip->flags;\n"
-      "  const int32_t present_bit = (int32_t)PL_PRESENT(strip->direction);\n",
-      rare ? "PL_RARE " : "", name,
-      e->scope == IN_LIST ? "strip->count" : "strip->count / PL_LANES * PL_LANES");
-  if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
-    c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
-  if (e->scope == IN_LIST)
-    c_text_add(e->out, "  const int32_t *restrict i = strip->i, *restrict j = strip->j;\n"
-                       "  (void)i, (void)j;\n");
-  if (!e->root_count) c_text_add(e->out, "  (void)flags, (void)present_bit;\n");
-  write_inputs_before_loop(e);
-  write_output_arrays(e);
-}
-
-static void write_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name) {
-  scope_open(e, scope, p->roots, p->root_count);
-  write_strip_head(e, name, p->kind == PASS_LIST_OBSERVE);
-  write_loop_begin(e);
-  emit_lines(e);
-  if (p->root_count)
-    c_text_add(e->out, "    const int32_t present = (int32_t)flags[q] & present_bit;\n");
-  for (int k = 0; k < p->root_count; k++)
-    write_store(e, &p->roots[k]);
-  c_text_add(e->out, "  }\n}\n\n");
-  emit_close(e);
 }
 
 /* --- the law alone ---------------------------------------------------------------------------- */
 
 /* `states` and `tangent`. Planes without a root (moments of a central law) are zero. */
 static void write_states_pass(emitter *e, const pass *p, const char *name, int planes) {
-  scope_open(e, IN_STATES, p->roots, p->root_count);
+  emit_open_roots(e, IN_STATES, p->roots, p->root_count);
   c_text_add(e->out,
              "PL_RARE static void %s(const pl_law *law, const double *uniforms, long count,\n"
              "    const double *const *in, double *const *out) {\n"
              "  (void)law, (void)uniforms, (void)in;\n",
              name);
-  write_inputs_before_loop(e);
+  emit_inputs_before_loop(e);
   for (int k = 0; k < planes; k++)
     c_text_add(e->out, "  double *restrict at_out_%d = out[%d];\n", k, k);
-  write_loop_begin(e);
+  emit_loop_begin(e);
   emit_lines(e);
   for (int k = 0; k < planes; k++) {
-    const pass_root *r = find_root(e, TO_OUT, k);
+    const pass_root *r = emit_find_root(e, TO_OUT, k);
     c_text_add(e->out, "    at_out_%d[q] = ", k);
     if (r)
       write_operand(e, r->node, LEVEL_CHOICE);
@@ -608,7 +510,7 @@ static void write_prepare(emitter *e) {
   pass_root *roots = must_calloc((size_t)count + 1, sizeof *roots);
   for (int k = 0; k < count; k++)
     roots[k] = (pass_root){e->plan->uniforms[k], TO_OUT, k};
-  scope_open(e, IN_PREPARE, roots, count);
+  emit_open_roots(e, IN_PREPARE, roots, count);
   c_text_add(e->out, "PL_RARE static void prepare(const pl_law *law, const double *parameters,\n"
                      "    const pl_bond_class *bonds, double *uniforms) {\n"
                      "  (void)law, (void)parameters, (void)bonds, (void)uniforms;\n");
@@ -626,7 +528,7 @@ static void write_prepare(emitter *e) {
 /* `lower[3] = 0.0; low_open[3] = 1;` */
 static void write_bound(emitter *e, int parameter, pass_target target, const char *value,
                         const char *open, bool is_open, const char *sign) {
-  const pass_root *r = find_root(e, target, parameter);
+  const pass_root *r = emit_find_root(e, target, parameter);
   c_text_add(e->out, "  %s[%d] = ", value, parameter);
   if (r)
     write_operand(e, r->node, LEVEL_CHOICE);
@@ -638,7 +540,7 @@ static void write_bound(emitter *e, int parameter, pass_target target, const cha
 static void write_bounds(emitter *e) {
   const pass *p = &e->plan->passes[PASS_BOUNDS];
   const symbol_list *parameters = &e->plan->law->parameters;
-  scope_open(e, IN_BOUNDS, p->roots, p->root_count);
+  emit_open_roots(e, IN_BOUNDS, p->roots, p->root_count);
   c_text_add(
       e->out,
       "PL_RARE static void bounds(const pl_law *law, const double *parameters, double *lower,\n"
@@ -772,7 +674,7 @@ static void write_prelude(emitter *e) {
   c_text_add(e->out, "#pragma GCC diagnostic pop\n%s", own_macros);
 }
 
-static void find_uniforms(emitter *e) {
+void emit_find_uniforms(emitter *e) {
   e->uniform_of = must_calloc((size_t)e->node_count + 1, sizeof *e->uniform_of);
   for (int n = 0; n < e->node_count; n++)
     e->uniform_of[n] = -1;
@@ -783,7 +685,7 @@ static void find_uniforms(emitter *e) {
 char *emit_kernel(const kernel_plan *p, const char *key) {
   c_text out = {0};
   emitter e = {.plan = p, .graph = p->graph, .out = &out, .node_count = ir_count(p->graph)};
-  find_uniforms(&e);
+  emit_find_uniforms(&e);
   write_prelude(&e);
   write_parameters(&e);
   write_varying(&e);
@@ -798,7 +700,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
     return out.text;
   }
 #define X(pass, member, topology, task)                                                            \
-  write_strip_pass(&e, (topology) == STRIP_LIST ? IN_LIST : IN_ROWS, &p->passes[pass], #member);
+  emit_strip_pass(&e, (topology) == STRIP_LIST ? IN_LIST : IN_ROWS, &p->passes[pass], #member);
   STRIP_PASSES(X)
 #undef X
   write_states_pass(&e, &p->passes[PASS_STATES], "states", PL_STATE_RESULTS + p->law->fields.count);

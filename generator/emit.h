@@ -10,4 +10,8 @@
    and numbers; descriptions are written as escaped string literals. */
 char *emit_kernel(const kernel_plan *p, const char *key);
 
+/* How the loop of a pass over strips is cut into stages (stages.h), and what that is estimated to cost: for
+   --dump=passes. Nothing for other passes. */
+void emit_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out);
+
 #endif

@@ -1,5 +1,5 @@
-/* Inside of the emitter, shared by its parts: emit.c writes expressions, strips and the table of facts, emit_family.c the
-   programs of families. */
+/* Inside of the emitter, shared by its parts: emit.c writes expressions and the table of facts, emit_strip.c the passes
+   over strips of bonds, emit_family.c the programs of families. */
 #ifndef PERILAT_GENERATOR_EMIT_PARTS_H
 #define PERILAT_GENERATOR_EMIT_PARTS_H
 
@@ -28,6 +28,7 @@ typedef struct emitter {
   scope_kind scope;
   const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
   int root_count;
+  bool usual; /* of choices by expected conditions only what is expected is written */
   c_names names;
   unsigned char *needed; /* [node_count] */
   int *uses;             /* [node_count] by needed nodes and roots */
@@ -38,6 +39,7 @@ typedef struct emitter {
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
 void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count);
+void emit_open_roots(emitter *e, scope_kind scope, const pass_root *roots, int root_count);
 void emit_close(emitter *e);
 /* A value loaded from `uniforms`; in `prepare` the same node is computed. */
 bool emit_is_uniform(const emitter *e, ir_node n);
@@ -46,8 +48,22 @@ bool emit_is_input(const emitter *e, ir_node n);
 void emit_lines(emitter *e);
 /* Node n as an operand that needs no parentheses inside a choice. */
 void emit_value(emitter *e, ir_node n);
+/* Node n as C's condition. */
+void emit_condition(emitter *e, ir_node n);
+/* What stands before the loop: values that are the same for all bonds, and the arrays of the others. */
+void emit_inputs_before_loop(emitter *e);
+void emit_loop_begin(emitter *e);
+/* NULL without such a root. */
+const pass_root *emit_find_root(const emitter *e, pass_target target, int index);
 /* "; / * line 12 * /" and the end of the line. */
 void emit_line_end(emitter *e, ir_node n);
+
+/* Fills uniform_of; the caller frees it. */
+void emit_find_uniforms(emitter *e);
+
+/* --- emit_strip.c --- */
+
+void emit_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name);
 
 /* --- emit_family.c --- */
 

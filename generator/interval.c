@@ -178,6 +178,8 @@ range range_apply(ir_op op, range a, range b) {
     return absolute(a);
   case IR_SQRT:
     return root_of(a);
+  case IR_INVERSE_ROOT:
+    return range_between(0, INFINITY, true, true);
   case IR_LOG:
     return logarithm_of(a);
   case IR_POW:

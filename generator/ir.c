@@ -18,6 +18,7 @@ typedef struct node {
   int index;        /* INPUT */
   placement place;
   bool of_class; /* differs from neighbour to neighbour, but not along a row */
+  bool expected; /* a condition that holds nearly always */
   const char *name;
   span where;
 } node;
@@ -179,6 +180,13 @@ ir_node ir_mark_class(ir *g, ir_node input) {
 }
 bool ir_is_of_class(const ir *g, ir_node n) {
   return at(g, n)->of_class;
+}
+ir_node ir_expect(ir *g, ir_node condition) {
+  g->nodes[condition].expected = at(g, condition)->op != IR_CONSTANT;
+  return condition;
+}
+bool ir_is_expected(const ir *g, ir_node n) {
+  return at(g, n)->expected;
 }
 bool ir_is_logical(const ir *g, ir_node n) {
   return operations[at(g, n)->op].logical;
@@ -452,6 +460,7 @@ static ir_node rebuild(ir *g, ir_node n, const ir_node *image) {
   if (same) return n;
   const ir_node made = ir_make(g, old.op, operand[0], operand[1], operand[2]);
   if (old.name) ir_set_name(g, made, old.name, old.where);
+  if (old.expected) ir_expect(g, made);
   return made;
 }
 
@@ -490,6 +499,7 @@ static void count_operation(ir_op op, ir_cost *cost) {
   case IR_LOG:
   case IR_POW:
   case IR_CBRT:
+  case IR_INVERSE_ROOT:
   case IR_SIN:
   case IR_COS:
   case IR_TAN:

@@ -23,7 +23,7 @@ typedef int32_t ir_node;
   X(ADD, "add", 2, 0) X(SUB, "sub", 2, 0) X(MUL, "mul", 2, 0) X(DIV, "div", 2, 0)                  \
   X(NEG, "neg", 1, 0) X(ABS, "abs", 1, 0) X(SQRT, "sqrt", 1, 0)                                    \
   X(MIN, "min", 2, 0) X(MAX, "max", 2, 0) X(SIGN, "sign", 1, 0)                                    \
-  X(EXP, "exp", 1, 0) X(LOG, "log", 1, 0) X(POW, "pow", 2, 0) X(CBRT, "cbrt", 1, 0)                \
+  X(INVERSE_ROOT, "inverse_root", 1, 0) X(EXP, "exp", 1, 0) X(LOG, "log", 1, 0) X(POW, "pow", 2, 0) X(CBRT, "cbrt", 1, 0)                \
   X(SIN, "sin", 1, 0) X(COS, "cos", 1, 0) X(TAN, "tan", 1, 0) X(TANH, "tanh", 1, 0)                \
   X(ATAN2, "atan2", 2, 0) X(WRAP_ANGLE, "wrap_angle", 1, 0)                                        \
   X(LT, "lt", 2, 1) X(LE, "le", 2, 1) X(EQ, "eq", 2, 1)                                            \
@@ -100,6 +100,9 @@ placement ir_place(const ir *g, ir_node n);        /* the most local of its oper
    length, say); so does what is made of it, except sums over the family. Returns the input. */
 ir_node ir_mark_class(ir *g, ir_node input);
 bool ir_is_of_class(const ir *g, ir_node n);
+/* Says that a condition holds nearly always, so that what is chosen where it does not need not be fast. Returns it. */
+ir_node ir_expect(ir *g, ir_node condition);
+bool ir_is_expected(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
 bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
 const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */

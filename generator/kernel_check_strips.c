@@ -14,7 +14,8 @@ enum {
   SITES = 1024,
   LISTED = 1003,
   MOTIONS = 12, /* planes: displacement of i, of j, velocity of i, of j; 3 each */
-  DIRECTION = 5
+  DIRECTION = 5,
+  CALM = 256
 };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
@@ -68,11 +69,14 @@ static void arrays_free(strip_arrays *a) {
 
 /* --- random bonds ----------------------------------------------------------------------------- */
 
-/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or
- * large amount. */
+/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or large amount. In
+   every second run of CALM bonds all turn little, as loops that rely on it expect (stages.h). */
 static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed) {
   for (int q = 0; q < SITES; q++) {
-    double turn = q % 3 ? draw_uniform(seed, -14, 14) : draw_size(seed, -9, 0);
+    const bool calm = q / CALM % 2;
+    double turn = calm    ? draw_size(seed, -9, -2)
+                  : q % 3 ? draw_uniform(seed, -14, 14)
+                          : draw_size(seed, -9, 0);
     double stretched = 1 + fmax(draw_size(seed, -8, 0), -0.9);
     double across = stretched * (cos(turn) * b->chord[0] - sin(turn) * b->chord[1]) - b->chord[0];
     double along = stretched * (sin(turn) * b->chord[0] + cos(turn) * b->chord[1]) - b->chord[1];

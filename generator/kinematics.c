@@ -1,5 +1,7 @@
 #include "generator/kinematics.h"
 
+#include <math.h>
+
 #include "dsl/builtins.h"
 
 const ends_origin ends_origins[ENDS_COUNT] = {
@@ -58,16 +60,46 @@ static ir_node cross(ir *g, vector a, vector b) {
   return ir_sub(g, xy, yx);
 }
 
-/* Rotation of an end less the chord's. The chord's rotation comes from C x d (d: relative
-   displacement), which equals C x c but does not cancel when d is small. */
+/* asin(x) for |x| < 1/16: (asin(x)/x - 1)/x^2 in x^2 through Chebyshev's points, to 2^-52. */
+static ir_node arc_sine_near_zero(ir *g, ir_node x) {
+  ir_node z = ir_mul(g, x, x);
+  ir_node linear = ir_mul(g, z, ir_constant(g, 0x1.3333334a3f0fap-4));
+  ir_node low = ir_add(g, ir_constant(g, 0x1.5555555554f92p-3), linear);
+  linear = ir_mul(g, z, ir_constant(g, 0x1.f4a7447a72cffp-6));
+  ir_node high = ir_add(g, ir_constant(g, 0x1.6db5f5154638dp-5), linear);
+  ir_node series = ir_add(g, low, ir_mul(g, ir_mul(g, z, z), high));
+  return ir_add(g, x, ir_mul(g, ir_mul(g, x, z), series));
+}
+
+static ir_node size_of(ir *g, ir_node n) {
+  return ir_make(g, IR_ABS, n, IR_NONE, IR_NONE);
+}
+
+/* Nearly all chords turn by less than atan(1/16): then the arc sine's series does. C x d (d:
+   relative displacement) equals C x c, but does not cancel when d is small. */
+static ir_node chord_rotation(ir *g, const bond_kinematics *k, vector chord, vector d, vector now) {
+  ir_node across = cross(g, chord, d), along = dot(g, chord, now);
+  ir_node per_s = ir_div(g, ir_constant(g, 1), k->s);
+  ir_node sine = named(g, ir_mul(g, across, ir_mul(g, k->per_length, per_s)), "sine");
+  ir_node part = ir_mul(g, along, ir_constant(g, 1.0 / 16));
+  ir_node small = ir_expect(g, ir_make(g, IR_LT, size_of(g, across), part, IR_NONE));
+  ir_node near = arc_sine_near_zero(g, sine), far = ir_make(g, IR_ATAN2, across, along, IR_NONE);
+  return named(g, ir_select(g, small, near, far), "chord_rotation");
+}
+
+/* Rotation of an end less the chord's. Up to half a turn wrapping changes nothing. */
+static ir_node end_rotation(ir *g, ends_input end, ir_node of_chord, const char *name) {
+  ir_node angle = ir_sub(g, kinematics_input(g, end), of_chord);
+  ir_node half_turn = ir_constant(g, acos(-1));
+  ir_node inside = ir_expect(g, ir_make(g, IR_LE, size_of(g, angle), half_turn, IR_NONE));
+  ir_node wrapped = ir_make(g, IR_WRAP_ANGLE, angle, IR_NONE, IR_NONE);
+  return named(g, ir_select(g, inside, angle, wrapped), name);
+}
+
 static void end_rotations(ir *g, bond_kinematics *k, vector chord, vector d, vector now) {
-  ir_node phi = ir_make(g, IR_ATAN2, cross(g, chord, d), dot(g, chord, now), IR_NONE);
-  named(g, phi, "chord_rotation");
-  ir_node phi_i = kinematics_input(g, ENDS_PHI_I), phi_j = kinematics_input(g, ENDS_PHI_J);
-  k->theta_i = ir_make(g, IR_WRAP_ANGLE, ir_sub(g, phi_i, phi), IR_NONE, IR_NONE);
-  k->theta_j = ir_make(g, IR_WRAP_ANGLE, ir_sub(g, phi_j, phi), IR_NONE, IR_NONE);
-  named(g, k->theta_i, "theta_i");
-  named(g, k->theta_j, "theta_j");
+  ir_node of_chord = chord_rotation(g, k, chord, d, now);
+  k->theta_i = end_rotation(g, ENDS_PHI_I, of_chord, "theta_i");
+  k->theta_j = end_rotation(g, ENDS_PHI_J, of_chord, "theta_j");
 }
 
 static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
@@ -77,9 +109,17 @@ static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
   k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
 }
 
-/* Costs one square root and two divisions where the chord is uniform (three otherwise): 1/L and the
-   stretch share the reciprocal of L s (L + s), and the angle needs one inside atan2. Divisions are
-   what this loop is made of. */
+/* L - s is as good as L; a step of Newton's on L^2 - s^2 makes it as good as the displacements are,
+   and needs no division. */
+static ir_node elongation(ir *g, const bond_kinematics *k, ir_node growth) {
+  ir_node rough = ir_sub(g, k->length, k->s);
+  ir_node twice_s = ir_mul(g, ir_constant(g, 2), k->s);
+  ir_node missing = ir_sub(g, growth, ir_mul(g, rough, ir_add(g, rough, twice_s)));
+  ir_node half = ir_mul(g, ir_constant(g, 0.5), k->per_length);
+  return ir_add(g, rough, ir_mul(g, missing, half));
+}
+
+/* Divisions are what such loops spend their time on: where the chord is uniform there is none. */
 bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
   bond_kinematics k = {0};
   vector chord = uniform_chord ? inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)
@@ -91,21 +131,19 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
   vector now = sum(g, chord, d);
   named(g, now.x, "c_x");
   named(g, now.y, "c_y");
-  k.length = named(g, ir_make(g, IR_SQRT, dot(g, now, now), IR_NONE, IR_NONE), "length");
-
-  ir_node one = ir_constant(g, 1);
-  ir_node twice_s_mean = ir_mul(g, k.s, ir_add(g, k.length, k.s)); /* s (L + s), m^2 */
-  ir_node shared = named(g, ir_div(g, one, ir_mul(g, k.length, twice_s_mean)), "shared");
-  k.per_length = named(g, ir_mul(g, shared, twice_s_mean), "per_length");
+  ir_node square = named(g, dot(g, now, now), "square");
+  k.per_length = named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
+  k.length = named(g, ir_mul(g, square, k.per_length), "length");
   ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
-  k.stretch = named(g, ir_mul(g, growth, ir_mul(g, shared, k.length)), "stretch");
+  ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
+  k.stretch = named(g, ir_mul(g, elongation(g, &k, growth), per_s), "stretch");
   vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
 
   vector dv = difference(g, inputs(g, ENDS_V_JX, ENDS_V_JY), inputs(g, ENDS_V_IX, ENDS_V_IY),
                          "dv_x", "dv_y");
-  k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), ir_div(g, one, k.s)), "stretch_rate");
+  k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), per_s), "stretch_rate");
   k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
   if (rotations) {
     end_rotations(g, &k, chord, d, now);

@@ -93,7 +93,7 @@ typedef struct bond_kinematics {
    hoisted; otherwise s is computed from the chord of each bond. Without rotations the angles are
    IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
    rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
-   (-pi, pi]. */
+   (-pi, pi]; that chords turn little and angles stay below half a turn is expected (ir_expect). */
 bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. */

@@ -65,12 +65,20 @@ typedef struct pass {
 
 enum { PLAN_MOST_PASSES = 8 }; /* of a program of families */
 
+/* Whether loops over strips are cut into stages (stages.h). Results are the same to the bit. */
+typedef enum loop_cutting {
+  CUT_BY_COST,
+  CUT_NEVER, /* unless something is expected (ir_expect) */
+  CUT_ALWAYS /* into stages as short as they can be */
+} loop_cutting;
+
 typedef struct kernel_plan {
   const law *law;
   const int *varying; /* [varying_count] parameters that differ from bond to bond */
   int varying_count;
   ir *graph;
   pass passes[PASS_COUNT];
+  loop_cutting cutting;
   int kind, dimensions, dof, force_planes;
   ir_node *uniforms; /* [uniform_count] ascending: values hoisted into `prepare`. All nodes, inputs
                         too but no constants, with ir_place <= ON_BODY that a local node or a root

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "generator/emit.h"
 #include "generator/plan_parts.h"
 
 /* --- printing --------------------------------------------------------------------------------- */
@@ -64,6 +65,7 @@ static void dump_pass(const kernel_plan *p, const pass *a, FILE *out) {
           "%d functions; %d bytes\n",
           c.additions, c.multiplications, c.selects, c.divisions, c.functions,
           8 * (read_count + a->root_count));
+  emit_describe_loops(p, a->kind, out);
 }
 
 void plan_dump(const kernel_plan *p, FILE *out) {

@@ -43,6 +43,7 @@ static void rebuild(const rebuilding *r, const ir_node *roots, int root_count, i
     become[n] = r->rule(r, n, operand);
     if (ir_name(g, n) && ir_arity(ir_operation(g, become[n])) > 0)
       ir_set_name(g, become[n], ir_name(g, n), ir_where(g, n));
+    if (ir_is_expected(g, n)) ir_expect(g, become[n]);
   }
   for (int k = 0; k < root_count; k++)
     out[k] = roots[k] == IR_NONE ? IR_NONE : become[roots[k]];
@@ -189,6 +190,8 @@ static double degree_of(const ir *g, ir_node n, const double *degree) {
     return is_zero_degree(a) ? a : 0 * a; /* NAN stays */
   case IR_SQRT:
     return is_zero_degree(a) ? a : a / 2;
+  case IR_INVERSE_ROOT:
+    return is_zero_degree(a) ? NAN : -a / 2;
   case IR_CBRT:
     return is_zero_degree(a) ? a : a / 3;
   case IR_POW:
@@ -236,6 +239,7 @@ static bool makes_nan(ir_op op) {
   switch (op) {
   case IR_DIV:
   case IR_SQRT:
+  case IR_INVERSE_ROOT:
   case IR_LOG:
   case IR_POW:
   case IR_SIN:

@@ -91,7 +91,8 @@ static void read_processor(char *text, size_t size) {
 }
 
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
-   interpreter's bits need -ffp-contract=off. Combining more than two instructions takes gcc a third
+   interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by name and then orders
+   instructions for none in particular; told to order them for an older one of the same build it gains 5 %. Combining more than two instructions takes gcc a third
    of its time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
   "-std=gnu11 -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off "             \
@@ -100,7 +101,10 @@ static void read_processor(char *text, size_t size) {
 const char *toolchain_flags(void) {
   char processor[8192];
   read_processor(processor, sizeof processor);
-  return strstr(processor, " avx512f") ? COMMON_FLAGS " -mprefer-vector-width=512" : COMMON_FLAGS;
+  if (!strstr(processor, " avx512f")) return COMMON_FLAGS;
+  return strstr(processor, "GenuineIntel")
+             ? COMMON_FLAGS " -mprefer-vector-width=512 -mtune=icelake-server"
+             : COMMON_FLAGS " -mprefer-vector-width=512";
 }
 
 /* --- running it ------------------------------------------------------------------------------- */

@@ -7,8 +7,14 @@
 #include "dsl/arena.h"
 #include "runtime/sweep_parts.h"
 
+/* Bond forces of one row. Only the places from `begin` to `end` of a row are not zero. */
+typedef struct row_forces {
+  double *values; /* [planes][directions][stride] */
+  long begin, end;
+} row_forces;
+
 typedef struct pairwise_block { /* what one thread works with */
-  double *buffer[2], *seam;     /* bond forces of one row each: [planes][directions][stride] */
+  row_forces buffer[2], seam;
   double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
   double *observed; /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
@@ -29,16 +35,31 @@ static pairwise *own(const sweep *w) {
 
 /* --- bonds of a row --------------------------------------------------------------------------- */
 
-static double *plane(const sweep *w, double *buffer, int p, int direction) {
-  return buffer + ((long)p * w->lattice->directions + direction) * own(w)->stride + PL_LANES;
+static double *plane(const sweep *w, const row_forces *buffer, int p, int direction) {
+  return buffer->values + ((long)p * w->lattice->directions + direction) * own(w)->stride +
+         PL_LANES;
 }
 
-/* A buffer's places outside the row's span keep forces of an earlier row: they count as absent
- * bonds. */
-static void clear_outside(const sweep *w, int row, double *strip) {
-  const long begin = w->begin[row], end = begin + w->count[row];
-  memset(strip, 0, (size_t)begin * sizeof *strip);
-  memset(strip + end, 0, (size_t)(w->lattice->pitch - end) * sizeof *strip);
+/* Prepares a buffer for another row: what an earlier row left outside the span of this one counts as absent bonds. Most
+   rows are as long as the one before, and nothing is to be done. */
+static void take_buffer(const sweep *w, row_forces *buffer, long begin, long end) {
+  const long low = begin - buffer->begin, high = buffer->end - end;
+  for (int p = 0; p < w->law->force_planes && (low > 0 || high > 0); p++)
+    for (int k = 0; k < w->lattice->directions; k++) {
+      double *values = plane(w, buffer, p, k);
+      if (low > 0) memset(values + buffer->begin, 0, (size_t)low * sizeof *values);
+      if (high > 0) memset(values + end, 0, (size_t)high * sizeof *values);
+    }
+  buffer->begin = begin;
+  buffer->end = end;
+}
+
+static void take_buffer_for_row(const sweep *w, row_forces *buffer, int row) {
+  take_buffer(w, buffer, w->begin[row], w->begin[row] + w->count[row]);
+}
+
+static void clear_buffer(const sweep *w, row_forces *buffer) {
+  take_buffer(w, buffer, buffer->end, buffer->end);
 }
 
 static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, pl_strip *s) {
@@ -68,16 +89,14 @@ const double *pairwise_uniforms(const sweep *w, int direction) {
 }
 
 /* Forces of the bonds that row `row` owns, into `buffer`; their fields move on by one step. */
-static void evaluate(sweep *w, pairwise_block *b, int row, double *buffer) {
+static void evaluate(sweep *w, pairwise_block *b, int row, row_forces *buffer) {
   const rows *g = w->lattice;
+  take_buffer_for_row(w, buffer, row);
   const pl_strip_function kernel = w->ledger ? w->law->rows_ledger : w->law->rows;
-  for (int k = 0; k < g->directions; k++) {
+  for (int k = 0; k < g->directions && w->count[row] > 0; k++) {
     double *force[PL_MAX_PLANES];
-    for (int p = 0; p < w->law->force_planes; p++) {
-      clear_outside(w, row, plane(w, buffer, p, k));
+    for (int p = 0; p < w->law->force_planes; p++)
       force[p] = plane(w, buffer, p, k) + w->begin[row];
-    }
-    if (w->count[row] == 0) continue;
     for (int f = 0; f < w->law->field_count; f++)
       b->pointers[f] = w->field[f] + k * g->size + rows_start(g, row) + w->begin[row];
     pl_strip s = {.field = b->pointers, .force = force};
@@ -87,15 +106,13 @@ static void evaluate(sweep *w, pairwise_block *b, int row, double *buffer) {
 }
 
 /* The same on a copy of the fields: forces of the present state without a trace. */
-static void evaluate_aside(sweep *w, pairwise_block *b, int row, double *buffer) {
+static void evaluate_aside(sweep *w, pairwise_block *b, int row, row_forces *buffer) {
   const rows *g = w->lattice;
-  for (int k = 0; k < g->directions; k++) {
+  take_buffer_for_row(w, buffer, row);
+  for (int k = 0; k < g->directions && w->count[row] > 0; k++) {
     double *force[PL_MAX_PLANES];
-    for (int p = 0; p < w->law->force_planes; p++) {
-      clear_outside(w, row, plane(w, buffer, p, k));
+    for (int p = 0; p < w->law->force_planes; p++)
       force[p] = plane(w, buffer, p, k) + w->begin[row];
-    }
-    if (w->count[row] == 0) continue;
     for (int f = 0; f < w->law->field_count; f++) {
       b->pointers[f] = b->fields + f * g->pitch;
       memcpy(b->pointers[f], w->field[f] + k * g->size + rows_start(g, row) + w->begin[row],
@@ -122,7 +139,8 @@ typedef struct gathered { /* bond forces that add up to the force on the particl
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
  */
-static gathered gather(const sweep *w, int row, int component, double *here, double *below) {
+static gathered gather(const sweep *w, int row, int component, const row_forces *here,
+                       const row_forces *below) {
   const rows *g = w->lattice;
   const int far_plane = component < 2 ? component : 3;
   const long begin = w->begin[row];
@@ -174,7 +192,8 @@ static int64_t kick_component(const sweep *w, int row, const gathered *s, int d,
 
 /* Moves a row. A row with a bad velocity stays where it is, so that its state before the step can
  * be reported. */
-static void move_row(sweep *w, sweep_block *b, int row, double *here, double *below) {
+static void move_row(sweep *w, sweep_block *b, int row, const row_forces *here,
+                     const row_forces *below) {
   int64_t bad = 0;
   for (int d = 0; d < w->dof; d++) {
     const gathered s = gather(w, row, d, here, below);
@@ -190,18 +209,17 @@ static void evaluate_seam(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   b->bad_site = -1;
-  evaluate(w, p, b->last - 1, p->seam);
+  evaluate(w, p, b->last - 1, &p->seam);
 }
 
 static void move_rows(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
-  double *below = block > 0 ? own(w)->blocks[block - 1].seam : p->buffer[1];
-  if (block == 0) /* nothing below the first row */
-    memset(below, 0, (size_t)own(w)->buffer * sizeof *below);
+  row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
+  if (block == 0) clear_buffer(w, below); /* nothing below the first row */
   for (int r = b->first; r < b->last; r++) {
-    double *here = r == b->last - 1 ? p->seam : p->buffer[(r - b->first) & 1];
-    if (here != p->seam) evaluate(w, p, r, here);
+    row_forces *here = r == b->last - 1 ? &p->seam : &p->buffer[(r - b->first) & 1];
+    if (here != &p->seam) evaluate(w, p, r, here);
     move_row(w, b, r, here, below);
     below = here;
   }
@@ -251,7 +269,8 @@ static void output_values(sweep *w, int output, double *values) {
     }
 }
 
-static void observe_row(sweep *w, int block, int row, double *here, double *below) {
+static void observe_row(sweep *w, int block, int row, const row_forces *here,
+                        const row_forces *below) {
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
   for (int d = 0; d < w->dof; d++) {
@@ -268,11 +287,11 @@ static void observe(sweep *w, int stage, int block) {
   (void)stage; /* there is one */
   const sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
-  double *below = p->buffer[1];
-  memset(below, 0, (size_t)own(w)->buffer * sizeof *below);
+  row_forces *below = &p->buffer[1];
+  clear_buffer(w, below);
   if (b->first > 0) evaluate_aside(w, p, b->first - 1, below);
   for (int r = b->first; r < b->last; r++) {
-    double *here = p->buffer[(r - b->first) & 1];
+    row_forces *here = &p->buffer[(r - b->first) & 1];
     evaluate_aside(w, p, r, here);
     observe_row(w, block, r, here, below);
     below = here;
@@ -301,9 +320,9 @@ static void compose_flags(sweep *w, pairwise *p) {
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
   const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
-  b->buffer[0] = sweep_doubles(w, p->buffer);
-  b->buffer[1] = sweep_doubles(w, p->buffer);
-  b->seam = sweep_doubles(w, p->buffer);
+  row_forces *const all[] = {&b->buffer[0], &b->buffer[1], &b->seam};
+  for (size_t k = 0; k < sizeof all / sizeof *all; k++)
+    *all[k] = (row_forces){.values = sweep_doubles(w, p->buffer)};
   b->fields = sweep_doubles(w, w->law->field_count * pitch);
   b->observed = sweep_doubles(w, (1 + w->law->output_count) * pitch);
   b->pointers = must_calloc(pointers, sizeof *b->pointers);
@@ -314,9 +333,9 @@ static void free_own(sweep *w) {
   pairwise *p = own(w);
   for (int k = 0; k < w->block_count; k++) {
     pairwise_block *b = &p->blocks[k];
-    free(b->buffer[0]);
-    free(b->buffer[1]);
-    free(b->seam);
+    free(b->buffer[0].values);
+    free(b->buffer[1].values);
+    free(b->seam.values);
     free(b->fields);
     free(b->observed);
     free(b->pointers);

@@ -17,6 +17,7 @@
 #include "generator/model.h"
 #include "runtime/simulation.h"
 #include "tests/benchmark/handwritten.h"
+#include "tests/benchmark/machine.h"
 #include "tests/benchmark/naive.h"
 #include "tests/benchmark/problem.h"
 
@@ -197,6 +198,7 @@ typedef struct field {
   contestant items[MOST_CONTESTANTS];
   int count;
   double damaged, softened; /* shares of bonds */
+  machine machine;
 } field;
 
 static double disagreement(const problem *p, const contestant *first, const contestant *other,
@@ -320,6 +322,10 @@ static void print_table(const field *f) {
          g->particle_count, g->bond_count, g->row_count);
   printf("%s, %s MHz as told, vectors of %d bits; %s; one core, medians of %d rounds\n", name,
          clock, vector_bits(), __VERSION__, ROUNDS);
+  printf(
+      "%d cores; one of them: triad %.1f GB/s (in cache %.0f), fused multiply-adds %.1f Gflop/s\n",
+      f->machine.cores, 1e-9 * f->machine.triad, 1e-9 * f->machine.cached_triad,
+      1e-9 * f->machine.fma);
   printf("Shaken start: %.1f %% of the bonds damaged, %.1f %% above a half, after %d steps\n\n",
          100 * f->damaged, 100 * f->softened, AGREEMENT_STEPS);
   printf("%-22s %14s %9s %8s %9s %9s %11s %11s\n", "", "1e6 bonds/s", "ns/bond", "spread",
@@ -345,6 +351,10 @@ static void write_json(const field *f, const char *path) {
   processor_fact("model name", name, sizeof name);
   fprintf(out, "{\n  \"processor\": \"%s\",\n  \"compiler\": \"%s\",\n  \"vector_bits\": %d,\n",
           name, __VERSION__, vector_bits());
+  fprintf(out,
+          "  \"cores\": %d,\n  \"triad_bytes_per_second\": %.4g,\n"
+          "  \"cached_triad_bytes_per_second\": %.4g,\n  \"fma_flops_per_second\": %.4g,\n",
+          f->machine.cores, f->machine.triad, f->machine.cached_triad, f->machine.fma);
   fprintf(out, "  \"particles\": %ld,\n  \"bonds\": %ld,\n  \"rounds\": %d", g->particle_count,
           g->bond_count, ROUNDS);
   for (int k = 0; k < f->count; k++) {
@@ -419,6 +429,7 @@ int main(int argc, char **argv) {
                         .get = run_get,
                         .advance = run_advance,
                         .same_motion = false}}};
+  f.machine = machine_measure();
   const unsigned environment = sweep_enter();
   compare(&f);
   if (handwritten_rare(best) == 0)

@@ -20,6 +20,7 @@ static const char *const c_own_words[] = {"static",
                                           "void",
                                           "restrict",
                                           "for",
+                                          "if",
                                           "return",
                                           "__builtin_inf",
                                           "__builtin_nan",
@@ -53,6 +54,7 @@ static const char *const c_own_words[] = {"static",
                                           "PL_INDEPENDENT",
                                           "pl_abs",
                                           "pl_sqrt",
+                                          "pl_inverse_root",
                                           "pl_cbrt",
                                           "pl_exp",
                                           "pl_log",
@@ -68,10 +70,10 @@ static const char *const c_own_words[] = {"static",
                                           "pl_wrap_angle"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
-    "asm",    "auto",   "break",  "case",   "continue", "default", "do",       "else",
-    "extern", "float",  "goto",   "if",     "inline",   "int",     "register", "short",
-    "signed", "sizeof", "struct", "switch", "typedef",  "typeof",  "union",    "volatile",
-    "while",  "linux",  "unix",   "NULL",   "bool",     "true",    "false"};
+    "asm",    "auto",   "break",  "case",    "continue", "default",  "do",       "else",
+    "extern", "float",  "goto",   "inline",  "int",      "register", "short",    "signed",
+    "sizeof", "struct", "switch", "typedef", "typeof",   "union",    "volatile", "while",
+    "linux",  "unix",   "NULL",   "bool",    "true",     "false"};
 /* Functions that a kernel defines. */
 static const char *const c_own_functions[] = {
     "prepare",     "bounds",       "rows",      "rows_ledger", "rows_observe",   "list",
@@ -131,11 +133,26 @@ static inline size_t c_quoted(const char *at) {
   return at[n] ? n + 1 : 0;
 }
 
+/* How a loop was cut: numbers and small letters. */
+static inline size_t c_decision(const char *at) {
+  static const char begin[] = "/* ";
+  if (strncmp(at, begin, 3) != 0) return 0;
+  const size_t number = strspn(at + 3, "0123456789");
+  if (strncmp(at + 3, "one loop", 8) != 0 &&
+      (!number || strncmp(at + 3 + number, " loops", 6) != 0))
+    return 0;
+  const size_t length = 3 + strspn(at + 3, "abcdefghijklmnopqrstuvwxyz0123456789, ");
+  return strncmp(at + length, "*/", 2) == 0 ? length + 2 : 0;
+}
+
 static inline size_t c_comment(const char *at) {
   static const char begins[] = "/* line ";
-  static const char *const whole[] = {"/* particle by particle */", "/* neighbour by neighbour */"};
+  static const char *const whole[] = {"/* particle by particle */", "/* neighbour by neighbour */",
+                                      "/* both sides of what was expected */"};
   for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
     if (strncmp(at, whole[k], strlen(whole[k])) == 0) return strlen(whole[k]);
+  const size_t decision = c_decision(at);
+  if (decision) return decision;
   const size_t head = sizeof begins - 1;
   if (strncmp(at, begins, head) != 0) return 0;
   const size_t digits = strspn(at + head, "0123456789");

@@ -94,6 +94,10 @@ static void exp_and_log(void **unused) {
   ONE_ARGUMENT(log, 1.5, 1.0 + log_uniform(&state, -52, -4), logl);
 }
 
+static long double one_over_root(long double x) {
+  return 1 / sqrtl(x);
+}
+
 static void powers(void **unused) {
   (void)unused;
   TWO_ARGUMENTS(pow, 1.5, uniform(&state, 0.01, 100.0), uniform(&state, -150.0, 150.0), powl);
@@ -105,6 +109,8 @@ static void powers(void **unused) {
   ONE_ARGUMENT(cbrt, 0.6, log_uniform(&state, -1074, 1023), cbrtl);
   ONE_ARGUMENT(cbrt, 0.6, uniform(&state, -10.0, 10.0), cbrtl);
   ONE_ARGUMENT(sqrt, 0.501, fabs(log_uniform(&state, -1074, 1023)), sqrtl);
+  ONE_ARGUMENT(inverse_root, 1.0, fabs(log_uniform(&state, -1022, 1023)), one_over_root);
+  ONE_ARGUMENT(inverse_root, 1.0, uniform(&state, 1.0, 4.0), one_over_root);
 }
 
 static void angles(void **unused) {
@@ -253,7 +259,7 @@ static void symmetry(void **unused) {
 /* --- the compiler's report: every function vectorises ----------------------------------------- */
 
 static const char *const one_argument[] = {"abs", "sqrt", "sign", "exp",  "log",       "cbrt",
-                                           "sin", "cos",  "tan",  "tanh", "wrap_angle"};
+                                           "sin", "cos",  "tan",  "tanh", "wrap_angle", "inverse_root"};
 static const char *const two_arguments[] = {"min", "max", "pow", "atan2"};
 enum {
   ONES = sizeof one_argument / sizeof *one_argument,

@@ -392,10 +392,8 @@ static char *text_of(const hand_made *h) {
   return emit_kernel(&h->plan, "key");
 }
 
-/* Number of the line in `text` on which `mark` stands first at or after `from`. */
-static int line_of(const char *text, const char *from, const char *mark) {
-  const char *begin = strstr(text, from), *at = begin ? strstr(begin, mark) : NULL;
-  assert_non_null(at);
+/* Number of the line on which `at` stands in `text`. */
+static int line_at(const char *text, const char *at) {
   int line = 1;
   for (const char *c = text; c < at; c++)
     line += *c == '\n';
@@ -406,18 +404,26 @@ static void the_loops_vectorise(void **state) {
   (void)state;
   hand_made *h = beam_new();
   char *text = text_of(h), place_of_loop[64];
+  int loops = 0;
   const char *const functions[] = {"static void rows(", "static void list("};
   char *gcc = compiler_says(text, "gcc", "-fopt-info-vec-optimized -o /dev/null");
   char *clang = compiler_says(text, "clang", "-Rpass=loop-vectorize -o /dev/null");
   for (int k = 0; k < 2; k++) {
-    int line = line_of(text, functions[k], "for (long q");
-    snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: optimized: loop vectorized", line);
-    if (gcc && !strstr(gcc, place_of_loop))
-      fail_msg("gcc does not vectorise `%s`: %s", functions[k], gcc);
-    snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: remark: vectorized loop", line);
-    if (clang && !strstr(clang, place_of_loop))
-      fail_msg("clang does not vectorise `%s`: %s", functions[k], clang);
+    const char *at = strstr(text, functions[k]), *end = at ? strstr(at, "\n}\n") : NULL;
+    assert_non_null(end);
+    while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
+      at += strlen("  PL_INDEPENDENT\n");
+      const int line = line_at(text, at);
+      snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: optimized: loop vectorized", line);
+      if (gcc && !strstr(gcc, place_of_loop))
+        fail_msg("gcc does not vectorise `%s`, line %d: %s", functions[k], line, gcc);
+      snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: remark: vectorized loop", line);
+      if (clang && !strstr(clang, place_of_loop))
+        fail_msg("clang does not vectorise `%s`, line %d: %s", functions[k], line, clang);
+      loops++;
+    }
   }
+  assert_true(loops > 3);
   assert_true(gcc || clang);
   free(gcc);
   free(clang);

@@ -274,6 +274,22 @@ static void names_are_kept(void **unused) {
   ir_free(g);
 }
 
+/* Conditions keep the mark when they are rebuilt; a number is no condition to expect. */
+static void what_is_expected_stays_expected(void **unused) {
+  (void)unused;
+  ir *g = ir_new();
+  const ir_node x = quantity(g, 0), y = quantity(g, 1), z = quantity(g, 2);
+  const ir_node small = ir_expect(g, two(g, IR_LT, x, y));
+  const ir_node chosen = ir_select(g, small, x, one(g, IR_SIN, x));
+  ir_node out;
+  ir_substitute(g, &chosen, 1, &x, &z, 1, &out);
+  assert_int_equal(ir_operation(g, out), IR_SELECT);
+  assert_true(ir_is_expected(g, ir_operand(g, out, 0)) && ir_is_expected(g, small));
+  assert_false(ir_is_expected(g, two(g, IR_LT, y, x)));
+  assert_false(ir_is_expected(g, ir_expect(g, two(g, IR_LT, x, x))));
+  ir_free(g);
+}
+
 static void costs_are_counted_once(void **unused) {
   (void)unused;
   ir *g = ir_new();
@@ -368,6 +384,7 @@ int main(void) {
       cmocka_unit_test(powers_avoid_pow),
       cmocka_unit_test(substitution_is_simultaneous),
       cmocka_unit_test(names_are_kept),
+      cmocka_unit_test(what_is_expected_stays_expected),
       cmocka_unit_test(costs_are_counted_once),
       cmocka_unit_test(dump_is_readable),
       cmocka_unit_test(deep_graphs_need_no_stack),

@@ -1,0 +1,364 @@
+#include "generator/stages.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/arena.h"
+
+/* --- what operations cost --------------------------------------------------------------------- */
+
+/* Cycles until the result is there, and operations, of eight doubles on processors with 512-bit vectors (Intel's of
+   2019 and later); only their ratios matter. */
+typedef struct price {
+  int latency, operations, divisions;
+} price;
+
+enum {
+  LOAD_LATENCY = 7,
+  DIVIDER_CYCLES = 16,
+  LOOP_CYCLES = 4, /* counting and addresses */
+  OPERATIONS_IN_FLIGHT = 130,
+  STRIP_VECTORS = 18 /* of a common row: a chain is waited for once at its end */
+};
+
+/* clang-format off */
+static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
+    [IR_ADD] = {4, 1, 0},    [IR_SUB] = {4, 1, 0},    [IR_MUL] = {4, 1, 0},   [IR_DIV] = {24, 3, 1},
+    [IR_NEG] = {1, 1, 0},    [IR_ABS] = {1, 1, 0},    [IR_SQRT] = {32, 3, 2}, [IR_INVERSE_ROOT] = {48, 14, 0},
+    [IR_MIN] = {8, 3, 0},    [IR_MAX] = {8, 3, 0},    [IR_SIGN] = {6, 4, 0},  [IR_EXP] = {75, 25, 0},
+    [IR_LOG] = {100, 25, 1}, [IR_POW] = {230, 90, 1}, [IR_CBRT] = {110, 35, 0}, [IR_SIN] = {75, 35, 0},
+    [IR_COS] = {75, 35, 0},  [IR_TAN] = {110, 60, 1}, [IR_TANH] = {110, 35, 1}, [IR_ATAN2] = {100, 50, 1},
+    [IR_WRAP_ANGLE] = {35, 10, 0},
+    [IR_LT] = {4, 1, 0},     [IR_LE] = {4, 1, 0},     [IR_EQ] = {4, 1, 0},    [IR_AND] = {1, 1, 0},
+    [IR_OR] = {1, 1, 0},     [IR_NOT] = {1, 1, 0},    [IR_SELECT] = {2, 1, 0},
+};
+/* clang-format on */
+
+/* --- lines and their operands ----------------------------------------------------------------- */
+
+bool stages_is_expected_choice(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_SELECT &&
+         ir_is_expected(e->graph, ir_operand(e->graph, n, 0)) && !emit_is_uniform(e, n);
+}
+
+int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]) {
+  int count = emit_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
+  if (usual && stages_is_expected_choice(e, n)) count = 2;
+  for (int k = 0; k < count; k++)
+    operand[k] = ir_operand(e->graph, n, k);
+  return count;
+}
+
+/* Neither number nor value of the whole strip. */
+static bool is_loaded(const emitter *e, ir_node n) {
+  return emit_is_input(e, n) && !(ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+                                  ir_input_index(e->graph, n) == ENDS_TIME_STEP);
+}
+
+static bool is_line(const emitter *e, ir_node n) {
+  return e->name[n] && !emit_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
+}
+
+/* --- a plan in the making --------------------------------------------------------------------- */
+
+typedef struct planner {
+  const emitter *e;
+  stages *s;
+  unsigned char *usual; /* [node_count] needed where all is as expected */
+  int *finish;          /* [node_count] cycles into its stage at which a line's value is there */
+} planner;
+
+static int larger(int a, int b) {
+  return a > b ? a : b;
+}
+
+/* Latest stage among the lines under node n, which is written in place or is the line itself. */
+static int stage_below(const planner *p, ir_node n) {
+  ir_node operand[3];
+  int stage = 0;
+  const int count = stages_operands(p->e, n, true, operand);
+  for (int k = 0; k < count; k++) {
+    const ir_node o = operand[k];
+    stage = larger(stage, is_line(p->e, o) ? p->s->of[o] : stage_below(p, o));
+  }
+  return stage;
+}
+
+/* Cycles into `stage` at which node n is computed. */
+static int finish_in(const planner *p, ir_node n, int stage) {
+  ir_node operand[3];
+  int start = 0;
+  if (is_loaded(p->e, n)) return LOAD_LATENCY;
+  const int count = stages_operands(p->e, n, true, operand);
+  for (int k = 0; k < count; k++) {
+    const ir_node o = operand[k];
+    const int ready = !is_line(p->e, o)      ? finish_in(p, o, stage)
+                      : p->s->of[o] == stage ? p->finish[o]
+                                             : LOAD_LATENCY;
+    start = larger(start, ready);
+  }
+  return count ? start + prices[ir_operation(p->e->graph, n)].latency : 0;
+}
+
+/* Every line as early as chains of at most `longest` cycles allow. */
+static void place_early(planner *p, int longest) {
+  for (ir_node n = 0; n < p->e->node_count; n++) {
+    p->s->of[n] = -1;
+    if (!p->usual[n] || !is_line(p->e, n)) continue;
+    int stage = stage_below(p, n);
+    p->s->of[n] = stage;
+    p->finish[n] = finish_in(p, n, stage);
+    if (p->finish[n] <= longest) continue;
+    const int alone = finish_in(p, n, stage + 1);
+    if (alone >= p->finish[n]) continue; /* a long operation of its own */
+    p->s->of[n] = stage + 1;
+    p->finish[n] = alone;
+  }
+}
+
+/* The last stage writes what the pass gives; it has no expected choices, because it cannot be done twice. */
+static int last_stage(const planner *p) {
+  const emitter *e = p->e;
+  int last = 0;
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (p->usual[n] && is_line(e, n))
+      last = larger(last, p->s->of[n] + stages_is_expected_choice(e, n));
+  return last;
+}
+
+/* first[n]: earliest stage that uses line n; last[n]: the latest; -1 without users. */
+static void find_users(const planner *p, int *first, int *last) {
+  const emitter *e = p->e;
+  unsigned char *mask = must_alloc((size_t)e->node_count + 1);
+  unsigned char *taken = must_alloc((size_t)e->node_count + 1);
+  for (ir_node n = 0; n < e->node_count; n++)
+    first[n] = last[n] = -1;
+  for (int stage = 0; stage < p->s->count; stage++) {
+    stages_mark(e, p->s, stage, true, mask, taken);
+    for (ir_node n = 0; n < e->node_count; n++) {
+      if (!taken[n]) continue;
+      if (first[n] < 0) first[n] = stage;
+      last[n] = stage;
+    }
+  }
+  free(mask);
+  free(taken);
+}
+
+/* Lines under node n that would be kept for stage `to` on its account alone. */
+static int newly_kept(const planner *p, ir_node n, int to, const int *last) {
+  ir_node operand[3];
+  int kept = 0;
+  const int count = stages_operands(p->e, n, true, operand);
+  for (int k = 0; k < count; k++) {
+    const ir_node o = operand[k];
+    if (is_line(p->e, o))
+      kept += p->s->of[o] < to && last[o] < to;
+    else
+      kept += newly_kept(p, o, to, last);
+  }
+  return kept;
+}
+
+/* Moves a line to the first stage that uses it, where that saves a buffer. From the last line to the first, so that
+   whole trees move. */
+static void place_late(planner *p) {
+  const size_t size = ((size_t)p->e->node_count + 1) * sizeof(int);
+  int *first = must_alloc(size), *last = must_alloc(size);
+  find_users(p, first, last);
+  for (ir_node n = p->e->node_count - 1; n >= 0; n--) {
+    if (p->s->of[n] < 0 || first[n] <= p->s->of[n] || stages_is_expected_choice(p->e, n)) continue;
+    if (first[n] >= p->s->count || newly_kept(p, n, first[n], last) > 0) continue;
+    p->s->of[n] = first[n];
+    find_users(p, first, last);
+  }
+  free(first);
+  free(last);
+}
+
+/* Stages that all lines have left go. */
+static void drop_empty(planner *p) {
+  stages *s = p->s;
+  const int stage_count = s->count;
+  int *number = must_calloc((size_t)stage_count + 1, sizeof *number);
+  for (ir_node n = 0; n < p->e->node_count; n++)
+    if (s->of[n] >= 0) number[s->of[n]] = 1;
+  number[stage_count - 1] = 1;
+  s->count = 0;
+  for (int k = 0; k < stage_count; k++)
+    number[k] = number[k] ? s->count++ : -1;
+  for (ir_node n = 0; n < p->e->node_count; n++)
+    if (s->of[n] >= 0) s->of[n] = number[s->of[n]];
+  free(number);
+}
+
+/* --- buffers ---------------------------------------------------------------------------------- */
+
+/* A buffer is free again behind the last stage that reads it. */
+static void give_buffers(planner *p) {
+  const emitter *e = p->e;
+  const size_t size = ((size_t)e->node_count + 1) * sizeof(int);
+  int *first = must_alloc(size), *last = must_alloc(size), *until = must_alloc(size);
+  find_users(p, first, last);
+  p->s->buffers = 0;
+  for (ir_node n = 0; n < e->node_count; n++)
+    p->s->buffer[n] = p->s->until[n] = -1;
+  for (int stage = 0; stage < p->s->count; stage++)
+    for (ir_node n = 0; n < e->node_count; n++) {
+      if (p->s->of[n] != stage || last[n] <= stage) continue;
+      int b = 0;
+      while (b < p->s->buffers && until[b] >= stage)
+        b++;
+      if (b == p->s->buffers) p->s->buffers++;
+      until[b] = p->s->until[n] = last[n];
+      p->s->buffer[n] = b;
+    }
+  free(first);
+  free(last);
+  free(until);
+}
+
+/* --- cost ------------------------------------------------------------------------------------- */
+
+static double most(double a, double b) {
+  return a > b ? a : b;
+}
+
+static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned char *taken) {
+  const emitter *e = p->e;
+  stage_cost c = {0};
+  stages_mark(e, p->s, stage, true, mask, taken);
+  for (ir_node n = 0; n < e->node_count; n++) {
+    c.loads += taken[n] || (mask[n] && is_loaded(e, n));
+    c.stores += p->s->of[n] == stage && p->s->buffer[n] >= 0;
+    if (!mask[n] || emit_is_uniform(e, n)) continue;
+    const price of = prices[ir_operation(e->graph, n)];
+    c.operations += of.operations;
+    c.divisions += of.divisions;
+    c.chain = larger(c.chain, finish_in(p, n, stage));
+    if (is_line(e, n)) p->finish[n] = finish_in(p, n, stage);
+  }
+  if (stage == p->s->count - 1) c.stores += e->root_count;
+  const int all = c.operations + c.loads + c.stores;
+  c.cycles = most(most(0.5 * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
+  c.cycles = most(c.cycles, (double)c.chain * all / OPERATIONS_IN_FLIGHT);
+  c.cycles += LOOP_CYCLES + (double)c.chain / STRIP_VECTORS;
+  return c;
+}
+
+static void find_costs(planner *p) {
+  unsigned char *mask = must_alloc((size_t)p->e->node_count + 1);
+  unsigned char *taken = must_alloc((size_t)p->e->node_count + 1);
+  p->s->cost = must_calloc((size_t)p->s->count, sizeof *p->s->cost);
+  for (int stage = 0; stage < p->s->count; stage++) {
+    p->s->cost[stage] = cost_of(p, stage, mask, taken);
+    p->s->cycles += p->s->cost[stage].cycles;
+  }
+  free(mask);
+  free(taken);
+}
+
+/* --- the plan --------------------------------------------------------------------------------- */
+
+static void mark_usual(planner *p) {
+  const emitter *e = p->e;
+  p->usual = must_calloc((size_t)e->node_count + 1, 1);
+  for (int k = 0; k < e->root_count; k++)
+    p->usual[e->roots[k].node] = 1;
+  for (ir_node n = e->node_count - 1; n >= 0; n--) {
+    ir_node operand[3];
+    const int count = p->usual[n] ? stages_operands(e, n, true, operand) : 0;
+    for (int k = 0; k < count; k++)
+      p->usual[operand[k]] = 1;
+  }
+}
+
+static stages *plan_with(planner *p, int longest) {
+  const size_t nodes = (size_t)p->e->node_count + 1;
+  stages *s = p->s = must_calloc(1, sizeof *s);
+  s->of = must_alloc(nodes * sizeof *s->of);
+  s->buffer = must_alloc(nodes * sizeof *s->buffer);
+  s->until = must_alloc(nodes * sizeof *s->until);
+  place_early(p, longest);
+  for (ir_node n = 0; n < p->e->node_count; n++) {
+    if (s->of[n] < 0) continue;
+    s->whole_chain = larger(s->whole_chain, p->finish[n]);
+    s->conditions += stages_is_expected_choice(p->e, n);
+  }
+  s->count = last_stage(p) + 1;
+  if (s->count > 1) place_late(p);
+  drop_empty(p);
+  give_buffers(p);
+  find_costs(p);
+  return s;
+}
+
+enum { NO_CUT = 1 << 20 };
+static const int longest_chains[] = {NO_CUT, 160, 120, 100, 80, 70, 60, 50};
+
+stages *stages_plan(const emitter *e, loop_cutting cutting) {
+  const size_t choices = sizeof longest_chains / sizeof *longest_chains;
+  planner p = {.e = e};
+  mark_usual(&p);
+  p.finish = must_calloc((size_t)e->node_count + 1, sizeof *p.finish);
+  stages *best = NULL;
+  int whole_chain = 0;
+  for (size_t k = 0; k < choices; k++) {
+    if (cutting == CUT_ALWAYS && k + 1 < choices) continue;
+    if (cutting == CUT_NEVER && k > 0) break;
+    stages *s = plan_with(&p, longest_chains[k]);
+    if (k == 0) whole_chain = s->whole_chain;
+    stages *worse = best && best->cycles <= s->cycles ? s : best;
+    best = worse == s ? best : s;
+    stages_free(worse);
+  }
+  best->whole_chain = whole_chain;
+  free(p.finish);
+  free(p.usual);
+  return best;
+}
+
+void stages_free(stages *s) {
+  if (!s) return;
+  free(s->of);
+  free(s->buffer);
+  free(s->until);
+  free(s->cost);
+  free(s);
+}
+
+/* --- one loop --------------------------------------------------------------------------------- */
+
+bool stages_has_conditions(const emitter *e, const stages *s, int stage) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->of[n] == stage && stages_is_expected_choice(e, n)) return true;
+  return false;
+}
+
+/* What the stage hands on: its lines, or what the pass gives. */
+static void mark_results(const emitter *e, const stages *s, int stage, unsigned char *mask) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->of[n] == stage) mask[n] = 1;
+  for (int k = 0; stage == s->count - 1 && k < e->root_count; k++)
+    mask[e->roots[k].node] = 1;
+}
+
+void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
+                 unsigned char *kept_loads) {
+  memset(mask, 0, (size_t)e->node_count + 1);
+  memset(kept_loads, 0, (size_t)e->node_count + 1);
+  mark_results(e, s, stage, mask);
+  for (ir_node n = e->node_count - 1; n >= 0; n--) {
+    if (!mask[n]) continue;
+    /* what only the unexpected needs is not kept for it: it is computed again */
+    if (s->of[n] >= 0 && s->of[n] < stage && (usual || s->until[n] >= stage)) {
+      kept_loads[n] = 1;
+      mask[n] = 0;
+      continue;
+    }
+    ir_node operand[3];
+    const int count = stages_operands(e, n, usual, operand);
+    for (int k = 0; k < count; k++)
+      mask[operand[k]] = 1;
+  }
+}

@@ -1,0 +1,54 @@
+/* Cuts the loop over a strip of bonds into stages, loops over the same bonds one after the other, with the values that
+   later stages need kept in buffers in the first cache.
+
+   Why: a processor keeps some hundred operations in flight. Where those of one bond wait for each other in a long chain,
+   few bonds are in flight at once, and the processor waits with them; of short chains it overlaps many. And where a value
+   is chosen by a condition that is expected to hold (ir_expect), a stage computes what is expected for all bonds and looks
+   once, at its end, whether all were as expected; if not, the stage is done again, with both sides. The last stage, which
+   overwrites fields, is never done twice.
+
+   Neither changes any operation: results are the same to the bit, however a loop is cut. */
+#ifndef PERILAT_GENERATOR_STAGES_H
+#define PERILAT_GENERATOR_STAGES_H
+
+#include "generator/emit_parts.h"
+
+enum {
+  STAGES_PART = 256, /* bonds */
+  STAGES_PITCH = 280 /* doubles of a buffer; not near a part of 4 KiB: stores would hold up loads */
+};
+
+typedef struct stage_cost {
+  int operations, divisions, loads, stores;
+  int chain;     /* cycles from the first load to the last result */
+  double cycles; /* estimated, for eight bonds */
+} stage_cost;
+
+typedef struct stages {
+  int count;
+  int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
+  int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
+  int *until;  /* [node_count] last stage that it is kept for; -1 */
+  int buffers;
+  int conditions;   /* expected ones */
+  stage_cost *cost; /* [count] */
+  double cycles;    /* sum of the stages' */
+  int whole_chain;  /* cycles of the chain of an uncut loop */
+} stages;
+
+/* For the pass that the emitter has open, by estimated cost; `cutting` may forbid or force cuts. */
+stages *stages_plan(const emitter *e, loop_cutting cutting);
+void stages_free(stages *s);
+
+/* Operands of node n, operand[3]; in the loop that relies on what is expected, of a choice by an expected condition only
+   the condition and the value it is expected to choose. Returns their number. */
+int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]);
+/* Marks what the loop of a stage computes or loads, and `kept_loads`, what it takes from the buffers; mask and kept_loads:
+   [node_count], zeroed here. `usual`: it relies on what is expected. */
+void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
+                 unsigned char *kept_loads);
+/* A choice by a condition that is expected to hold. */
+bool stages_is_expected_choice(const emitter *e, ir_node n);
+bool stages_has_conditions(const emitter *e, const stages *s, int stage);
+
+#endif
