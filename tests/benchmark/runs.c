@@ -1,0 +1,5 @@
+#include "tests/benchmark/measure.h"
+bool benchmark_runs(figures *f) {
+  (void)f;
+  return true;
+}
