@@ -18,7 +18,7 @@
 
 enum { ROUNDS = 7, CASES = 4, PROGRAMS = 3, CONTESTANTS = PROGRAMS + 1 };
 enum { NAIVE, PLAIN, FUSED, GENERATED };
-#define ROUND_SECONDS    0.12
+#define ROUND_SECONDS    0.08
 #define AGREEMENT        1e-9 /* of displacements and velocities, relative */
 #define WANTED_ADVANTAGE 15.0 /* of the hand-written loop over the naive program */
 
@@ -56,7 +56,7 @@ static contest all[CASES] = {
      .body = PLATE,
      .program = {&naive_concrete, &concrete_hexagon_plain, &concrete_hexagon_fused},
      .stretch = 1e-3, /* some yield, some crack */
-     .agreement_steps = 100},
+     .agreement_steps = 60},
     {.key = "splm_elastic_hexagon",
      .name = "splm_elastic, hexagon, 6 neighbours",
      .model = "splm_elastic",
@@ -64,7 +64,7 @@ static contest all[CASES] = {
      .body = PLATE,
      .program = {&naive_elastic, &elastic_hexagon_plain, &elastic_hexagon_fused},
      .stretch = 1e-3,
-     .agreement_steps = 200},
+     .agreement_steps = 60},
     {.key = "splm_elastic_fcc",
      .name = "splm_elastic, face-centred cubic, 18 neighbours",
      .model = "splm_elastic",
@@ -83,7 +83,7 @@ static contest all[CASES] = {
      .setting = SETTING_SPACE,
      .s_0 = 1.5e-3, /* some bonds break */
      .stretch = 1e-3,
-     .agreement_steps = 12},
+     .agreement_steps = 5},
 };
 
 /* --- set-up ----------------------------------------------------------------------------------- */

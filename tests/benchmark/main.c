@@ -29,6 +29,15 @@ static void name_machine(figures *f) {
   figures_text(f, "compiler", __VERSION__);
   figures_add(f, processor_count(), "cores");
   figures_add(f, vector_bits(), "vector_bits");
+  double load;
+  if (getloadavg(&load, 1) == 1) {
+    figures_add(f, load, "load_before");
+    if (load > 0.5)
+      printf("Others use this machine: load %.1f. Figures by wall time (threads, triad, compiling, "
+             "start) are worse than "
+             "they would be alone.\n",
+             load);
+  }
 }
 
 int main(int argc, char **argv) {
