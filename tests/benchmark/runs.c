@@ -211,8 +211,8 @@ static void remove_folder(const char *folder) {
 static void measure_start(figures *f, const char *folder) {
   double seconds[ROUNDS];
   char text[TEXT];
-  trial_plate_text(text, sizeof text, 100, LAW,
-                   "step = '0.4 us' end_time = '0.4 us' threads = 1", "");
+  trial_plate_text(text, sizeof text, 100, LAW, "step = '0.4 us' end_time = '0.4 us' threads = 1",
+                   "");
   run_program(folder, text); /* fills the cache */
   for (int round = 0; round < ROUNDS; round++) {
     const double begun = wall_seconds();

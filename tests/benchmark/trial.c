@@ -23,7 +23,10 @@ void trial_plate_text(char *text, size_t size, double particles, const char *mod
 
 void trial_open_model(model *m, const char *name) {
   char path[4096];
-  snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
+  if (strchr(name, '/'))
+    snprintf(path, sizeof path, "%s", name);
+  else
+    snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
   const bool good = model_open(m, path, NULL, 0) && model_plan(m);
   diag_print(&m->said, stderr);
   if (!good) give_up("%s cannot be used", path);
