@@ -36,4 +36,15 @@ static inline double *lanes_zeros(long count) {
   return memset(p, 0, bytes + PL_ALIGNMENT);
 }
 
+/* Arrays of `count` zeros each in one piece of memory, which the first owns. The same places of no two of a dozen are
+   a multiple of 4 KiB apart: a load would wait for the store to such a place. */
+enum { LANES_PAGE = 4096 / sizeof(double), LANES_STAGGER = 88 };
+
+static inline void lanes_share(double **const *arrays, int how_many, long count) {
+  const long apart = (count + 2 * LANES + LANES_PAGE) / LANES_PAGE * LANES_PAGE + LANES_STAGGER;
+  double *next = lanes_zeros(how_many * apart);
+  for (int k = 0; k < how_many; k++, next += apart)
+    *arrays[k] = next;
+}
+
 #endif

@@ -135,23 +135,15 @@ static void *start(const family_problem *p) {
   set_law(h);
   h->ring_rows = h->reach + 1;
   h->ring = lanes_zeros((long)h->ring_rows * DIRECTIONS * 2 * g->pitch);
-  h->sum = lanes_zeros(g->size);
-  for (int d = 0; d < 3; d++) {
-    h->u[d] = lanes_zeros(g->size);
-    h->v[d] = lanes_zeros(g->size);
-    h->force[d] = lanes_zeros(g->size);
-  }
+  double **const arrays[] = {&h->u[0], &h->u[1],     &h->u[2],     &h->v[0],     &h->v[1],
+                             &h->v[2], &h->force[0], &h->force[1], &h->force[2], &h->sum};
+  lanes_share(arrays, sizeof arrays / sizeof *arrays, g->size);
   return h;
 }
 
 static void end(void *state) {
   elastic_fcc *h = state;
-  for (int d = 0; d < 3; d++) {
-    free(h->u[d]);
-    free(h->v[d]);
-    free(h->force[d]);
-  }
-  free(h->sum);
+  free(h->u[0]); /* with all that share its memory */
   free(h->ring);
   free(h);
 }

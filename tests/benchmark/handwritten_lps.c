@@ -219,11 +219,10 @@ static void *start(const family_problem *p) {
   lps_cubic *h = must_calloc(1, sizeof *h);
   h->problem = p;
   find_places(h);
-  double **arrays[] = {&h->u[0],     &h->u[1],    &h->u[2],          &h->v[0],
-                       &h->v[1],     &h->v[2],    &h->force[0],      &h->force[1],
-                       &h->force[2], &h->dilated, &h->by_dilatation, &h->by_stretch};
-  for (size_t k = 0; k < sizeof arrays / sizeof *arrays; k++)
-    *arrays[k] = lanes_zeros(h->size);
+  double **const arrays[] = {&h->u[0],     &h->u[1],    &h->u[2],          &h->v[0],
+                             &h->v[1],     &h->v[2],    &h->force[0],      &h->force[1],
+                             &h->force[2], &h->dilated, &h->by_dilatation, &h->by_stretch};
+  lanes_share(arrays, sizeof arrays / sizeof *arrays, h->size);
   h->virgin = must_calloc((size_t)h->size, sizeof *h->virgin);
   h->bonds = must_calloc((size_t)h->size, sizeof *h->bonds);
   set_law(h);
@@ -232,14 +231,7 @@ static void *start(const family_problem *p) {
 
 static void end(void *state) {
   lps_cubic *h = state;
-  for (int d = 0; d < 3; d++) {
-    free(h->u[d]);
-    free(h->v[d]);
-    free(h->force[d]);
-  }
-  free(h->dilated);
-  free(h->by_dilatation);
-  free(h->by_stretch);
+  free(h->u[0]); /* with all that share its memory */
   free(h->virgin);
   free(h->bonds);
   free(h->place);
