@@ -1,9 +1,12 @@
 /* What a drive leaves: table, CSV, HDF5, picture. */
+#include <ctype.h>
 #include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 #include "generator/drive.h"
 #include "generator/version.h"
@@ -22,6 +25,29 @@ static void heading(const drive_column *c, char *text, size_t size) {
     snprintf(text, size, "%s [%s]", c->name, c->unit);
 }
 
+/* --- what is printed -------------------------------------------------------------------------- */
+
+/* Length of the name before the number of a neighbour: 1 of "F_12"; 0 without one. */
+static int stem_of(const char *name) {
+  const size_t length = strlen(name);
+  size_t at = length;
+  while (at > 0 && isdigit((unsigned char)name[at - 1]))
+    at--;
+  return at < length && at > 1 && name[at - 1] == '_' ? (int)at - 1 : 0;
+}
+
+/* One of more neighbours than a table has room for. */
+static bool is_of_many(const drive_table *t, int column) {
+  enum { ROOM = 12 };
+  const char *name = t->columns[column].name;
+  const int stem = stem_of(name);
+  int family = 0;
+  for (int c = 0; stem > 0 && c < t->column_count; c++)
+    family +=
+        stem_of(t->columns[c].name) == stem && strncmp(t->columns[c].name, name, (size_t)stem) == 0;
+  return family > ROOM;
+}
+
 /* Columns that are 0 throughout, such as the moments of a central law, are left out. */
 static bool is_worth_showing(const drive_table *t, int column) {
   if (column <= t->way || column == t->force) return true;
@@ -30,18 +56,87 @@ static bool is_worth_showing(const drive_table *t, int column) {
   return false;
 }
 
-enum { WIDTH = 13 };
+/* Of the terminal; where there is none, of a wide page. */
+static int width_of(FILE *out) {
+  enum { PAGE = 132, LEAST = 40 };
+  struct winsize size;
+  if (!isatty(fileno(out)) || ioctl(fileno(out), TIOCGWINSZ, &size) != 0) return PAGE;
+  return size.ws_col < LEAST ? PAGE : size.ws_col;
+}
 
-static void print_row(const drive_table *t, long row, FILE *out) {
+static int value_text(const drive_column *c, long row, char *text, size_t size) {
+  return snprintf(text, size, "%.6g", c->values[row] + 0.0); /* no minus before zeros */
+}
+
+/* Of the heading and the values that are shown. */
+static int column_width(const drive_table *t, int column, const bool *shown) {
   char text[128];
+  heading(&t->columns[column], text, sizeof text);
+  int width = (int)strlen(text);
+  for (long k = 0; k < t->rows; k++) {
+    const int used = shown[k] ? value_text(&t->columns[column], k, text, sizeof text) : 0;
+    width = used > width ? used : width;
+  }
+  return width;
+}
+
+enum { GAP = 2 };
+
+/* The heading for row -1. */
+static void print_cell(const drive_table *t, int column, int width, long row, FILE *out) {
+  char text[128];
+  if (row < 0)
+    heading(&t->columns[column], text, sizeof text);
+  else
+    value_text(&t->columns[column], row, text, sizeof text);
+  fprintf(out, "%*s", width + GAP, text);
+}
+
+/* Columns `from` up to `to` of a list, each line begun with the time. */
+static void print_block(const drive_table *t, const int *columns, const int *widths, int from,
+                        int to, const bool *shown, FILE *out) {
+  for (long row = -1; row < t->rows; row++) {
+    if (row >= 0 && !shown[row]) continue;
+    print_cell(t, columns[0], widths[0], row, out);
+    for (int k = from; k < to; k++)
+      print_cell(t, columns[k], widths[k], row, out);
+    fputc('\n', out);
+  }
+}
+
+/* As many columns beside each other as there is room for, the others below. */
+static void print_blocks(const drive_table *t, const int *columns, int count, const bool *shown,
+                         FILE *out) {
+  const int room = width_of(out);
+  int *widths = must_calloc((size_t)count, sizeof *widths);
+  for (int k = 0; k < count; k++)
+    widths[k] = column_width(t, columns[k], shown);
+  for (int from = 1, to; from < count; from = to) {
+    int used = widths[0] + widths[from] + 2 * GAP;
+    for (to = from + 1; to < count && used + widths[to] + GAP <= room; to++)
+      used += widths[to] + GAP;
+    if (from > 1) fputc('\n', out);
+    print_block(t, columns, widths, from, to, shown, out);
+  }
+  free(widths);
+}
+
+static void print_table(const drive_table *t, const bool *shown, FILE *out) {
+  int *columns = must_calloc((size_t)t->column_count, sizeof *columns), count = 0, left = 0;
   for (int c = 0; c < t->column_count; c++) {
     if (!is_worth_showing(t, c)) continue;
-    heading(&t->columns[c], text, sizeof text);
-    int width = (int)strlen(text) > WIDTH ? (int)strlen(text) : WIDTH;
-    fprintf(out, " %*.6g", width, t->columns[c].values[row]);
+    if (c > t->way && c != t->force && is_of_many(t, c))
+      left++;
+    else
+      columns[count++] = c;
   }
-  fputc('\n', out);
+  print_blocks(t, columns, count, shown, out);
+  if (left > 0)
+    fprintf(out, "%d columns of single neighbours are not shown; --csv FILE writes them\n", left);
+  free(columns);
 }
+
+/* --- rows that are printed --------------------------------------------------------------------- */
 
 static long row_of_largest_force(const drive_table *t) {
   const double *N = t->columns[t->force].values;
@@ -91,7 +186,6 @@ static void mark_between(const drive_table *t, long more, bool *shown) {
 }
 
 void drive_print(const drive_input *in, const drive_table *t, FILE *out) {
-  char text[128];
   const long most = in->output.rows;
   if (most < 1 || t->rows < 1) return;
   bool *shown = must_calloc((size_t)t->rows, sizeof *shown);
@@ -101,16 +195,11 @@ void drive_print(const drive_input *in, const drive_table *t, FILE *out) {
   mark_corners(in, t, most - count_marked(t, shown), shown);
   const long left = most - count_marked(t, shown);
   if (left > 0) mark_between(t, left, shown);
-  for (int c = 0; c < t->column_count; c++) {
-    if (!is_worth_showing(t, c)) continue;
-    heading(&t->columns[c], text, sizeof text);
-    fprintf(out, " %*s", WIDTH, text);
-  }
-  fputc('\n', out);
-  for (long k = 0; k < t->rows; k++)
-    if (shown[k]) print_row(t, k, out);
+  print_table(t, shown, out);
   free(shown);
 }
+
+/* --- files ------------------------------------------------------------------------------------ */
 
 static bool write_rows(const drive_table *t, FILE *out) {
   char text[128];

@@ -101,9 +101,10 @@ static int set_up(run *r) {
   if (status) return status;
   if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
   if (!result_spares_inputs(r)) return INPUT_WRONG;
-  fingerprint(r);
   r->simulation = simulation_new(r->deck, r->laws, &r->said);
-  return r->simulation ? 0 : INPUT_WRONG;
+  if (!r->simulation) return INPUT_WRONG;
+  fingerprint(r);
+  return 0;
 }
 
 static void let_go(run *r) {
@@ -191,8 +192,9 @@ static int execute(run *r, long resume_frames) {
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (stopped_by_user) {
-    printf("stopped at t = %.5g ms as asked; this goes on from here:\n",
-           1e3 * simulation_time(r->simulation));
+    char text[MOMENT_TEXT];
+    printf("stopped at %s as asked; this goes on from here:\n",
+           moment(r, simulation_time(r->simulation), text));
     print_resume(r, stdout);
     return 128 + interrupted;
   }
@@ -204,7 +206,8 @@ static bool resume(run *r, long *frames) {
   char error[ERROR_LENGTH];
   if (simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, frames, error,
                          sizeof error)) {
-    printf("resumed at t = %.5g ms (step %ld)\n", 1e3 * simulation_time(r->simulation),
+    char text[MOMENT_TEXT];
+    printf("resumed at %s (step %ld)\n", moment(r, simulation_time(r->simulation), text),
            simulation_step_done(r->simulation));
     fflush(stdout);
     return true;

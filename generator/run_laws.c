@@ -212,9 +212,23 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
+/* Laws are checked on perfect lattices: for particles that stand on none, on that of particles as large, with the neighbours
+   that the law counts on there. */
+static deck_lattice lattice_like(const deck_lattice *d) {
+  deck_lattice like = *d;
+  if (!deck_lattice_is_irregular(d)) return like;
+  const bool space = deck_lattice_dimensions(d) == 3;
+  like.kind = space ? "fcc" : "hexagonal";
+  like.spacing = d->spacing > 0 ? d->spacing : 0.01; /* what a file will say is not known yet */
+  like.shells = d->horizon > 0 || !space ? 0 : 2;
+  like.neighbours = 0;
+  return like;
+}
+
 /* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
 static bool obeys_mechanics(run *r, int lattice, model *opened) {
-  const deck_lattice *d = &r->deck->lattices[lattice];
+  const deck_lattice like = lattice_like(&r->deck->lattices[lattice]), *d = &like;
+  const bool irregular = opened->law->irregular;
   const double *parameters = r->laws[lattice].parameters;
   const symbol *rho = opened->law->rho;
   double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
@@ -230,10 +244,12 @@ static bool obeys_mechanics(run *r, int lattice, model *opened) {
                                .weight = 1};
   diagnostics found;
   diag_begin(&found, &opened->sources);
+  opened->law->irregular = false;
   bool good = physics_check(
       opened->law,
       &(physics_options){.parameters = parameters, .bonds = &bonds, .lattice = d, .effort = 0.5},
       &found, NULL);
+  opened->law->irregular = irregular;
   tell(r, &found);
   diag_clear(&found);
   return good;

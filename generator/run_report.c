@@ -9,6 +9,7 @@
 #include "runtime/checkpoint.h"
 #include "runtime/implied.h"
 #include "runtime/random_field.h"
+#include "runtime/uniform_strain.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -23,6 +24,23 @@ static void print_quantity(const char *text, double value, const char *unit_name
   printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
 }
 
+/* Irregular particles have no lattice that implies anything: they are asked. */
+static void announce_uniform_strain(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  uniform_response u;
+  if (!uniform_strain_response(r->laws[lattice].law, r->laws[lattice].parameters, w, plane_strain,
+                               &u)) {
+    printf(": no stiffness\n");
+    return;
+  }
+  print_quantity(": under uniform strain E = ", u.E, "Pa");
+  printf(
+      ", nu = %.4f\n  residuals  force left on a particle %.2g %% of stress times its face "
+      "(median), sum of forces %.1g of all; %ld particles whose bonds do not resolve all strains\n",
+      u.nu, 100 * u.left_force, u.momentum, u.unresolved);
+}
+
 static void announce_law(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const pl_law *kernel = r->laws[lattice].law;
@@ -31,6 +49,10 @@ static void announce_law(const run *r, int lattice) {
   if (r->open_models > lattice && r->models[lattice].path) {
     const char *path = r->models[lattice].path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
+  }
+  if (w->list) {
+    announce_uniform_strain(r, lattice);
+    return;
   }
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
     print_quantity(": on this lattice E = ", e.E[0], "Pa");
@@ -56,6 +78,24 @@ static void announce_fields(const run *r) {
   }
 }
 
+static void announce_particles(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  char depth[32] = "";
+  int fewest = ROWS_MAX_NEIGHBOURS, most = 0;
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  for (long p = 0; p < w->particle_count; p++) {
+    const int degree = rows_degree(w, w->particle_site[p]);
+    fewest = degree < fewest ? degree : fewest;
+    most = degree > most ? degree : most;
+  }
+  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n"
+         "  neighbours %d to %d, mean %.4g, %ld bonds\n",
+         k->name, w->particle_count, k->file ? k->file : "blue noise", 1e3 * w->spacing,
+         1e3 * w->width, 1e3 * w->height, depth, fewest, most,
+         2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
+}
+
 static void announce_lattice(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const deck_lattice *k = &r->deck->lattices[lattice];
@@ -70,30 +110,50 @@ static void announce_lattice(const run *r, int lattice) {
       1e3 * w->height, depth);
 }
 
+/* Loads come in the deck's time, which has nothing to do with that of the steps. */
+static void announce_increments(const run *r) {
+  const deck_relaxation *k = &r->deck->relaxation;
+  printf(
+      "  increments %d, quasi-static, each until the unbalanced force is %.4g of the reactions or "
+      "loads, or for %ld steps\n",
+      k->increments, k->tolerance, (long)k->most_steps);
+  fputs("  steps      of ", stdout);
+}
+
 void announce(const run *r) {
   const deck_simulation *s = &r->deck->simulation;
   const step_limit *limit = simulation_step_limit(r->simulation);
   printf("%s\n", s->title ? s->title : r->options->deck_path);
   for (int k = 0; k < r->deck->lattice_count; k++) {
-    announce_lattice(r, k);
+    if (simulation_rows(r->simulation, k)->list)
+      announce_particles(r, k);
+    else
+      announce_lattice(r, k);
     announce_law(r, k);
   }
   announce_fields(r);
-  const int increments = r->deck->relaxation.increments;
-  char parts[64];
-  if (increments > 0)
-    snprintf(parts, sizeof parts, "%d quasi-static increments, steps", increments);
+  if (r->deck->relaxation.increments > 0)
+    announce_increments(r);
   else
-    snprintf(parts, sizeof parts, "%ld steps", simulation_step_count(r->simulation));
-  printf("  time       %.6g ms in %s of %.4g us: %.3g of the stable step %.4g us (%s mode "
-         "rules)\n",
-         1e3 * s->end_time, parts, 1e6 * limit->step, limit->step / limit->limit,
-         1e6 * limit->limit, limit->mode);
+    printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
+           simulation_step_count(r->simulation));
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode rules)\n", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
   printf("  result     %s\n", r->result_path);
   fflush(stdout);
+}
+
+const char *moment(const run *r, double time, char text[MOMENT_TEXT]) {
+  const int increments = r->deck->relaxation.increments;
+  if (increments > 0)
+    snprintf(text, MOMENT_TEXT, "increment %ld of %d",
+             lround(time / r->deck->simulation.end_time * increments), increments);
+  else
+    snprintf(text, MOMENT_TEXT, "t = %.5g ms", 1e3 * time);
+  return text;
 }
 
 /* --- during the run, and when it goes wrong --------------------------------------------------- */
@@ -102,7 +162,8 @@ void announce(const run *r) {
 void describe_monitors(const run *r, char *text, size_t size) {
   const double *time;
   long samples = simulation_history(r->simulation, &time);
-  int n = snprintf(text, size, "t = %.4g ms", 1e3 * simulation_time(r->simulation));
+  char now[MOMENT_TEXT];
+  int n = snprintf(text, size, "%s", moment(r, simulation_time(r->simulation), now));
   for (int k = 0; samples > 0 && k < r->deck->monitor_count && k < 2 && n > 0 && (size_t)n < size;
        k++) {
     const char *unit_name;
@@ -114,7 +175,7 @@ void describe_monitors(const run *r, char *text, size_t size) {
                   pure ? "" : unit_name);
     if (k == 0 && (size_t)n < size)
       n += snprintf(text + n, size - (size_t)n, " (peak %.4g)",
-                    simulation_monitor_peak(r->simulation, k, NULL));
+                    simulation_monitor_peak(r->simulation, k, NULL) + 0.0);
   }
 }
 
@@ -153,10 +214,10 @@ static void print_family(const run *r, const bad_state *b) {
 
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
-  char place_text[ROWS_PLACE_TEXT];
-  fprintf(stderr, "perilat: error: %s in step %ld (t = %.6g ms) at particle %ld, %s\n", b.what,
-          b.step, 1e3 * b.time, b.particle,
-          rows_place_text(simulation_rows(r->simulation, 0), b.place, place_text));
+  char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
+  fprintf(stderr, "perilat: error: %s in step %ld (%s%s) at particle %ld, %s\n", b.what, b.step,
+          r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+          rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
@@ -231,17 +292,20 @@ void print_misfit(const run *r) {
 
 /* --- after the run ---------------------------------------------------------------------------- */
 
-/* The first or the last sample of a series; NaN where there is none. */
-static double sample_of(const run *r, const char *name, bool last) {
-  const double *time;
-  long samples = simulation_history(r->simulation, &time);
+/* Samples of a series; NULL where there is none of that name. */
+static const double *series_of(const run *r, const char *name) {
   for (int k = 0; k < simulation_series_count(r->simulation); k++) {
-    const char *unit_name;
     const double *values;
-    if (strcmp(simulation_series(r->simulation, k, &unit_name, &values), name) == 0 && samples > 0)
-      return values[last ? samples - 1 : 0];
+    if (strcmp(simulation_series(r->simulation, k, NULL, &values), name) == 0) return values;
   }
-  return NAN;
+  return NULL;
+}
+
+/* The first or the last sample; NaN where there is none. */
+static double sample_of(const run *r, const char *name, bool last) {
+  const double *time, *values = series_of(r, name);
+  const long samples = simulation_history(r->simulation, &time);
+  return values && samples > 0 ? values[last ? samples - 1 : 0] : NAN;
 }
 
 static double last_value(const run *r, const char *name) {
@@ -282,25 +346,50 @@ static void warn_of_gain(const run *r) {
   }
 }
 
+static double largest_of(const run *r, const char *name) {
+  const double *time, *values = series_of(r, name);
+  const long samples = simulation_history(r->simulation, &time);
+  double largest = 0;
+  for (long k = 0; values && k < samples; k++)
+    largest = fmax(largest, values[k]);
+  return largest;
+}
+
+/* How well the increments of a quasi-static run ended. */
+static void conclude_increments(const run *r) {
+  long unbalanced;
+  const long increments = simulation_increments(r->simulation, &unbalanced);
+  if (increments == 0) return;
+  printf("  increments %ld, in the mean %ld steps each, at most %.0f; unbalanced force left: at "
+         "most %.2g of the "
+         "reactions or loads\n",
+         increments, simulation_step_done(r->simulation) / increments,
+         largest_of(r, "relaxation_steps"), largest_of(r, "relaxation_unbalance"));
+  if (unbalanced > 0)
+    printf("             %ld of them without balance after %ld steps\n", unbalanced,
+           (long)r->deck->relaxation.most_steps);
+}
+
+/* The value that is largest in size, with its sign. */
+static void conclude_monitor(const run *r, int k) {
+  const char *unit_name;
+  const char *name = simulation_series(r->simulation, k, &unit_name, NULL);
+  double when = 0;
+  const double peak = simulation_monitor_peak(r->simulation, k, &when) + 0.0;
+  const bool pure = strcmp(unit_name, "1") == 0;
+  char text[MOMENT_TEXT];
+  printf("  %-10s largest %.6g%s%s at %s\n", name, peak, pure ? "" : " ", pure ? "" : unit_name,
+         moment(r, when, text));
+}
+
 void conclude(const run *r, double seconds, long steps) {
   const rows *w = simulation_rows(r->simulation, 0);
   double rate = (double)steps / fmax(seconds, 1e-9);
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
          1e-6 * rate * (double)w->bond_count);
-  long unbalanced;
-  const long increments = simulation_increments(r->simulation, &unbalanced);
-  if (increments > 0)
-    printf("  increments %ld, %ld of them without balance after most_steps\n", increments,
-           unbalanced);
-  for (int k = 0; k < r->deck->monitor_count; k++) {
-    const char *unit_name;
-    const double *values;
-    const char *name = simulation_series(r->simulation, k, &unit_name, &values);
-    double when = 0, peak = simulation_monitor_peak(r->simulation, k, &when);
-    bool pure = strcmp(unit_name, "1") == 0;
-    printf("  %-10s largest %.6g%s%s at t = %.5g ms\n", name, peak, pure ? "" : " ",
-           pure ? "" : unit_name, 1e3 * when);
-  }
+  conclude_increments(r);
+  for (int k = 0; k < r->deck->monitor_count; k++)
+    conclude_monitor(r, k);
   conclude_energy(r);
   fflush(stdout);
   warn_of_gain(r);
@@ -313,7 +402,8 @@ void conclude(const run *r, double seconds, long steps) {
 void print_stop(const run *r) {
   const deck_stop *s = simulation_stopped_by(r->simulation);
   if (!s) return;
-  printf("  ended early at t = %.5g ms: %s was %s ", 1e3 * simulation_time(r->simulation),
+  char text[MOMENT_TEXT];
+  printf("  ended early at %s: %s was %s ", moment(r, simulation_time(r->simulation), text),
          s->monitor, s->below ? "below" : "above");
   if (s->of_peak)
     printf("%.4g %% of its peak\n", 100 * s->level);

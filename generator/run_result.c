@@ -1,5 +1,6 @@
 /* What a run writes: paths, result, frames, checkpoints. */
 #include <errno.h>
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -8,6 +9,7 @@
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
+#include "runtime/shape_matrix.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 
@@ -70,6 +72,12 @@ bool result_spares_inputs(run *r) {
   for (int k = 0; k < r->open_models; k++)
     for (int f = 0; f < r->models[k].sources.count; f++)
       good = good && result_spares(r, r->models[k].sources.items[f].name);
+  for (int k = 0; good && k < r->deck->lattice_count; k++) {
+    if (!r->deck->lattices[k].file) continue;
+    char *particles = deck_file_path(r->deck, r->deck->lattices[k].file);
+    good = result_spares(r, particles);
+    free(particles);
+  }
   return good;
 }
 
@@ -78,7 +86,12 @@ void fingerprint(run *r) {
   for (int k = 0; k < r->deck->lattice_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
                         r->laws[k].law->key);
-  r->fingerprint = arena_printf(r->memory, "%s%s", text, r->deck->identity);
+  text = arena_printf(r->memory, "%s%s", text, r->deck->identity);
+  for (int k = 0; k < r->deck->lattice_count; k++) { /* a file may have changed */
+    const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
+    if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
+  }
+  r->fingerprint = text;
 }
 
 /* --- result ----------------------------------------------------------------------------------- */
@@ -109,9 +122,14 @@ static void particle_table(run *r, const rows *w, result_header *h) {
     double at[3];
     rows_place(w, w->particle_site[p], at);
     memcpy(reference + dimensions * p, at, dimensions * sizeof *at);
-    volume[p] = w->volume;
+    volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
   }
   rows_bodies(w, r->deck, 0, body);
+  if (w->list) {
+    int32_t *resolved = arena_alloc(r->memory, n * sizeof *resolved);
+    shape_unresolved(w, resolved);
+    h->resolved = resolved;
+  }
   h->dimensions = w->dimensions;
   h->particle_count = w->particle_count;
   h->reference = reference;

@@ -33,8 +33,7 @@ typedef struct deck_lattice {
   deck_item item;
   const char *name;
   const char *kind; /* "hexagonal", "square", "cubic", "fcc"; "blue_noise", "particles" */
-  double spacing;   /* m; of particles on no lattice: of the hexagonal or fcc lattice with as large particles; 0: from
-                       the file */
+  double spacing;   /* m; on no lattice: of the hexagonal or fcc one with as large particles */
   double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
   int shells;       /* 0: the nearest neighbours */
   int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */

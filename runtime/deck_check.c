@@ -633,6 +633,15 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
   diag_note(r->d, other, "the other one");
 }
 
+/* A load without a history grows with the increments of a quasi-static run. */
+static void spread(const deck_reader *r, const namelist_group *from, time_function *f) {
+  const double rest = r->k->simulation.end_time - f->start;
+  if (r->k->relaxation.increments < 1 || f->shape != TIME_CONSTANT || !(rest > 0)) return;
+  if (namelist_find(from, "history")) return;
+  f->shape = TIME_RAMP_HOLD;
+  f->rise = rest;
+}
+
 /* The one of two keys that was written, or NULL after a message. */
 static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
                                   const char *second) {
@@ -663,7 +672,9 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
     return;
   }
   warn_late(r, &item->item, "start", item->motion.start);
-  if (!item->is_displacement || item->motion.shape != TIME_CONSTANT) return;
+  if (!item->is_displacement) return;
+  spread(r, from, &item->motion);
+  if (item->motion.shape != TIME_CONSTANT || r->k->relaxation.increments > 0) return;
   diag_report(r->d, DIAG_DECK_WARNING, key->name_where, "this displacement comes all at once");
   diag_hint(r->d, "give a `rise`, e.g. rise = '1 ms'");
 }
@@ -690,14 +701,17 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
     diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
     return;
   }
-  if (deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d))
-    warn_late(r, &item->item, "start", item->force.start);
+  if (!deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d)) return;
+  warn_late(r, &item->item, "start", item->force.start);
+  spread(r, from, &item->force);
 }
 
 void deck_check_end_moment(deck_reader *r, const namelist_group *from, deck_end_moment *item) {
   item_region_known(r, &item->item, item->region);
-  if (deck_load_read(r->memory, from, namelist_find(from, "moment"), "N*m", &item->moment, r->d))
-    warn_late(r, &item->item, "start", item->moment.start);
+  if (!deck_load_read(r->memory, from, namelist_find(from, "moment"), "N*m", &item->moment, r->d))
+    return;
+  warn_late(r, &item->item, "start", item->moment.start);
+  spread(r, from, &item->moment);
 }
 
 void deck_check_protect(deck_reader *r, const namelist_group *from, deck_protect *item) {
@@ -714,8 +728,10 @@ void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping
 }
 
 void deck_check_gravity(deck_reader *r, const namelist_group *from, deck_gravity *item) {
-  if (deck_factor_read(r->memory, from, &item->factor, r->d))
+  if (deck_factor_read(r->memory, from, &item->factor, r->d)) {
     warn_late(r, &item->item, "start", item->factor.start);
+    spread(r, from, &item->factor);
+  }
   if (dimensions_of(r, NULL)) check_place(r, from, "acceleration", dimensions_of(r, NULL));
   if (item->acceleration[0] == 0 && item->acceleration[1] == 0 && item->acceleration[2] == 0)
     diag_report(r->d, DIAG_DECK_WARNING, deck_where(&item->item, "acceleration"),

@@ -119,7 +119,8 @@
   {.name = "history",                                                                              \
    .type = DECK_LATER,                                                                             \
    .choices = "constant|ramp|ramp and hold|cosine|table",                                          \
-   .fallback = "= 'constant'; 'ramp and hold' with a rise, 'table' with times",                    \
+   .fallback = "= 'constant', in quasi-static runs a ramp over the run; 'ramp and hold' with a "    \
+               "rise, 'table' with times",                                                         \
    NOT_KEPT,                                                                                       \
    .doc = "how the value develops in time"},                                                       \
       {.name = "start",                                                                            \

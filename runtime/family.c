@@ -8,22 +8,22 @@
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
-enum { SHAPE_VALUES = PL_SHAPE_VALUES(3) }; /* the most */
+enum { SHAPE_PLANES = PL_SHAPE_PLANES(3) }; /* the most */
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
-  const double *shape[SHAPE_VALUES];
+  const double *shape[SHAPE_PLANES];
 } family_block;
 
 typedef struct family {
   int neighbours;
-  double *uniforms;            /* [neighbours][uniform_count] */
+  double *uniforms;            /* [neighbours][uniform_count]; lists: [uniform_count] */
   double **new_field;          /* [fields][planes * size] */
   double **link;               /* [links][size] */
   double **bond_link;          /* [bond_links][neighbours * size] */
   double **observed;           /* [1 + outputs][planes * size] */
-  double *shape[SHAPE_VALUES]; /* [size]; NULL unless the law reads them */
+  double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
   family_block *blocks;        /* [block_count] */
 } family;
 
@@ -45,8 +45,24 @@ static void point_at_run(const sweep *w, family_block *b, long start) {
     b->bond_link[k] = f->bond_link[k] + start;
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
-  for (int k = 0; k < SHAPE_VALUES && f->shape[k]; k++)
+  for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
+}
+
+/* Where the neighbours of the run's particles are. */
+static void point_at_neighbours(const rows *g, int row, long start, pl_family *run) {
+  const neighbour_list *l = g->list;
+  if (!l) {
+    run->offset = g->offset[g->row_class[row + g->margin]];
+    return;
+  }
+  run->neighbour = l->neighbour + start;
+  run->incoming = l->incoming + start;
+  run->length = l->length + start;
+  for (int d = 0; d < g->dimensions; d++)
+    run->chord[d] = l->chord[d] + start;
+  run->volume = g->site_volume + start;
+  run->mass = g->site_mass + start;
 }
 
 static pl_family run_of(const sweep *w, family_block *b, int row) {
@@ -56,7 +72,6 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
   pl_family run = {.count = w->count[row],
                    .neighbours = f->neighbours,
                    .plane = w->lattice->size,
-                   .offset = w->lattice->offset[w->lattice->row_class[row + w->lattice->margin]],
                    .bonds = w->lattice->bonds + start,
                    .held = w->lattice->held + start,
                    .shape = b->shape,
@@ -66,6 +81,7 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
                    .bond_link = b->bond_link,
                    .observed = b->observed,
                    .time_step = w->time_step};
+  point_at_neighbours(w->lattice, row, start, &run);
   for (int d = 0; d < w->dof; d++) {
     run.displacement[d] = w->displacement[d] + start;
     run.velocity[d] = w->velocity[d] + start;
@@ -101,13 +117,30 @@ static int64_t kick(long count, double factor, double decay, double limit,
   return bad;
 }
 
+/* The same for particles of different masses. */
+static int64_t kick_each(long count, double factor, double decay, double limit,
+                         const double *restrict mobility, const double *restrict force,
+                         const double *restrict v, double *restrict next) {
+  int64_t bad = 0;
+  INDEPENDENT
+  for (long q = 0; q < count; q++) {
+    const double after = decay * v[q] + factor * mobility[q] * force[q];
+    next[q] = after;
+    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
+  }
+  return bad;
+}
+
 static int64_t kick_row(const sweep *w, sweep_block *b, int row) {
-  const long start = sweep_start(w, row);
+  const long start = sweep_start(w, row), count = w->count[row];
   int64_t bad = 0;
   for (int d = 0; d < w->dof; d++) {
     double *next = b->next + d * w->lattice->pitch;
-    bad |= kick(w->count[row], w->time_step / w->mass[d], w->decay, w->limit[d],
-                w->force[d] + start, w->velocity[d] + start, next);
+    const double factor = w->time_step / w->mass[d], *f = w->force[d] + start;
+    const double *v = w->velocity[d] + start;
+    bad |= w->mobility
+               ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
+               : kick(count, factor, w->decay, w->limit[d], f, v, next);
     bad |= sweep_push(w, row, d, next);
   }
   return bad;
@@ -152,20 +185,13 @@ static void turn(sweep *w) {
 
 /* --- sampling --------------------------------------------------------------------------------- */
 
-static bool has_bonds(const rows *g, long site) {
-  bool any = g->bonds[site] != 0;
-  for (int k = 0; k < g->directions && !any; k++)
-    any = rows_has_bond(g, rows_partner(g, site, g->directions + k), k);
-  return any;
-}
-
 /* Values at absent sites mean nothing, and without bonds a particle stores nothing: a law may divide by what a family
    has. */
 static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q] && has_bonds(w->lattice, q)) sum += own(w)->observed[0][q];
+    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0) sum += own(w)->observed[0][q];
   return sum;
 }
 
@@ -204,7 +230,7 @@ static void output_values(sweep *w, int output, double *values) {
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 double *family_uniforms(const pl_law *law, const rows *g, const double *parameters) {
-  const int count = 2 * g->directions;
+  const int count = g->list ? 1 : 2 * g->directions;
   double *uniforms = must_calloc((size_t)count * (size_t)law->uniform_count + 1, sizeof *uniforms);
   for (int k = 0; k < count; k++) {
     const pl_bond_class c = rows_bond_class(g, k);
@@ -214,7 +240,7 @@ double *family_uniforms(const pl_law *law, const rows *g, const double *paramete
 }
 
 static void find_shapes(sweep *w, family *f) {
-  for (int v = 0; v < PL_SHAPE_VALUES(w->dimensions); v++)
+  for (int v = 0; v < PL_SHAPE_PLANES(w->dimensions); v++)
     f->shape[v] = sweep_doubles(w, w->lattice->size);
   shape_matrices(w->lattice, f->shape);
 }
@@ -272,7 +298,7 @@ static void free_own(sweep *w) {
   free_arrays(f->link, w->law->link_count);
   free_arrays(f->bond_link, w->law->bond_link_count);
   free_arrays(f->observed, 1 + w->law->output_count);
-  for (int v = 0; v < SHAPE_VALUES; v++)
+  for (int v = 0; v < SHAPE_PLANES; v++)
     free(f->shape[v]);
   free(f->blocks);
   free(f->uniforms);

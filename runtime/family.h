@@ -13,8 +13,8 @@
 /* For a sweep whose state is set up. */
 sweep_engine family_engine(sweep *w, const double *parameters);
 
-/* What the law's `prepare` gives for the neighbours of a lattice: [neighbours][uniform_count]; to be
-   freed. */
+/* What the law's `prepare` gives for the neighbours of a lattice: [neighbours][uniform_count], on lists
+   [uniform_count]; to be freed. */
 double *family_uniforms(const pl_law *law, const rows *w, const double *parameters);
 
 #endif

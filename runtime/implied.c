@@ -151,6 +151,7 @@ static bool families_elastic(const pl_law *law, const double *parameters, const 
 bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
                      implied_elasticity *out) {
   *out = (implied_elasticity){.asymmetry = 0};
+  if (w->list) return false;
   if (law->kind == PL_STATE) return families_elastic(law, parameters, w, out);
   pairwise_stiffness(law, parameters, w, out);
   double S[3][3];
@@ -195,7 +196,7 @@ double implied_strength(const pl_law *law, const double *parameters, const rows 
                         double *strain) {
   const double first = 1e-8, last = 1.0;
   if (strain) *strain = NAN;
-  if (law->kind == PL_STATE) return INFINITY;
+  if (law->kind == PL_STATE || w->list) return INFINITY;
   const int coarse = 1600, fine = 400;
   double factor = pow(last / first, 1.0 / (coarse - 1)), at;
   scan_strength(law, parameters, w, component, first, factor, 0, coarse, &at);

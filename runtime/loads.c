@@ -22,7 +22,7 @@ static void hint_nearest(const double at[3], const rows *w, diagnostics *d) {
   }
   diag_hint(d,
             "the nearest particle stands %.4g mm away at %s; `within` says how far is near enough",
-            1e3 * best, rows_place_text(w, nearest, text));
+            1e3 * best, rows_place_text(w->dimensions, nearest, text));
 }
 
 static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
@@ -109,7 +109,7 @@ static span motion_where(const deck *k, const constraint *c, const int *supports
 static const char *place_of(const loads *l, int64_t site, char text[ROWS_PLACE_TEXT]) {
   double at[3];
   rows_place(l->lattice, site, at);
-  return rows_place_text(l->lattice, at, text);
+  return rows_place_text(l->lattice->dimensions, at, text);
 }
 
 /* Two supports may share a particle: both hold it where it is. Anything else is two motions at
@@ -171,6 +171,42 @@ static void add_motions(loads *l, motions *m) {
   free(supports);
 }
 
+/* --- the deck's time --------------------------------------------------------------------------- */
+
+/* Part of the increment's loads that is there after `step` steps of a quasi-static run. */
+static double part_of(const load_clock *c, long step) {
+  return fmin(1, (double)(step - c->first) / (double)c->ramp);
+}
+
+static double time_of(const loads *l, const sweep *w, long step) {
+  const load_clock *c = &l->clock;
+  if (c->ramp == 0) return (double)step * w->time_step;
+  return c->from + (c->to - c->from) * part_of(c, step);
+}
+
+/* A time later than t by what rounding may do to the ends of increments. */
+static double just_after(const load_clock *c, double t) {
+  return t + 1e-9 * (c->to - c->from);
+}
+
+/* Time functions or their integrals. */
+typedef double in_time(const time_function *f, double t);
+
+/* When an increment has ended: a load that begins at that time comes in the next one. */
+static double settled(const load_clock *c, const time_function *f, in_time *value, double t) {
+  return t <= just_after(c, f->start) ? 0 : value(f, t);
+}
+
+/* After a number of steps; within an increment evenly from its beginning to its end, so that no load
+   comes all at once. */
+static double load_at(const loads *l, const sweep *w, const time_function *f, in_time *value,
+                      long step) {
+  const load_clock *c = &l->clock;
+  if (c->ramp == 0) return value(f, time_of(l, w, step));
+  const double part = part_of(c, step);
+  return (1 - part) * settled(c, f, value, c->from) + part * settled(c, f, value, c->to);
+}
+
 /* --- forces ----------------------------------------------------------------------------------- */
 
 static void add_force(loads *l, int32_t particle, int component, int cause, double share) {
@@ -224,11 +260,11 @@ static void find_holders(loads *l, const motions *m) {
   }
 }
 
-static double force_at(const loads *l, const applied *f, double t) {
+static double force_at(const loads *l, const sweep *w, const applied *f, long step) {
   const int forces = l->deck->force_count;
   const time_function *shape = f->cause < forces ? &l->deck->forces[f->cause].force
                                                  : &l->deck->end_moments[f->cause - forces].moment;
-  return f->share * time_function_at(shape, t);
+  return f->share * load_at(l, w, shape, time_function_at, step);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -342,12 +378,6 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
 
 /* --- in time ---------------------------------------------------------------------------------- */
 
-static double time_of(const loads *l, const sweep *w, long step) {
-  const load_clock *c = &l->clock;
-  if (c->ramp == 0) return (double)step * w->time_step;
-  return c->from + (c->to - c->from) * fmin(1, (double)(step - c->first) / (double)c->ramp);
-}
-
 /* Factor of the step that begins at step * time_step. */
 static double decay_of(const loads *l, const sweep *w, long step) {
   const double t = time_of(l, w, step);
@@ -358,19 +388,21 @@ static double decay_of(const loads *l, const sweep *w, long step) {
   return rate > 0 ? exp(-rate * w->time_step) : 1;
 }
 
-/* Motion prescribed at time t since the drive's start: m, rad. */
-static double motion_at(const loads *l, const constraint *c, double t) {
+/* Motion prescribed after `step` steps since the drive's start: m, rad. */
+static double motion_at(const loads *l, const sweep *w, const constraint *c, long step) {
   if (c->drive < 0) return 0;
   const deck_drive *drive = &l->deck->drives[c->drive];
-  return drive->is_displacement ? time_function_at(&drive->motion, t)
-                                : time_function_integral(&drive->motion, t);
+  return load_at(l, w, &drive->motion,
+                 drive->is_displacement ? time_function_at : time_function_integral, step);
 }
 
-/* A drive holds its particles from the first step that begins at or after its start, to rounding.
- */
+/* A drive holds its particles from the first step that begins at or after its start, to rounding; in
+   a quasi-static run from the beginning of the increment that it begins in. */
 static bool is_held(const loads *l, const sweep *w, const constraint *c, long step) {
-  return c->drive < 0 ||
-         time_of(l, w, step) >= l->deck->drives[c->drive].motion.start - 1e-6 * w->time_step;
+  if (c->drive < 0) return true;
+  const double start = l->deck->drives[c->drive].motion.start;
+  if (l->clock.ramp > 0) return l->clock.to > just_after(&l->clock, start);
+  return time_of(l, w, step) >= start - 1e-6 * w->time_step;
 }
 
 /* Where the motion takes up a particle that was free. A velocity that began between two steps has
@@ -378,7 +410,7 @@ static bool is_held(const loads *l, const sweep *w, const constraint *c, long st
 static double anchor_of(const loads *l, const sweep *w, const constraint *c, long step) {
   const double here = w->displacement[c->component][c->site];
   if (c->drive >= 0 && l->deck->drives[c->drive].is_displacement) return here;
-  return here - motion_at(l, c, time_of(l, w, step));
+  return here - motion_at(l, w, c, step);
 }
 
 static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
@@ -395,12 +427,18 @@ static void set_gravity(const loads *l, sweep *w, long step) {
     double here = 0, next = 0;
     for (int i = 0; i < l->deck->gravity_count; i++) {
       const deck_gravity *g = &l->deck->gravitys[i];
-      here += g->acceleration[c] * time_function_at(&g->factor, time_of(l, w, step));
-      next += g->acceleration[c] * time_function_at(&g->factor, time_of(l, w, step + 1));
+      here += g->acceleration[c] * load_at(l, w, &g->factor, time_function_at, step);
+      next += g->acceleration[c] * load_at(l, w, &g->factor, time_function_at, step + 1);
     }
     w->push[c] = w->time_step * here;
     w->push_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
   }
+}
+
+void loads_increment(loads *l, const sweep *w, load_clock clock) {
+  l->clock = clock;
+  for (long i = 0; i < l->constraint_count; i++)
+    take_up(l, w, &l->constraints[i], (long)clock.first);
 }
 
 void loads_begin(loads *l, sweep *w) {
@@ -410,7 +448,7 @@ void loads_begin(loads *l, sweep *w) {
     take_up(l, w, c, 0);
   }
   for (long i = 0; i < l->force_count; i++) {
-    l->forces[i].now = force_at(l, &l->forces[i], 0);
+    l->forces[i].now = force_at(l, w, &l->forces[i], 0);
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
   }
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
@@ -421,8 +459,10 @@ void loads_begin(loads *l, sweep *w) {
    the way of a free particle: the velocity after the step turns out to be larger by `change`. */
 static void correct_free_way(loads *l, const sweep *w, int component, int64_t site, double before,
                              double change) {
-  if (component < w->dimensions) l->work += w->push_work[component] * change;
-  l->dissipated += 0.5 * w->mass[component] * (1 - w->decay) * before * change;
+  const double mass = sweep_mass(w, component, site);
+  if (component < w->dimensions)
+    l->work += w->push_work[component] * (mass / w->mass[component]) * change;
+  l->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
   if (w->law->kind == PL_STATE)
     l->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
@@ -430,7 +470,7 @@ static void correct_free_way(loads *l, const sweep *w, int component, int64_t si
 static void apply_forces(loads *l, const sweep *w) {
   for (long i = 0; i < l->force_count; i++) {
     const applied *f = &l->forces[i];
-    const double change = w->time_step / w->mass[f->component] * f->now;
+    const double change = w->time_step / sweep_mass(w, f->component, f->site) * f->now;
     w->velocity[f->component][f->site] += change;
     w->displacement[f->component][f->site] += w->time_step * change;
     correct_free_way(l, w, f->component, f->site, f->velocity, change);
@@ -444,9 +484,9 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
   const double before = c->velocity;
   c->reaction = 0;
   if (c->active) {
-    const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
+    const double target = c->anchor + motion_at(l, w, c, step + 1);
     const double prescribed = (target - c->held) / w->time_step;
-    c->reaction = w->mass[c->component] * (prescribed - *v) / w->time_step;
+    c->reaction = sweep_mass(w, c->component, c->site) * (prescribed - *v) / w->time_step;
     correct_free_way(l, w, c->component, c->site, before, prescribed - *v);
     c->held = target;
     *v = prescribed;
@@ -460,7 +500,7 @@ static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
 static void next_forces(loads *l, const sweep *w, long step) {
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
-    const double next = force_at(l, f, time_of(l, w, step + 1));
+    const double next = force_at(l, w, f, step + 1);
     f->velocity = w->velocity[f->component][f->site];
     l->work += 0.5 * w->time_step * (f->now + next) * f->velocity;
     f->now = next;
@@ -483,7 +523,8 @@ void loads_apply(loads *l, sweep *w, long step) {
 static double free_velocity(const sweep *w, const constraint *c) {
   const double force = w->force[c->component][c->site];
   const double push = c->component < w->dimensions ? w->push[c->component] : 0;
-  return w->decay * c->velocity + w->time_step / w->mass[c->component] * force + push;
+  return w->decay * c->velocity + w->time_step / sweep_mass(w, c->component, c->site) * force +
+         push;
 }
 
 void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work) {
@@ -500,8 +541,9 @@ void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, d
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
     if (!c->active) continue;
-    const double target = c->anchor + motion_at(l, c, time_of(l, w, step + 1));
-    const double prescribed = (target - c->held) / w->time_step, mass = w->mass[c->component];
+    const double target = c->anchor + motion_at(l, w, c, step + 1);
+    const double prescribed = (target - c->held) / w->time_step;
+    const double mass = sweep_mass(w, c->component, c->site);
     const double change = prescribed - free_velocity(w, c);
     *kinetic += 0.5 * mass * c->velocity * change;
     *work += 0.5 * mass * c->velocity * change;

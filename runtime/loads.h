@@ -42,8 +42,10 @@ typedef struct region_sites { /* of a region of the deck */
   long count;
 } region_sites;
 
-/* The deck's time after a number of steps: steps times their length where `ramp` is 0; else it goes
-   evenly from one value to the next within so many steps, and stands. */
+/* The deck's time after a number of steps: steps times their length where `ramp` is 0. Else, in an
+   increment of a quasi-static run, time and loads go evenly from what they are at `from` to what they
+   are at `to` within so many steps, and stand. The body begins without loads; those that begin at
+   the end of an increment come in the next one. */
 typedef struct load_clock {
   double from, to; /* s */
   int64_t first, ramp;
@@ -71,6 +73,8 @@ void loads_free(loads *l);
 
 /* Velocities that regions begin with. False with diagnostics where a particle is held or has two. */
 bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
+/* Before the first step of each increment of a quasi-static run: its loads, and what they hold. */
+void loads_increment(loads *l, const sweep *w, load_clock clock);
 /* To be called once, before the first step: forces at time 0, places of the supports. */
 void loads_begin(loads *l, sweep *w);
 /* After the sweep of step n -> n+1: applied forces, prescribed motions, reactions, work; then the

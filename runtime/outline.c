@@ -37,9 +37,13 @@ bool outline_arc(const outline *o, int k, double centre[2], double *radius) {
   return true;
 }
 
-/* A point of the circle belongs to the arc. */
+/* Positive where a point of the circle belongs to the arc, 0 at its ends. */
+static double beyond_chord(const arc *e, double x, double y) {
+  return e->rise * ((x - e->middle[0]) * e->outward[0] + (y - e->middle[1]) * e->outward[1]);
+}
+
 static bool on_arc(const arc *e, double x, double y) {
-  return e->rise * ((x - e->middle[0]) * e->outward[0] + (y - e->middle[1]) * e->outward[1]) >= 0;
+  return beyond_chord(e, x, y) >= 0;
 }
 
 /* --- box -------------------------------------------------------------------------------------- */
@@ -104,7 +108,8 @@ static bool ray_crosses_piece(const double p[2], const arc *e, double y0, double
   return p[0] < e->centre[0] + (on_the_right ? x : -x);
 }
 
-/* An arc turns back in y at the top and at the bottom of its circle. */
+/* An arc turns back in y at the top and at the bottom of its circle, but not where it ends there: a half circle on an
+   upright chord rises or falls throughout. */
 static int ray_crossings(const double p[2], const arc *e, const double a[2], const double b[2]) {
   const double top = e->centre[1] + e->radius, bottom = e->centre[1] - e->radius;
   const bool climbs = (a[0] >= e->centre[0]) == (e->rise > 0);
@@ -112,7 +117,7 @@ static int ray_crossings(const double p[2], const arc *e, const double a[2], con
   double y = a[1];
   int count = 0;
   for (int k = 0; k < 2; k++) {
-    if (!on_arc(e, e->centre[0], turns[k])) continue;
+    if (!(beyond_chord(e, e->centre[0], turns[k]) > 0)) continue;
     count += ray_crosses_piece(p, e, y, turns[k]);
     y = turns[k];
   }

@@ -1,7 +1,7 @@
 /* Particles that stand on no lattice: where they are and how much of the body each stands for. Two kinds of &lattice give
    such sets. `blue_noise` fills the bodies less the notches evenly but at random: darts of a falling least distance
    (McCool and Fiume 1992), then a few steps of Lloyd (1982) to the centroids of the particles' cells. `particles` reads
-   a table or a result (particle_file.h). A volume that no file gives is that of the Voronoi cell, cut by the body
+   a table or a result (particle_table.h). A volume that no file gives is that of the Voronoi cell, cut by the body
    (voronoi.h). */
 #ifndef PERILAT_RUNTIME_PARTICLE_SET_H
 #define PERILAT_RUNTIME_PARTICLE_SET_H
@@ -14,7 +14,8 @@ typedef struct particle_set {
   long count;
   double *at[3];  /* [count] m; at[2] is NULL in the plane */
   double *volume; /* [count] m^2 of the plane or m^3 of space */
-  double spacing; /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck, or
+  double
+      spacing; /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck, or
                      from the mean volume */
 } particle_set;
 

@@ -143,7 +143,7 @@ long patch_planes(const patch *p, const pl_field *f) {
 }
 
 static void new_particles(patch *p) {
-  double shape[PL_SHAPE_VALUES(3)];
+  double shape[PL_SHAPE_PLANES(3)];
   p->bonds = site_array(p, 1, sizeof *p->bonds);
   p->held = site_array(p, 1, sizeof *p->held);
   for (long q = -p->lead; q < p->size - p->lead; q++)
@@ -154,7 +154,7 @@ static void new_particles(patch *p) {
     p->force[d] = site_array(p, 1, sizeof(double));
   }
   shape_matrix_full(p->lattice, shape);
-  for (int v = 0; v < PL_SHAPE_VALUES(p->law->dimensions); v++) {
+  for (int v = 0; v < PL_SHAPE_PLANES(p->law->dimensions); v++) {
     p->shape[v] = site_array(p, 1, sizeof(double));
     for (long q = -p->lead; q < p->size - p->lead; q++)
       p->shape[v][q] = shape[v];
@@ -200,7 +200,7 @@ void patch_free(patch *p) {
     free_array(p, p->velocity[d], sizeof(double));
     free_array(p, p->force[d], sizeof(double));
   }
-  for (int v = 0; v < PL_SHAPE_VALUES(3); v++)
+  for (int v = 0; v < PL_SHAPE_PLANES(3); v++)
     free_array(p, p->shape[v], sizeof(double));
   free_array(p, p->bonds, sizeof *p->bonds);
   free_array(p, p->held, sizeof *p->held);
@@ -293,7 +293,7 @@ static void run_program(patch *p, const pl_program *program) {
                    .force = from_first(&s, p, p->force, law->dimensions),
                    .observed = from_first(&s, p, p->observed, p->observed_count),
                    .time_step = p->time_step};
-  run.shape = (const double *const *)from_first(&s, p, p->shape, PL_SHAPE_VALUES(law->dimensions));
+  run.shape = (const double *const *)from_first(&s, p, p->shape, PL_SHAPE_PLANES(law->dimensions));
   run.old_field = (const double *const *)from_first(&s, p, p->field, law->field_count);
   for (int d = 0; d < law->dimensions; d++) {
     run.displacement[d] = p->displacement[d] + p->first;

@@ -24,7 +24,7 @@ typedef struct patch {
   long *image;            /* [sites] the site inside that this one repeats */
   double *uniforms;       /* [neighbours][uniform_count] */
   uint64_t *bonds, *held; /* [size] as in pl_family */
-  double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_VALUES(3)];
+  double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_PLANES(3)];
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **observed; /* [observed_count] */

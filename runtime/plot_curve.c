@@ -50,6 +50,7 @@ static bool read_curve(result_file *f, const char *x, const char *y, curve *c, c
   c->x = result_read_series(f, x, &c->count, x_unit, 64, error, size);
   c->y = c->x ? result_read_series(f, y, &count_y, y_unit, 64, error, size) : NULL;
   if (c->x && c->y && count_y < c->count) c->count = count_y;
+  if (strcmp(x, "time") == 0 && result_is_quasi_static(f)) snprintf(x_unit, 64, "1");
   return c->x && c->y;
 }
 
@@ -277,8 +278,21 @@ typedef struct curve_set {
   int result_count;
   curve curves[MOST_CURVES];
   int count;
-  char x_unit[64], y_unit[64], title[512]; /* title: of the last result */
+  char x_unit[64], y_unit[64], title[512]; /* title: what those of all results begin with */
+  size_t group;                            /* length of what all names begin with: "energy/" */
 } curve_set;
+
+/* Keeps what both titles begin with, up to a comma or colon: "Prism" of "Prism, 0 degrees" and "Prism, 15 degrees". */
+static void common_title(char *title, const char *other) {
+  size_t same = 0, whole = 0;
+  for (;; same++) {
+    const bool ends[] = {!title[same] || strchr(",:;", title[same]),
+                         !other[same] || strchr(",:;", other[same])};
+    if (ends[0] && ends[1]) whole = same;
+    if (title[same] != other[same] || !title[same]) break;
+  }
+  title[whole] = 0;
+}
 
 /* "beam", "stored" or "beam: stored": what tells the curves apart, and what the user wants said. */
 static void label_curve(const curve_set *s, int from, int y, curve *c) {
@@ -290,7 +304,7 @@ static void label_curve(const curve_set *s, int from, int y, curve *c) {
   else if (named)
     label_of(s->results[from], name, sizeof name);
   snprintf(c->label, sizeof c->label, "%s%s%.120s", name, named && several ? ": " : "",
-           several ? s->o->ys[y] : "");
+           several ? s->o->ys[y] + s->group : "");
 }
 
 static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit, const char *y_unit,
@@ -319,7 +333,8 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
   result_file *f = result_read(s->results[from], error, size);
   if (!f) return false;
   char *title = result_read_title(f);
-  snprintf(s->title, sizeof s->title, "%s", title);
+  if (from == 0) snprintf(s->title, sizeof s->title, "%s", title);
+  common_title(s->title, title);
   free(title);
   bool good = true;
   for (int y = 0; good && y < s->o->y_count; y++) {
@@ -333,19 +348,32 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
   return good;
 }
 
-/* "load, load_bottom"; "energy" of `energy/kinetic, energy/stored`, which the legend tells apart. */
-static void join_names(const plot_curve_options *o, char *text, size_t size) {
-  size_t used = 0, group = strcspn(o->ys[0], "/");
-  bool of_group = o->y_count > 1 && o->ys[0][group] == '/';
+/* Length of the "energy/" that all names begin with; the axis says it, the legend need not. */
+static size_t group_of(const plot_curve_options *o) {
+  const size_t group = strcspn(o->ys[0], "/") + 1;
+  if (o->y_count < 2 || !strchr(o->ys[0], '/')) return 0;
   for (int y = 1; y < o->y_count; y++)
-    of_group = of_group && strncmp(o->ys[y], o->ys[0], group + 1) == 0;
-  if (of_group) {
-    snprintf(text, size, "%.*s", (int)group, o->ys[0]);
+    if (strncmp(o->ys[y], o->ys[0], group) != 0) return 0;
+  return group;
+}
+
+static bool is_named_before(const plot_curve_options *o, int y) {
+  for (int k = 0; k < y; k++)
+    if (strcmp(o->ys[k], o->ys[y]) == 0) return true;
+  return false;
+}
+
+/* "load, load_bottom", or the group's name. */
+static void join_names(const plot_curve_options *o, size_t group, char *text, size_t size) {
+  if (group > 0) {
+    snprintf(text, size, "%.*s", (int)group - 1, o->ys[0]);
     return;
   }
+  size_t used = 0;
   text[0] = 0;
   for (int y = 0; y < o->y_count && used < size; y++)
-    used += (size_t)snprintf(text + used, size - used, "%s%s", y ? ", " : "", o->ys[y]);
+    if (!is_named_before(o, y))
+      used += (size_t)snprintf(text + used, size - used, "%s%s", y ? ", " : "", o->ys[y]);
 }
 
 bool plot_curve(const char *const *results, int result_count, const plot_curve_options *given,
@@ -363,15 +391,14 @@ bool plot_curve(const char *const *results, int result_count, const plot_curve_o
              result_count, o.y_count, MOST_CURVES);
     return false;
   }
-  char names[400], several[1100];
-  join_names(&o, names, sizeof names);
-  curve_set s = {.o = &o, .results = results, .result_count = result_count};
+  char names[400];
+  curve_set s = {.o = &o, .results = results, .result_count = result_count, .group = group_of(&o)};
+  join_names(&o, s.group, names, sizeof names);
   bool good = true;
   for (int k = 0; good && k < result_count; k++)
     good = add_curves(&s, k, error, size);
-  snprintf(several, sizeof several, "%s against %s", names, o.x);
   o.y = names;
-  const char *shown = o.title ? o.title : result_count > 1 || !s.title[0] ? several : s.title;
+  const char *shown = o.title ? o.title : s.title;
   good = good && draw_all(s.curves, s.count, &o, s.x_unit, s.y_unit, shown, error, size);
   for (int k = 0; k < s.count; k++) {
     free(s.curves[k].x);

@@ -26,6 +26,24 @@ static double bond_length(const plot_frame *m, long b) {
   return n == 2 ? plane : hypot(plane, j[2] - i[2]);
 }
 
+/* Mean over the particles of the distance to the nearest bonded one: on a lattice its spacing. */
+static double spacing_of(const plot_frame *m) {
+  double *nearest = must_calloc((size_t)m->particles + 1, sizeof *nearest), sum = 0;
+  long count = 0;
+  for (long b = 0; b < m->bonds; b++)
+    for (int e = 0; e < 2; e++) {
+      double *known = &nearest[m->pairs[2 * b + e]];
+      const double length = bond_length(m, b);
+      if (*known == 0 || length < *known) *known = length;
+    }
+  for (long p = 0; p < m->particles; p++) {
+    count += nearest[p] > 0;
+    sum += nearest[p];
+  }
+  free(nearest);
+  return count ? sum / (double)count : 0;
+}
+
 /* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of the body. */
 static void move_particles(plot_frame *m, const double *displacement, double wanted) {
   const int n = m->dimensions;
@@ -128,6 +146,19 @@ static double *read_displacements(result_file *f, const plot_frame *m, const cha
   return NULL;
 }
 
+/* Quasi-static runs have a sample at the start and one after each increment. */
+static long increment_at(result_file *f, double time) {
+  if (!result_is_quasi_static(f)) return -1;
+  char unit_text[64], none[256];
+  long count = 0, at = 0;
+  double *times =
+      result_read_series(f, "time", &count, unit_text, sizeof unit_text, none, sizeof none);
+  for (long k = 0; times && k < count; k++)
+    if (fabs(times[k] - time) < fabs(times[at] - time)) at = k;
+  free(times);
+  return at;
+}
+
 static bool read_frame(result_file *f, const char *path, plot_frame *m, const plot_map_options *o,
                        char *error, size_t size) {
   m->reference = result_read_reference(f, &m->particles, &m->dimensions);
@@ -145,8 +176,8 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   long k = o->frame < 0 ? frames + o->frame : o->frame;
   m->time = times && k >= 0 && k < frames ? times[k] : NAN;
   free(times);
-  for (long b = 0; b < m->bonds; b++)
-    m->spacing = b == 0 ? bond_length(m, 0) : fmin(m->spacing, bond_length(m, b));
+  m->increment = increment_at(f, m->time);
+  m->spacing = spacing_of(m);
   char *title = result_read_title(f);
   snprintf(m->title, sizeof m->title, "%s", o->title ? o->title : title);
   free(title);
@@ -208,6 +239,10 @@ static void take_particles(plot_frame *m, const long *order, long count) {
 
 /* Places in the picture: two rows of coefficients. */
 static void project(plot_frame *m, const double across[3], const double up[3]) {
+  for (int c = 0; c < 3; c++) {
+    m->axes[c][0] = across[c];
+    m->axes[c][1] = up[c];
+  }
   double *places[2] = {m->reference, m->moved};
   for (int t = 0; t < 2; t++)
     for (long p = 0; p < m->particles; p++) {
@@ -338,6 +373,19 @@ static void take_surface(plot_frame *m, int component) {
   free(order);
 }
 
+static void describe_extents(plot_frame *m) {
+  size_t used = 0;
+  for (int c = 0; c < 3; c++) {
+    double low = INFINITY, high = -INFINITY;
+    for (long p = 0; p < m->particles; p++) {
+      low = fmin(low, m->reference[3 * p + c]);
+      high = fmax(high, m->reference[3 * p + c]);
+    }
+    used += (size_t)snprintf(m->extents + used, sizeof m->extents - used, "%s%c %.4g to %.4g mm",
+                             c ? ", " : "", "xyz"[c], 1e3 * low, 1e3 * high);
+  }
+}
+
 bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
                      size_t size) {
   *m = (plot_frame){.factor = 1, .damage_of = "damage of bonds:"};
@@ -352,6 +400,7 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   if (!good) return false;
   const bool crowded = m->of_damage && has_crowded_bonds(m);
   if (crowded) show_on_particles(m, -1);
+  if (m->dimensions == 3) describe_extents(m);
   if (m->dimensions == 3 && o->slice_axis < 0) take_surface(m, o->component);
   if (m->dimensions == 3 && o->slice_axis >= 0) good = take_slice(m, o, error, size);
   if (crowded || m->surface) m->bonds = 0;

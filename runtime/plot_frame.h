@@ -23,7 +23,10 @@ typedef struct plot_frame {
   char unit_text[64], title[512];
   const char *damage_of; /* what the damages shown are those of */
   char view[80];         /* of a body in space: what is shown, for the picture's head */
+  double axes[3][2];     /* of a body in space: unit vectors along x, y, z in the picture, m a m */
+  char extents[128]; /* of a body in space: "x 0 to 100 mm, ...", where it stood in the beginning */
   double time, factor, spacing;
+  long increment; /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
 } plot_frame;
 
 /* False with a sentence in `error`. To be freed in either case. */

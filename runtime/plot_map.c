@@ -10,7 +10,15 @@
 #include "runtime/canvas.h"
 #include "runtime/plot_frame.h"
 
-enum { WIDTH = 1500, MARGIN = 40, HEAD = 64, FOOT = 84, LEAST_HEIGHT = 300, MOST_HEIGHT = 1500 };
+enum {
+  WIDTH = 1500,
+  MARGIN = 40,
+  HEAD = 64,
+  FOOT = 84,
+  AXES = 76, /* above the foot: the axes of a body in space */
+  LEAST_HEIGHT = 300,
+  MOST_HEIGHT = 1500
+};
 
 static const struct {
   double up_to;
@@ -24,6 +32,7 @@ enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
 typedef struct map {
   plot_frame frame;
   double left, bottom, scale, height; /* picture: x = MARGIN + (X - left) * scale */
+  double foot;                        /* below the body */
 } map;
 
 /* --- drawing ---------------------------------------------------------------------------------- */
@@ -39,10 +48,11 @@ static bool fit_picture(map *m, char *error, size_t size) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
+  m->foot = FOOT + (m->frame.dimensions == 3 ? AXES : 0);
   m->scale = fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]),
-                  (MOST_HEIGHT - HEAD - FOOT) / (high[1] - low[1]));
+                  (MOST_HEIGHT - HEAD - m->foot) / (high[1] - low[1]));
   m->left = low[0] - ((WIDTH - 2 * MARGIN) / m->scale - (high[0] - low[0])) / 2;
-  m->height = fmax(LEAST_HEIGHT, HEAD + FOOT + (high[1] - low[1]) * m->scale);
+  m->height = fmax(LEAST_HEIGHT, HEAD + m->foot + (high[1] - low[1]) * m->scale);
   m->bottom = low[1];
   return true;
 }
@@ -51,7 +61,7 @@ static double at_x(const map *m, double x) {
   return MARGIN + (x - m->left) * m->scale;
 }
 static double at_y(const map *m, double y) {
-  return m->height - FOOT - (y - m->bottom) * m->scale;
+  return m->height - m->foot - (y - m->bottom) * m->scale;
 }
 
 static int class_of(double damage) {
@@ -179,13 +189,32 @@ static void draw_bond_values(canvas *c, const map *m, int component, double low,
 }
 
 static void draw_head(canvas *c, const map *m) {
-  char text[256];
-  snprintf(text, sizeof text, "%st = %.5g ms, displacements x %.6g", m->frame.view,
-           1e3 * m->frame.time, m->frame.factor);
+  char text[256], when[64];
+  if (m->frame.increment < 0)
+    snprintf(when, sizeof when, "t = %.5g ms", 1e3 * m->frame.time);
+  else
+    snprintf(when, sizeof when, "increment %ld", m->frame.increment);
+  snprintf(text, sizeof text, "%s%s, displacements x %.6g", m->frame.view, when, m->frame.factor);
   double right = canvas_text_width(c, 19, text);
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   canvas_text_within(c, MARGIN, 40, 24, WIDTH - 2 * MARGIN - right - 30, m->frame.title);
   canvas_text(c, WIDTH - MARGIN, 40, 19, ANCHOR_RIGHT, text);
+}
+
+/* Arms of one length along x, y and z, as the body is seen; those toward the eye are left out. */
+static void draw_axes(canvas *c, const map *m) {
+  enum { ARM = 44 };
+  const double x = MARGIN + 6, y = m->height - FOOT - 14;
+  if (m->frame.dimensions != 3) return;
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  for (int k = 0; k < 3; k++) {
+    const double across = m->frame.axes[k][0], up = m->frame.axes[k][1];
+    if (hypot(across, up) < 0.1) continue;
+    canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
+    canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
+                (char[]){"xyz"[k], 0});
+  }
+  canvas_text(c, x + 96, y, 18, ANCHOR_LEFT, m->frame.extents);
 }
 
 static void draw_scale_bar(canvas *c, const map *m) {
@@ -290,6 +319,7 @@ static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size
   if (!canvas_open(&c, o->output, WIDTH, m->height, error, size)) return false;
   draw_head(&c, m);
   draw_scale_bar(&c, m);
+  draw_axes(&c, m);
   if (measured) {
     draw_field(&c, m, o, low, high);
   } else {

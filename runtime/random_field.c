@@ -7,39 +7,26 @@
 #include <strings.h>
 
 #include "dsl/arena.h"
+#include "runtime/random_number.h"
 
 /* --- numbers from places ---------------------------------------------------------------------- */
 
-/* Finalizer of SplitMix64 (Steele, Lea and Flood 2014): every bit of the input changes half of the
- * output's. */
-static uint64_t mix(uint64_t x) {
-  x += UINT64_C(0x9e3779b97f4a7c15);
-  x = (x ^ x >> 30) * UINT64_C(0xbf58476d1ce4e5b9);
-  x = (x ^ x >> 27) * UINT64_C(0x94d049bb133111eb);
-  return x ^ x >> 31;
-}
-
-/* In (0, 1), both ends left out. */
-static double unit_number(uint64_t bits) {
-  return ((double)(bits >> 12) + 0.5) * 0x1p-52;
-}
-
 /* Box and Muller (1958). */
 static double normal_number(uint64_t key) {
-  const double radius = sqrt(-2 * log(unit_number(mix(key))));
-  return radius * cos(2 * acos(-1) * unit_number(mix(key ^ UINT64_C(0x5851f42d4c957f2d))));
+  const double radius = sqrt(-2 * log(random_unit(random_mix(key))));
+  return radius * cos(2 * acos(-1) * random_unit(random_mix(key ^ UINT64_C(0x5851f42d4c957f2d))));
 }
 
 double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int64_t c, int direction) {
   const uint64_t of_layer = seed + (uint64_t)c * UINT64_C(0xd1342543de82ef95);
-  return normal_number(mix(mix(mix(of_layer) ^ (uint64_t)a) ^ (uint64_t)b) ^
+  return normal_number(random_mix(random_mix(random_mix(of_layer) ^ (uint64_t)a) ^ (uint64_t)b) ^
                        (uint64_t)(direction + 1));
 }
 
 uint64_t random_seed_of(const deck_field *f) {
-  uint64_t seed = mix((uint64_t)f->seed);
+  uint64_t seed = random_mix((uint64_t)f->seed);
   for (const char *c = f->parameter; *c; c++)
-    seed = mix(seed ^ (uint64_t)(unsigned char)tolower((unsigned char)*c));
+    seed = random_mix(seed ^ (uint64_t)(unsigned char)tolower((unsigned char)*c));
   return seed;
 }
 
@@ -55,15 +42,15 @@ random_waves *random_waves_new(uint64_t seed, double correlation_length) {
   random_waves *w = must_alloc(sizeof *w);
   const double spread = sqrt(2) / correlation_length; /* E cos(k.r) = exp(-(r/L)^2) */
   for (int m = 0; m < WAVES; m++) {
-    const uint64_t key = mix(seed ^ mix((uint64_t)m));
+    const uint64_t key = random_mix(seed ^ random_mix((uint64_t)m));
     /* normal components: |k| has the probability exp(-k^2/2) of more; one wave in each of equally
      * probable rings */
-    const double radius = spread * sqrt(-2 * log((m + unit_number(mix(key ^ 1))) / WAVES));
-    const double angle = 2 * acos(-1) * unit_number(mix(key ^ 2));
+    const double radius = spread * sqrt(-2 * log((m + random_unit(random_mix(key ^ 1))) / WAVES));
+    const double angle = 2 * acos(-1) * random_unit(random_mix(key ^ 2));
     w->k[0][m] = radius * cos(angle);
     w->k[1][m] = radius * sin(angle);
-    w->k[2][m] = spread * normal_number(mix(key ^ 4));
-    w->phase[m] = 2 * acos(-1) * unit_number(mix(key ^ 3));
+    w->k[2][m] = spread * normal_number(random_mix(key ^ 4));
+    w->phase[m] = 2 * acos(-1) * random_unit(random_mix(key ^ 3));
   }
   return w;
 }
@@ -307,9 +294,10 @@ static void report_fault(const rows *w, const rows_bond *bond, const pl_law *law
       "`%s` = %.6g%s%s in the bond from %s to %s is not in %c%.6g, %.6g%c, the range of the "
       "law `%s`; so are %ld of %ld bonds",
       law->parameters[fault].name, b->values[fault], pure ? "" : " ", pure ? "" : in,
-      rows_place_text(w, ends[0], texts[0]), rows_place_text(w, ends[1], texts[1]),
-      b->low_open[fault] ? '(' : '[', b->lower[fault], b->upper[fault],
-      b->high_open[fault] ? ')' : ']', law->name, count, w->bond_count);
+      rows_place_text(w->dimensions, ends[0], texts[0]),
+      rows_place_text(w->dimensions, ends[1], texts[1]), b->low_open[fault] ? '(' : '[',
+      b->lower[fault], b->upper[fault], b->high_open[fault] ? ')' : ']', law->name, count,
+      w->bond_count);
   diag_hint(d, "take a distribution that stays inside, a smaller `cv`, or clip = .true. for the "
                "nearest allowed value");
 }

@@ -6,8 +6,9 @@
 
 #include "dsl/arena.h"
 
-enum { LOOK_EVERY = 25 };             /* steps */
-static const double forgotten = 0.01; /* part of the largest force that still counts */
+enum { LOOK_EVERY = 25 };                /* steps */
+static const double forgotten = 0.01;    /* part of the largest force that still counts */
+static const double while_loading = 0.1; /* part of the damping */
 
 /* The longest side of the body, in steps of a long wave there and back: one covers at least half a
    spacing a step at the stability limit of the lattices at hand. */
@@ -56,20 +57,30 @@ void relaxation_free(relaxation *r) {
   free(r);
 }
 
-static void set_rate(relaxation *r, double rate) {
+static bool is_loading(const relaxation *r, int64_t step) {
+  return step - r->loads->clock.first < r->ramp;
+}
+
+static void damp(relaxation *r, int64_t step) {
+  const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
   r->sweep->decay = fmax(exp(-rate * r->sweep->time_step), r->least_decay);
 }
 
+load_clock relaxation_clock(const relaxation *r, int64_t first) {
+  return (load_clock){.from = (double)r->state.done * r->interval,
+                      .to = (double)(r->state.done + 1) * r->interval,
+                      .first = first,
+                      .ramp = r->ramp};
+}
+
 void relaxation_next(relaxation *r, int64_t step) {
-  r->loads->clock = (load_clock){.from = (double)r->state.done * r->interval,
-                                 .to = (double)(r->state.done + 1) * r->interval,
-                                 .first = step,
-                                 .ramp = r->ramp};
+  loads_increment(r->loads, r->sweep, relaxation_clock(r, step));
+  damp(r, step);
 }
 
 void relaxation_begin(relaxation *r) {
+  r->state.rate = 2 * acos(-1) / ((double)r->ramp * r->sweep->time_step);
   relaxation_next(r, 0);
-  set_rate(r, 2 * acos(-1) / ((double)r->ramp * r->sweep->time_step));
 }
 
 bool relaxation_due(const relaxation *r, int64_t step) {
@@ -87,11 +98,11 @@ static void adapt(relaxation *r) {
       const long q = w->lattice->particle_site[p];
       const double way = w->displacement[d][q] - r->displacement[d][q];
       work -= way * (w->force[d][q] - r->force[d][q]);
-      motion += w->mass[d] * way * way;
+      motion += sweep_mass(w, d, q) * way * way;
       r->displacement[d][q] = w->displacement[d][q];
       r->force[d][q] = w->force[d][q];
     }
-  if (work > 0 && motion > 0) set_rate(r, 2 * sqrt(work / motion));
+  if (work > 0 && motion > 0) r->state.rate = 2 * sqrt(work / motion);
 }
 
 typedef struct squares { /* N^2 */
@@ -102,12 +113,13 @@ static void add_component(const relaxation *r, int d, squares *sum) {
   const sweep *w = r->sweep;
   const loads *l = r->loads;
   const double arm = d < w->dimensions ? 1 : w->lattice->spacing;
-  const double weight = d < w->dimensions ? w->push[d] * w->mass[d] / w->time_step : 0;
+  const double gravity = d < w->dimensions ? w->push[d] / w->time_step : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
+    const double weight = gravity * sweep_mass(w, d, q);
     r->total[q] = w->force[d][q] + weight;
+    sum->applied += weight * weight;
   }
-  sum->applied += weight * weight * (double)w->lattice->particle_count;
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
     r->total[l->forces[i].site] += l->forces[i].now;
@@ -136,6 +148,7 @@ static double unbalance_of(relaxation *r) {
 bool relaxation_look(relaxation *r, int64_t step) {
   const int64_t steps = step - r->loads->clock.first;
   adapt(r);
+  damp(r, step);
   r->state.unbalance = unbalance_of(r);
   if (steps < r->ramp) return false;
   const bool balanced = r->state.unbalance <= r->deck->tolerance;

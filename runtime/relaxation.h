@@ -1,9 +1,12 @@
 /* Quasi-static runs by dynamic relaxation: the loads are applied in increments of the deck's time;
-   within one they move on evenly for as long as a wave takes through the body and back, then stand
+   within one all of them move on evenly for as long as a wave takes through the body and back, then stand
    still until the body has come to rest. Time steps are those of dynamics; the inertia is a means.
 
    Mass damping is chosen as they go (Underwood 1983): critical for the frequency of the motion since
    the last look, omega^2 = -du df/(du m du) with the displacements u and the forces f of the bonds.
+   While the loads move, there is a tenth of it: the drag of the whole on a bar that is drawn out in
+   this time is pi/2 of the force that the increment needs, and breaks what would have held. The
+   ramp takes about a period, so that a bar without damping comes out of it at rest.
 
    An increment is done when the unbalanced force, the root of the sum of squares over all components
    that are not held, is at most `tolerance` times the same of the reactions, or of the forces and
@@ -19,6 +22,7 @@ typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */
   int64_t unbalanced;             /* of these: ended after `most_steps` */
   int64_t steps;                  /* of the last that was done */
+  double rate;                    /* 1/s: mass damping, critical for the motion looked at last */
   double unbalance;               /* as it was looked at last */
   double largest;                 /* N: the largest force that it was compared with */
 } relaxation_state;
@@ -50,5 +54,7 @@ bool relaxation_due(const relaxation *r, int64_t step);
 bool relaxation_look(relaxation *r, int64_t step);
 /* The next increment begins. */
 void relaxation_next(relaxation *r, int64_t step);
+/* Clock of the loads in the increment that began after `first` steps. */
+load_clock relaxation_clock(const relaxation *r, int64_t first);
 
 #endif

@@ -169,6 +169,7 @@ static bool write_particles(hid_t file, const result_header *h) {
          h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
          h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
          h5_write_integers(file, "/particles/body", h->body, 1, one) &&
+         (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one)) &&
          h5_write_integers(file, name, h->bonds, 2, bonds);
 }
 

@@ -5,6 +5,7 @@
      /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
      /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
+     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
      /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
      /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
@@ -47,6 +48,7 @@ typedef struct result_header {
   const double *reference; /* [N][dimensions] */
   const int32_t *body;     /* [N] number of the body in the deck, from 0 */
   const double *volume;    /* [N] */
+  const int32_t *resolved; /* [N]; NULL on lattices */
   const char *interaction; /* name of the bonds: the lattice's name */
   long bond_count;
   const int32_t *bonds; /* [M][2] */
@@ -77,6 +79,8 @@ void result_close(result *r); /* frees; keeps files */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
+/* The run was quasi-static: its samples are increments, its time is only an order. */
+bool result_is_quasi_static(result_file *f);
 
 typedef struct result_names {
   char **items;
@@ -101,7 +105,8 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit, size_t unit_size, char *error, size_t size);
 double *result_read_reference(result_file *f, long *particles,
-                              int *dimensions); /* [N][2] or [N][3] */
+                              int *dimensions);              /* [N][2] or [N][3] */
+double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: the first */
 /* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error ""). */

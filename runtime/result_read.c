@@ -50,6 +50,13 @@ void result_read_close(result_file *f) {
   free(f);
 }
 
+bool result_is_quasi_static(result_file *f) {
+  result_names series = result_members(f, "/history");
+  const bool found = result_names_find(&series, "relaxation_steps") >= 0;
+  result_names_free(&series);
+  return found;
+}
+
 /* Every part of the path must exist before H5Dopen may be asked. */
 static hid_t open_set(const result_file *f, const char *name) {
   char part[512];
@@ -378,6 +385,12 @@ static void *read_table(result_file *f, const char *path, hid_t type, size_t wid
 double *result_read_reference(result_file *f, long *particles, int *dimensions) {
   return read_table(f, "/particles/reference", H5T_NATIVE_DOUBLE, sizeof(double), 2, 3, particles,
                     dimensions);
+}
+
+double *result_read_volume(result_file *f, long *particles) {
+  int columns;
+  return read_table(f, "/particles/volume", H5T_NATIVE_DOUBLE, sizeof(double), 1, 1, particles,
+                    &columns);
 }
 
 /* Pairs that name particles which do not exist make the table unusable. */

@@ -5,6 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/neighbour_search.h"
+#include "runtime/rows_parts.h"
+#include "runtime/scattered.h"
 #include "runtime/shape.h"
 #include "runtime/site_marks.h"
 
@@ -90,7 +93,7 @@ static bool lattice_is_sound(builder *b) {
 /* --- storage ------------------------------------------------------------------------------------
  */
 
-static void *aligned_zeros(long count, size_t each) {
+void *rows_array(long count, size_t each) {
   const size_t bytes = (size_t)count * each;
   const size_t whole = (bytes + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
   void *p = aligned_alloc(PL_ALIGNMENT, whole);
@@ -109,8 +112,7 @@ static long pitch_for(long columns) {
 
 /* In spacings: as the deck says, or the distance of the last shell. */
 static double horizon_of(const builder *b) {
-  return b->lattice->horizon > 0 ? b->lattice->horizon
-                                 : sqrt(b->family[b->directions - 1].square);
+  return b->lattice->horizon > 0 ? b->lattice->horizon : sqrt(b->family[b->directions - 1].square);
 }
 
 /* Part of a neighbour's volume that lies within the horizon when its extent of a spacing along the bond counts. */
@@ -147,19 +149,22 @@ static void row_numbers(const rows *w, const builder *b, int row, long *number, 
   *number = left->first[ROW] + row - rise * w->layer_rows;
 }
 
+bool rows_new_sites(rows *w) {
+  w->bonds = rows_array(w->size, sizeof *w->bonds);
+  w->held_bonds = rows_array(w->size, sizeof *w->held_bonds);
+  w->held = rows_array(w->size, sizeof *w->held);
+  w->present = rows_array(w->size, 1);
+  w->x = rows_array(w->size, sizeof *w->x);
+  w->y = rows_array(w->size, sizeof *w->y);
+  if (w->dimensions == 3) w->z = rows_array(w->size, sizeof *w->z);
+  w->site_particle = rows_array(w->size, sizeof *w->site_particle);
+  return w->bonds && w->held_bonds && w->held && w->present && w->x && w->y &&
+         (w->z || w->dimensions == 2) && w->site_particle;
+}
+
 static rows *allocate(rows *w, const builder *b) {
   w->row_class = must_calloc((size_t)(w->row_count + 2 * w->margin), 1);
-  w->bonds = aligned_zeros(w->size, sizeof *w->bonds);
-  w->held_bonds = aligned_zeros(w->size, sizeof *w->held_bonds);
-  w->held = aligned_zeros(w->size, sizeof *w->held);
-  w->present = aligned_zeros(w->size, 1);
-  w->x = aligned_zeros(w->size, sizeof *w->x);
-  w->y = aligned_zeros(w->size, sizeof *w->y);
-  if (w->dimensions == 3) w->z = aligned_zeros(w->size, sizeof *w->z);
-  w->site_particle = aligned_zeros(w->size, sizeof *w->site_particle);
-  if (w->bonds && w->held_bonds && w->held && w->present && w->x && w->y &&
-      (w->z || w->dimensions == 2) && w->site_particle)
-    return w;
+  if (rows_new_sites(w)) return w;
   diag_report(b->d, DIAG_OUT_OF_BOUNDS, deck_where(&b->lattice->item, "spacing"),
               "there is not enough memory for %ld sites", w->size);
   rows_free(w);
@@ -218,16 +223,11 @@ static void place_sites(rows *w, const builder *b) {
     place_row(w, b, row);
 }
 
-static void number_particles(rows *w) {
+void rows_find_extent(rows *w) {
   double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
-  int32_t next = 0;
-  w->particle_site = must_alloc((size_t)w->particle_count * sizeof *w->particle_site);
-  for (long site = 0; site < w->size; site++) {
-    w->site_particle[site] = w->present[site] ? next : -1;
-    if (!w->present[site]) continue;
-    w->particle_site[next++] = (int32_t)site;
+  for (long p = 0; p < w->particle_count; p++) {
     double at[3];
-    rows_place(w, site, at);
+    rows_place(w, w->particle_site[p], at);
     for (int c = 0; c < 3; c++) {
       lower[c] = fmin(lower[c], at[c]);
       upper[c] = fmax(upper[c], at[c]);
@@ -236,6 +236,16 @@ static void number_particles(rows *w) {
   w->width = upper[0] - lower[0];
   w->height = upper[1] - lower[1];
   w->depth = upper[2] - lower[2];
+}
+
+static void number_particles(rows *w) {
+  int32_t next = 0;
+  w->particle_site = must_alloc((size_t)w->particle_count * sizeof *w->particle_site);
+  for (long site = 0; site < w->size; site++) {
+    w->site_particle[site] = w->present[site] ? next : -1;
+    if (w->present[site]) w->particle_site[next++] = (int32_t)site;
+  }
+  rows_find_extent(w);
 }
 
 /* To the neighbours of a site. */
@@ -252,7 +262,7 @@ static void join_neighbours(rows *w) {
   }
 }
 
-static void count_bonds(rows *w) {
+void rows_count_bonds(rows *w) {
   w->bond_count = 0;
   for (long p = 0; p < w->particle_count; p++)
     w->bond_count += __builtin_popcountll(w->bonds[w->particle_site[p]]);
@@ -268,12 +278,17 @@ static bool chord_cut(const rows *w, long site, int k, const deck_shape *shape) 
   return shape_crossed(shape, a, c, CHORD_TOLERANCE * w->spacing);
 }
 
-/* Bonds of the site that the notch cuts, whether an earlier notch has cut them or not. */
-static long cut_bonds_of(rows *w, long site, const deck_shape *shape) {
+static void cut_bond(rows *w, long site, int k) {
+  const uint64_t bit = UINT64_C(1) << k;
+  w->bonds[site] &= ~bit;
+  if (w->list) w->list->incoming[rows_partner(w, site, k)] &= ~bit;
+}
+
+long rows_cut(rows *w, long site, const deck_shape *shape) {
   long count = 0;
   for (int k = 0; k < w->directions && w->present[site]; k++) {
     if (!w->present[rows_partner(w, site, k)] || !chord_cut(w, site, k, shape)) continue;
-    w->bonds[site] &= ~(UINT64_C(1) << k);
+    cut_bond(w, site, k);
     count++;
   }
   return count;
@@ -294,7 +309,7 @@ static long cut_bonds(rows *w, const builder *b, const deck_shape *shape) {
       const long stored = (layer - left->first[LAYER]) * w->layer_rows + row - left->first[ROW];
       const long start = rows_start(w, (int)stored) + b->reach[COLUMN] - left->first[COLUMN];
       for (long column = near.first[COLUMN]; column <= near.last[COLUMN]; column++)
-        count += cut_bonds_of(w, start + column, shape);
+        count += rows_cut(w, start + column, shape);
     }
   return count;
 }
@@ -331,6 +346,7 @@ static bool has_bonds(const rows *w, const builder *b) {
 
 rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   builder b = {.deck = k, .lattice = &k->lattices[lattice], .d = d};
+  if (deck_lattice_is_irregular(b.lattice)) return scattered_build(k, lattice, d);
   if (!lattice_is_sound(&b)) return NULL;
   rows *w = NULL;
   if (site_marks_make(&b.marks, &b.infinite, k, b.lattice, d)) w = rows_new(&b);
@@ -345,14 +361,27 @@ rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   }
   if (w) {
     cut_notches(w, &b);
-    count_bonds(w);
+    rows_count_bonds(w);
   }
   site_marks_free(&b.marks);
   return w;
 }
 
+static void free_list(neighbour_list *l) {
+  if (l == NULL) return;
+  free(l->neighbour);
+  free(l->incoming);
+  free(l->length);
+  for (int a = 0; a < 3; a++)
+    free(l->chord[a]);
+  free(l);
+}
+
 void rows_free(rows *w) {
   if (w == NULL) return;
+  free_list(w->list);
+  free(w->site_volume);
+  free(w->site_mass);
   free(w->row_class);
   free(w->bonds);
   free(w->held_bonds);
@@ -366,9 +395,23 @@ void rows_free(rows *w) {
   free(w);
 }
 
+int rows_degree(const rows *w, long site) {
+  int count = __builtin_popcountll(w->bonds[site]);
+  if (w->list) return count + __builtin_popcountll(w->list->incoming[site]);
+  for (int k = w->directions; k < 2 * w->directions; k++)
+    count += rows_has_neighbour(w, site, k);
+  return count;
+}
+
+/* Bonds of a full family; on lists their mean. */
+static double family_size(const rows *w) {
+  if (!w->list) return 2 * w->directions;
+  return round(2 * (double)w->bond_count / (double)w->particle_count);
+}
+
 pl_bond_class rows_bond_class(const rows *w, int direction) {
   const int k = direction % w->directions;
-  const double sign = direction < w->directions ? 1 : -1;
+  const double sign = direction < w->directions || w->list ? 1 : -1;
   return (pl_bond_class){
       .s = w->length[k],
       .spacing = w->spacing,
@@ -377,14 +420,40 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
       .mass_i = w->mass,
       .mass_j = w->mass,
       .shell = w->shell[k],
-      .n = 2 * w->directions,
+      .n = family_size(w),
       .chord = {sign * w->chord[k][0], sign * w->chord[k][1], sign * w->chord[k][2]},
       .horizon = w->horizon,
       .weight = w->weight[k]};
 }
 
-const char *rows_place_text(const rows *w, const double at[3], char text[ROWS_PLACE_TEXT]) {
-  if (w->dimensions == 2)
+static uint64_t mix(uint64_t hash, const void *data,
+                    size_t size) { /* FNV-1a, eight bytes at a time */
+  const unsigned char *at = data;
+  for (size_t k = 0; k + sizeof hash <= size; k += sizeof hash) {
+    uint64_t word;
+    memcpy(&word, at + k, sizeof word);
+    hash = (hash ^ word) * UINT64_C(0x100000001b3);
+    hash ^= hash >> 29;
+  }
+  return hash;
+}
+
+uint64_t rows_fingerprint(const rows *w) {
+  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+  if (!w->list) return 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    double of[4] = {0, 0, 0, w->site_volume[site]};
+    const uint64_t bonds[2] = {w->bonds[site], w->list->incoming[site]};
+    rows_place(w, site, of);
+    hash = mix(hash, of, sizeof of);
+    hash = mix(hash, bonds, sizeof bonds);
+  }
+  return hash ? hash : 1;
+}
+
+const char *rows_place_text(int dimensions, const double at[3], char text[ROWS_PLACE_TEXT]) {
+  if (dimensions == 2)
     snprintf(text, ROWS_PLACE_TEXT, "(%.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1]);
   else
     snprintf(text, ROWS_PLACE_TEXT, "(%.6g, %.6g, %.6g) mm", 1e3 * at[0], 1e3 * at[1], 1e3 * at[2]);
@@ -455,6 +524,19 @@ static int steps_within(double reach, double step, int most) {
   return step > 0 ? (int)fmin(ceil(reach / step), most) : 0;
 }
 
+/* On lists. */
+static unsigned char *mark_points_near(const rows *w, const int32_t *particles, long count,
+                                       double reach) {
+  const point_cloud all = {w->dimensions, w->size, {w->x, w->y, w->z}};
+  unsigned char *near = must_calloc((size_t)w->size, 1);
+  int32_t *sites = must_alloc(((size_t)count + 1) * sizeof *sites);
+  for (long p = 0; p < count; p++)
+    sites[p] = w->particle_site[particles[p]];
+  points_near(&all, sites, count, reach, near);
+  free(sites);
+  return near;
+}
+
 /* Sites within `reach` of the particles; intervals a row, so that a wide reach costs rows and not sites. */
 static unsigned char *mark_near(const rows *w, const int32_t *particles, long count, double reach) {
   int32_t *steps = must_calloc((size_t)w->size + 1, sizeof *steps);
@@ -481,7 +563,8 @@ static unsigned char *mark_near(const rows *w, const int32_t *particles, long co
 
 void rows_protect(rows *w, const int32_t *particles, long count, double radius) {
   const double reach = fmax(radius, 0) + SITE_OUTLINE_TOLERANCE * w->spacing;
-  unsigned char *near = mark_near(w, particles, count, reach);
+  unsigned char *near = w->list ? mark_points_near(w, particles, count, reach)
+                                : mark_near(w, particles, count, reach);
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     if (near[site]) w->held[site] = 1;
@@ -496,11 +579,11 @@ rows_bond *rows_bonds(const rows *w) {
   rows_bond *bonds = must_alloc(((size_t)w->bond_count + 1) * sizeof *bonds);
   long next = 0;
   for (long p = 0; p < w->particle_count; p++) {
-    const long site = w->particle_site[p], *offset = offsets_of(w, site);
+    const long site = w->particle_site[p];
     for (int k = 0; k < w->directions; k++) {
       if (!rows_has_bond(w, site, k)) continue;
       bonds[next++] = (rows_bond){.i = (int32_t)p,
-                                  .j = w->site_particle[site + offset[k]],
+                                  .j = w->site_particle[rows_partner(w, site, k)],
                                   .slot = (int64_t)k * w->size + site};
     }
   }

@@ -23,9 +23,10 @@
    it owns have different numbers below `directions`, those others own have different numbers from there on, and
    a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. */
 typedef struct neighbour_list {
-  int32_t *neighbour; /* [2 directions][size] from a site to its neighbour: how much further; where there is none, to an
+  int32_t *
+      neighbour; /* [2 directions][size] from a site to its neighbour: how much further; where there is none, to an
                          absent site without bonds */
-  uint64_t *incoming; /* [size] bit k: bond k + directions exists */
+  uint64_t *incoming;        /* [size] bit k: bond k + directions exists */
   double *length, *chord[3]; /* [2 directions][size] m; of reference chords to the neighbours */
 } neighbour_list;
 
@@ -51,17 +52,19 @@ typedef struct rows {
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space */
-  double mass, inertia;       /* set from rho by the simulation: kg, kg m^2; of the mean particle on lists */
-  neighbour_list *list;       /* NULL on lattices */
+  double mass,
+      inertia; /* set from rho by the simulation: kg, kg m^2; of the mean particle on lists */
+  neighbour_list *list;            /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
-  uint64_t *bonds;            /* [size] bit k: the owned bond k exists */
-  uint64_t *held_bonds;       /* [size] bit k: the damage of the owned bond k stays as it is */
-  uint64_t *held;             /* [size] 1: the particle is protected */
-  unsigned char *present;     /* [size] the site exists */
+  uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
+  uint64_t *held_bonds;            /* [size] bit k: the damage of the owned bond k stays as it is */
+  uint64_t *held;                  /* [size] 1: the particle is protected */
+  unsigned char *present;          /* [size] the site exists */
   double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
   long particle_count, bond_count;
   int32_t *
-      particle_site; /* [particle_count] site of each particle, in row order: the order of results */
+      particle_site; /* [particle_count] site of each particle, in the order of results: that of rows, on lists that in
+                             which the particles were given */
   int32_t *site_particle;      /* [size] particle of each site, or -1 */
   double width, height, depth; /* extent of the present sites along x, y and z, m */
 } rows;
@@ -100,14 +103,38 @@ static inline void rows_place(const rows *w, long site, double at[3]) {
 
 /* "(x, y) mm" or "(x, y, z) mm", as messages name a place of the lattice. */
 enum { ROWS_PLACE_TEXT = 80 };
-const char *rows_place_text(const rows *w, const double at[3], char text[ROWS_PLACE_TEXT]);
+const char *rows_place_text(int dimensions, const double at[3], char text[ROWS_PLACE_TEXT]);
+
+/* The bond to the neighbour in that direction, 0 .. 2 directions - 1, exists. */
+static inline bool rows_has_neighbour(const rows *w, long site, int direction) {
+  if (direction < w->directions) return rows_has_bond(w, site, direction);
+  const int k = direction - w->directions;
+  if (w->list) return w->list->incoming[site] >> k & 1;
+  return rows_has_bond(w, rows_partner(w, site, direction), k);
+}
+
+/* Reference chord (m) from a site to its neighbour in that direction, 0 .. 2 directions - 1. Returns its length. */
+static inline double rows_chord(const rows *w, long site, int direction, double chord[3]) {
+  const int k = direction % w->directions;
+  const double sign = direction < w->directions ? 1 : -1;
+  for (int a = 0; a < 3; a++)
+    chord[a] = !w->list            ? sign * w->chord[k][a]
+               : a < w->dimensions ? w->list->chord[a][direction * w->size + site]
+                                   : 0;
+  return w->list ? w->list->length[direction * w->size + site] : w->length[k];
+}
+
+/* Number of bonds of a site. */
+int rows_degree(const rows *w, long site);
 
 /* What a law is told about the bonds of one direction, 0 .. 2 directions - 1; masses as `mass` says. `area` is 0: no
-   bars here. */
+   bars here. On lists all are told the same, a bond of a spacing along x between particles of mean size, with the mean number
+   of bonds, rounded. */
 pl_bond_class rows_bond_class(const rows *w, int direction);
 
 /* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
-   present neighbours whose chord crosses no notch. NULL on errors (a body without sites, a point body with no
+   present neighbours whose chord crosses no notch. Particles that stand on no lattice become rows with a list
+   (scattered.h). NULL on errors (a body without sites, a point body with no
    lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
 rows *rows_build(const deck *k, int lattice, diagnostics *d);
 void rows_free(rows *w);
@@ -127,7 +154,10 @@ typedef struct rows_bond {
   int32_t i, j;
   int64_t slot;
 } rows_bond;
-/* All bonds in row order; malloc'ed, bond_count long. */
+/* All bonds, in the order of the particles that own them; malloc'ed, bond_count long. */
 rows_bond *rows_bonds(const rows *w);
+
+/* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks describe. */
+uint64_t rows_fingerprint(const rows *w);
 
 #endif

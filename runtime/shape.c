@@ -292,8 +292,7 @@ static double box_distance(const deck_shape *shape, const double *p) {
   return both(both(d[0], d[1]), d[2]);
 }
 
-/* Distance to the shape's surface, negative inside. */
-static double shape_distance(const deck_shape *shape, const double *p) {
+double shape_distance(const deck_shape *shape, const double *p) {
   shape_outline s;
   double from[3];
   switch (shape->kind) {
@@ -450,6 +449,47 @@ static void cut_by_shape(cuts *c, const double *a, const double *b, const deck_s
   case SHAPE_FACE:
     return;
   }
+}
+
+int shape_cuts(const deck_shape *shape, const double *a, const double *b, double *u, int most) {
+  cuts c = {.count = 0, .capacity = NEAR_CUTS};
+  c.all = c.near;
+  cut_by_shape(&c, a, b, shape);
+  const int count = c.count;
+  memcpy(u, c.all, (size_t)(count < most ? count : most) * sizeof *u);
+  if (c.all != c.near) free(c.all);
+  return count;
+}
+
+/* --- corners ---------------------------------------------------------------------------------- */
+
+static bool has_outline(const deck_shape *shape) {
+  return shape->kind == SHAPE_RECTANGLE || shape->kind == SHAPE_DOG_BONE ||
+         shape->kind == SHAPE_POLYGON || shape->kind == SHAPE_EXTRUSION;
+}
+
+int shape_levels(const deck_shape *shape, int c, double *level, int most) {
+  double lower[3], upper[3];
+  int count = 0;
+  shape_box(shape, lower, upper);
+  if (count++ < most) level[0] = lower[c];
+  if (count++ < most) level[1] = upper[c];
+  if (shape->kind == SHAPE_DISC)
+    for (int side = -1; side <= 1; side += 2, count++)
+      if (count < most) level[count] = shape->centre[c] + side * shape->inner_radius;
+  if (!has_outline(shape) || c == 2) return count;
+  shape_outline s;
+  const outline *o = outline_of(shape, &s);
+  for (int k = 0; k < o->count; k++, count++)
+    if (count < most) level[count] = outline_corner(o, k)[c];
+  return count;
+}
+
+bool shape_is_convex(const deck_shape *shape) {
+  if (shape->kind == SHAPE_RECTANGLE || shape->kind == SHAPE_BOX) return true;
+  return (shape->kind == SHAPE_DISC || shape->kind == SHAPE_CYLINDER ||
+          shape->kind == SHAPE_SPHERE) &&
+         shape->inner_radius == 0;
 }
 
 /* --- crossings -------------------------------------------------------------------------------- */

@@ -14,6 +14,19 @@ void shape_box(const deck_shape *shape, double lower[3], double upper[3]);
    their own outlines. */
 bool shape_contains(const deck_shape *shape, const double *point, double tolerance);
 
+/* Distance to the shape's surface, negative inside; near edges of its surface, inside, perhaps less than that. */
+double shape_distance(const deck_shape *shape, const double *point);
+
+/* Places u, 0 < u < 1 from a to b, where the chord may enter or leave the shape, in no order: between two that follow
+   each other it is inside or outside throughout. At most `most` are written; returns how many there are. */
+int shape_cuts(const deck_shape *shape, const double *a, const double *b, double *u, int most);
+
+/* Coordinates along axis c (0, 1, 2) of the corners, of the ends of the shape's box and of a disc's hole; likewise. */
+int shape_levels(const deck_shape *shape, int c, double *level, int most);
+
+/* True when a straight line meets the shape in one piece. */
+bool shape_is_convex(const deck_shape *shape);
+
 /* True when the open chord a-b has a point deeper than `tolerance` inside the shape: touching a corner or running
    along the outline is no crossing. A shape without area (a segment, a rectangle of width 0, a polygon folded flat) or
    without volume (a face) is a slit: every chord that has its ends on either side and meets it, its tip included,

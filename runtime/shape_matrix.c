@@ -13,20 +13,23 @@ void dsyev_(const char *job, const char *triangle, const int *n, double *a, cons
             double *values, double *work, const int *work_size, int *info, size_t job_length,
             size_t triangle_length);
 
-#define SMALLEST 1e-9 /* of the largest eigenvalue */
+/* Of the largest eigenvalue: smaller ones count as 0. Families of lattices lack a strain or have it well; on lists there is
+   all between, and where a strain is hardly seen its fit is noise. */
+#define SMALLEST         1e-9
+#define SMALLEST_ON_LIST 1e-3
+#define RESOLVED         1e-3
 
-enum { MOST_ORDER = 6, MOST_VALUES = PL_SHAPE_VALUES(3), PLACES = 4096 };
+enum { MOST_ORDER = 6, MOST_PLANES = PL_SHAPE_PLANES(3), PLACES = 4096 };
 
 /* Families differ in the bonds they have, and most of them are alike. */
 typedef struct known_family {
   bool known;
   uint64_t own, incoming; /* bit k: the bond in direction k, the bond from there */
-  double matrix[MOST_VALUES];
+  double matrix[MOST_PLANES];
 } known_family;
 
-/* n of a bond; returns how many there are. */
-static int products(const rows *w, int direction, double n[MOST_ORDER]) {
-  const double *c = w->chord[direction], s = w->length[direction];
+/* n of a bond of this chord and length; returns how many there are. */
+static int products(const rows *w, const double c[3], double s, double n[MOST_ORDER]) {
   const double e[3] = {c[0] / s, c[1] / s, c[2] / s};
   int count = 0;
   for (int a = 0; a < w->dimensions; a++)
@@ -39,8 +42,8 @@ static int products(const rows *w, int direction, double n[MOST_ORDER]) {
 }
 
 /* Least squares with the smallest tensor, sum of e_ab^2, so that the axes do not matter: shear, which counts twice in
-   that, is scaled by the root of 2. */
-static void invert(int dimensions, int order, double *sum) {
+   that, is scaled by the root of 2. Behind the matrix stands whether the bonds resolve all strains. */
+static void invert(int dimensions, int order, double smallest, double *sum) {
   double scale[MOST_ORDER], a[MOST_ORDER * MOST_ORDER], values[MOST_ORDER], work[16 * MOST_ORDER];
   const int size = 16 * MOST_ORDER;
   int info = 0, at = 0;
@@ -56,10 +59,17 @@ static void invert(int dimensions, int order, double *sum) {
     for (int q = p; q < order; q++) {
       double value = 0;
       for (int m = 0; m < order; m++)
-        if (values[m] > SMALLEST * values[order - 1])
+        if (values[m] > smallest * values[order - 1])
           value += a[m * order + p] * a[m * order + q] / values[m];
       sum[at++] = scale[p] * scale[q] * value;
     }
+  sum[at] = values[order - 1] > 0 && values[0] >= RESOLVED * values[order - 1];
+}
+
+static void add_products(const double *n, int order, double weight, double *sum) {
+  for (int a = 0; a < order; a++)
+    for (int b = a; b < order; b++)
+      *sum++ += weight * n[a] * n[b];
 }
 
 static void find_matrix(const rows *w, known_family *f) {
@@ -68,13 +78,10 @@ static void find_matrix(const rows *w, known_family *f) {
   for (int k = 0; k < w->directions; k++) {
     const int bonds = (int)(f->own >> k & 1) + (int)(f->incoming >> k & 1); /* n n^T is even */
     double n[MOST_ORDER];
-    int at = 0;
-    order = products(w, k, n);
-    for (int a = 0; a < order; a++)
-      for (int b = a; b < order; b++)
-        f->matrix[at++] += bonds * n[a] * n[b];
+    order = products(w, w->chord[k], w->length[k], n);
+    add_products(n, order, bonds, f->matrix);
   }
-  invert(w->dimensions, order, f->matrix);
+  invert(w->dimensions, order, SMALLEST, f->matrix);
 }
 
 static const double *matrix_at(const rows *w, known_family *known, long site) {
@@ -91,8 +98,36 @@ static const double *matrix_at(const rows *w, known_family *known, long site) {
   return f->matrix;
 }
 
+/* Of a particle of a list, whose family has no like. */
+static void list_matrix(const rows *w, long site, double *matrix) {
+  const int order = w->dimensions == 2 ? 3 : 6;
+  memset(matrix, 0, MOST_PLANES * sizeof *matrix);
+  for (int k = 0; k < 2 * w->directions; k++) {
+    double chord[3], n[MOST_ORDER];
+    if (!rows_has_neighbour(w, site, k)) continue;
+    const double length = rows_chord(w, site, k, chord);
+    products(w, chord, length, n);
+    add_products(n, order, length, matrix);
+  }
+  invert(w->dimensions, order, SMALLEST_ON_LIST, matrix);
+}
+
+static void list_matrices(const rows *w, double *const *matrix) {
+  double here[MOST_PLANES];
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    list_matrix(w, site, here);
+    for (int v = 0; v < PL_SHAPE_PLANES(w->dimensions); v++)
+      matrix[v][site] = here[v];
+  }
+}
+
 void shape_matrices(const rows *w, double *const *matrix) {
-  const int values = PL_SHAPE_VALUES(w->dimensions);
+  const int values = PL_SHAPE_PLANES(w->dimensions);
+  if (w->list) {
+    list_matrices(w, matrix);
+    return;
+  }
   known_family *known = must_calloc(PLACES, sizeof *known);
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
@@ -106,5 +141,17 @@ void shape_matrices(const rows *w, double *const *matrix) {
 void shape_matrix_full(const rows *w, double *values) {
   known_family f = {.own = UINT64_MAX, .incoming = UINT64_MAX};
   find_matrix(w, &f);
-  memcpy(values, f.matrix, (size_t)PL_SHAPE_VALUES(w->dimensions) * sizeof *values);
+  memcpy(values, f.matrix, (size_t)PL_SHAPE_PLANES(w->dimensions) * sizeof *values);
+}
+
+long shape_unresolved(const rows *w, int32_t *resolved) {
+  double here[MOST_PLANES];
+  long count = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    list_matrix(w, w->particle_site[p], here);
+    const bool all = here[PL_SHAPE_VALUES(w->dimensions)] > 0;
+    if (resolved) resolved[p] = all;
+    count += !all;
+  }
+  return count;
 }

@@ -27,6 +27,8 @@ static bool set_mass(simulation *s, diagnostics *d) {
   }
   const double half = s->lattice->spacing / 2;
   s->lattice->mass = s->parameters[rho] * s->lattice->volume;
+  for (long q = 0; s->lattice->site_mass && q < s->lattice->size; q++)
+    s->lattice->site_mass[q] = s->parameters[rho] * s->lattice->site_volume[q];
   s->lattice->inertia = 0.4 * s->lattice->mass * half * half;
   return true;
 }
@@ -135,12 +137,12 @@ static bool count_steps(simulation *s, diagnostics *d) {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Small bodies are not worth many threads: a block has at least eight rows unless the deck insists.
- */
+/* Small bodies are not worth many threads: a block has at least eight rows, of a list two, unless the deck insists. */
 static int choose_threads(const simulation *s) {
   const int asked = s->deck->simulation.threads;
   if (asked > 0) return asked;
-  const int offered = omp_get_max_threads(), sensible = s->lattice->row_count / 8;
+  const int least = s->lattice->list ? 2 : 8;
+  const int offered = omp_get_max_threads(), sensible = s->lattice->row_count / least;
   return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
 }
 
@@ -156,13 +158,35 @@ static void new_history(simulation *s) {
   s->sampled = must_calloc((size_t)s->series_count + 1, sizeof(double));
 }
 
+/* The kernel of a law of families is made for lattices or for lists. A solver has one, and its deck may change. */
+static bool topology_serves(const simulation *s, diagnostics *d) {
+  const deck_lattice *l = &s->deck->lattices[0];
+  const bool list = s->lattice->list != NULL;
+  if (s->law->kind == PL_STATE && (s->law->topology == PL_LIST) == list) return true;
+  if (s->law->kind == PL_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+                "this solver was built for particles that stand on %s",
+                list ? "a lattice" : "no lattice");
+    diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
+    return false;
+  }
+  diag_report(
+      d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
+      "as a law of bonds `%s` runs on a hexagonal lattice, not on particles that stand on none",
+      s->law->name);
+  diag_hint(d,
+            "laws of families, `law state`, run on them, and central laws without random fields");
+  return false;
+}
+
 /* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest neighbours. */
 static bool lattice_serves(const simulation *s, diagnostics *d) {
   const deck_lattice *l = &s->deck->lattices[0];
   const bool hexagonal = strcmp(l->kind, "hexagonal") == 0;
   const bool nearest = hexagonal && s->lattice->directions == 3;
-  if (s->law->dimensions == s->lattice->dimensions && (s->law->kind == PL_STATE || nearest))
-    return true;
+  const bool same = s->law->dimensions == s->lattice->dimensions;
+  if (same && (s->law->kind == PL_STATE || s->lattice->list)) return topology_serves(s, d);
+  if (same && nearest) return true;
   if (s->law->dimensions != s->lattice->dimensions) {
     diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "the law `%s` is of %s, the lattice is in %s", s->law->name,
@@ -299,8 +323,13 @@ sweep *simulation_state(simulation *s) {
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
   const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->state->dof + 1) : 0;
-  return (double)s->state->bytes + (s->fields ? (double)s->fields->bytes : 0) +
-         looks * (double)s->lattice->size + site * (double)s->lattice->size +
+  const rows *g = s->lattice;
+  const double list =
+      g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
+              : 0;
+  return (double)s->state->bytes + list * (double)g->size +
+         (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
+         site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) *
              ((double)s->history_capacity * (s->series_count + 1) + (double)s->monitors->ring_size);
@@ -377,7 +406,7 @@ const char *simulation_series(const simulation *s, int k, const char **symbol,
 double simulation_monitor_peak(const simulation *s, int index, double *time) {
   const monitor_state *m = &s->monitors->items[index].state;
   if (time) *time = m->peak_time;
-  return fabs(m->peak);
+  return m->peak;
 }
 
 /* --- time loop -------------------------------------------------------------------------------- */

@@ -48,7 +48,8 @@ void simulation_free(simulation *s);
 const struct random_fields *simulation_fields(const simulation *s);
 const rows *simulation_rows(const simulation *s, int lattice);
 const step_limit *simulation_step_limit(const simulation *s);
-long simulation_step_count(const simulation *s); /* planned; without meaning for quasi-static runs */
+long simulation_step_count(
+    const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
 double simulation_progress(const simulation *s); /* part of the run that is done, 0 to 1 */
 /* Increments done of a quasi-static run, and how many of them ended without balance; 0 else. */
@@ -108,7 +109,7 @@ long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
 double simulation_monitor_peak(const simulation *s, int monitor,
-                               double *time); /* largest absolute value */
+                               double *time); /* value that is largest in size, its sign kept */
 
 /* Fields of the present state in the order of results, for frames. "force" and outputs are
  * evaluated on demand. */

@@ -93,12 +93,13 @@ static void fields_at(const simulation *s, long site, long there, int k, double 
 static void look_at_neighbour(simulation *s, long site, int k) {
   const rows *g = s->lattice;
   const long there = rows_partner(g, site, k);
-  const pl_bond_class bond = rows_bond_class(g, k);
+  double chord[3];
+  const double length = rows_chord(g, site, k, chord);
   double ui[3], uj[3], vi[3], vj[3], now = 0, growth = 0;
   ends_before(s, site, ui, vi);
   ends_before(s, there, uj, vj);
   for (int d = 0; d < s->law->dimensions; d++) {
-    const double c = bond.chord[d] + uj[d] - ui[d];
+    const double c = chord[d] + uj[d] - ui[d];
     now += c * c;
     growth += c * (vj[d] - vi[d]);
   }
@@ -106,18 +107,15 @@ static void look_at_neighbour(simulation *s, long site, int k) {
   bad_neighbour *n = &s->bad_family[s->bad.family_count++];
   double *fields = s->bad_fields + s->bad.family_count * s->law->field_count;
   fields_at(s, site, there, k, fields);
-  *n = (bad_neighbour){g->site_particle[there], now / bond.s - 1, growth / (now * bond.s), fields};
+  *n = (bad_neighbour){g->site_particle[there], now / length - 1, growth / (now * length), fields};
 }
 
 static void look_at_family(simulation *s, long site) {
-  const int half = s->lattice->directions;
   s->bad.family = s->bad_family;
   s->bad.own_fields = s->bad_fields;
   fields_at(s, site, site, 0, s->bad_fields);
-  for (int k = 0; k < 2 * half; k++) {
-    const long owner = k < half ? site : rows_partner(s->lattice, site, k);
-    if (rows_has_bond(s->lattice, owner, k % half)) look_at_neighbour(s, site, k);
-  }
+  for (int k = 0; k < 2 * s->lattice->directions; k++)
+    if (rows_has_neighbour(s->lattice, site, k)) look_at_neighbour(s, site, k);
 }
 
 void bad_explain(simulation *s) {

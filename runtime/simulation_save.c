@@ -133,7 +133,7 @@ static void put_places_back(const simulation *s, own_places *own) {
   }
   if (s->relaxation && s->at.begun) { /* a sample at the start, and one after each increment */
     s->relaxation->state.done = s->at.samples - 1;
-    relaxation_next(s->relaxation, l->clock.first);
+    l->clock = relaxation_clock(s->relaxation, l->clock.first);
   }
   for (int m = 0; m < s->monitors->count; m++) /* one push a step, and one before the first */
     if (s->monitors->items[m].window > 1)

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/body_limit.h"
 #include "runtime/bond_probe.h"
 #include "runtime/stencil.h"
 #include "runtime/waves.h"
@@ -185,6 +186,10 @@ static crystal crystal_of(const pl_law *law, const double *parameters, const row
 }
 
 void stability_limit(const pl_law *law, const double *parameters, const rows *w, step_limit *out) {
+  if (w->list) {
+    body_limit(law, parameters, w, out);
+    return;
+  }
   crystal c = crystal_of(law, parameters, w);
   waves_limit(&c, out);
   crystal_free(&c);

@@ -69,6 +69,18 @@ static void new_state(sweep *w, bool forces) {
   w->row_stuck = must_calloc((size_t)g->row_count + 1, 1);
 }
 
+static void new_masses(sweep *w) {
+  const rows *g = w->lattice;
+  if (!g->site_mass) return;
+  w->relative_mass = sweep_doubles(w, g->size);
+  w->mobility = sweep_doubles(w, g->size);
+  for (long q = 0; q < g->size; q++) {
+    if (!g->present[q]) continue;
+    w->relative_mass[q] = g->site_mass[q] / g->mass;
+    w->mobility[q] = g->mass / g->site_mass[q];
+  }
+}
+
 static void new_blocks(sweep *w, int threads) {
   const int n = w->lattice->row_count;
   w->block_count = threads < 1 ? 1 : threads < n ? threads : n;
@@ -97,6 +109,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
     w->limit[d] = (d < w->dimensions ? lattice->spacing : acos(-1)) / time_step;
   }
   find_spans(w);
+  new_masses(w);
   new_state(w, ledger || forces || families);
   new_blocks(w, threads);
   w->engine = families ? family_engine(w, parameters) : pairwise_engine(w, parameters);
@@ -134,6 +147,8 @@ void sweep_free(sweep *w) {
   free(w->row_gravity);
   free(w->row_stuck);
   free(w->weight);
+  free(w->relative_mass);
+  free(w->mobility);
   free(w->begin);
   free(w->count);
   free(w->blocks);
@@ -217,6 +232,25 @@ static double lane_sum(long count, const double *restrict a, const double *restr
   return sum;
 }
 
+/* The same, each term times a weight. */
+static double weighed_sum(long count, const double *restrict weight, const double *restrict a,
+                          const double *restrict b, bool square) {
+  double lane[PL_LANES] = {0};
+  for (long q = 0; q < count; q += PL_LANES)
+    for (int l = 0; l < PL_LANES; l++)
+      lane[l] += weight[q + l] * (a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]));
+  double sum = 0;
+  for (int l = 0; l < PL_LANES; l++)
+    sum += lane[l];
+  return sum;
+}
+
+/* Sum of m a (a + b) or m a b over the particles of a row, with m relative to their mean mass. */
+static double mass_sum(const sweep *w, int row, const double *a, const double *b, bool square) {
+  if (!w->relative_mass) return lane_sum(w->count[row], a, b, square);
+  return weighed_sum(w->count[row], w->relative_mass + sweep_start(w, row), a, b, square);
+}
+
 double sweep_dot(long count, const double *a, const double *b) {
   return lane_sum(count, a, b, false);
 }
@@ -251,9 +285,11 @@ void sweep_drift(sweep *w, sweep_block *b, int row) {
   for (int d = 0; d < w->dof; d++) {
     double *next = b->next + d * w->lattice->pitch, *v = w->velocity[d] + start;
     if (w->decay < 1 && w->ledger)
-      w->row_mass[row] += 0.5 * w->mass[d] * (1 - w->decay) * lane_sum(count, v, next, true);
+      w->row_mass[row] += 0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, row, v, next, true);
     if (w->weight && d < w->dimensions)
-      w->row_gravity[row] += w->push_work[d] * sweep_total(count, next);
+      w->row_gravity[row] +=
+          w->push_work[d] * (w->relative_mass ? sweep_dot(count, w->relative_mass + start, next)
+                                              : sweep_total(count, next));
     drift(count, w->time_step, next, v, w->displacement[d] + start);
   }
 }
@@ -277,17 +313,30 @@ bool sweep_step(sweep *w) {
   return true;
 }
 
+void sweep_find_forces(sweep *w) {
+#pragma omp parallel
+  {
+    const unsigned environment = sweep_enter();
+    for (int stage = 0; stage < w->law->step.pass_count; stage++) {
+#pragma omp for schedule(static)
+      for (int block = 0; block < w->block_count; block++)
+        w->engine.step(w, stage, block);
+    }
+    sweep_leave(environment);
+  }
+}
+
 /* --- sampling --------------------------------------------------------------------------------- */
 
 void sweep_observe_motion(sweep *w, const sweep_block *b, int row) {
-  const long start = sweep_start(w, row), count = w->count[row];
+  const long start = sweep_start(w, row);
   w->row_kinetic[row] = 0;
   w->row_pending[row] = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
-    w->row_kinetic[row] += 0.5 * w->mass[d] * lane_sum(count, v, next, false);
+    w->row_kinetic[row] += 0.5 * w->mass[d] * mass_sum(w, row, v, next, false);
     if (w->decay < 1)
-      w->row_pending[row] += 0.5 * w->mass[d] * (1 - w->decay) * lane_sum(count, v, v, false);
+      w->row_pending[row] += 0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, row, v, v, false);
   }
 }
 

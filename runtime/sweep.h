@@ -47,14 +47,17 @@ typedef struct sweep_engine {
 struct sweep {
   const rows *lattice;
   const pl_law *law;
-  double time_step;    /* s */
-  double decay;        /* factor of mass damping on the velocities in the coming step; 1: none */
-  double push[3];      /* m/s that gravity adds to the velocities in the coming step */
-  double push_work[3]; /* J s/m: work of gravity over the velocity after the coming step */
-  double *weight;      /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
-  bool ledger;         /* dissipated energies are kept */
+  double time_step; /* s */
+  double decay;     /* factor of mass damping on the velocities in the coming step; 1: none */
+  double push[3];   /* m/s that gravity adds to the velocities in the coming step */
+  double push_work
+      [3]; /* J s/m: work of gravity over the velocity after the coming step, of a particle of mean mass */
+  double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
+  bool ledger;    /* dissipated energies are kept */
   int dimensions, dof;
-  double mass[PL_MAX_DOF]; /* kg, kg, kg m^2 */
+  double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
+  double *relative_mass;   /* [size] of a particle, over the mean; NULL where all are alike */
+  double *mobility;        /* [size] 1/relative_mass; 0 at absent sites */
   double
       limit[PL_MAX_DOF]; /* velocity that no particle may reach: one spacing, half a turn a step */
   double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF]; /* [size] m, rad; m/s, rad/s */
@@ -68,7 +71,7 @@ struct sweep {
   double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
   double *row_internal, *row_internal_pending;               /* [row_count] J */
   unsigned char *row_stuck; /* [row_count] a velocity of the row was bad: it has not moved */
-  double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
+  double *row_gravity;      /* [row_count] J: work of gravity since the start; NULL without */
   long *begin,
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */
   int block_count;
@@ -82,6 +85,11 @@ struct sweep {
 sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameters, double time_step,
                  int threads, bool ledger, bool forces);
 void sweep_free(sweep *w);
+/* Mass of a particle (kg), or what turns with that component (kg m^2). */
+static inline double sweep_mass(const sweep *w, int component, long site) {
+  return w->relative_mass ? w->mass[component] * w->relative_mass[site] : w->mass[component];
+}
+
 /* From now on `push` counts. */
 void sweep_add_gravity(sweep *w);
 
@@ -101,6 +109,9 @@ void sweep_turn(sweep *w);
 /* All stages and blocks of a step, one after the other: for tools and tests. False when it went
  * bad. */
 bool sweep_step(sweep *w);
+
+/* Forces of the present state by a law of families, with all threads offered; nothing moves, and the fields stay. */
+void sweep_find_forces(sweep *w);
 
 /* Observing is done in stages too: forces on the particles in the present state, and the energies;
    it changes no state. The velocity after the coming kick is needed for the kinetic energy: that of

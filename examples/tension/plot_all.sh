@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs what is missing and draws the curves of all rotations, curves.png, and the crack of each. Another program than
-# ../../build/perilat: PERILAT=path bash plot_all.sh
+# Runs what is missing and draws the curves of all rotations, curves.png, the crack of each, and the quasi-static curve
+# beside the dynamic one, quasi_static.png. Another program than ../../build/perilat: PERILAT=path bash plot_all.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 perilat=${PERILAT:-../../build/perilat}
@@ -11,3 +11,6 @@ for angle in 0 15 30; do
 done
 "$perilat" plot rot0.h5 rot15.h5 rot30.h5 --x displacement --y load --title "Prism in tension" \
   --label "0 degrees" --label "15 degrees" --label "30 degrees" -o curves.png
+[[ -s rot0_quasi_static.h5 ]] || "$perilat" run rot0_quasi_static.nml
+"$perilat" plot rot0.h5 rot0_quasi_static.h5 --x displacement --y load --label dynamic --label quasi-static \
+  -o quasi_static.png

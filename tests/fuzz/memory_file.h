@@ -52,10 +52,10 @@ static inline size_t recipe_damage(recipe *r, uint8_t *bytes, size_t size) {
   const size_t cut = (size_t)recipe_number(r, 2) % (size + 1);
   size_t left = size - cut;
   while (r->at < r->end && left) {
-    const size_t place = (size_t)recipe_number(r, 3) % left;
+    const size_t from = (size_t)recipe_number(r, 3) % left;
     const int width = 1 + (int)(recipe_byte(r) & 7);
-    for (int k = 0; k < width && place + (size_t)k < left; k++)
-      bytes[place + (size_t)k] = (uint8_t)recipe_byte(r);
+    for (int k = 0; k < width && from + (size_t)k < left; k++)
+      bytes[from + (size_t)k] = (uint8_t)recipe_byte(r);
   }
   return left;
 }

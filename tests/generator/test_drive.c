@@ -206,8 +206,8 @@ static void the_printed_rows_have_the_corners(void **state) {
   static const char zigzag[] =
       ELASTIC "&output rows = 6 /\n&path quantity = 'stretch' times = 0, 0.3, 0.77, 1 values = 0, "
               "1e-4, -3e-4, 0 /\n";
-  static const char *const times[] = {"\n             0", "\n           0.3", "\n          0.77",
-                                      "\n             1"};
+  static const char *const times[] = {"\n         0 ", "\n       0.3 ", "\n      0.77 ",
+                                      "\n         1 "};
   char text[TEXT];
   for (size_t k = 0; k < sizeof times / sizeof *times; k++)
     drive(zigzag, "", 0, times[k]);
@@ -216,6 +216,42 @@ static void the_printed_rows_have_the_corners(void **state) {
   for (const char *c = text; *c; c++)
     lines += *c == '\n';
   assert_int_equal(lines, 2 + 6);
+}
+
+/* Each block of columns begins with the time, and as many rows follow in each. */
+static void wide_tables_go_on_below(void **state) {
+  (void)state;
+  enum { PAGE = 132 };
+  static char said[TEXT];
+  char arguments[600];
+  int blocks = 0, rows = 0, widest = 0;
+  snprintf(arguments, sizeof arguments,
+           "drive %s/models/drives/splm_concrete_compression.nml --set output.rows=5", SOURCE_DIR);
+  assert_int_equal(perilat(arguments, said), 0);
+  assert_null(strstr(said, "not shown"));
+  for (char *line = strtok(said, "\n"); line; line = strtok(NULL, "\n")) {
+    if (strncmp(line, "PASS", 4) == 0 || strstr(line, "expectations")) continue;
+    const bool heading = strncmp(line, "  time [s]", 10) == 0;
+    if (blocks > 0 || heading) {
+      widest = (int)strlen(line) > widest ? (int)strlen(line) : widest;
+      assert_int_equal(strspn(line, " ") < 10 && line[9] != ' ', 1);
+      rows += !heading;
+    }
+    blocks += heading;
+  }
+  assert_true(blocks > 1 && rows == 5 * blocks);
+  assert_true(widest <= PAGE && widest > PAGE / 2);
+}
+
+static void single_neighbours_of_many_are_left_out(void **state) {
+  (void)state;
+  static char said[TEXT];
+  char arguments[600];
+  snprintf(arguments, sizeof arguments, "drive %s/models/drives/eps.nml", SOURCE_DIR);
+  assert_int_equal(perilat(arguments, said), 0);
+  assert_non_null(strstr(said, "244 columns of single neighbours are not shown")); /* 2 of 122 */
+  assert_null(strstr(said, "F_1 "));
+  assert_non_null(strstr(said, "mises [Pa]"));
 }
 
 /* --- refusals --------------------------------------------------------------------------------- */
@@ -537,6 +573,8 @@ int main(void) {
       cmocka_unit_test(closed_forms_see_the_row),
       cmocka_unit_test(a_missed_peak_says_where_it_may_lie),
       cmocka_unit_test(the_printed_rows_have_the_corners),
+      cmocka_unit_test(wide_tables_go_on_below),
+      cmocka_unit_test(single_neighbours_of_many_are_left_out),
       cmocka_unit_test(bad_paths_are_explained),
       cmocka_unit_test(pieces_add_up),
       cmocka_unit_test(times_meet_corners),

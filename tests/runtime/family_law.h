@@ -4,7 +4,10 @@
    along the present bond
      omega_i = min(1, (max_j S_ij - S_t)/S_t), never decreasing;  most_ij = max over time of S_ij
    Energy of a particle: (1 - omega) L0/4 (a sum S^2 + b (sum S)^2). Two passes: the first writes
-   omega, most and, into links, sum S and 1 - omega; the second the forces. */
+   omega, most and, into links, sum S and 1 - omega; the second the forces.
+
+   On lists a and b are those of the spacing, stretches are by the bonds' own lengths s, and bond forces have the factor L0/s
+   that they follow from the energy with. */
 #ifndef PERILAT_TESTS_FAMILY_LAW_H
 #define PERILAT_TESTS_FAMILY_LAW_H
 
@@ -67,23 +70,47 @@ static void family_bounds(const pl_law *law, const double *p, double *lower, dou
 
 typedef struct family_bond {
   int exists;
-  double stretch, rate, e[2];
+  double stretch, rate, e[2], arm; /* arm: L0/s */
 } family_bond;
 
+static long family_neighbour(const pl_family *f, long k, long q) {
+  return q + (f->neighbour ? f->neighbour[k * f->plane + q] : f->offset[k]);
+}
+
+static int family_has_bond(const pl_family *f, long k, long q) {
+  const long half = f->neighbours / 2;
+  if (k < half) return (int)(f->bonds[q] >> k & 1);
+  if (f->neighbour) return (int)(f->incoming[q] >> (k - half) & 1);
+  return (int)(f->bonds[family_neighbour(f, k, q)] >> (k - half) & 1);
+}
+
+static const double *family_uniforms_of(const double *uniforms, const pl_family *f, long k) {
+  return f->neighbour ? uniforms : uniforms + k * FAMILY_UNIFORMS;
+}
+
+/* Reference chord; returns its length. */
+static double family_chord(const double *uniforms, const pl_family *f, long k, long q,
+                           double C[2]) {
+  const double *u = family_uniforms_of(uniforms, f, k);
+  for (int a = 0; a < 2; a++)
+    C[a] = f->neighbour ? f->chord[a][k * f->plane + q] : u[FAMILY_CHORD + a];
+  return f->neighbour ? f->length[k * f->plane + q] : u[FAMILY_S];
+}
+
 static family_bond family_look(const double *uniforms, const pl_family *f, long k, long q) {
-  const long half = f->neighbours / 2, j = q + f->offset[k];
-  const uint64_t bonds = k < half ? f->bonds[q] >> k : f->bonds[j] >> (k - half);
-  family_bond b = {.exists = (int)(bonds & 1)};
+  const long j = family_neighbour(f, k, q);
+  family_bond b = {.exists = family_has_bond(f, k, q)};
+  double C[2];
   if (!b.exists) return b;
-  const double *u = uniforms + k * FAMILY_UNIFORMS, *C = u + FAMILY_CHORD;
+  const double s = family_chord(uniforms, f, k, q, C);
   const double d[2] = {f->displacement[0][j] - f->displacement[0][q],
                        f->displacement[1][j] - f->displacement[1][q]};
   const double c[2] = {C[0] + d[0], C[1] + d[1]}, length = sqrt(c[0] * c[0] + c[1] * c[1]);
-  b.stretch = (2 * (C[0] * d[0] + C[1] * d[1]) + d[0] * d[0] + d[1] * d[1]) /
-              (u[FAMILY_S] * (length + u[FAMILY_S]));
+  b.arm = f->neighbour ? uniforms[FAMILY_S] / s : 1;
+  b.stretch = (2 * (C[0] * d[0] + C[1] * d[1]) + d[0] * d[0] + d[1] * d[1]) / (s * (length + s));
   for (int a = 0; a < 2; a++) {
     b.e[a] = c[a] / length;
-    b.rate += b.e[a] * (f->velocity[a][j] - f->velocity[a][q]) / u[FAMILY_S];
+    b.rate += b.e[a] * (f->velocity[a][j] - f->velocity[a][q]) / s;
   }
   return b;
 }
@@ -118,12 +145,13 @@ static void family_force_pass(const pl_law *law, const double *uniforms, const p
   for (long q = 0; q < f->count; q++) {
     double force[2] = {0, 0};
     for (long k = 0; k < f->neighbours; k++) {
-      const double *u = uniforms + k * FAMILY_UNIFORMS;
+      const double *u = family_uniforms_of(uniforms, f, k);
       const family_bond b = family_look(uniforms, f, k, q);
       if (!b.exists) continue;
-      const double N = (family_state(u, f, q, &b) + family_state(u, f, q + f->offset[k], &b)) / 2;
+      const long j = family_neighbour(f, k, q);
+      const double N = (family_state(u, f, q, &b) + family_state(u, f, j, &b)) / 2;
       for (int a = 0; a < 2; a++)
-        force[a] += N * b.e[a];
+        force[a] += b.arm * N * b.e[a];
     }
     for (int a = 0; a < 2; a++)
       f->force[a][q] = force[a];
@@ -135,13 +163,14 @@ static void family_observe_pass(const pl_law *law, const double *uniforms, const
   for (long q = 0; q < f->count; q++) {
     double sum = 0, squares = 0, products[3] = {0, 0, 0};
     for (long k = 0; k < f->neighbours; k++) {
-      const double *C = uniforms + k * FAMILY_UNIFORMS + FAMILY_CHORD, s = uniforms[FAMILY_S];
+      double C[2];
+      const double s = family_chord(uniforms, f, k, q, C), weight = f->neighbour ? s : 1;
       const family_bond b = family_look(uniforms, f, k, q);
       const double n[3] = {C[0] * C[0] / (s * s), C[1] * C[1] / (s * s), C[0] * C[1] / (s * s)};
       sum += b.stretch;
       squares += b.stretch * b.stretch;
       for (int a = 0; a < 3; a++)
-        products[a] += n[a] * b.stretch;
+        products[a] += weight * n[a] * b.stretch;
       f->observed[2][k * f->plane + q] = b.stretch;
     }
     f->observed[0][q] = (1 - f->old_field[0][q]) * uniforms[FAMILY_S] / 4 *
@@ -150,6 +179,13 @@ static void family_observe_pass(const pl_law *law, const double *uniforms, const
     f->observed[3][q] =
         f->shape[0][q] * products[0] + f->shape[1][q] * products[1] + f->shape[2][q] * products[2];
   }
+}
+
+/* The law for lists. */
+static inline pl_law family_for_lists(const pl_law *law) {
+  pl_law list = *law;
+  list.topology = PL_LIST;
+  return list;
 }
 
 static const pl_family_function family_step[] = {family_fields_pass, family_force_pass};

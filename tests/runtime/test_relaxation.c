@@ -1,5 +1,5 @@
 /* Quasi-static runs: balance after every increment, the work of a linear body, the same answer
-   however it is reached, damage, threads, resuming. */
+   however it is reached, how loads come, damage, threads, resuming. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -11,10 +11,9 @@
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/small_run.h"
 
-/* A plate drawn out, its ends held; the format takes relaxation keys, the law's values, threads and
-   the displacement. */
-static void open_plate(small_run *r, const pl_law *kernel, const char *keys, const char *values,
-                       int threads, double displacement) {
+/* A plate drawn out, its ends held; `motion` is that of the right one, in a deck's words. */
+static void open_moved(small_run *r, const pl_law *kernel, const char *keys, const char *values,
+                       int threads, const char *motion) {
   char text[2048];
   snprintf(text, sizeof text,
            "&simulation end_time = 1 threads = %d /\n"
@@ -27,14 +26,22 @@ static void open_plate(small_run *r, const pl_law *kernel, const char *keys, con
            "&region name = 'right' shape = 'rectangle' corner = 0.285, 0 size = 0.015, 0.1 /\n"
            "&support region = 'left' fix = 'xy' /\n"
            "&support region = 'right' fix = 'y' /\n"
-           "&drive region = 'right' component = 'x' displacement = %g history = 'ramp' rise = 1 /\n"
+           "&drive region = 'right' component = 'x' %s /\n"
            "&monitor name = 'left' kind = 'reaction' region = 'left' component = 'x' /\n"
            "&monitor name = 'right' kind = 'reaction' region = 'right' component = 'x' /\n"
            "&output frames = 4 /\n",
-           threads, keys, values, displacement);
+           threads, keys, values, motion);
   small_open(r, kernel, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
+}
+
+/* The displacement, m, comes evenly. */
+static void open_plate(small_run *r, const pl_law *kernel, const char *keys, const char *values,
+                       int threads, double displacement) {
+  char motion[80];
+  snprintf(motion, sizeof motion, "displacement = %g history = 'ramp' rise = 1", displacement);
+  open_moved(r, kernel, keys, values, threads, motion);
 }
 
 static const double *series(const small_run *r, const char *name) {
@@ -89,6 +96,88 @@ static void the_way_does_not_matter_to_a_linear_body(void **state) {
   assert_true(fabs(force[0] - force[1]) <= 1e-5 * fabs(force[0]));
 }
 
+/* The bar's increment takes a period, in which damping drags at it: the work of that, beside half of
+   force times displacement. Critical damping would take 0.9 of that
+   and more. */
+static void an_increment_costs_little_more_than_it_stores(void **state) {
+  (void)state;
+  const pl_law *const kernels[] = {&family_hexagon, &elastic_beam, &elastic_bar};
+  for (int n = 0; n < 3; n++) {
+    small_run r;
+    open_plate(&r, kernels[n], "increments = 1 tolerance = 1e-6", "", 1, 1e-7);
+    assert_int_equal(small_go(&r), STEP_END);
+    const double stored = small_last(&r, "energy/stored"), force = small_last(&r, "right");
+    const double taken = small_last(&r, "energy/external") - stored;
+    print_message("%s: %.3f of the stored energy to damping\n", kernels[n]->name, taken / stored);
+    assert_true(fabs(stored - 0.5 * force * 1e-7) <= 1e-5 * stored);
+    assert_true(taken >= 0 && taken < 0.5 * stored);
+    small_close(&r);
+  }
+}
+
+/* --- how loads come --------------------------------------------------------------------------- */
+
+static void expect_loads(const char *motion, const double expected[5]) {
+  small_run r;
+  open_moved(&r, &elastic_bar, "increments = 4 tolerance = 1e-6", "", 1, motion);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *force = series(&r, "right"), *work = series(&r, "energy/external");
+  double stiffness = 0;
+  for (int k = 0; k < 5; k++) {
+    if (stiffness == 0 && expected[k] > 0) stiffness = force[k] / expected[k];
+    assert_true(fabs(force[k] - stiffness * expected[k]) <= 1e-4 * fabs(force[4]));
+    assert_true(work[k] <= 2 * force[4] * 1e-7);
+  }
+  assert_true(stiffness > 0);
+  small_close(&r);
+}
+
+/* In parts of the full displacement. A jump would take the work of a wall that hits the body. */
+static void no_load_jumps(void **state) {
+  (void)state;
+  expect_loads("displacement = 1e-7", (double[]){0, 0.25, 0.5, 0.75, 1});
+  expect_loads("displacement = 1e-7 start = 0.5", (double[]){0, 0, 0, 0.5, 1});
+  expect_loads("displacement = 1e-7 history = 'constant'", (double[]){0, 1, 1, 1, 1});
+  expect_loads("displacement = 1e-7 history = 'constant' start = 0.5", (double[]){0, 0, 0, 1, 1});
+  expect_loads("displacement = 1e-7 history = 'constant' start = 0.3", (double[]){0, 0, 1, 1, 1});
+  expect_loads("displacement = 1e-7 times = 0, 0.6, 1 values = 0, 0, 1",
+               (double[]){0, 0, 0, 0.375, 1});
+  expect_loads("velocity = 1e-7", (double[]){0, 0.25, 0.5, 0.75, 1});
+  expect_loads("velocity = 1e-7 start = 0.5", (double[]){0, 0, 0, 0.25, 0.5});
+}
+
+/* A bar that hangs from its upper end and is drawn down at its lower: weight and force grow evenly. */
+static void forces_and_gravity_grow_together(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &elastic_bar,
+             "&simulation end_time = 1 /\n"
+             "&relaxation increments = 4 tolerance = 1e-7 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+             "&material lattice = 'c' model = 'm' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.2 /\n"
+             "&region name = 'top' shape = 'rectangle' corner = 0, 0.185 size = 0.1, 0.015 /\n"
+             "&region name = 'foot' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.005 /\n"
+             "&support region = 'top' fix = 'xy' /\n"
+             "&force region = 'foot' component = 'y' force = -40 /\n"
+             "&gravity acceleration = 0, -10 /\n"
+             "&monitor name = 'top' kind = 'reaction' region = 'top' component = 'y' /\n"
+             "&monitor name = 'foot' kind = 'displacement' region = 'foot' component = 'y' /\n");
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const rows *g = simulation_rows(r.simulation, 0);
+  const double full = 40 + 10 * g->mass * (double)g->particle_count;
+  const double *top = series(&r, "top"), *foot = series(&r, "foot");
+  for (int k = 0; k < 5; k++) {
+    assert_true(fabs(top[k] - 0.25 * k * full) <= 1e-5 * full);
+    assert_true(fabs(foot[k] - 0.25 * k * foot[4]) <= 1e-5 * fabs(foot[4]));
+  }
+  small_close(&r);
+}
+
+/* --- damage ----------------------------------------------------------------------------------- */
+
 /* A plate that breaks at the notch: the force rises, falls, and little moves while it does. */
 static void a_plate_breaks_at_rest(void **state) {
   (void)state;
@@ -102,7 +191,6 @@ static void a_plate_breaks_at_rest(void **state) {
     peak = fmax(peak, force[k]);
     moving = fmax(moving, kinetic[k]);
   }
-  for (int k=0;k<=60;k+=3) fprintf(stderr,"%d %g N kin %g lost %g steps %g unb %g imb %g\n",k,force[k],kinetic[k],lost[k],series(&r,"relaxation_steps")[k],series(&r,"relaxation_unbalance")[k],series(&r,"energy/imbalance")[k]);
   long unbalanced;
   assert_int_equal(simulation_increments(r.simulation, &unbalanced), 60);
   assert_int_equal(unbalanced, 0);
@@ -191,6 +279,9 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_increment_ends_in_balance),
       cmocka_unit_test(the_way_does_not_matter_to_a_linear_body),
+      cmocka_unit_test(an_increment_costs_little_more_than_it_stores),
+      cmocka_unit_test(no_load_jumps),
+      cmocka_unit_test(forces_and_gravity_grow_together),
       cmocka_unit_test(a_plate_breaks_at_rest),
       cmocka_unit_test(impatience_is_counted),
       cmocka_unit_test(threads_and_resuming_change_no_bit),

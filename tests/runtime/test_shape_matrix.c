@@ -14,7 +14,7 @@
 #include "dsl/arena.h"
 #include "runtime/shape_matrix.h"
 
-enum { MOST_VALUES = PL_SHAPE_VALUES(3) };
+enum { MOST_VALUES = PL_SHAPE_PLANES(3) };
 
 static const int first_axis[2][6] = {{0, 1, 0}, {0, 1, 2, 0, 1, 0}};
 static const int second_axis[2][6] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
@@ -33,7 +33,7 @@ static void strain_of_one_bond(const char *deck_text, double strain[6], double n
   assert_non_null(w);
   assert_int_equal(w->bond_count, 1);
   const int space = w->dimensions == 3, order = space ? 6 : 3;
-  for (int v = 0; v < PL_SHAPE_VALUES(w->dimensions); v++)
+  for (int v = 0; v < PL_SHAPE_PLANES(w->dimensions); v++)
     matrix[v] = calloc((size_t)w->size, sizeof(double));
   shape_matrices(w, matrix);
   const long site = w->particle_site[0];
@@ -50,7 +50,7 @@ static void strain_of_one_bond(const char *deck_text, double strain[6], double n
       strain[p] += value * n[first_axis[space][q]] * n[second_axis[space][q]];
       if (q > p) strain[q] += value * n[first_axis[space][p]] * n[second_axis[space][p]];
     }
-  for (int v = 0; v < PL_SHAPE_VALUES(w->dimensions); v++)
+  for (int v = 0; v < PL_SHAPE_PLANES(w->dimensions); v++)
     free(matrix[v]);
   rows_free(w);
   diag_clear(&said);
