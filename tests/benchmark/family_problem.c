@@ -63,19 +63,49 @@ static double larger(double a, double b) {
   return isnan(b) ? INFINITY : fmax(a, b);
 }
 
-/* Over the present sites: largest |a - b| over largest |a|. */
-static double difference(double *const *a, double *const *b, int dimensions, const rows *lattice) {
+typedef struct outline {
+  double low[3], high[3];
+} outline;
+
+static outline outline_of(const rows *g, double margin) {
+  outline box = {{INFINITY, INFINITY, INFINITY}, {-INFINITY, -INFINITY, -INFINITY}};
+  for (long p = 0; p < g->particle_count; p++) {
+    double at[3];
+    rows_place(g, g->particle_site[p], at);
+    for (int d = 0; d < 3; d++) {
+      box.low[d] = fmin(box.low[d], at[d]);
+      box.high[d] = fmax(box.high[d], at[d]);
+    }
+  }
+  for (int d = 0; d < g->dimensions; d++) {
+    box.low[d] += margin * g->spacing;
+    box.high[d] -= margin * g->spacing;
+  }
+  return box;
+}
+
+static bool is_inside(const outline *box, const rows *g, long site) {
+  double at[3];
+  rows_place(g, site, at);
+  for (int d = 0; d < 3; d++)
+    if (at[d] < box->low[d] || at[d] > box->high[d]) return false;
+  return true;
+}
+
+/* Largest |a - b| inside over largest |a|. */
+static double difference(double *const *a, double *const *b, const rows *g, const outline *box) {
   double most = 0, scale = 0;
-  for (int d = 0; d < dimensions; d++)
-    for (long q = 0; q < lattice->size; q++) {
-      if (!lattice->present[q]) continue;
-      most = larger(most, fabs(a[d][q] - b[d][q]));
+  for (int d = 0; d < g->dimensions; d++)
+    for (long p = 0; p < g->particle_count; p++) {
+      const long q = g->particle_site[p];
       scale = larger(scale, fabs(a[d][q]));
+      if (is_inside(box, g, q)) most = larger(most, fabs(a[d][q] - b[d][q]));
     }
   return most / scale;
 }
 
-double motions_difference(const motions *a, const motions *b, const rows *lattice) {
-  return larger(difference(a->displacement, b->displacement, a->dimensions, lattice),
-                difference(a->velocity, b->velocity, a->dimensions, lattice));
+double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin) {
+  const outline box = outline_of(lattice, margin);
+  return larger(difference(a->displacement, b->displacement, lattice, &box),
+                difference(a->velocity, b->velocity, lattice, &box));
 }

@@ -36,8 +36,9 @@ void motions_scale(double *const *u, double *const *v, const motions *from,
 void motions_unscale(motions *to, double *const *u, double *const *v, const family_problem *p);
 
 /* Largest difference of two displacements, relative to the largest displacement of `a`; of velocities likewise; the larger
-   of the two. NaN counts as infinite. */
-double motions_difference(const motions *a, const motions *b, const rows *lattice);
+   of the two. Of particles that are further than `margin` spacings from the outline of a body that is a rectangle or box. NaN
+   counts as infinite; without particles 0. */
+double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin);
 
 /* A program that moves such a body: memory is its own; `set` starts with virgin fields. */
 typedef struct body_program {

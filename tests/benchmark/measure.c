@@ -138,9 +138,18 @@ double fused_peak(void) {
 
 /* --- figures ---------------------------------------------------------------------------------- */
 
+enum { MOST_FIGURES = 256, KEY = 80 };
+
+typedef struct figure {
+  char key[KEY];
+  double value;
+} figure;
+
 struct figures {
   FILE *out;
   bool any;
+  int count;
+  figure items[MOST_FIGURES];
 };
 
 figures *figures_open(const char *path) {
@@ -162,14 +171,23 @@ void figures_text(figures *f, const char *key, const char *text) {
 }
 
 void figures_add(figures *f, double value, const char *format, ...) {
-  char key[200];
   va_list more;
-  if (!f->out || !isfinite(value)) return;
+  if (!isfinite(value)) return;
+  if (f->count == MOST_FIGURES) give_up("more than %d figures", MOST_FIGURES);
+  figure *item = &f->items[f->count++];
+  item->value = value;
   va_start(more, format);
-  vsnprintf(key, sizeof key, format, more);
+  vsnprintf(item->key, sizeof item->key, format, more);
   va_end(more);
-  begin_figure(f, key);
+  if (!f->out) return;
+  begin_figure(f, item->key);
   fprintf(f->out, "%.6g", value);
+}
+
+double figures_value(const figures *f, const char *key) {
+  for (int k = 0; k < f->count; k++)
+    if (strcmp(f->items[k].key, key) == 0) return f->items[k].value;
+  return NAN;
 }
 
 void figures_close(figures *f) {

@@ -26,12 +26,14 @@ double triad_bandwidth(size_t bytes, int threads);
 double fused_peak(void);
 
 typedef struct figures figures;
-/* `path` NULL: nothing is written. */
+/* `path` NULL: they are only remembered. */
 figures *figures_open(const char *path);
 void figures_text(figures *f, const char *key, const char *text);
 /* The key is made as printf makes it from `format`; a value that is not finite is left out. */
 void figures_add(figures *f, double value, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
+/* NaN when there is none of that key. */
+double figures_value(const figures *f, const char *key);
 void figures_close(figures *f);
 
 /* The parts of the benchmark, each with its own table. False when contestants compute different things. */
