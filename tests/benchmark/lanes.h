@@ -44,7 +44,10 @@ LANES_FUNCTION lanes lanes_shift_in(lanes before, lanes x) {
 /* lanes_max, lanes_min: the second where one is no number.
    lanes_inverse_root(x): 1/sqrt(x) to an ulp or two, for normal x > 0.
    lanes_beyond(x, limit), lanes_above(x, limit, y): marks lanes where |x| > limit, or x > limit and
-   y > 0, or x is no number. Marks are gathered with |. */
+   y > 0, or x is no number. Marks are gathered with |.
+   lanes_marked(word, bit): marks lanes whose word has that bit. lanes_least(a, b): a >= b, false for no numbers.
+   lanes_keep(m, x): x where marked, else 0. lanes_choose(m, a, b): a where marked, else b.
+   lanes_inverse(x): 1/x to an ulp or two, for normal x > 0. */
 #if LANES == 8
 
 typedef __mmask8 lanes_marks;
@@ -68,6 +71,26 @@ LANES_FUNCTION lanes lanes_inverse_root(lanes x) {
   const lanes y = (lanes)_mm512_rsqrt14_pd((__m512d)x);
   const lanes e = 1 - (x * y) * y;
   return y + (y * e) * (0.5 + e * (0.375 + e * 0.3125));
+}
+
+/* The same for 1/(1 - e) = (1 + e)(1 + e^2)(1 + e^4)...: 2^-56 after two factors. */
+LANES_FUNCTION lanes lanes_inverse(lanes x) {
+  const lanes y = (lanes)_mm512_rcp14_pd((__m512d)x);
+  const lanes e = 1 - x * y, once = y + y * e;
+  return once + once * (e * e);
+}
+
+LANES_FUNCTION lanes_marks lanes_marked(const uint64_t *words, uint64_t bit) {
+  return _mm512_test_epi64_mask(_mm512_loadu_si512(words), _mm512_set1_epi64((int64_t)bit));
+}
+LANES_FUNCTION lanes_marks lanes_least(lanes a, lanes b) {
+  return _mm512_cmp_pd_mask((__m512d)a, (__m512d)b, _CMP_GE_OQ);
+}
+LANES_FUNCTION lanes lanes_keep(lanes_marks m, lanes x) {
+  return (lanes)_mm512_maskz_mov_pd(m, (__m512d)x);
+}
+LANES_FUNCTION lanes lanes_choose(lanes_marks m, lanes a, lanes b) {
+  return (lanes)_mm512_mask_blend_pd(m, (__m512d)b, (__m512d)a);
 }
 
 LANES_FUNCTION lanes_marks lanes_beyond(lanes x, double limit) {
@@ -113,6 +136,21 @@ LANES_FUNCTION lanes lanes_inverse_root(lanes x) {
 #endif
 }
 
+LANES_FUNCTION lanes lanes_inverse(lanes x) {
+  return 1 / x;
+}
+LANES_FUNCTION lanes_marks lanes_marked(const uint64_t *words, uint64_t bit) {
+  lanes_marks m;
+  for (int l = 0; l < LANES; l++)
+    m[l] = words[l] & bit ? -1 : 0;
+  return m;
+}
+LANES_FUNCTION lanes_marks lanes_least(lanes a, lanes b) {
+  return a >= b;
+}
+LANES_FUNCTION lanes lanes_keep(lanes_marks m, lanes x) {
+  return (lanes)(m & (lanes_marks)x);
+}
 LANES_FUNCTION lanes_marks lanes_beyond(lanes x, double limit) {
   return ~(lanes_abs(x) <= limit);
 }

@@ -4,20 +4,16 @@
 
    All but the whole run must reach the same motion from the same start before anything is timed.
    Each is then timed in turn, round after round, by the thread's processor time, so that neither a
-   slow moment of the machine nor other programs favour one of them.
-
-     benchmark_kernels [result.json] */
+   slow moment of the machine nor other programs favour one of them. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
-#include <time.h>
 
 #include "generator/model.h"
 #include "runtime/simulation.h"
 #include "tests/benchmark/handwritten.h"
-#include "tests/benchmark/machine.h"
+#include "tests/benchmark/measure.h"
 #include "tests/benchmark/naive.h"
 #include "tests/benchmark/problem.h"
 
@@ -68,11 +64,6 @@ typedef struct contestant {
   }
 PROGRAMS(X)
 #undef X
-
-static void give_up(const char *why) {
-  fprintf(stderr, "benchmark_kernels: %s\n", why);
-  exit(EXIT_FAILURE);
-}
 
 static void sweep_set(void *state, const motion *from) {
   sweep *w = state;
@@ -198,7 +189,6 @@ typedef struct field {
   contestant items[MOST_CONTESTANTS];
   int count;
   double damaged, softened; /* shares of bonds */
-  machine machine;
 } field;
 
 static double disagreement(const problem *p, const contestant *first, const contestant *other,
@@ -239,12 +229,6 @@ static void compare(field *f) {
 
 /* --- timing ----------------------------------------------------------------------------------- */
 
-static double processor_seconds(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static double time_steps(const contestant *c, const motion *start, long steps) {
   c->set(c->state, start);
   c->advance(c->state, SETTLING_STEPS);
@@ -253,17 +237,9 @@ static double time_steps(const contestant *c, const motion *start, long steps) {
   return (processor_seconds() - before) / (double)steps;
 }
 
-static int by_value(const void *a, const void *b) {
-  const double x = *(const double *)a, y = *(const double *)b;
-  return (x > y) - (x < y);
-}
-
 static void summarise(contestant *c) {
-  double sorted[ROUNDS];
-  memcpy(sorted, c->seconds, sizeof sorted);
-  qsort(sorted, ROUNDS, sizeof *sorted, by_value);
-  c->median = sorted[ROUNDS / 2];
-  c->spread = 0.5 * (sorted[ROUNDS - 1 - ROUNDS / 4] - sorted[ROUNDS / 4]) / c->median;
+  c->median = median_of(c->seconds, ROUNDS);
+  c->spread = spread_of(c->seconds, ROUNDS);
 }
 
 static void measure(field *f) {
@@ -289,43 +265,11 @@ static double updates_per_second(const field *f, const contestant *c) {
   return (double)f->beam->problem.lattice->bond_count / c->median;
 }
 
-/* First line of /proc/cpuinfo that begins with `key`; "unknown" where there is none. */
-static void processor_fact(const char *key, char *value, size_t size) {
-  char line[4096];
-  FILE *in = fopen("/proc/cpuinfo", "r");
-  snprintf(value, size, "unknown");
-  while (in && fgets(line, sizeof line, in)) {
-    const char *colon = strchr(line, ':');
-    if (strncmp(line, key, strlen(key)) != 0 || !colon) continue;
-    snprintf(value, size, "%.*s", (int)strcspn(colon + 2, "\n\"\\"), colon + 2);
-    break;
-  }
-  if (in) fclose(in);
-}
-
-static int vector_bits(void) {
-#if defined(__AVX512F__)
-  return 512;
-#elif defined(__AVX__)
-  return 256;
-#else
-  return 128;
-#endif
-}
-
 static void print_table(const field *f) {
   const rows *g = f->beam->problem.lattice;
-  char name[256], clock[64];
-  processor_fact("model name", name, sizeof name);
-  processor_fact("cpu MHz", clock, sizeof clock);
-  printf("Notched beam D6, spacing %.4g mm: %ld particles, %ld bonds, %d rows\n", 1e3 * g->spacing,
-         g->particle_count, g->bond_count, g->row_count);
-  printf("%s, %s MHz as told, vectors of %d bits; %s; one core, medians of %d rounds\n", name,
-         clock, vector_bits(), __VERSION__, ROUNDS);
-  printf(
-      "%d cores; one of them: triad %.1f GB/s (in cache %.0f), fused multiply-adds %.1f Gflop/s\n",
-      f->machine.cores, 1e-9 * f->machine.triad, 1e-9 * f->machine.cached_triad,
-      1e-9 * f->machine.fma);
+  printf("\nNotched beam D6, spacing %.4g mm: %ld particles, %ld bonds, %d rows\n",
+         1e3 * g->spacing, g->particle_count, g->bond_count, g->row_count);
+  printf("One core, medians of %d rounds. ", ROUNDS);
   printf("Shaken start: %.1f %% of the bonds damaged, %.1f %% above a half, after %d steps\n\n",
          100 * f->damaged, 100 * f->softened, AGREEMENT_STEPS);
   printf("%-22s %14s %9s %8s %9s %9s %11s %11s\n", "", "1e6 bonds/s", "ns/bond", "spread",
@@ -340,34 +284,19 @@ static void print_table(const field *f) {
   }
 }
 
-static void write_json(const field *f, const char *path) {
-  const rows *g = f->beam->problem.lattice;
-  char name[256];
-  FILE *out = fopen(path, "w");
-  if (!out) {
-    perror(path);
-    exit(EXIT_FAILURE);
-  }
-  processor_fact("model name", name, sizeof name);
-  fprintf(out, "{\n  \"processor\": \"%s\",\n  \"compiler\": \"%s\",\n  \"vector_bits\": %d,\n",
-          name, __VERSION__, vector_bits());
-  fprintf(out,
-          "  \"cores\": %d,\n  \"triad_bytes_per_second\": %.4g,\n"
-          "  \"cached_triad_bytes_per_second\": %.4g,\n  \"fma_flops_per_second\": %.4g,\n",
-          f->machine.cores, f->machine.triad, f->machine.cached_triad, f->machine.fma);
-  fprintf(out, "  \"particles\": %ld,\n  \"bonds\": %ld,\n  \"rounds\": %d", g->particle_count,
-          g->bond_count, ROUNDS);
+static void add_figures(figures *to, const field *f) {
   for (int k = 0; k < f->count; k++) {
     const contestant *c = &f->items[k];
-    fprintf(out, ",\n  \"%s_mbonds_per_second\": %.2f", c->name, 1e-6 * updates_per_second(f, c));
-    fprintf(out, ",\n  \"%s_spread_percent\": %.2f", c->name, 100 * c->spread);
-    fprintf(out, ",\n  \"%s_times_naive\": %.2f", c->name, f->items[0].median / c->median);
+    figures_add(to, 1e-6 * updates_per_second(f, c), "mplm_bilinear_%s_million_bonds_per_second",
+                c->name);
+    figures_add(to, 100 * c->spread, "mplm_bilinear_%s_spread_percent", c->name);
+    if (k > 0)
+      figures_add(to, f->items[0].median / c->median, "mplm_bilinear_%s_times_naive", c->name);
     if (k > 0 && c->same_motion)
-      fprintf(out, ",\n  \"%s_difference\": %.3e,\n  \"%s_difference_turned\": %.3e", c->name,
-              c->difference, c->name, c->difference_far);
+      figures_add(to, c->difference, "mplm_bilinear_%s_difference", c->name);
   }
-  fprintf(out, "\n}\n");
-  if (fclose(out) != 0) give_up("the result cannot be written");
+  figures_add(to, f->items[1].median / f->items[3].median,
+              "mplm_bilinear_generated_of_handwritten");
 }
 
 /* A comparison of programs that compute different things says nothing. */
@@ -377,7 +306,7 @@ static bool is_fair(const field *f) {
     const contestant *c = &f->items[k];
     if (!c->same_motion || (c->difference <= AGREEMENT && c->difference_far <= FAR_AGREEMENT))
       continue;
-    fprintf(stderr, "benchmark_kernels: %s moves otherwise than %s\n", c->name, f->items[0].name);
+    fprintf(stderr, "benchmark: %s moves otherwise than %s\n", c->name, f->items[0].name);
     fair = false;
   }
   return fair;
@@ -391,7 +320,7 @@ static void judge_yardstick(const field *f) {
              : ".");
 }
 
-int main(int argc, char **argv) {
+bool benchmark_bonds(figures *to) {
   beam b;
   beam_open(&b);
   const problem *p = &b.problem;
@@ -429,7 +358,6 @@ int main(int argc, char **argv) {
                         .get = run_get,
                         .advance = run_advance,
                         .same_motion = false}}};
-  f.machine = machine_measure();
   const unsigned environment = sweep_enter();
   compare(&f);
   if (handwritten_rare(best) == 0)
@@ -438,7 +366,7 @@ int main(int argc, char **argv) {
   sweep_leave(environment);
   print_table(&f);
   judge_yardstick(&f);
-  if (argc > 1) write_json(&f, argv[1]);
+  add_figures(to, &f);
   const bool fair = is_fair(&f);
   naive_free(plain);
   handwritten_free(best);
@@ -446,5 +374,5 @@ int main(int argc, char **argv) {
   sweep_free(lean);
   sweep_free(ledger);
   beam_close(&b);
-  return fair ? EXIT_SUCCESS : EXIT_FAILURE;
+  return fair;
 }

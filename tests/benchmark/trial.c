@@ -1,0 +1,87 @@
+#include "tests/benchmark/trial.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "tests/benchmark/measure.h"
+
+void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
+                      const char *simulation_keys, const char *groups) {
+  const double side = 10 * sqrt(particles * sqrt(3) / 2); /* mm */
+  snprintf(text, size,
+           "&simulation %s /\n"
+           "&lattice name = 'l' kind = 'hexagonal' spacing = '10 mm' thickness = '100 mm' /\n"
+           "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '%.6f mm', '%.6f mm' /\n"
+           "&region name = 'left' shape = 'rectangle' corner = 0, 0 size = '10 mm', '%.6f mm' /\n"
+           "&region name = 'right' shape = 'rectangle' corner = '%.6f mm', 0 size = '20 mm', '%.6f "
+           "mm' /\n"
+           "&material lattice = 'l' model = '%s' /\n%s\n",
+           simulation_keys, side, side, side, side - 10, side, model_name, groups);
+}
+
+void trial_open_model(model *m, const char *name) {
+  char path[4096];
+  if (strchr(name, '/'))
+    snprintf(path, sizeof path, "%s", name);
+  else
+    snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
+  const bool good = model_open(m, path, NULL, 0) && model_plan(m);
+  diag_print(&m->said, stderr);
+  if (!good) give_up("%s cannot be used", path);
+}
+
+/* Marsaglia's xorshift64 (2003). */
+void trial_shake(sweep *state) {
+  const rows *g = state->lattice;
+  uint64_t random = UINT64_C(0x9e3779b97f4a7c15);
+  for (int d = 0; d < state->dimensions; d++)
+    for (long q = 0; q < g->size; q++) {
+      random ^= random << 13;
+      random ^= random >> 7;
+      random ^= random << 17;
+      if (g->present[q])
+        state->displacement[d][q] = 1e-5 * g->spacing * (double)(int64_t)random * 0x1p-63;
+    }
+}
+
+double *trial_parameters(trial *t, const pl_law *kernel) {
+  double *parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof *parameters);
+  if (!material_parameters(&t->deck->materials[0], kernel, parameters, &t->said)) {
+    diag_print(&t->said, stderr);
+    give_up("the parameters do not fit the law");
+  }
+  return parameters;
+}
+
+trial *trial_open(const char *deck_text) {
+  char error[4096];
+  const char *note = NULL;
+  trial *t = must_calloc(1, sizeof *t);
+  t->memory = arena_new();
+  diag_begin(&t->said, &t->sources);
+  const int file = source_add(&t->sources, "deck", deck_text, strlen(deck_text));
+  t->deck = deck_read(t->memory, &t->sources, file, NULL, 0, &t->said);
+  if (t->deck) {
+    trial_open_model(&t->model, t->deck->materials[0].model);
+    t->law.law = model_kernel(&t->model, false, &note, error, sizeof error);
+    if (!t->law.law || note) give_up("%s", note ? note : error);
+    t->law.parameters = trial_parameters(t, t->law.law);
+    t->run = simulation_new(t->deck, &t->law, &t->said);
+  }
+  if (!t->run) diag_print(&t->said, stderr);
+  if (!t->run) give_up("a deck is faulty");
+  trial_shake(simulation_state(t->run));
+  return t;
+}
+
+void trial_close(trial *t) {
+  simulation_free(t->run);
+  free(t->law.parameters);
+  model_close(&t->model);
+  diag_clear(&t->said);
+  source_clear(&t->sources);
+  arena_free(t->memory);
+  free(t);
+}
