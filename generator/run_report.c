@@ -34,7 +34,7 @@ static void announce_uniform_strain(const run *r, int lattice) {
     printf(": no stiffness\n");
     return;
   }
-  print_quantity(": under uniform strain E = ", u.E, "Pa");
+  print_quantity(": held in a uniform strain E = ", u.E, "Pa");
   printf(
       ", nu = %.4f\n  residuals  force left on a particle %.2g %% of stress times its face "
       "(median), sum of forces %.1g of all; %ld particles whose bonds do not resolve all strains\n",
@@ -312,6 +312,11 @@ static double last_value(const run *r, const char *name) {
   return sample_of(r, name, true);
 }
 
+/* What is lost in rounding and in the integration's own wave is nothing. */
+static double unless_nothing(double energy, double external) {
+  return fabs(energy) < 1e-7 * fabs(external) ? 0 : energy;
+}
+
 static void conclude_energy(const run *r) {
   double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
   if (!isfinite(external)) return;
@@ -319,8 +324,8 @@ static void conclude_energy(const run *r) {
          "by damping %.3g; "
          "imbalance %.2g J",
          external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
-         last_value(r, "energy/dissipated_damage"), last_value(r, "energy/dissipated_damping"),
-         imbalance);
+         unless_nothing(last_value(r, "energy/dissipated_damage"), external),
+         last_value(r, "energy/dissipated_damping"), imbalance);
   if (fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
   putchar('\n');
 }

@@ -380,7 +380,9 @@ static bool refuse_keys_of_sites(deck_reader *r, const namelist_group *from) {
 static bool has_spacing(deck_reader *r, const namelist_group *from, int arrangement) {
   if (arrangement == FROM_FILE || namelist_find(from, "spacing")) return true;
   diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&lattice` has no `spacing`");
-  diag_hint(r->d, "spacing: distance of nearest neighbours (m)");
+  diag_hint(r->d, arrangement == BLUE_NOISE
+                      ? "spacing: that of the lattice whose particles are as large (m)"
+                      : "spacing: distance of nearest neighbours (m)");
   return false;
 }
 

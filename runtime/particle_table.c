@@ -219,7 +219,18 @@ static bool columns_suit(const reader *r, span where) {
   return false;
 }
 
+/* Semicolons and tabs are what other programs put between columns. */
+static bool has_commas(const reader *r, const char *line) {
+  const char *end = line_end(line), *other = memchr(line, ';', (size_t)(end - line));
+  if (!other) other = memchr(line, '\t', (size_t)(end - line));
+  if (!other || memchr(line, ',', (size_t)(end - line))) return true;
+  diag_report(r->d, DIAG_BAD_VALUE, text_span(r, other, other + 1),
+              "columns are separated by commas, not by %s", *other == ';' ? "semicolons" : "tabs");
+  return false;
+}
+
 static bool read_header(reader *r, const char *line) {
+  if (!has_commas(r, line)) return false;
   const char *end = line_end(line), *p = line;
   for (int k = 0; k < COLUMNS; k++) {
     r->place_of[k] = -1;

@@ -107,10 +107,17 @@ static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_m
   return m->values && m->value_count == m->particles && m->components == 1;
 }
 
-/* Maps of other fields show separated bonds, too, where the result knows them. */
+/* Maps of other fields show separated bonds, too, where the result knows them and they are few enough to be seen: with a
+   larger horizon they would cover what the map is about. */
+static bool bonds_would_cover(const plot_frame *m) {
+  enum { MOST_BONDS = 5 }; /* a particle: ten neighbours */
+  return m->bonds > MOST_BONDS * m->particles;
+}
+
 static bool read_damage(result_file *f, plot_frame *m, const char *path, const plot_map_options *o,
                         char *error, size_t size) {
   long count = 0;
+  if (!m->of_damage && bonds_would_cover(m)) return true;
   m->damage = result_read_damage(f, o->frame, &count, error, size);
   if (m->damage && count == m->bonds) return true;
   free(m->damage);

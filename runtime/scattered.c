@@ -10,6 +10,7 @@
 #include "runtime/particle_set.h"
 #include "runtime/rows_parts.h"
 #include "runtime/shape.h"
+#include "runtime/shape_matrix.h"
 #include "runtime/site_marks.h"
 
 enum { ROW_SITES = 512, PITCH = ROW_SITES + PL_LANES };
@@ -264,6 +265,43 @@ static void report_failure(const deck_lattice *l, const particle_set *set, long 
             rows_place_text(set->dimensions, at, text), key);
 }
 
+static double mean_nearest(const rows *w) {
+  double sum = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    double nearest = INFINITY, chord[3];
+    for (int n = 0; n < 2 * w->directions; n++)
+      if (rows_has_neighbour(w, w->particle_site[p], n))
+        nearest = fmin(nearest, rows_chord(w, w->particle_site[p], n, chord));
+    sum += isfinite(nearest) ? nearest : w->spacing;
+  }
+  return sum / (double)w->particle_count;
+}
+
+/* Particles as far apart as they are large: volumes in another unit than the file says are the usual slip. */
+static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) {
+  const double apart = mean_nearest(w), ratio = apart / w->spacing;
+  if (ratio > 0.3 && ratio < 2) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(&l->item, "file"),
+              "particles are %.4g mm from their nearest neighbours in the mean, but are as large "
+              "as those of a "
+              "lattice with a spacing of %.4g mm",
+              1e3 * apart, 1e3 * w->spacing);
+  diag_hint(d, "are volumes and `spacing` in the units that they say?%s",
+            w->dimensions == 2 ? " In the plane a volume counts the thickness" : "");
+}
+
+/* A few at corners and slits are no matter. */
+static void count_unresolved(const rows *w, const deck_lattice *l, diagnostics *d) {
+  const long count = shape_unresolved(w, NULL);
+  if (100 * count <= w->particle_count) return;
+  diag_report(
+      d, DIAG_DECK_WARNING, deck_where(&l->item, l->horizon > 0 ? "horizon" : "neighbours"),
+      "%ld of %ld particles have too few bonds to tell all strains apart: the body may fall "
+      "to pieces or move without force",
+      count, w->particle_count);
+  diag_hint(d, "12 neighbours in the plane and 18 in space do");
+}
+
 rows *scattered_build(const deck *k, int lattice, diagnostics *d) {
   const deck_lattice *l = &k->lattices[lattice];
   particle_set *set = particle_set_make(k, lattice, d);
@@ -290,5 +328,7 @@ rows *scattered_build(const deck *k, int lattice, diagnostics *d) {
   for (int n = 0; n < k->notch_count; n++)
     if (site_of_lattice(l, k->notchs[n].lattice)) cut_notch(w, &k->notchs[n], l, longest, d);
   rows_count_bonds(w);
+  compare_sizes(w, l, d);
+  count_unresolved(w, l, d);
   return w;
 }
