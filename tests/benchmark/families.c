@@ -20,7 +20,14 @@
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/naive_families.h"
 
-enum { ROUNDS = 7, CASES = 4, PROGRAMS = 3, KERNELS = 2, CONTESTANTS = PROGRAMS + KERNELS };
+enum {
+  ROUNDS = 7,
+  CASES = 4,
+  MOST_FIELDS = 8,
+  PROGRAMS = 3,
+  KERNELS = 2,
+  CONTESTANTS = PROGRAMS + KERNELS
+};
 enum { NAIVE, PLAIN, FUSED, GENERATED, LIST };
 #define ROUND_SECONDS    0.08
 #define AGREEMENT        1e-9 /* of displacements and velocities, relative */
@@ -45,9 +52,9 @@ typedef struct contest {
   sweep *kernel[KERNELS]; /* on rows, on the list */
   family_problem problem;
   void *state[PROGRAMS];
-  double difference[CONTESTANTS], damaged;
-  long steps[CONTESTANTS];             /* a round */
-  double seconds[CONTESTANTS][ROUNDS]; /* a step */
+  double difference[CONTESTANTS], changed[MOST_FIELDS]; /* after the comparison */
+  long steps[CONTESTANTS];                              /* a round */
+  double seconds[CONTESTANTS][ROUNDS];                  /* a step */
 } contest;
 
 #define BOX(size)                                                                                  \
@@ -253,15 +260,14 @@ static void advance(contest *c, int k, long steps) {
       give_up("the generated kernel of %s ran away", c->model);
 }
 
-/* Share of the values of the law's first field that are not 0 any more. */
-static double damaged_share(const sweep *w) {
+/* Share of a field's values that are not 0 any more. */
+static double changed_share(const sweep *w, int f) {
   const rows *g = w->lattice;
-  double damaged = 0, places = 0;
-  if (w->law->field_count == 0) return 0;
-  for (long k = 0; k < sweep_planes(w, w->law->fields[0].place); k++)
-    for (long p = 0; p < g->particle_count; p++, places++)
-      damaged += w->field[0][k * g->size + g->particle_site[p]] > 0;
-  return damaged / places;
+  double changed = 0, values = 0;
+  for (long k = 0; k < sweep_planes(w, w->law->fields[f].place); k++)
+    for (long p = 0; p < g->particle_count; p++, values++)
+      changed += w->field[f][k * g->size + g->particle_site[p]] != 0;
+  return changed / values;
 }
 
 static bool compare(contest *c) {
@@ -277,7 +283,8 @@ static bool compare(contest *c) {
           motions_difference(&first, &other, c->rows, k == LIST ? c->list_margin : 0);
     fair = fair && c->difference[k] <= AGREEMENT;
   }
-  c->damaged = damaged_share(c->kernel[0]);
+  for (int f = 0; f < c->kernel[0]->law->field_count; f++)
+    c->changed[f] = changed_share(c->kernel[0], f);
   motions_free(&start);
   motions_free(&first);
   motions_free(&other);
@@ -310,7 +317,9 @@ static void report(figures *f, const contest *c) {
                                     "generated_list"};
   double median[CONTESTANTS];
   printf("\n%s: %ld particles", c->name, c->rows->particle_count);
-  if (c->kernel[0]->law->field_count) printf(", %.1f %% damaged", 100 * c->damaged);
+  for (int field = 0; field < c->kernel[0]->law->field_count; field++)
+    printf("%s %s in %.1f %%", field ? "," : "; when compared,",
+           c->kernel[0]->law->fields[field].name, 100 * c->changed[field]);
   printf("\n  %-20s %14s %8s %8s %8s %11s\n", "", "1e6 steps/s", "spread", "x naive", "of best",
          "difference");
   for (int k = 0; k < CONTESTANTS; k++) {
