@@ -280,7 +280,7 @@ static void write_neighbours(emitter *e, const segment *a) {
   write_loop(e, "      ");
   emit_lines(e);
   if (asks_for_presence(a))
-    c_text_add(e->out, "        const int32_t present = (bonds[q] & present_bit) != 0;\n");
+    c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
   for (int k = 0; k < a->root_count; k++)
     write_store(e, &a->roots[k], k);
   c_text_add(e->out, "      }\n    }\n");

@@ -111,11 +111,11 @@ static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
 
 /* L - s is as good as L; a step of Newton's on L^2 - s^2 makes it as good as the displacements are,
    and needs no division. */
-static ir_node elongation(ir *g, const bond_kinematics *k, ir_node growth) {
-  ir_node rough = ir_sub(g, k->length, k->s);
-  ir_node twice_s = ir_mul(g, ir_constant(g, 2), k->s);
+static ir_node elongation(ir *g, ir_node s, ir_node length, ir_node per_length, ir_node growth) {
+  ir_node rough = ir_sub(g, length, s);
+  ir_node twice_s = ir_mul(g, ir_constant(g, 2), s);
   ir_node missing = ir_sub(g, growth, ir_mul(g, rough, ir_add(g, rough, twice_s)));
-  ir_node half = ir_mul(g, ir_constant(g, 0.5), k->per_length);
+  ir_node half = ir_mul(g, ir_constant(g, 0.5), per_length);
   return ir_add(g, rough, ir_mul(g, missing, half));
 }
 
@@ -136,7 +136,8 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
   k.length = named(g, ir_mul(g, square, k.per_length), "length");
   ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
   ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
-  k.stretch = named(g, ir_mul(g, elongation(g, &k, growth), per_s), "stretch");
+  k.stretch =
+      named(g, ir_mul(g, elongation(g, k.s, k.length, k.per_length, growth), per_s), "stretch");
   vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
@@ -172,8 +173,9 @@ family_kinematics kinematics_family(ir *g, int dimensions) {
   ir_node chord[3] = {IR_NONE, IR_NONE, IR_NONE}, d[3] = {IR_NONE, IR_NONE, IR_NONE};
   ir_node dv[3] = {IR_NONE, IR_NONE, IR_NONE}, now[3] = {IR_NONE, IR_NONE, IR_NONE};
   ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
-  ir_node s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY), one = ir_constant(g, 1);
+  ir_node s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   ir_mark_class(g, s);
+  ir_node per_s = ir_div(g, ir_constant(g, 1), s);
   for (int c = 0; c < dimensions; c++) {
     chord[c] = kinematics_input(g, chord_of[c]);
     ir_node from = kinematics_input(g, u_i[c]), to = kinematics_input(g, u_j[c]);
@@ -184,17 +186,17 @@ family_kinematics kinematics_family(ir *g, int dimensions) {
     dv[c] = ir_sub(g, to, from);
     k.reference[c] = ir_div(g, chord[c], s);
   }
-  k.length = ir_make(g, IR_SQRT, dot_of(g, dimensions, now, now), IR_NONE, IR_NONE);
-  named(g, k.length, "length");
-  ir_node twice_s_mean = ir_mul(g, s, ir_add(g, k.length, s)); /* s (L + s), m^2 */
-  ir_node shared = named(g, ir_div(g, one, ir_mul(g, k.length, twice_s_mean)), "shared");
-  ir_node per_length = named(g, ir_mul(g, shared, twice_s_mean), "per_length");
+  ir_node square = named(g, dot_of(g, dimensions, now, now), "square");
+  ir_node per_length =
+      named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
+  k.length = named(g, ir_mul(g, square, per_length), "length");
   ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
-  k.stretch = named(g, ir_mul(g, growth, ir_mul(g, shared, k.length)), "stretch");
+  ir_node longer = elongation(g, s, k.length, per_length, growth);
+  k.stretch = named(g, ir_mul(g, longer, per_s), "stretch");
   for (int c = 0; c < dimensions; c++)
     k.now[c] = named(g, ir_mul(g, now[c], per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);
-  k.stretch_rate = named(g, ir_mul(g, rate, ir_div(g, one, s)), "stretch_rate");
+  k.stretch_rate = named(g, ir_mul(g, rate, per_s), "stretch_rate");
   return k;
 }
 
