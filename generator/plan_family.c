@@ -211,7 +211,7 @@ static void count_cost(kernel_plan *plan) {
   for (int k = 0; k < plan->step.pass_count; k++)
     for (int s = 0; s < plan->step.passes[k].segment_count; s++) {
       const segment *a = &plan->step.passes[k].segments[s];
-      if (a->kind != OVER_NEIGHBOURS) continue;
+      if (a->kind == OVER_PARTICLES) continue;
       ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
       for (int r = 0; r < a->root_count; r++)
         nodes[r] = a->roots[r].node;
@@ -260,9 +260,9 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     motion_from_lists(plan, &list, &motion);
   }
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
-                &plan->links);
+                !l->irregular, &plan->links);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
-                &plan->links);
+                false, &plan->links);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",
