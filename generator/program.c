@@ -152,16 +152,11 @@ static ir_node own_link(builder *b, ir_node n) {
                   link_name(b, link), of_particle ? ON_PARTICLE : ON_NEIGHBOUR);
 }
 
-/* Displacements and velocities; the time step and lengths stay. */
-static ir_node mirror_motion(builder *b, ir_node n) {
-  const ends_origin *o = &ends_origins[ir_input_index(b->g, n)];
-  if (o->array != FROM_DISPLACEMENT && o->array != FROM_VELOCITY) return n;
-  for (int k = 0; k < ENDS_COUNT; k++)
-    if (ends_origins[k].array == o->array && ends_origins[k].component == o->component &&
-        ends_origins[k].owner != o->owner)
-      return kinematics_input(b->g, (ends_input)k);
-  return n;
-}
+/* What the ends of a bond exchange. */
+static const ends_input exchanged[][2] = {
+    {ENDS_U_IX, ENDS_U_JX},   {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
+    {ENDS_V_IX, ENDS_V_JX},   {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
+    {ENDS_HELD_I, ENDS_HELD_J}, {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J}};
 
 static ir_node mirror_ends(builder *b, ir_node n) {
   switch ((ends_input)ir_input_index(b->g, n)) {
@@ -172,21 +167,14 @@ static ir_node mirror_ends(builder *b, ir_node n) {
   case ENDS_CHORD_Y:
   case ENDS_CHORD_Z:
     return ir_neg(b->g, n);
-  case ENDS_HELD_I:
-    return kinematics_input(b->g, ENDS_HELD_J);
-  case ENDS_HELD_J:
-    return kinematics_input(b->g, ENDS_HELD_I);
-  case ENDS_VOLUME_I:
-    return kinematics_input(b->g, ENDS_VOLUME_J);
-  case ENDS_VOLUME_J:
-    return kinematics_input(b->g, ENDS_VOLUME_I);
-  case ENDS_MASS_I:
-    return kinematics_input(b->g, ENDS_MASS_J);
-  case ENDS_MASS_J:
-    return kinematics_input(b->g, ENDS_MASS_I);
   default:
-    return mirror_motion(b, n);
+    break; /* the time step and lengths stay */
   }
+  for (size_t k = 0; k < sizeof exchanged / sizeof *exchanged; k++)
+    for (int end = 0; end < 2; end++)
+      if ((int)exchanged[k][end] == ir_input_index(b->g, n))
+        return kinematics_input(b->g, exchanged[k][!end]);
+  return n;
 }
 
 static ir_node mirror_quantity(builder *b, ir_node n) {
@@ -411,7 +399,7 @@ static int cost_beyond(const builder *b, ir_node n, int most) {
 
 /* A store and two loads for each bond against what one end need not compute. */
 static bool is_worth_sharing(builder *b, ir_node n) {
-  enum { DEAR = 20 };
+  enum { DEAR = 30 };
   return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
          !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
 }
