@@ -287,12 +287,13 @@ static bool reads_shared(const emitter *e) {
 
 static void write_neighbours(emitter *e, const segment *a) {
   write_starts(e, a);
-  c_text_add(e->out,
-             a->kind == OVER_BONDS
-                 ? "    for (long k = 0; k < half; k++) { /* bond by bond */\n"
-                   "      const long back = k + half;\n"
-                 : "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
-                   "      const long back = k < half ? k + half : k - half;\n");
+  c_text_add(
+      e->out,
+      a->kind == OVER_BONDS
+          ? "    for (long k = 0; k < half; k++) { /* bond by bond */\n"
+            "      const long back = k + half;\n"
+          : "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
+            "      const long back = k < half ? k + half : k - half;\n");
   c_text_add(
       e->out,
       is_list(e)
@@ -301,7 +302,8 @@ static void write_neighbours(emitter *e, const segment *a) {
   c_text_add(e->out, "      (void)to, (void)back;\n");
   if (asks_for_presence(a)) write_presence(e);
   if (reads_shared(e))
-    c_text_add(e->out, "      const long owned = k < half ? k : back, at_owner = k < half ? 0 : to;\n");
+    c_text_add(e->out,
+               "      const long owned = k < half ? k : back, at_owner = k < half ? 0 : to;\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");

@@ -16,7 +16,8 @@ struct family_runner {
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
   const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
-      **neighbour_bond_links, **shared, **slots, **planes, *shape[PL_SHAPE_PLANES(3)], *ends[ENDS_COUNT];
+      **neighbour_bond_links, **shared, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
+      *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
@@ -88,9 +89,9 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
   r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
-  r->gathered =
-      must_calloc((size_t)(p->links.of_particles + 3 * p->links.of_bonds + fields + ENDS_COUNT) * LANES,
-                  sizeof(double));
+  r->gathered = must_calloc(
+      (size_t)(p->links.of_particles + 3 * p->links.of_bonds + fields + ENDS_COUNT) * LANES,
+      sizeof(double));
   r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
   r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
   for (int k = 0; k < roots; k++)
@@ -295,9 +296,8 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
 static void store(family_runner *r, const segment_root *root, const double *value,
                   const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
-  const bool plain =
-      root->target < TO_SUM || root->target == TO_PLANE || root->target == TO_BOND_LINK ||
-      root->target == TO_SHARED;
+  const bool plain = root->target < TO_SUM || root->target == TO_PLANE ||
+                     root->target == TO_BOND_LINK || root->target == TO_SHARED;
   for (long q = 0; q < lanes; q++) {
     const bool present = plain || is_present(f, first, k, q);
     switch (root->target) {

@@ -71,13 +71,17 @@ static ir_node *nodes_of(const segment *a) {
 
 /* --- what a segment reads --------------------------------------------------------------------- */
 
-typedef enum read_kind { READ_OWN, READ_NEIGHBOUR, READ_LINKS, READ_SHARED, READ_SLOTS, READ_PLANES } read_kind;
-static const char *const read_names[] = {[READ_OWN] = "own",
-                                         [READ_NEIGHBOUR] = "neighbour's",
-                                         [READ_LINKS] = "links",
-                                         [READ_SHARED] = "shared",
-                                         [READ_SLOTS] = "slots",
-                                         [READ_PLANES] = "planes"};
+typedef enum read_kind {
+  READ_OWN,
+  READ_NEIGHBOUR,
+  READ_LINKS,
+  READ_SHARED,
+  READ_SLOTS,
+  READ_PLANES
+} read_kind;
+static const char *const read_names[] = {
+    [READ_OWN] = "own",       [READ_NEIGHBOUR] = "neighbour's", [READ_LINKS] = "links",
+    [READ_SHARED] = "shared", [READ_SLOTS] = "slots",           [READ_PLANES] = "planes"};
 enum { READ_KINDS = sizeof read_names / sizeof *read_names };
 
 static read_kind kind_of_input(const ir *g, ir_node n) {

@@ -222,6 +222,17 @@ static void count_cost(kernel_plan *plan) {
     }
 }
 
+/* Whether ends of bonds share what is the same for both: on lattices, where reading what the other end has left is cheap.
+   Laws that keep fields on bonds in space have families of a long horizon (lps: 122): what their bonds share would fill
+   no cache, and they compute it on either side (a sixth faster; with 18 neighbours sharing is 1.4 times as fast). */
+static bool shares(const family_planner *p) {
+  const law *l = p->plan->law;
+  bool on_bonds = false;
+  for (int k = 0; k < l->fields.count; k++)
+    on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
+  return !l->irregular && (p->plan->dimensions == 2 || !on_bonds);
+}
+
 static bool reads_thickness(const family_planner *p) {
   const law *l = p->plan->law;
   ir_node t = lower_quantity(p->g, QUANTITY_T);
@@ -259,8 +270,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     read_from_lists(plan, &list, &observe);
     motion_from_lists(plan, &list, &motion);
   }
-  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
-                !l->irregular, &plan->links);
+  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion, shares(&p),
+                &plan->links);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
                 false, &plan->links);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {

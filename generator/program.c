@@ -42,7 +42,8 @@ typedef struct builder {
   int *link_number; /* [link_count] among those of particles, or those of bonds */
   int link_count;
   program_links links; /* how many of either */
-  ir_node *shared; /* [shared_count] values that the ends of a bond share, numbered from first_shared */
+  ir_node
+      *shared; /* [shared_count] values that the ends of a bond share, numbered from first_shared */
   int shared_count, first_shared;
   node_map resolved, mirrored, linked, reduced, sided, level, parity, plain;
 } builder;
@@ -154,8 +155,8 @@ static ir_node own_link(builder *b, ir_node n) {
 
 /* What the ends of a bond exchange. */
 static const ends_input exchanged[][2] = {
-    {ENDS_U_IX, ENDS_U_JX},   {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
-    {ENDS_V_IX, ENDS_V_JX},   {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
+    {ENDS_U_IX, ENDS_U_JX},     {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
+    {ENDS_V_IX, ENDS_V_JX},     {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
     {ENDS_HELD_I, ENDS_HELD_J}, {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J}};
 
 static ir_node mirror_ends(builder *b, ir_node n) {
@@ -627,8 +628,8 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   else if (ir_is_reduction(ir_operation(g, n)))
     image = slot_of(s, n);
   else if (is_of_particle(g, n))
-    image = v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop ? slot_of(s, n)
-                                                                   : computed_here(v, n);
+    image =
+        v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop ? slot_of(s, n) : computed_here(v, n);
   else
     image = is_worth_a_plane(s, n, v->loop) ? plane_of(s, n) : computed_here(v, n);
   map_set(&v->seen, n, image);
@@ -675,7 +676,7 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
   bonds->kind = OVER_BONDS;
   for (int k = 0; k < root_count; k++) {
     int phase = phase_of(&s, roots[k].node);
-    segment *in = roots[k].target == TO_SHARED              ? bonds
+    segment *in = roots[k].target == TO_SHARED          ? bonds
                   : is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
                                                         : particles_after(&s, phase);
     add_root(&s, in, roots[k].node, roots[k].target, roots[k].index);

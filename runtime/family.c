@@ -102,19 +102,26 @@ static void inner_rows(const sweep *w, int block, int pass, int *first, int *las
   if (*last < *first) *last = *first = b->last;
 }
 
-/* All passes on the inner rows, each pass as soon as the one before is far enough ahead: what one leaves the next finds in
-   a cache. */
+static int least(int a, int b) {
+  return a < b ? a : b;
+}
+
+/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
+   leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {
-  const sweep_block *b = &w->blocks[block];
-  const int behind = (program->pass_count - 1) * own(w)->reach;
-  int first[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
-  for (int p = 0; p < program->pass_count; p++)
-    inner_rows(w, block, p, &first[p], &last[p]);
-  for (int ahead = b->first; ahead < b->last + behind; ahead++)
-    for (int p = 0; p < program->pass_count; p++) {
-      const int row = ahead - p * own(w)->reach;
-      if (row >= first[p] && row < last[p]) run_row(w, program->pass[p], block, row);
+  enum { ROWS_AT_A_TIME = 16 };
+  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
+  const int passes = program->pass_count;
+  for (int p = 0; p < passes; p++)
+    inner_rows(w, block, p, &next[p], &last[p]);
+  while (next[0] < last[0]) { /* when the first is done, all follow */
+    int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
+    for (int p = 0; p < passes; p++) {
+      for (; next[p] < end; next[p]++)
+        run_row(w, program->pass[p], block, next[p]);
+      if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - own(w)->reach;
     }
+  }
 }
 
 /* A pass on the rows that the inner rows leave. */
