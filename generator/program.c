@@ -44,8 +44,8 @@ typedef struct builder {
   program_links links; /* how many of either */
   ir_node
       *shared; /* [shared_count] values that the ends of a bond share, numbered from first_shared */
-  int shared_count, first_shared;
-  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain;
+  int shared_count, first_shared, round;
+  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted;
 } builder;
 
 static bool is_leaf(const ir *g, ir_node n) {
@@ -386,32 +386,46 @@ static int parity(builder *b, ir_node n) {
   return p;
 }
 
-/* What a value toward a neighbour costs beyond the shared values found so far, in additions. */
-static int cost_beyond(const builder *b, ir_node n, int most) {
+/* Operations that have not been counted since `round` began. */
+static int cost_in_round(builder *b, ir_node n, int most) {
+  if (map_get(&b->counted, n) == b->round) return 0;
+  map_set(&b->counted, n, b->round);
   for (int k = 0; k < b->shared_count; k++)
     if (b->shared[k] == n) return 0;
   if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
-  const ir_op op = ir_operation(b->g, n);
   int cost = cost_of_operation(b->g, n);
-  for (int k = 0; k < ir_arity(op) && cost < most; k++)
-    cost += cost_beyond(b, ir_operand(b->g, n, k), most - cost);
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
+    cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
   return cost;
+}
+
+/* What a value toward a neighbour costs beyond the shared values found so far, in additions. */
+static int cost_beyond(builder *b, ir_node n, int most) {
+  b->round++;
+  return cost_in_round(b, n, most);
 }
 
 /* A store and two loads for each bond against what one end need not compute. */
 static bool is_worth_sharing(builder *b, ir_node n) {
-  enum { DEAR = 30 };
+  enum { DEAR = 25 };
   return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
          !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
 }
 
+/* Whether little is left to do for a value when the part is shared. */
+static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
+  enum { CHEAP = 6 };
+  b->shared[b->shared_count++] = part;
+  const bool does = cost_beyond(b, n, CHEAP + 1) <= CHEAP;
+  b->shared_count--;
+  return does;
+}
+
 /* The part of a value that costs nearly all: shared in its place, it serves others, too. */
 static ir_node dear_part(builder *b, ir_node n) {
-  enum { CHEAP = 6, MOST = 1000 };
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
     const ir_node part = ir_operand(b->g, n, k);
-    if (is_worth_sharing(b, part) && cost_beyond(b, n, MOST) - cost_beyond(b, part, MOST) <= CHEAP)
-      return dear_part(b, part);
+    if (is_worth_sharing(b, part) && costs_nearly_all(b, part, n)) return dear_part(b, part);
   }
   return n;
 }
@@ -781,4 +795,5 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.level);
   map_clear(&b.parity);
   map_clear(&b.plain);
+  map_clear(&b.counted);
 }
