@@ -290,7 +290,7 @@ static void write_neighbours(emitter *e, const segment *a) {
   c_text_add(
       e->out,
       a->kind == OVER_BONDS
-          ? "    for (long k = 0; k < half; k++) { /* bond by bond */\n"
+          ? "    for (long k = 0; k < half; k++) { /* bond by bond, for both ends */\n"
             "      const long back = k + half;\n"
           : "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
             "      const long back = k < half ? k + half : k - half;\n");
