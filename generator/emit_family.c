@@ -108,7 +108,7 @@ static void write_array(emitter *e, ir_node n) {
     c_text_add(e->out, "family->bond_link[%d] + first + back*family->plane", index);
     break;
   case IR_FROM_SHARED:
-    write_shared(e, index, "owned", "at_owner");
+    write_shared(e, index, "owned", "owner");
     break;
   case IR_FROM_SHAPE:
     c_text_add(e->out, "family->shape[%d] + first", index);
@@ -303,7 +303,7 @@ static void write_neighbours(emitter *e, const segment *a) {
   if (asks_for_presence(a)) write_presence(e);
   if (reads_shared(e))
     c_text_add(e->out,
-               "      const long owned = k < half ? k : back, at_owner = k < half ? 0 : to;\n");
+               "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");

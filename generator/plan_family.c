@@ -206,7 +206,7 @@ static void look_for_shape(void *context, const ir_node *roots, int root_count) 
   free(needed);
 }
 
-/* Operations of all segments of a step that are done for each neighbour. */
+/* Operations of all segments of a step that are done for each neighbour; what is done once for both ends counts half. */
 static void count_cost(kernel_plan *plan) {
   for (int k = 0; k < plan->step.pass_count; k++)
     for (int s = 0; s < plan->step.passes[k].segment_count; s++) {
@@ -216,8 +216,9 @@ static void count_cost(kernel_plan *plan) {
       for (int r = 0; r < a->root_count; r++)
         nodes[r] = a->roots[r].node;
       ir_cost cost = ir_count_cost(plan->graph, nodes, a->root_count, ON_BOND);
-      plan->flops_per_bond += cost.additions + cost.multiplications + cost.selects;
-      plan->divisions_per_bond += cost.divisions;
+      const double part = a->kind == OVER_BONDS ? 0.5 : 1;
+      plan->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
+      plan->divisions_per_bond += part * cost.divisions;
       free(nodes);
     }
 }
