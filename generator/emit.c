@@ -161,7 +161,9 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
                                     "back",
                                     "last",
                                     "kept",
-                                    "unusual"};
+                                    "unusual",
+                                    "owned",
+                                    "owner"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;

@@ -77,6 +77,13 @@ static void write_ends_array(emitter *e, ir_node n) {
   }
 }
 
+/* A value that both ends of a bond share, in the plane of the bond's number at its owner. */
+static void write_shared(emitter *e, int index, const char *number, const char *at) {
+  const shared_place stands = program_shared_place(index);
+  c_text_add(e->out, "family->bond_link[%d] + first + %s + (%s%s)*family->plane", stands.link, at,
+             stands.upper ? "half + " : "", number);
+}
+
 /* Of the particle at hand, or at lane 0 of the chunk's neighbours; on lists the loop adds the way to the neighbour. */
 static void write_array(emitter *e, ir_node n) {
   const int index = ir_input_index(e->graph, n);
@@ -99,6 +106,9 @@ static void write_array(emitter *e, ir_node n) {
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
     c_text_add(e->out, "family->bond_link[%d] + first + back*family->plane", index);
+    break;
+  case IR_FROM_SHARED:
+    write_shared(e, index, "owned", "owner");
     break;
   case IR_FROM_SHAPE:
     c_text_add(e->out, "family->shape[%d] + first", index);
@@ -161,13 +171,16 @@ static void write_target(emitter *e, const segment_root *r) {
   case TO_BOND_LINK:
     c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", r->index);
     break;
+  case TO_SHARED:
+    write_shared(e, r->index, "k", "0");
+    break;
   default:
     c_text_add(e->out, "slot_%d", r->index);
   }
 }
 
 static void write_outputs(emitter *e, const segment *a) {
-  const char *indent = a->kind == OVER_NEIGHBOURS ? "      " : "    ";
+  const char *indent = a->kind == OVER_PARTICLES ? "    " : "      ";
   for (int k = 0; k < a->root_count; k++) {
     c_text_add(e->out, "%sdouble *restrict to_%d = ", indent, k);
     write_target(e, &a->roots[k]);
@@ -215,7 +228,7 @@ static void open_segment(emitter *e, const segment *a) {
   ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
   for (int k = 0; k < a->root_count; k++)
     nodes[k] = a->roots[k].node;
-  emit_open_nodes(e, a->kind == OVER_NEIGHBOURS ? IN_NEIGHBOURS : IN_PARTICLES, nodes,
+  emit_open_nodes(e, a->kind == OVER_PARTICLES ? IN_PARTICLES : IN_NEIGHBOURS, nodes,
                   a->root_count);
   free(nodes);
 }
@@ -252,7 +265,8 @@ static void write_starts(emitter *e, const segment *a) {
 static bool asks_for_presence(const segment *a) {
   bool asks = false;
   for (int k = 0; k < a->root_count; k++)
-    asks = asks || (a->roots[k].target != TO_PLANE && a->roots[k].target != TO_BOND_LINK);
+    asks = asks || (a->roots[k].target != TO_PLANE && a->roots[k].target != TO_BOND_LINK &&
+                    a->roots[k].target != TO_SHARED);
   return asks;
 }
 
@@ -263,11 +277,23 @@ static void write_presence(emitter *e) {
   c_text_add(e->out, "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n");
 }
 
+static bool reads_shared(const emitter *e) {
+  bool reads = false;
+  for (ir_node n = 0; n < e->node_count && !reads; n++)
+    reads = e->needed[n] && ir_operation(e->graph, n) == IR_INPUT &&
+            ir_input_source(e->graph, n) == IR_FROM_SHARED;
+  return reads;
+}
+
 static void write_neighbours(emitter *e, const segment *a) {
   write_starts(e, a);
-  c_text_add(e->out,
-             "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
-             "      const long back = k < half ? k + half : k - half;\n");
+  c_text_add(
+      e->out,
+      a->kind == OVER_BONDS
+          ? "    for (long k = 0; k < half; k++) { /* bond by bond, for both ends */\n"
+            "      const long back = k + half;\n"
+          : "    for (long k = 0; k < family->neighbours; k++) { /* neighbour by neighbour */\n"
+            "      const long back = k < half ? k + half : k - half;\n");
   c_text_add(
       e->out,
       is_list(e)
@@ -275,6 +301,9 @@ static void write_neighbours(emitter *e, const segment *a) {
           : "      const long to = family->offset[k];\n");
   c_text_add(e->out, "      (void)to, (void)back;\n");
   if (asks_for_presence(a)) write_presence(e);
+  if (reads_shared(e))
+    c_text_add(e->out,
+               "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");
@@ -307,10 +336,10 @@ static void write_pass(emitter *e, const family_program *q, int number) {
   for (int k = 0; k < p->segment_count; k++) {
     const segment *a = &p->segments[k];
     open_segment(e, a);
-    if (a->kind == OVER_NEIGHBOURS)
-      write_neighbours(e, a);
-    else
+    if (a->kind == OVER_PARTICLES)
       write_particles(e, a);
+    else
+      write_neighbours(e, a);
     emit_close(e);
   }
   c_text_add(e->out, "  }\n}\n\n");

@@ -219,13 +219,13 @@ static bool imply(facts *f) {
   return true;
 }
 
-/* Arrays that a segment over neighbours reads and writes, without what a pass keeps for itself. */
+/* Arrays that a segment over neighbours or bonds reads and writes, without what a pass keeps for itself. */
 static long arrays_of_segment(const ir *g, const segment *a) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   long count = 1; /* the bits of the bonds */
   for (int k = 0; k < a->root_count; k++) {
     ir_mark(g, &a->roots[k].node, 1, needed);
-    count += a->roots[k].target == TO_NEIGHBOUR_FIELD;
+    count += a->roots[k].target == TO_NEIGHBOUR_FIELD || a->roots[k].target == TO_SHARED;
   }
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_operation(g, n) != IR_INPUT || ir_place(g, n) <= ON_BODY) continue;
@@ -240,9 +240,10 @@ static long bytes_of_families(const kernel_plan *p) {
   long count = 0;
   for (int k = 0; k < p->step.pass_count; k++)
     for (int s = 0; s < p->step.passes[k].segment_count; s++)
-      if (p->step.passes[k].segments[s].kind == OVER_NEIGHBOURS)
-        count += arrays_of_segment(p->graph, &p->step.passes[k].segments[s]);
-  return 8 * count;
+      if (p->step.passes[k].segments[s].kind != OVER_PARTICLES)
+        count += arrays_of_segment(p->graph, &p->step.passes[k].segments[s]) *
+                 (p->step.passes[k].segments[s].kind == OVER_BONDS ? 1 : 2);
+  return 8 * count / 2; /* of the two ends of a bond, one */
 }
 
 /* Bytes that one bond reads and writes in a step, most of them from a cache: neighbouring bonds

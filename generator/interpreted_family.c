@@ -16,7 +16,8 @@ struct family_runner {
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
   const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
-      **neighbour_bond_links, **slots, **planes, *shape[PL_SHAPE_PLANES(3)], *ends[ENDS_COUNT];
+      **neighbour_bond_links, **shared, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
+      *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
@@ -83,20 +84,21 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->neighbour_links = pointers(r, p->links.of_particles);
   r->bond_links = pointers(r, p->links.of_bonds);
   r->neighbour_bond_links = pointers(r, p->links.of_bonds);
+  r->shared = pointers(r, 2 * p->links.of_bonds);
   r->slots = pointers(r, slots);
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
   r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
-  r->gathered =
-      must_calloc((size_t)(p->links.of_particles + p->links.of_bonds + fields + ENDS_COUNT) * LANES,
-                  sizeof(double));
+  r->gathered = must_calloc(
+      (size_t)(p->links.of_particles + 3 * p->links.of_bonds + fields + ENDS_COUNT) * LANES,
+      sizeof(double));
   r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
   r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
   for (int k = 0; k < roots; k++)
     r->result[k] = r->results + (size_t)k * LANES;
   for (int k = 0; k < slots; k++)
     r->slots[k] = r->slot + (size_t)k * LANES;
-  const int most = larger(larger(fields, larger(p->links.of_particles, p->links.of_bonds)),
+  const int most = larger(larger(fields, larger(p->links.of_particles, 2 * p->links.of_bonds)),
                           larger(slots, larger(planes, PL_SHAPE_PLANES(3))));
   r->ones = arena_alloc(r->memory, (size_t)most + 1);
   memset(r->ones, 1, (size_t)most + 1);
@@ -179,6 +181,19 @@ static void point_at_motion(family_runner *r, const pl_family *f, long first, lo
   r->ends[ENDS_HELD_J] = r->held[1];
 }
 
+static double *shared_plane(const pl_family *f, int index, long owned) {
+  const shared_place at = program_shared_place(index);
+  return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->plane;
+}
+
+/* What the owner of the bond has left. */
+static void point_at_shared(family_runner *r, const pl_family *f, long first, long k) {
+  const long half = f->neighbours / 2;
+  for (int n = 0; n < 2 * r->plan->links.of_bonds; n++)
+    r->shared[n] = k < half ? shared_plane(f, n, k) + first
+                            : at_neighbours(r, f, shared_plane(f, n, k - half), first, k);
+}
+
 static void point_at_list(family_runner *r, const pl_family *f, long first, long k) {
   static const ends_input chord[] = {ENDS_CHORD_X, ENDS_CHORD_Y, ENDS_CHORD_Z};
   for (int d = 0; d < r->plan->dimensions; d++)
@@ -207,6 +222,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
     r->fields[n] = f->old_field[n] + first + k * plane;
     r->neighbour_fields[n] = at_neighbours(r, f, f->old_field[n] + back * plane, first, k);
   }
+  point_at_shared(r, f, first, k);
   point_at_motion(r, f, first, k);
   if (f->neighbour) point_at_list(r, f, first, k);
 }
@@ -226,6 +242,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_LINK] = r->neighbour_links,
                                          [IR_FROM_BOND_LINK] = r->bond_links,
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->neighbour_bond_links,
+                                         [IR_FROM_SHARED] = r->shared,
                                          [IR_FROM_SLOT] = r->slots,
                                          [IR_FROM_PLANE] = r->planes},
                               .stride = {[IR_FROM_FIELD] = r->ones,
@@ -236,6 +253,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_LINK] = r->ones,
                                          [IR_FROM_BOND_LINK] = r->ones,
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->ones,
+                                         [IR_FROM_SHARED] = r->ones,
                                          [IR_FROM_SLOT] = r->ones,
                                          [IR_FROM_PLANE] = r->ones}};
 }
@@ -249,6 +267,8 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
     return f->link[root->index] + first;
   case TO_BOND_LINK:
     return f->bond_link[root->index] + first + k * f->plane;
+  case TO_SHARED:
+    return shared_plane(f, root->index, k) + first;
   case TO_PARTICLE_FIELD:
     return f->new_field[root->index] + first;
   case TO_PARTICLE_FORCE:
@@ -276,8 +296,8 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
 static void store(family_runner *r, const segment_root *root, const double *value,
                   const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
-  const bool plain =
-      root->target < TO_SUM || root->target == TO_PLANE || root->target == TO_BOND_LINK;
+  const bool plain = root->target < TO_SUM || root->target == TO_PLANE ||
+                     root->target == TO_BOND_LINK || root->target == TO_SHARED;
   for (long q = 0; q < lanes; q++) {
     const bool present = plain || is_present(f, first, k, q);
     switch (root->target) {
@@ -312,13 +332,15 @@ static void start_reductions(family_runner *r, const segment *a) {
 static void run_segment(family_runner *r, interpreter *run, const family_pass *now,
                         const segment *a, const pl_family *f, long first, long lanes,
                         const double *uniforms) {
-  const long loops = a->kind == OVER_NEIGHBOURS ? f->neighbours : 1;
+  const long loops = a->kind == OVER_PARTICLES    ? 1
+                     : a->kind == OVER_NEIGHBOURS ? f->neighbours
+                                                  : f->neighbours / 2;
   if (a->kind == OVER_NEIGHBOURS) start_reductions(r, a);
   point_at_particles(r, f, first);
   for (int u = 0; u < r->plan->uniform_count; u++)
     r->parameters[r->plan->law->parameters.count + u] = uniforms + u;
   for (long k = 0; k < loops; k++) {
-    if (a->kind == OVER_NEIGHBOURS) {
+    if (a->kind != OVER_PARTICLES) {
       point_at_neighbour(r, f, first, k, uniforms);
       point_at_planes(r, now, k);
     }

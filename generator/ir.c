@@ -534,7 +534,13 @@ ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placeme
 static const char *const source_names[IR_SOURCE_COUNT] = {
     [IR_FROM_PARAMETER] = "parameter", [IR_FROM_QUANTITY] = "quantity",
     [IR_FROM_FIELD] = "field",         [IR_FROM_BOND_PARAMETER] = "bond parameter",
-    [IR_FROM_ENDS] = "ends",
+    [IR_FROM_ENDS] = "ends",           [IR_FROM_SHAPE] = "shape",
+    [IR_FROM_NEIGHBOUR_FIELD] = "neighbour's field",
+    [IR_FROM_LINK] = "link",           [IR_FROM_NEIGHBOUR_LINK] = "neighbour's link",
+    [IR_FROM_BOND_LINK] = "link of bonds",
+    [IR_FROM_NEIGHBOUR_BOND_LINK] = "neighbour's link of bonds",
+    [IR_FROM_SHARED] = "shared",       [IR_FROM_SLOT] = "slot",
+    [IR_FROM_PLANE] = "plane",
 };
 
 static void dump_node(const ir *g, ir_node number, FILE *out) {

@@ -6,6 +6,9 @@
 #include "generator/kinematics.h"
 #include "generator/plan_parts.h"
 
+static const char *const segment_names[] = {[OVER_PARTICLES] = "particle by particle",
+                                            [OVER_NEIGHBOURS] = "neighbour by neighbour",
+                                            [OVER_BONDS] = "bond by bond"};
 static const char *const axes[] = {"x", "y", "z"};
 
 /* --- roots ------------------------------------------------------------------------------------ */
@@ -30,6 +33,9 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
     break;
   case TO_BOND_LINK:
     snprintf(text, size, "link of bonds %d%s%s", r->index, blank, name);
+    break;
+  case TO_SHARED:
+    snprintf(text, size, "shared %d%s%s", r->index, blank, name);
     break;
   case TO_PLANE:
     snprintf(text, size, "plane %d%s%s", r->index, blank, name);
@@ -65,12 +71,17 @@ static ir_node *nodes_of(const segment *a) {
 
 /* --- what a segment reads --------------------------------------------------------------------- */
 
-typedef enum read_kind { READ_OWN, READ_NEIGHBOUR, READ_LINKS, READ_SLOTS, READ_PLANES } read_kind;
-static const char *const read_names[] = {[READ_OWN] = "own",
-                                         [READ_NEIGHBOUR] = "neighbour's",
-                                         [READ_LINKS] = "links",
-                                         [READ_SLOTS] = "slots",
-                                         [READ_PLANES] = "planes"};
+typedef enum read_kind {
+  READ_OWN,
+  READ_NEIGHBOUR,
+  READ_LINKS,
+  READ_SHARED,
+  READ_SLOTS,
+  READ_PLANES
+} read_kind;
+static const char *const read_names[] = {
+    [READ_OWN] = "own",       [READ_NEIGHBOUR] = "neighbour's", [READ_LINKS] = "links",
+    [READ_SHARED] = "shared", [READ_SLOTS] = "slots",           [READ_PLANES] = "planes"};
 enum { READ_KINDS = sizeof read_names / sizeof *read_names };
 
 static read_kind kind_of_input(const ir *g, ir_node n) {
@@ -82,6 +93,8 @@ static read_kind kind_of_input(const ir *g, ir_node n) {
   case IR_FROM_LINK:
   case IR_FROM_BOND_LINK:
     return READ_LINKS;
+  case IR_FROM_SHARED:
+    return READ_SHARED;
   case IR_FROM_SLOT:
     return READ_SLOTS;
   case IR_FROM_PLANE:
@@ -126,9 +139,8 @@ static int dump_reads(const kernel_plan *p, const segment *a, FILE *out) {
 /* --- segments and passes ---------------------------------------------------------------------- */
 
 static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
-  const bool neighbours = a->kind == OVER_NEIGHBOURS;
   char text[160];
-  fprintf(out, "  %s\n", neighbours ? "neighbour by neighbour" : "particle by particle");
+  fprintf(out, "  %s\n", segment_names[a->kind]);
   const int reads = dump_reads(p, a, out);
   fprintf(out, "    %-12s", "writes");
   for (int k = 0; k < a->root_count; k++)
@@ -140,7 +152,7 @@ static void dump_segment(const kernel_plan *p, const segment *a, FILE *out) {
           "\n    %-12s %d additions, %d multiplications, %d selects, %d divisions and roots, "
           "%d functions; %d bytes %s\n",
           "cost", c.additions, c.multiplications, c.selects, c.divisions, c.functions,
-          8 * (reads + a->root_count), neighbours ? "a bond" : "a particle");
+          8 * (reads + a->root_count), a->kind == OVER_PARTICLES ? "a particle" : "a bond");
 }
 
 static void dump_program(const kernel_plan *p, const family_program *q, FILE *out) {
@@ -178,8 +190,7 @@ void plan_dump_programs_ir(const kernel_plan *p, FILE *out) {
     for (int k = 0; k < programs[q]->pass_count; k++)
       for (int s = 0; s < programs[q]->passes[k].segment_count; s++) {
         const segment *a = &programs[q]->passes[k].segments[s];
-        fprintf(out, "pass %s %d, %s\n", programs[q]->name, k,
-                a->kind == OVER_NEIGHBOURS ? "neighbour by neighbour" : "particle by particle");
+        fprintf(out, "pass %s %d, %s\n", programs[q]->name, k, segment_names[a->kind]);
         dump_segment_nodes(p, a, out);
         fputc('\n', out);
       }

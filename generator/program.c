@@ -42,7 +42,10 @@ typedef struct builder {
   int *link_number; /* [link_count] among those of particles, or those of bonds */
   int link_count;
   program_links links; /* how many of either */
-  node_map resolved, mirrored, linked, reduced, sided, level;
+  ir_node
+      *shared; /* [shared_count] values that the ends of a bond share, numbered from first_shared */
+  int shared_count, first_shared, round;
+  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted;
 } builder;
 
 static bool is_leaf(const ir *g, ir_node n) {
@@ -77,13 +80,19 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
   return changed ? made_again(b->g, n, operand) : n;
 }
 
+/* In additions. */
+static int cost_of_operation(const ir *g, ir_node n) {
+  ir_op op = ir_operation(g, n);
+  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
+               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+  return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
+}
+
 /* What a value toward a neighbour costs when it is computed again, in additions. */
 static int cost_again(const ir *g, ir_node n, int most) {
   if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
   ir_op op = ir_operation(g, n);
-  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
-  int cost = cheap ? 1 : 10;
+  int cost = cost_of_operation(g, n);
   for (int k = 0; k < ir_arity(op) && cost < most; k++)
     cost += cost_again(g, ir_operand(g, n, k), most - cost);
   return cost;
@@ -144,6 +153,12 @@ static ir_node own_link(builder *b, ir_node n) {
                   link_name(b, link), of_particle ? ON_PARTICLE : ON_NEIGHBOUR);
 }
 
+/* What the ends of a bond exchange. */
+static const ends_input exchanged[][2] = {
+    {ENDS_U_IX, ENDS_U_JX},     {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
+    {ENDS_V_IX, ENDS_V_JX},     {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
+    {ENDS_HELD_I, ENDS_HELD_J}, {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J}};
+
 static ir_node mirror_ends(builder *b, ir_node n) {
   switch ((ends_input)ir_input_index(b->g, n)) {
   case ENDS_CLASS_CHORD_X:
@@ -153,21 +168,14 @@ static ir_node mirror_ends(builder *b, ir_node n) {
   case ENDS_CHORD_Y:
   case ENDS_CHORD_Z:
     return ir_neg(b->g, n);
-  case ENDS_HELD_I:
-    return kinematics_input(b->g, ENDS_HELD_J);
-  case ENDS_HELD_J:
-    return kinematics_input(b->g, ENDS_HELD_I);
-  case ENDS_VOLUME_I:
-    return kinematics_input(b->g, ENDS_VOLUME_J);
-  case ENDS_VOLUME_J:
-    return kinematics_input(b->g, ENDS_VOLUME_I);
-  case ENDS_MASS_I:
-    return kinematics_input(b->g, ENDS_MASS_J);
-  case ENDS_MASS_J:
-    return kinematics_input(b->g, ENDS_MASS_I);
   default:
-    return n; /* the time step; positions appear only after this */
+    break; /* the time step and lengths stay */
   }
+  for (size_t k = 0; k < sizeof exchanged / sizeof *exchanged; k++)
+    for (int end = 0; end < 2; end++)
+      if ((int)exchanged[k][end] == ir_input_index(b->g, n))
+        return kinematics_input(b->g, exchanged[k][!end]);
+  return n;
 }
 
 static ir_node mirror_quantity(builder *b, ir_node n) {
@@ -259,6 +267,216 @@ static ir_node resolve(builder *b, ir_node n) {
   return image;
 }
 
+/* --- what both ends of a bond share ----------------------------------------------------------- */
+
+/* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
+static bool is_plain(builder *b, ir_node n) {
+  int known = map_get(&b->plain, n);
+  if (known >= 0) return known != 0;
+  const ir_op op = ir_operation(b->g, n);
+  bool plain = !ir_is_reduction(op);
+  if (op == IR_INPUT) {
+    const ir_source from = ir_input_source(b->g, n);
+    plain = from == IR_FROM_FIELD || from == IR_FROM_NEIGHBOUR_FIELD || from == IR_FROM_ENDS ||
+            is_uniform(b->g, n);
+  }
+  for (int k = 0; k < ir_arity(op) && plain; k++)
+    plain = is_plain(b, ir_operand(b->g, n, k));
+  map_set(&b->plain, n, plain);
+  return plain;
+}
+
+/* The terms of a sum, or the factors of a product. */
+enum { MOST_TERMS = 24 };
+typedef struct term_list {
+  ir_node term[MOST_TERMS];
+  int sign[MOST_TERMS]; /* of a term; of a factor: -1 below the line */
+  int count;
+} term_list;
+
+static bool add_terms(const ir *g, ir_node n, bool of_sum, int sign, term_list *t) {
+  const ir_op op = ir_operation(g, n);
+  const ir_op join = of_sum ? IR_ADD : IR_MUL, part = of_sum ? IR_SUB : IR_DIV;
+  if (op == join || op == part)
+    return add_terms(g, ir_operand(g, n, 0), of_sum, sign, t) &&
+           add_terms(g, ir_operand(g, n, 1), of_sum, op == join ? sign : -sign, t);
+  if (of_sum && op == IR_NEG) return add_terms(g, ir_operand(g, n, 0), of_sum, -sign, t);
+  if (t->count == MOST_TERMS) return false;
+  t->term[t->count] = n;
+  t->sign[t->count++] = sign;
+  return true;
+}
+
+static int parity(builder *b, ir_node n);
+
+/* Takes the mirror image of term k, with that sign, out of the list. */
+static bool take_partner(builder *b, term_list *t, int k, int sign) {
+  const ir_node image = mirror(b, t->term[k]);
+  for (int other = k + 1; other < t->count; other++)
+    if (t->term[other] == image && t->sign[other] == sign) {
+      t->term[other] = t->term[--t->count];
+      t->sign[other] = t->sign[t->count];
+      return true;
+    }
+  return false;
+}
+
+/* A sum has the parity of its terms, or its terms come in pairs that the ends exchange. */
+static int parity_of_sum(builder *b, ir_node n) {
+  for (int wanted = 1; wanted >= -1; wanted -= 2) {
+    term_list t = {.count = 0};
+    if (!add_terms(b->g, n, true, 1, &t)) return 0;
+    bool all = true;
+    for (int k = 0; k < t.count && all; k++)
+      all = parity(b, t.term[k]) == wanted || take_partner(b, &t, k, wanted * t.sign[k]);
+    if (all) return wanted;
+  }
+  return 0;
+}
+
+static int parity_of_product(builder *b, ir_node n) {
+  term_list t = {.count = 0};
+  int all = 1;
+  if (!add_terms(b->g, n, false, 1, &t)) return 0;
+  for (int k = 0; k < t.count && all; k++) {
+    const int one = parity(b, t.term[k]);
+    if (one)
+      all *= one;
+    else
+      all = take_partner(b, &t, k, t.sign[k]) ? all : 0;
+  }
+  return all;
+}
+
+static int parity_of_leaf(builder *b, ir_node n) {
+  if (ir_operation(b->g, n) == IR_CONSTANT) return 1;
+  const ir_node image = mirror(b, n);
+  return image == n ? 1 : image == ir_neg(b->g, n) ? -1 : 0;
+}
+
+/* Of any other operation: even when its operands are, or when the ends exchange them. */
+static int parity_of_others(builder *b, ir_node n) {
+  const ir_op op = ir_operation(b->g, n);
+  int operand[3] = {1, 1, 1};
+  for (int k = 0; k < ir_arity(op); k++)
+    operand[k] = parity(b, ir_operand(b->g, n, k));
+  if (op == IR_NEG) return operand[0];
+  if (op == IR_ABS && operand[0]) return 1;
+  if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
+  if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
+  return mirror(b, n) == n ? 1 : 0;
+}
+
+/* 1: the value is the same from either end of the bond; -1: it changes its sign; 0: neither can be seen. For plain values;
+   rounding is left aside, since only one end will compute it. */
+static int parity(builder *b, ir_node n) {
+  int known = map_get(&b->parity, n);
+  if (known >= 0) return known - 1;
+  const ir_op op = ir_operation(b->g, n);
+  int p = 0;
+  if (is_leaf(b->g, n))
+    p = parity_of_leaf(b, n);
+  else if (op == IR_ADD || op == IR_SUB)
+    p = parity_of_sum(b, n);
+  else if (op == IR_MUL || op == IR_DIV)
+    p = parity_of_product(b, n);
+  else
+    p = parity_of_others(b, n);
+  map_set(&b->parity, n, p + 1);
+  return p;
+}
+
+/* Operations that have not been counted since `round` began. */
+static int cost_in_round(builder *b, ir_node n, int most) {
+  if (map_get(&b->counted, n) == b->round) return 0;
+  map_set(&b->counted, n, b->round);
+  for (int k = 0; k < b->shared_count; k++)
+    if (b->shared[k] == n) return 0;
+  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
+  int cost = cost_of_operation(b->g, n);
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
+    cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
+  return cost;
+}
+
+/* What a value toward a neighbour costs beyond the shared values found so far, in additions. */
+static int cost_beyond(builder *b, ir_node n, int most) {
+  b->round++;
+  return cost_in_round(b, n, most);
+}
+
+/* A store and two loads for each bond against what one end need not compute. */
+static bool is_worth_sharing(builder *b, ir_node n) {
+  enum { DEAR = 25 };
+  return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
+         !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
+}
+
+/* Whether little is left to do for a value when the part is shared. */
+static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
+  enum { CHEAP = 6 };
+  b->shared[b->shared_count++] = part;
+  const bool does = cost_beyond(b, n, CHEAP + 1) <= CHEAP;
+  b->shared_count--;
+  return does;
+}
+
+/* The part of a value that costs nearly all: shared in its place, it serves others, too. */
+static ir_node dear_part(builder *b, ir_node n) {
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
+    const ir_node part = ir_operand(b->g, n, k);
+    if (is_worth_sharing(b, part) && costs_nearly_all(b, part, n)) return dear_part(b, part);
+  }
+  return n;
+}
+
+typedef struct node_list {
+  ir_node *items;
+  int count;
+} node_list;
+
+/* The largest values that the ends could share. */
+static void find_shareable(builder *b, ir_node n, node_map *seen, node_list *found) {
+  if (map_get(seen, n) >= 0) return;
+  map_set(seen, n, 1);
+  if (is_worth_sharing(b, n) && found->count < MOST_LINKS) {
+    found->items[found->count++] = n;
+    return;
+  }
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++)
+    find_shareable(b, ir_operand(b->g, n, k), seen, found);
+}
+
+static int by_number(const void *a, const void *b) {
+  const ir_node x = *(const ir_node *)a, y = *(const ir_node *)b;
+  return (x > y) - (x < y);
+}
+
+/* Chooses b->shared: of what could be shared, operands first, what is still dear given those before. */
+static void choose_shared(builder *b, const segment_root *roots, int root_count) {
+  node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
+  node_map seen = {0};
+  for (int k = 0; k < root_count; k++)
+    find_shareable(b, roots[k].node, &seen, &found);
+  for (int k = 0; k < b->link_count; k++)
+    find_shareable(b, b->link[k], &seen, &found);
+  qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
+  b->shared = arena_alloc(b->memory, ((size_t)found.count + 1) * sizeof *b->shared);
+  for (int k = 0; k < found.count; k++)
+    if (is_worth_sharing(b, found.items[k])) {
+      const ir_node dear = dear_part(b, found.items[k]);
+      b->shared[b->shared_count++] = dear;
+    }
+  map_clear(&seen);
+  free(found.items);
+}
+
+static ir_node shared_input(builder *b, int k) {
+  const char *name = ir_name(b->g, b->shared[k]);
+  return ir_input(b->g, IR_FROM_SHARED, b->first_shared + k,
+                  name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
+}
+
 /* --- passes ----------------------------------------------------------------------------------- */
 
 /* The pass in which a value can be had: one after that of the links of neighbours that it needs. */
@@ -270,6 +488,7 @@ static int level_of(builder *b, ir_node n) {
     ir_source from = ir_operation(b->g, n) == IR_INPUT ? ir_input_source(b->g, n) : IR_SOURCE_COUNT;
     if (from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK)
       level = level_of(b, linked_node(b, n)) + 1;
+    if (from == IR_FROM_SHARED) level = 1;
   } else {
     for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
       int below = level_of(b, ir_operand(b->g, n, k));
@@ -423,8 +642,8 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   else if (ir_is_reduction(ir_operation(g, n)))
     image = slot_of(s, n);
   else if (is_of_particle(g, n))
-    image = v->kind == OVER_NEIGHBOURS || phase_of(s, n) < v->loop ? slot_of(s, n)
-                                                                   : computed_here(v, n);
+    image =
+        v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop ? slot_of(s, n) : computed_here(v, n);
   else
     image = is_worth_a_plane(s, n, v->loop) ? plane_of(s, n) : computed_here(v, n);
   map_set(&v->seen, n, image);
@@ -445,7 +664,7 @@ static void view_segment(scheduler *s, segment *a, int loop) {
 }
 
 static bool is_over_neighbours(segment_target target) {
-  return target >= TO_SUM;
+  return target >= TO_SUM && target != TO_SHARED;
 }
 
 static void drop_empty_segments(family_pass *p) {
@@ -462,19 +681,22 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
     int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
     s.loop_count = loops > s.loop_count ? loops : s.loop_count;
   }
-  pass->segment_count = 2 * s.loop_count + 1;
+  pass->segment_count = 2 * s.loop_count + 2; /* behind them that of the bonds */
   pass->segments = arena_alloc(memory, (size_t)pass->segment_count * sizeof *pass->segments);
   memset(pass->segments, 0, (size_t)pass->segment_count * sizeof *pass->segments);
   for (int k = 0; k < pass->segment_count; k++)
     pass->segments[k].kind = k % 2 ? OVER_NEIGHBOURS : OVER_PARTICLES;
+  segment *bonds = &pass->segments[pass->segment_count - 1];
+  bonds->kind = OVER_BONDS;
   for (int k = 0; k < root_count; k++) {
     int phase = phase_of(&s, roots[k].node);
-    add_root(&s,
-             is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
-                                                 : particles_after(&s, phase),
-             roots[k].node, roots[k].target, roots[k].index);
+    segment *in = roots[k].target == TO_SHARED          ? bonds
+                  : is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
+                                                        : particles_after(&s, phase);
+    add_root(&s, in, roots[k].node, roots[k].target, roots[k].index);
   }
-  for (int k = pass->segment_count - 1; k >= 0; k--)
+  view_segment(&s, bonds, 0);
+  for (int k = pass->segment_count - 2; k >= 0; k--)
     view_segment(&s, &pass->segments[k], k / 2);
   drop_empty_segments(pass);
   map_clear(&s.phase);
@@ -484,16 +706,18 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
-static void substitute_motion(builder *b, segment_root *roots, int root_count,
-                              const program_motion *motion) {
+static void substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
+                       const ir_node *to, int pair_count) {
   int count = root_count + b->link_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (int k = 0; k < root_count; k++)
     all[k] = roots[k].node;
   for (int k = 0; k < b->link_count; k++)
     all[root_count + k] = b->link[k];
-  ir_substitute(b->g, all, count, motion->from, motion->to, motion->count, all);
+  ir_substitute(b->g, all, count, from, to, pair_count, all);
   map_clear(&b->linked);
+  map_clear(&b->mirrored);
+  map_clear(&b->reduced);
   for (int k = 0; k < root_count; k++)
     roots[k].node = all[k];
   for (int k = 0; k < b->link_count; k++) {
@@ -503,10 +727,23 @@ static void substitute_motion(builder *b, segment_root *roots, int root_count,
   free(all);
 }
 
+/* Values that the ends of bonds share become inputs. */
+static void share(builder *b, segment_root *roots, int root_count) {
+  choose_shared(b, roots, root_count);
+  b->first_shared = 2 * b->links.of_bonds;
+  b->links.of_bonds += (b->shared_count + 1) / 2;
+  ir_node *inputs = must_alloc(((size_t)b->shared_count + 1) * sizeof *inputs);
+  for (int k = 0; k < b->shared_count; k++)
+    inputs[k] = shared_input(b, k);
+  substitute(b, roots, root_count, b->shared, inputs, b->shared_count);
+  free(inputs);
+}
+
 static void build_pass(builder *b, family_pass *pass, int now, const segment_root *roots,
                        int root_count) {
   pass_view v = {.b = b, .now = now};
-  segment_root *wanted = must_alloc(((size_t)root_count + MOST_LINKS) * sizeof *wanted);
+  segment_root *wanted =
+      must_alloc(((size_t)root_count + MOST_LINKS + (size_t)b->shared_count) * sizeof *wanted);
   int count = 0, links = b->link_count;
   for (int k = 0; k < root_count; k++)
     if (level_of(b, roots[k].node) == now) wanted[count++] = roots[k];
@@ -514,6 +751,8 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
     if (level_of(b, b->link[k]) == now)
       wanted[count++] = (segment_root){
           b->link[k], is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK, b->link_number[k]};
+  for (int k = 0; k < b->shared_count && now == 0; k++)
+    wanted[count++] = (segment_root){b->shared[k], TO_SHARED, b->first_shared + k};
   for (int k = 0; k < count; k++) {
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
@@ -525,7 +764,7 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
 
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   program_links *links) {
+                   bool shares, program_links *links) {
   builder b = {.g = g, .memory = memory};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
   b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);
@@ -535,8 +774,8 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
     own[k] = roots[k];
     own[k].node = resolve(&b, roots[k].node);
   }
-  substitute_motion(&b, own, root_count, motion);
-  map_clear(&b.reduced);
+  substitute(&b, own, root_count, motion->from, motion->to, motion->count);
+  if (shares) share(&b, own, root_count);
   for (int k = 0; k < root_count; k++) {
     int level = level_of(&b, own[k].node);
     last = level > last ? level : last;
@@ -554,4 +793,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.reduced);
   map_clear(&b.sided);
   map_clear(&b.level);
+  map_clear(&b.parity);
+  map_clear(&b.plain);
+  map_clear(&b.counted);
 }

@@ -1,8 +1,10 @@
 /* A law of families as programs. A program is a row of passes over all particles: what a pass needs of a neighbour's
    present step, an earlier pass has left as a link, a value of the particle. A pass is a row of segments over a chunk
-   of particles: particle by particle, or neighbour by neighbour with sums into slots. Values of particles that later
-   segments need stand in slots; values toward neighbours that are too dear to be computed twice stand in planes. The
-   emitter writes segments as loops, the interpreter runs them. */
+   of particles: particle by particle, neighbour by neighbour with sums into slots, or bond by bond, which is over the
+   neighbours whose bonds the particle owns. Values of particles that later segments need stand in slots; values toward
+   neighbours that are too dear to be computed twice stand in planes. What is dear and the same from either end of a bond
+   is computed once, by the owner in the first pass, and shared by both ends from then on. The emitter writes segments as
+   loops, the interpreter runs them. */
 #ifndef PERILAT_GENERATOR_PROGRAM_H
 #define PERILAT_GENERATOR_PROGRAM_H
 
@@ -12,7 +14,7 @@
 /* Particles that the segments of a pass take at a time. */
 enum { FAMILY_CHUNK = 64 };
 
-typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS } segment_kind;
+typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS, OVER_BONDS } segment_kind;
 
 /* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction and
    gives 0 to a field and to what is observed. */
@@ -27,6 +29,7 @@ typedef enum segment_target {
   TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
   TO_PLANE,             /* plane[index][neighbour] = node */
   TO_BOND_LINK,         /* bond_link[index][neighbour] = node */
+  TO_SHARED,            /* shared value `index` of an owned bond = node (program_shared_place) */
   TO_NEIGHBOUR_FIELD,   /* new_field[index][neighbour] = node */
   TO_NEIGHBOUR_OBSERVED /* observed[index][neighbour] = node */
 } segment_target;
@@ -61,18 +64,29 @@ typedef struct program_motion {
   int count;
 } program_motion;
 
-/* Values that passes leave to later ones: of particles, and toward each neighbour. */
+/* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the
+   latter, since only owners write them. */
 typedef struct program_links {
   int of_particles, of_bonds;
 } program_links;
+
+/* Where shared value `index` of owned bond k, of 0 .. half-1, stands: plane half*upper + k of link `link` of bonds. */
+typedef struct shared_place {
+  int link;
+  bool upper;
+} shared_place;
+static inline shared_place program_shared_place(int index) {
+  return (shared_place){index / 2, index % 2 != 0};
+}
 
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for
    x, to the bit: values of particles that go over a family are links, and so are values toward a neighbour that are dear;
    all others are evaluated again with both sides exchanged. Motion is substituted after that, since stretch and length are the same from either side. `memory` holds
-   the program; *links is raised to what it needs. */
+   the program; *links is raised to what it needs. With `share` what is the same from either end of a bond is evaluated
+   once, where that pays. */
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   program_links *links);
+                   bool share, program_links *links);
 
 #endif

@@ -1,5 +1,8 @@
-/* The sweep for laws of families: the passes of the law's step one after the other over all rows,
-   then the particles move. Passes read the fields of the beginning of the step and write new ones,
+/* The sweep for laws of families: the passes of the law's step over all rows, then the particles move.
+   A pass on a row needs the pass before on all rows in reach. Inside of a block of rows the passes
+   therefore follow each other at that distance, some rows at a time, so that what one leaves the next
+   finds in a cache; what is left of a block at its ends, where it needs rows of other blocks, is
+   done pass by pass when all blocks have come so far. Passes read the fields of the beginning of the step and write new ones,
    which take their place when the step is done; values of particles that later passes read from
    neighbours stand in links.
 

@@ -148,7 +148,8 @@ static inline size_t c_decision(const char *at) {
 static inline size_t c_comment(const char *at) {
   static const char begins[] = "/* line ";
   static const char *const whole[] = {"/* particle by particle */", "/* neighbour by neighbour */",
-                                      "/* both sides of what was expected */"};
+                                      "/* both sides of what was expected */",
+                                      "/* bond by bond, for both ends */"};
   for (size_t k = 0; k < sizeof whole / sizeof *whole; k++)
     if (strncmp(at, whole[k], strlen(whole[k])) == 0) return strlen(whole[k]);
   const size_t decision = c_decision(at);

@@ -32,26 +32,99 @@ static int loops_of(const family_pass *p) {
   return loops;
 }
 
+/* Values that the ends of a bond share; only the first pass finds them. */
+static int shared_by(const family_program *p) {
+  int count = 0;
+  for (int at = 0; at < p->pass_count; at++)
+    for (int k = 0; k < p->passes[at].segment_count; k++) {
+      const segment *a = &p->passes[at].segments[k];
+      for (int r = 0; r < a->root_count; r++) {
+        if (a->roots[r].target != TO_SHARED) continue;
+        assert_int_equal(a->kind, OVER_BONDS);
+        assert_int_equal(at, 0);
+        count++;
+      }
+    }
+  return count;
+}
+
 static void one_sum_needs_one_pass_and_one_loop(void **state) {
   (void)state;
   tested_law *t =
       open_program("", "  force state F[j] = a*stretch[j]\n  output all = sum(stretch[j])\n");
   const family_program *step = &t->plan->step, *observe = &t->plan->observe;
-  assert_int_equal(step->pass_count, 1);
-  assert_int_equal(loops_of(&step->passes[0]), 1);
+  assert_int_equal(step->pass_count,
+                   2); /* the first is over bonds: 1/length, which stretch and direction are made of */
+  assert_int_equal(shared_by(step), 1);
+  assert_int_equal(loops_of(&step->passes[0]), 0);
+  assert_int_equal(loops_of(&step->passes[1]), 1);
   assert_int_equal(observe->pass_count, 1);
   assert_int_equal(loops_of(&observe->passes[0]), 1);
-  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 0);
+  assert_int_equal(t->plan->links.of_particles, 0);
+  assert_int_equal(t->plan->links.of_bonds, 1);
+  close_law(t);
+}
+
+/* What the ends have alike, or exchange, is shared; what one end has alone is not, nor what is cheap given the rest. */
+static void ends_share_what_is_the_same_for_both(void **state) {
+  (void)state;
+  static const struct {
+    const char *lines;
+    int shared; /* besides stretch */
+  } laws[] = {
+      {"  force state F[j] = a*stretch[j] along reference\n", 0},
+      {"  force state F[j] = a*exp(w)*exp(w[j])*stretch[j] along reference\n",
+       0}, /* cheap: particle by particle */
+      {"  d[j] = (1 - w)*(1 - w[j])/(2 - w - w[j])/(1 + w*w[j])*sqrt(4 - w - w[j])\n"
+       "  force state F[j] = a*d[j]*stretch[j] along reference\n",
+       1},
+      {"  d[j] = (1 - w)*(1 - w[j])/(2 - w - w[j])/(1 + w*w[j])*sqrt(4 - w)\n"
+       "  force state F[j] = a*d[j]*stretch[j] along reference\n",
+       2}, /* what is alike in both ends' forces, and their mean */
+      {"  x[j] = stretch[j] - (p[j] + p'[j])/2\n"
+       "  force state F[j] = a*(exp(x[j]) - exp(-x[j]) + tanh(x[j])) along reference\n",
+       1},
+      {"  x[j] = stretch[j] - (p[j] + 2*p'[j])/3\n"
+       "  force state F[j] = a*(exp(x[j]) - exp(-x[j]) + tanh(x[j])) along reference\n",
+       0},
+  };
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+    char text[2000];
+    snprintf(text, sizeof text,
+             "  damage w on particle\n  state p on neighbour = 0\n%s"
+             "  w = norm(stretch)\n  p[j] = previous(p[j])\n  output seen = w + sum(p[j])\n",
+             laws[k].lines);
+    tested_law *t = open_program("", text);
+    if (shared_by(&t->plan->step) != 1 + laws[k].shared)
+      fail_msg("%d values are shared, not %d:\n%s", shared_by(&t->plan->step), 1 + laws[k].shared,
+               laws[k].lines);
+    assert_int_equal(shared_by(&t->plan->observe), 0);
+    close_law(t);
+  }
+}
+
+static void long_horizons_share_nothing(void **state) {
+  (void)state;
+  static const char *const broken = "  damage w on bond\n  w[j] = | 1 when stretch[j] >= 1 jump\n"
+                                    "         | 0 otherwise\n"
+                                    "  force state F[j] = (1 - w[j])*a*stretch[j]\n",
+                           *const whole = "  force state F[j] = a*stretch[j]\n";
+  tested_law *t = open_program("  for space\n", broken);
+  assert_int_equal(shared_by(&t->plan->step), 0);
+  assert_int_equal(t->plan->step.pass_count, 1);
+  close_law(t);
+  t = open_program("  for space\n", whole);
+  assert_int_equal(shared_by(&t->plan->step), 2);
   close_law(t);
 }
 
 static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **state) {
   (void)state;
   tested_law *t = open_program("", "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
-  assert_int_equal(t->plan->step.pass_count, 2);
-  assert_int_equal(loops_of(&t->plan->step.passes[0]), 1);
+  assert_int_equal(t->plan->step.pass_count, 3);
   assert_int_equal(loops_of(&t->plan->step.passes[1]), 1);
-  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 1);
+  assert_int_equal(loops_of(&t->plan->step.passes[2]), 1);
+  assert_int_equal(t->plan->links.of_particles, 1);
   close_law(t);
 }
 
@@ -62,23 +135,23 @@ static void a_dear_value_toward_the_neighbour_is_kept(void **state) {
                                    "  x[j] = stretch[j]/1e-3\n"
                                    "  hard[j] = exp(x[j]) - exp(-x[j]) + tanh(x[j])\n"
                                    "  force state F[j] = (1 - previous(w))*a*hard[j]\n");
-  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->step.pass_count, 3);
   assert_int_equal(t->plan->links.of_particles, 0);
-  assert_int_equal(t->plan->links.of_bonds, 1);
+  assert_int_equal(t->plan->links.of_bonds, 1 + (shared_by(&t->plan->step) + 1) / 2);
   close_law(t);
   t = open_program("", "  x[j] = stretch[j]/1e-3\n" /* the same on both sides */
                        "  force state F[j] = a*(exp(x[j]) - exp(-x[j]) + tanh(x[j]))\n");
-  assert_int_equal(t->plan->step.pass_count, 1);
-  assert_int_equal(t->plan->links.of_bonds, 0);
+  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->links.of_bonds, (shared_by(&t->plan->step) + 1) / 2);
   close_law(t);
 }
 
-static void neighbours_of_neighbours_need_a_third(void **state) {
+static void neighbours_of_neighbours_need_a_pass_more(void **state) {
   (void)state;
   tested_law *t = open_program("", "  near = sum(stretch[j])\n  far = sum(near[j])\n"
                                    "  force state F[j] = a*stretch[j] + b*far\n");
-  assert_int_equal(t->plan->step.pass_count, 3);
-  assert_int_equal(t->plan->links.of_particles + t->plan->links.of_bonds, 2);
+  assert_int_equal(t->plan->step.pass_count, 4);
+  assert_int_equal(t->plan->links.of_particles, 2);
   close_law(t);
 }
 
@@ -687,9 +760,11 @@ static void densities_of_force_count_both_volumes(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(one_sum_needs_one_pass_and_one_loop),
+      cmocka_unit_test(ends_share_what_is_the_same_for_both),
+      cmocka_unit_test(long_horizons_share_nothing),
       cmocka_unit_test(a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass),
       cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
-      cmocka_unit_test(neighbours_of_neighbours_need_a_third),
+      cmocka_unit_test(neighbours_of_neighbours_need_a_pass_more),
       cmocka_unit_test(dear_values_are_kept_in_planes),
       cmocka_unit_test(planes_are_few),
       cmocka_unit_test(reductions_are_those_of_the_family),
