@@ -287,13 +287,12 @@ static value uniform_stretch(checker *ck, expr *e) {
 static value hooke(checker *ck, expr *e) {
   value v = tensor_argument(ck, e);
   value E = check_number(ck, operand(e, 1)), nu = check_number(ck, operand(e, 2));
-  if (v.broken || v.unknown || E.broken || E.unknown || nu.broken || nu.unknown)
-    return v.broken || E.broken || nu.broken ? BROKEN : v;
   if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_TENSOR, "a strain") ||
       !expect(ck, operand(e, 1), E, dimension_of("Pa"), SHAPE_SCALAR, "Young's modulus") ||
       !expect(ck, operand(e, 2), nu, DIMENSIONLESS, SHAPE_SCALAR, "Poisson's ratio"))
     return BROKEN;
   v.place = place_join(ck, v.place, place_join(ck, E.place, nu.place));
+  v.unknown = false;
   return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
 }
 

@@ -110,7 +110,7 @@ void sweep_turn(sweep *w);
  * bad. */
 bool sweep_step(sweep *w);
 
-/* Forces of the present state by a law of families, with all threads offered; nothing moves, and the fields stay. */
+/* Forces of the present state by a law of families, a thread for each block; nothing moves, and the fields stay. */
 void sweep_find_forces(sweep *w);
 
 /* Observing is done in stages too: forces on the particles in the present state, and the energies;
