@@ -186,6 +186,10 @@ rows *scattered_rows(const scattered *from, long *crowded) {
     free_builder(&b);
     return NULL;
   }
+  if (b.pairs.count > INT32_MAX) { /* bonds have 32-bit numbers */
+    free_builder(&b);
+    return NULL;
+  }
   numbered_bond *bonds = must_alloc(((size_t)b.pairs.count + 1) * sizeof *bonds);
   const int numbers = bond_numbers(&b.pairs, b.points.count, bonds);
   const bool good = new_rows(&b, numbers);
