@@ -21,8 +21,7 @@ typedef struct point_pair {
 typedef struct point_pairs {
   point_pair *items; /* each pair once; malloc'ed */
   long count;
-  long
-      crowded; /* a point with more neighbours than there may be, or -1; the pairs then are not complete */
+  long crowded; /* a point with more neighbours than there may be: pairs are missing then; or -1 */
 } point_pairs;
 
 /* i and j are a pair when either is among the `nearest` nearest of the other. */
