@@ -1,5 +1,5 @@
 /* Which of many points are near each other: the nearest ones of each, or all within a distance. Points are sorted into cells
-   of about two, so that the cost grows as their number does as long as they are spread with some evenness.
+   of about two, so that the cost grows as their number does as long as nearly all are spread with some evenness.
 
    What is found does not depend on the order of the points: of points equally far away those with the smaller x, then y, then
    z are nearer. */

@@ -268,9 +268,11 @@ static bool any_open(const diagram *g) {
 static double farthest(const diagram *g) {
   double square = 0;
   for (int c = 0; c < g->points->dimensions; c++) {
-    const double low = fmin(g->bins.lower[c], g->solid->lower[c]);
-    const double high =
-        fmax(g->bins.lower[c] + g->bins.count[c] * g->bins.size, g->solid->upper[c]);
+    double low = g->solid->lower[c], high = g->solid->upper[c];
+    for (long k = 0; k < g->points->count; k++) {
+      low = fmin(low, g->points->at[c][k]);
+      high = fmax(high, g->points->at[c][k]);
+    }
     square += (high - low) * (high - low);
   }
   return sqrt(square);
