@@ -277,23 +277,22 @@ static value toward_neighbours(checker *ck, expr *e, const char *unit_in, const 
 }
 
 static value uniform_force(checker *ck, expr *e) {
-  return toward_neighbours(ck, e, "Pa", "N", "the argument of `uniform_force`, a stress");
+  return toward_neighbours(ck, e, "Pa", "N", "what `uniform_force` takes");
 }
 
 static value uniform_stretch(checker *ck, expr *e) {
-  return toward_neighbours(ck, e, "1", "1", "the argument of `uniform_stretch`, a strain");
+  return toward_neighbours(ck, e, "1", "1", "what `uniform_stretch` takes");
 }
 
 static value hooke(checker *ck, expr *e) {
   value v = tensor_argument(ck, e);
   value E = check_number(ck, operand(e, 1)), nu = check_number(ck, operand(e, 2));
-  if (v.broken || v.unknown || E.broken || E.unknown || nu.broken || nu.unknown)
-    return v.broken || E.broken || nu.broken ? BROKEN : v;
-  if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_TENSOR, "a strain") ||
+  if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_TENSOR, "the strain in `hooke`") ||
       !expect(ck, operand(e, 1), E, dimension_of("Pa"), SHAPE_SCALAR, "Young's modulus") ||
       !expect(ck, operand(e, 2), nu, DIMENSIONLESS, SHAPE_SCALAR, "Poisson's ratio"))
     return BROKEN;
   v.place = place_join(ck, v.place, place_join(ck, E.place, nu.place));
+  v.unknown = false;
   return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
 }
 

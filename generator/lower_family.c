@@ -279,8 +279,8 @@ ir_node lower_resolved(lowering *c) {
                   ON_PARTICLE);
 }
 
-/* eps = G sum(w n S) with weight w = 1 on lattices and w = s on irregular families, n = (x^2, y^2, x y), in space (x^2, y^2, z^2, x y, y z, x z), and
-   engineering shear. */
+/* eps = G sum(w n S) with the weight w = 1 on lattices and w = s on irregular families, n = (x^2, y^2, x y), in space
+   (x^2, y^2, z^2, x y, y z, x z), and engineering shear. */
 static components fit(lowering *c, const expr *e, ir_node stretch) {
   ir *g = c->graph;
   static const int plane_parts[] = {TENSOR_XX, TENSOR_YY, TENSOR_XY};

@@ -7,16 +7,37 @@
 
 #define MOST_BOXES_PER_POINT 4.0
 
+static int ascending(const void *p, const void *q) {
+  const double a = *(const double *)p, b = *(const double *)q;
+  return (a > b) - (a < b);
+}
+
+/* Samples tell where nearly all are; a tenth more at either end loses no one who belongs to them. */
+void bins_range(const double *x, long count, double range[2]) {
+  enum { SAMPLES = 1024, FAR = SAMPLES / 256 };
+  double sample[SAMPLES], low = INFINITY, high = -INFINITY;
+  for (long k = 0; k < count; k++) {
+    low = fmin(low, x[k]);
+    high = fmax(high, x[k]);
+  }
+  range[0] = count > 0 ? low : 0;
+  range[1] = count > 0 ? high : 0;
+  if (count <= SAMPLES) return;
+  for (long k = 0; k < SAMPLES; k++)
+    sample[k] = x[k * (count / SAMPLES)];
+  qsort(sample, SAMPLES, sizeof *sample, ascending);
+  const double within = sample[SAMPLES - 1 - FAR] - sample[FAR];
+  if (!(within > 0)) return;
+  range[0] = fmax(low, sample[FAR] - 0.1 * within);
+  range[1] = fmin(high, sample[SAMPLES - 1 - FAR] + 0.1 * within);
+}
+
 static void find_box(bins *b, double *const at[3], long points, double size) {
-  double extent[3] = {0, 0, 0}, boxes;
+  double extent[3] = {0, 0, 0}, range[2], boxes;
   for (int c = 0; c < b->dimensions; c++) {
-    double low = INFINITY, high = -INFINITY;
-    for (long k = 0; k < points; k++) {
-      low = fmin(low, at[c][k]);
-      high = fmax(high, at[c][k]);
-    }
-    b->lower[c] = points ? low : 0;
-    extent[c] = points ? high - low : 0;
+    bins_range(at[c], points, range);
+    b->lower[c] = range[0];
+    extent[c] = range[1] - range[0];
   }
   for (b->size = size;; b->size *= 1.25) {
     boxes = 1;

@@ -13,8 +13,12 @@ typedef struct bins {
   int64_t *point;        /* numbers of the points, box by box; ascending in each */
 } bins;
 
+/* From where to where coordinates reach, so that boxes of equal size have about as many each: of more than a thousand, the few
+   that lie far from all others may be left out. */
+void bins_range(const double *x, long count, double range[2]);
+
 /* Boxes of about that size; larger ones where there would be many more boxes than points. at[2] is NULL in the plane.
-   Points are finite. */
+   Points are finite; those out of all boxes are in the nearest. */
 void bins_begin(bins *b, int dimensions, double *const at[3], long points, double size);
 void bins_end(bins *b);
 /* The box that holds the place, or the nearest. */

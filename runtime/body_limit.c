@@ -52,20 +52,6 @@ static void body_free(body *b) {
   free(b->probe);
 }
 
-/* Of the present state; nothing moves, and the fields stay as they are. */
-static void find_forces(sweep *w) {
-#pragma omp parallel num_threads(w->block_count) if (w->block_count > 1)
-  {
-    const unsigned environment = sweep_enter();
-    for (int stage = 0; stage < w->law->step.pass_count; stage++) {
-#pragma omp for schedule(static)
-      for (int block = 0; block < w->block_count; block++)
-        w->engine.step(w, stage, block);
-    }
-    sweep_leave(environment);
-  }
-}
-
 static double largest_of(const double *x, long count) {
   double most = 0;
   for (long k = 0; k < count; k++)
@@ -97,7 +83,7 @@ static void add_product(body *b, bool rates, double factor, const double *x, dou
   const double size = (rates ? tiny_rate : tiny) * b->sweep->lattice->spacing / largest;
   for (int side = 1; side >= -1; side -= 2) {
     move(b, moving, side * size);
-    find_forces(b->sweep);
+    sweep_find_forces(b->sweep);
     add_forces(b, -side * factor / (2 * size), result);
   }
   move(b, moving, 0);

@@ -12,8 +12,8 @@ typedef struct numbered_bond {
   int32_t number; /* from 0 */
 } numbered_bond;
 
-/* bonds[pairs->count], in the order of the pairs. No particle may have more than 128 bonds. Returns how many numbers there are:
-   at most half of the bonds of the particle that has most, rounded up. */
+/* bonds[pairs->count], in the order of the pairs. There are fewer than 2^31, and no particle has more than 128. Returns how
+   many numbers there are: at most half of the bonds of the particle that has most, rounded up. */
 int bond_numbers(const point_pairs *pairs, long particles, numbered_bond *bonds);
 
 #endif

@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-typedef struct
-    cell_part { /* points, and in space faces as closed runs of points, counter-clockwise from outside */
+/* Points, and in space faces as closed runs of points, counter-clockwise from outside. */
+typedef struct cell_part {
   int point_count, face_count, corner_count;
   int point_room, face_room, corner_room;
   double (*point)[3]; /* in the plane in their order, counter-clockwise, [2] = 0 */

@@ -564,8 +564,8 @@ void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *it
 static void check_can_be_filled(deck_reader *r, const deck_item *item, const deck_shape *shape,
                                 const char *lattice, bool is_body) {
   const int l = deck_find_lattice(r->k, lattice);
-  const unsigned empty = is_body ? A_POINT | A_SEGMENT | A_FACE : A_POINT;
-  if (l < 0 || r->k->lattices[l].item.faulty || !(1u << shape->kind & empty) ||
+  const bool suits = is_body ? shape_has_size(shape) : shape->kind != SHAPE_POINT;
+  if (suits || l < 0 || r->k->lattices[l].item.faulty ||
       !deck_lattice_is_irregular(&r->k->lattices[l]))
     return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),

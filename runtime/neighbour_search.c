@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "runtime/bins.h"
 
 enum { POINTS_A_CELL = 2, MOST_CELLS = 1 << 20 /* along an axis */ };
 
@@ -38,7 +39,8 @@ static void point_at(const point_cloud *c, long p, double at[3]) {
     at[a] = a < c->dimensions ? c->at[a][p] : 0;
 }
 
-/* A side with so many points a cell of the box around them; axes along which the box is thinner than a cell do not count. */
+/* A side with so many points a cell of the box around nearly all of them (others are in the cells at its sides); axes along
+   which the box is thinner than a cell do not count. */
 static void choose_cells(cell_grid *g, const double extent[3]) {
   bool flat[3] = {false, false, false};
   g->side = 0;
@@ -60,23 +62,15 @@ static void choose_cells(cell_grid *g, const double extent[3]) {
   }
 }
 
-static void find_box(const point_cloud *c, double low[3], double extent[3]) {
-  for (int a = 0; a < 3; a++) {
-    double high = -INFINITY;
-    low[a] = a < c->dimensions ? INFINITY : 0;
-    for (long p = 0; a < c->dimensions && p < c->count; p++) {
-      low[a] = fmin(low[a], c->at[a][p]);
-      high = fmax(high, c->at[a][p]);
-    }
-    extent[a] = fmax(high - low[a], 0);
-  }
-}
-
 static cell_grid grid_new(const point_cloud *c) {
   cell_grid g = {.points = c};
-  double extent[3], at[3];
+  double extent[3] = {0, 0, 0}, range[2], at[3];
   long cell[3];
-  find_box(c, g.low, extent);
+  for (int a = 0; a < c->dimensions; a++) {
+    bins_range(c->at[a], c->count, range);
+    g.low[a] = range[0];
+    extent[a] = range[1] - range[0];
+  }
   choose_cells(&g, extent);
   const long all = g.cells[0] * g.cells[1] * g.cells[2];
   g.first = must_calloc((size_t)all + 2, sizeof *g.first);

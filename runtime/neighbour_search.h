@@ -1,5 +1,5 @@
 /* Which of many points are near each other: the nearest ones of each, or all within a distance. Points are sorted into cells
-   of about two, so that the cost grows as their number does as long as they are spread with some evenness.
+   of about two, so that the cost grows as their number does as long as nearly all are spread with some evenness.
 
    What is found does not depend on the order of the points: of points equally far away those with the smaller x, then y, then
    z are nearer. */
@@ -21,8 +21,7 @@ typedef struct point_pair {
 typedef struct point_pairs {
   point_pair *items; /* each pair once; malloc'ed */
   long count;
-  long
-      crowded; /* a point with more neighbours than there may be, or -1; the pairs then are not complete */
+  long crowded; /* a point with more neighbours than there may be: pairs are missing then; or -1 */
 } point_pairs;
 
 /* i and j are a pair when either is among the `nearest` nearest of the other. */

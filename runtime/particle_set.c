@@ -98,15 +98,16 @@ static bool has_body(const maker *m) {
 
 /* --- blue noise ------------------------------------------------------------------------------- */
 
-/* Boxes of the bodies' common box are kept while it is filled: their number is what memory must bear. */
+/* Boxes of the bodies' common box are kept while it is filled: their number is what memory must bear. Across a thin body there
+   is one. */
 static bool few_enough(const maker *m, double measure) {
   double box = 1;
   for (int c = 0; c < m->solid.dimensions; c++)
-    box *= m->solid.upper[c] - m->solid.lower[c];
+    box *= fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
   return !site_too_many(m->lattice, box / measure, m->d);
 }
 
-static bool report_nothing_left(const maker *m, double measure) {
+static void report_nothing_left(const maker *m, double measure) {
   const bool plane = m->solid.dimensions == 2;
   diag_report(m->d, DIAG_EMPTY_REGION, m->lattice->item.where,
               m->size > 0 ? "the bodies of lattice '%s' are smaller than one particle"
@@ -116,7 +117,6 @@ static bool report_nothing_left(const maker *m, double measure) {
     diag_hint(m->d, "they have %.6g %s, a particle has %.6g: check the units of lengths",
               m->size * (plane ? 1e6 : 1e9), plane ? "mm^2" : "mm^3",
               measure * (plane ? 1e6 : 1e9));
-  return false;
 }
 
 static particle_set *fill(maker *m) {
@@ -125,7 +125,10 @@ static particle_set *fill(maker *m) {
   if (!has_body(m) || !few_enough(m, measure)) return NULL;
   m->size = solid_size(&m->solid, SIZE_TOLERANCE(dimensions));
   const long count = lround(m->size / measure);
-  if (count < 1 && !report_nothing_left(m, measure)) return NULL;
+  if (count < 1) {
+    report_nothing_left(m, measure);
+    return NULL;
+  }
   particle_set *set = set_new(dimensions, count);
   set->spacing = m->lattice->spacing;
   voronoi_points p = points_of(set);
@@ -172,7 +175,7 @@ static void keep(particle_table *t, long from, long to) {
   for (int c = 0; c < t->dimensions; c++)
     t->at[c][to] = t->at[c][from];
   if (t->volume) t->volume[to] = t->volume[from];
-  if (t->begin) t->begin[to] = t->begin[from];
+  t->begin[to] = t->begin[from];
 }
 
 /* What is outside of the bodies and in notches goes. Without bodies all are meant. */
@@ -200,6 +203,14 @@ static bool leave_out(const maker *m, particle_table *t, double spacing) {
                           : "the notches remove every particle of `%s` from lattice '%s'",
               m->lattice->file, m->lattice->name);
   if (outside > 0) diag_hint(m->d, "check the units in the file's first line: without one it is m");
+  return false;
+}
+
+static bool can_be_stored(const maker *m, const particle_table *t) {
+  if ((double)t->count <= SITE_MOST) return true;
+  diag_report(m->d, DIAG_OUT_OF_BOUNDS, deck_where(&m->lattice->item, "file"),
+              "`%s` holds %ld particles; the most that can be stored are %.0e", m->lattice->file,
+              t->count, SITE_MOST);
   return false;
 }
 
@@ -278,8 +289,11 @@ static particle_set *take_table(maker *m, particle_table *t, double spacing) {
 static particle_set *from_table(maker *m, particle_table *t) {
   if (!has_bounds(m, t)) return NULL;
   m->size = solid_size(&m->solid, SIZE_TOLERANCE(t->dimensions));
-  if (m->solid.body_count > 0 && m->size <= 0 && !report_nothing_left(m, 0)) return NULL;
-  if (!leave_out(m, t, spacing_of(m, t))) return NULL;
+  if (m->solid.body_count > 0 && m->size <= 0) {
+    report_nothing_left(m, 0);
+    return NULL;
+  }
+  if (!leave_out(m, t, spacing_of(m, t)) || !can_be_stored(m, t)) return NULL;
   const double spacing = spacing_of(m, t);
   return all_apart(m, t, spacing) ? take_table(m, t, spacing) : NULL;
 }

@@ -14,9 +14,8 @@ typedef struct particle_set {
   long count;
   double *at[3];  /* [count] m; at[2] is NULL in the plane */
   double *volume; /* [count] m^2 of the plane or m^3 of space */
-  double
-      spacing; /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck, or
-                     from the mean volume */
+  /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck, or from the mean volume */
+  double spacing;
 } particle_set;
 
 /* Particles of the deck's lattice of that number, whose kind deck_lattice_is_irregular. The same bits for the same deck,

@@ -1,6 +1,7 @@
 #include "runtime/particle_table.h"
 
 #include <errno.h>
+#include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -87,7 +88,7 @@ span particle_table_where(particle_table *t, long particle, span otherwise, diag
 const char *particle_table_name(const particle_table *t, long particle,
                                 char text[PARTICLE_TABLE_TEXT]) {
   if (!t->text) {
-    snprintf(text, PARTICLE_TABLE_TEXT, "particle %ld of the result", particle);
+    snprintf(text, PARTICLE_TABLE_TEXT, "particle %" PRIu32 " of the result", t->begin[particle]);
     return text;
   }
   long line = 1;
@@ -341,6 +342,9 @@ static bool read_text(reader *r) {
 
 static bool take_places(const reader *r, const double *reference, int dimensions) {
   particle_table *t = r->table;
+  t->begin = must_alloc(((size_t)t->count + 1) * sizeof *t->begin);
+  for (long k = 0; k < t->count; k++)
+    t->begin[k] = (uint32_t)k;
   for (int c = 0; c < dimensions; c++) {
     t->at[c] = must_alloc(((size_t)t->count + 1) * sizeof(double));
     for (long k = 0; k < t->count; k++) {

@@ -18,8 +18,9 @@ typedef struct particle_table {
   char *path;     /* owned */
   char *text;     /* of a table; NULL for a result */
   size_t length;
-  uint32_t *begin; /* [count] where each particle's line begins in the text */
-  int source;      /* of the text among the sources once a message has pointed into it, or -1 */
+  uint32_t
+      *begin; /* [count] where the particle's line begins in the text; in a result its number */
+  int source; /* of the text among the sources once a message has pointed into it, or -1 */
 } particle_table;
 
 /* Takes over `path` (malloc'ed). `thickness` (m) turns volumes in the plane into areas. False with diagnostics, at `where`

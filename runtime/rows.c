@@ -426,8 +426,8 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
       .weight = w->weight[k]};
 }
 
-static uint64_t mix(uint64_t hash, const void *data,
-                    size_t size) { /* FNV-1a, eight bytes at a time */
+/* FNV-1a, eight bytes at a time. */
+static uint64_t mix(uint64_t hash, const void *data, size_t size) {
   const unsigned char *at = data;
   for (size_t k = 0; k + sizeof hash <= size; k += sizeof hash) {
     uint64_t word;

@@ -187,6 +187,10 @@ rows *scattered_rows(const scattered *from, long *crowded) {
     free_builder(&b);
     return NULL;
   }
+  if (b.pairs.count > INT32_MAX) { /* bonds have 32-bit numbers */
+    free_builder(&b);
+    return NULL;
+  }
   numbered_bond *bonds = must_alloc(((size_t)b.pairs.count + 1) * sizeof *bonds);
   const int numbers = bond_numbers(&b.pairs, b.points.count, bonds);
   const bool good = new_rows(&b, numbers);
@@ -239,9 +243,11 @@ static void cut_notch(rows *w, const deck_notch *notch, const deck_lattice *l, d
 
 static bool has_bonds(const rows *w, const deck_lattice *l, diagnostics *d) {
   if (w->bond_count > 0) return true;
-  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, l->horizon > 0 ? "horizon" : "spacing"),
+  const char *key = l->horizon > 0 ? "horizon" : l->file ? "file" : "spacing";
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, key),
               "no two particles of lattice '%s' are neighbours", l->name);
   diag_hint(d, l->horizon > 0 ? "a larger `horizon` reaches more particles"
+               : l->file      ? "a single particle has none"
                               : "a single particle has none; a smaller `spacing` makes more");
   return false;
 }

@@ -19,7 +19,8 @@ typedef struct scattered {
 } scattered;
 
 /* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than that, all of mean size. NULL
-   when there is not enough memory (*crowded < 0), or when particle *crowded has more neighbours than there can be. */
+   when there is not enough memory or are 2^31 bonds or more (*crowded < 0), or when particle *crowded has more neighbours than
+   there can be. */
 rows *scattered_rows(const scattered *from, long *crowded);
 
 /* The particles of a deck's lattice, whose kind deck_lattice_is_irregular; notches that cut bonds have cut them. NULL with

@@ -292,7 +292,8 @@ static double box_distance(const deck_shape *shape, const double *p) {
   return both(both(d[0], d[1]), d[2]);
 }
 
-double shape_distance(const deck_shape *shape, const double *p) {
+/* Distance to the shape's surface, negative inside. */
+static double shape_distance(const deck_shape *shape, const double *p) {
   shape_outline s;
   double from[3];
   switch (shape->kind) {
@@ -449,6 +450,10 @@ static void cut_by_shape(cuts *c, const double *a, const double *b, const deck_s
   case SHAPE_FACE:
     return;
   }
+}
+
+bool shape_has_size(const deck_shape *shape) {
+  return shape->kind != SHAPE_POINT && shape->kind != SHAPE_SEGMENT && shape->kind != SHAPE_FACE;
 }
 
 int shape_cuts(const deck_shape *shape, const double *a, const double *b, double *u, int most) {

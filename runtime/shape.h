@@ -14,8 +14,8 @@ void shape_box(const deck_shape *shape, double lower[3], double upper[3]);
    their own outlines. */
 bool shape_contains(const deck_shape *shape, const double *point, double tolerance);
 
-/* Distance to the shape's surface, negative inside; near edges of its surface, inside, perhaps less than that. */
-double shape_distance(const deck_shape *shape, const double *point);
+/* True for all kinds with an area or a volume; false for points, segments and faces. */
+bool shape_has_size(const deck_shape *shape);
 
 /* Places u, 0 < u < 1 from a to b, where the chord may enter or leave the shape, in no order: between two that follow
    each other it is inside or outside throughout. At most `most` are written; returns how many there are. */

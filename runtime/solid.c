@@ -29,10 +29,6 @@ static void widen(solid *s, const deck_shape *shape) {
   }
 }
 
-static bool has_measure(const deck_shape *shape) {
-  return shape->kind != SHAPE_POINT && shape->kind != SHAPE_SEGMENT && shape->kind != SHAPE_FACE;
-}
-
 void solid_begin(solid *s, const deck *k, int lattice) {
   const deck_lattice *l = &k->lattices[lattice];
   *s = (solid){.dimensions = deck_lattice_dimensions(l),
@@ -41,12 +37,12 @@ void solid_begin(solid *s, const deck *k, int lattice) {
                .lower = {INFINITY, INFINITY, INFINITY},
                .upper = {-INFINITY, -INFINITY, -INFINITY}};
   for (int n = 0; n < k->body_count; n++) {
-    if (!site_of_lattice(l, k->bodys[n].lattice) || !has_measure(&k->bodys[n].shape)) continue;
+    if (!site_of_lattice(l, k->bodys[n].lattice) || !shape_has_size(&k->bodys[n].shape)) continue;
     s->bodies[s->body_count++] = &k->bodys[n].shape;
     widen(s, &k->bodys[n].shape);
   }
   for (int n = 0; n < k->notch_count; n++)
-    if (site_of_lattice(l, k->notchs[n].lattice) && has_measure(&k->notchs[n].shape))
+    if (site_of_lattice(l, k->notchs[n].lattice) && shape_has_size(&k->notchs[n].shape))
       s->notches[s->notch_count++] = &k->notchs[n].shape;
 }
 

@@ -40,8 +40,8 @@ cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const doub
 /* True when some of the straight line a-b lies in the solid; both lie in the cell that was filled last. */
 bool solid_meets(solid_desk *w, const double a[3], const double b[3]);
 
-/* m^2 or m^3 of the whole, as solid_fill finds it in the box of the bodies, in space in some dozens of boxes: there to about a
-   thousandth where surfaces are round. */
+/* m^2 or m^3 of the whole, as solid_fill finds it in the box of the bodies, halved into 512 boxes and more where shapes crowd;
+   in space to about a thousandth where surfaces are round. */
 double solid_size(const solid *s, double tolerance);
 
 #endif

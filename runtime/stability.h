@@ -1,6 +1,7 @@
 /* Largest stable time step of a law on a perfect infinite lattice, from its waves (waves.h). The
    force constants of laws of bonds come from the law's own tangent (stiffness and rate terms),
-   translations and rotations together; those of laws of families from its step (stencil.h). On lists the body as it stands is looked at (body_limit.h). */
+   translations and rotations together; those of laws of families from its step (stencil.h). On lists the
+   body as it stands is looked at (body_limit.h). */
 #ifndef PERILAT_RUNTIME_STABILITY_H
 #define PERILAT_RUNTIME_STABILITY_H
 

@@ -314,7 +314,7 @@ bool sweep_step(sweep *w) {
 }
 
 void sweep_find_forces(sweep *w) {
-#pragma omp parallel
+#pragma omp parallel num_threads(w->block_count) if (w->block_count > 1)
   {
     const unsigned environment = sweep_enter();
     for (int stage = 0; stage < w->law->step.pass_count; stage++) {

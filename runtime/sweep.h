@@ -50,8 +50,8 @@ struct sweep {
   double time_step; /* s */
   double decay;     /* factor of mass damping on the velocities in the coming step; 1: none */
   double push[3];   /* m/s that gravity adds to the velocities in the coming step */
-  double push_work
-      [3]; /* J s/m: work of gravity over the velocity after the coming step, of a particle of mean mass */
+  /* J s/m: work of gravity over the velocity after the coming step, of a particle of mean mass */
+  double push_work[3];
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
   int dimensions, dof;
@@ -110,7 +110,7 @@ void sweep_turn(sweep *w);
  * bad. */
 bool sweep_step(sweep *w);
 
-/* Forces of the present state by a law of families, with all threads offered; nothing moves, and the fields stay. */
+/* Forces of the present state by a law of families, a thread for each block; nothing moves, and the fields stay. */
 void sweep_find_forces(sweep *w);
 
 /* Observing is done in stages too: forces on the particles in the present state, and the energies;

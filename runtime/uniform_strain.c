@@ -10,8 +10,8 @@
 
 enum { MOST_STRAINS = 6 };
 
-static const double strain_size =
-    1e-7; /* small against any strain that a law makes a difference at */
+/* Small against any strain that a law makes a difference at. */
+static const double strain_size = 1e-7;
 static const double nominal_step = 1e-9; /* s; what a step is to a law at rest */
 
 /* Components of a symmetric tensor: those of the plane, or of space, shear last. */

@@ -8,8 +8,8 @@
 #include "runtime/bins.h"
 
 #define FIRST_REACH 2.5 /* spacings: half the side of the box that a cell begins with */
-enum { FEW = 48 };
-#define BOX_SIZE 1.0 /* spacings: of the boxes that points are sorted into */
+#define BOX_SIZE    1.0 /* spacings: of the boxes that points are sorted into */
+enum { FEW = 48 };      /* points: no more than these are sorted by insertion */
 
 /* --- boxes around a box, nearest first -------------------------------------------------------- */
 
@@ -268,9 +268,11 @@ static bool any_open(const diagram *g) {
 static double farthest(const diagram *g) {
   double square = 0;
   for (int c = 0; c < g->points->dimensions; c++) {
-    const double low = fmin(g->bins.lower[c], g->solid->lower[c]);
-    const double high =
-        fmax(g->bins.lower[c] + g->bins.count[c] * g->bins.size, g->solid->upper[c]);
+    double low = g->solid->lower[c], high = g->solid->upper[c];
+    for (long k = 0; k < g->points->count; k++) {
+      low = fmin(low, g->points->at[c][k]);
+      high = fmax(high, g->points->at[c][k]);
+    }
     square += (high - low) * (high - low);
   }
   return sqrt(square);
@@ -320,7 +322,7 @@ static long near_partner(const voronoi_points *p, const bins *b, long k, double 
 
 bool voronoi_too_near(const voronoi_points *p, double distance, long pair[2]) {
   bins b;
-  bins_begin(&b, p->dimensions, p->at, p->count, fmax(distance, p->spacing));
+  bins_begin(&b, p->dimensions, p->at, p->count, distance);
   pair[1] = -1;
   for (pair[0] = 0; pair[0] < p->count; pair[0]++) {
     pair[1] = near_partner(p, &b, pair[0], distance);

@@ -22,7 +22,7 @@ typedef struct voronoi_points {
 void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, double *volume,
                      double *const centroid[3]);
 
-/* The first pair of points, by the number of the first, that are less than `distance` apart. False when there is none. */
+/* The first pair of points, by the number of the first, that are less than `distance` > 0 apart. False when there is none. */
 bool voronoi_too_near(const voronoi_points *p, double distance, long pair[2]);
 
 #endif

@@ -97,6 +97,44 @@ static void finds_what_stands_far_apart(void **state) {
   points_free(&p);
 }
 
+/* Three of very many stand so far away that the others are as one point. Among these they change nothing. */
+static void stragglers_do_not_matter(void **state) {
+  (void)state;
+  enum { CROWD = 2000, ALL = CROWD + 3, NEAREST = 7 };
+  for (int dimensions = 2; dimensions <= 3; dimensions++) {
+    test_points p = points_drawn(dimensions, ALL, boxes[0], 41);
+    for (int a = 0; a < dimensions; a++) {
+      p.at[a][CROWD] = 1e20 * (a + 1);
+      p.at[a][CROWD + 1] = -3e7;
+      p.at[a][CROWD + 2] = 5 - 2 * a;
+    }
+    point_cloud crowd = p.cloud;
+    crowd.count = CROWD;
+    point_pairs few = pairs_of_nearest(&crowd, NEAREST, ANY);
+    point_pairs all = pairs_of_nearest(&p.cloud, NEAREST, ANY);
+    points_sort(&few);
+    points_sort(&all);
+    long at = 0, far = 0;
+    for (long m = 0; m < all.count; m++) {
+      if (all.items[m].j < CROWD) {
+        assert_true(at < few.count);
+        assert_memory_equal(&all.items[m], &few.items[at++], sizeof *few.items);
+        continue;
+      }
+      assert_true(is_among_nearest(&p.cloud, all.items[m].j, all.items[m].i, NEAREST) ||
+                  is_among_nearest(&p.cloud, all.items[m].i, all.items[m].j, NEAREST));
+      far++;
+    }
+    assert_int_equal(at, few.count);
+    assert_true(far >= 3 * NEAREST - 3);
+    free(few.items);
+    free(all.items);
+    check_within(&p.cloud, 0.05);
+    check_within(&p.cloud, 7);
+    points_free(&p);
+  }
+}
+
 static void small_sets_are_served(void **state) {
   (void)state;
   for (long count = 0; count < 4; count++) {
@@ -194,6 +232,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(agrees_with_all_against_all),
       cmocka_unit_test(finds_what_stands_far_apart),
+      cmocka_unit_test(stragglers_do_not_matter),
       cmocka_unit_test(small_sets_are_served),
       cmocka_unit_test(ties_do_not_depend_on_numbers),
       cmocka_unit_test(shells_of_a_lattice),

@@ -304,6 +304,8 @@ static void impossible_sets_are_refused(void **state) {
       {PLANE,
        BODY "'disc' centre = 0, 0 radius = 0.1 /\n" BODY "'disc' centre = 1, 0 radius = '0.1 mm' /",
        "empty-region", "contains no particle"},
+      {PLANE, BODY "'rectangle' corner = 0, 0 size = 1e12, 1e-12 /", "out-of-bounds",
+       "can be stored"},
       {TINY, BODY "'rectangle' corner = 0, 0 size = 1, 1 /", "out-of-bounds", "can be stored"},
       {"kind = 'particles' file = '/nowhere/at/all.csv' thickness = 1", "", "file", "cannot read"},
       {"kind = 'particles' file = '/' thickness = 1", "", "file", "it is a folder"},
@@ -335,20 +337,33 @@ static void bodies_may_hold_none(void **state) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
-static void results_are_read_back(void **state) {
-  (void)state;
+static const char *put_result(const double reference[2 * PARTICLES]) {
   h5_quiet();
   const char *path = put_file("small.h5", "");
   char error[512];
   double u[2 * PARTICLES], omega[BONDS];
   const double *values[2] = {u, omega}, time[1] = {0};
-  const result_header header = small_header(path);
+  result_header header = small_header(path);
+  header.reference = reference;
   result *r = result_open(&header, -1, error, sizeof error);
   assert_non_null(r);
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, values, error, sizeof error));
   assert_true(result_finish(r, 1, 1, time, 1, NULL, 0, false, error, sizeof error));
   result_close(r);
+  return path;
+}
+
+static void remove_result(const char *path) {
+  char beside[300];
+  unlink(path);
+  snprintf(beside, sizeof beside, "%.*s.xdmf", (int)strlen(path) - 3, path);
+  unlink(beside);
+}
+
+static void results_are_read_back(void **state) {
+  (void)state;
+  const char *path = put_result(small_reference);
   bench b;
   begin_table(&b, path, "thickness = '500 mm'", "");
   particle_set *set = make(&b);
@@ -368,10 +383,22 @@ static void results_are_read_back(void **state) {
   assert_null(particle_set_make(b.deck, 0, &b.d));
   assert_int_equal(b.d.items[0].code, DIAG_FILE);
   end(&b, NULL);
-  unlink(path);
-  char beside[300];
-  snprintf(beside, sizeof beside, "%.*s.xdmf", (int)strlen(path) - 3, path);
-  unlink(beside);
+  remove_result(path);
+}
+
+/* The first particle is left out, the others stand on one place: they are named as the result numbers them. */
+static void particles_of_results_keep_their_names(void **state) {
+  (void)state;
+  const double places[2 * PARTICLES] = {9, 9, 0.5, 0.5, 0.5, 0.5};
+  const char *path = put_result(places);
+  bench b;
+  begin_table(&b, path, "thickness = 1", BODY "'rectangle' corner = 0, 0 size = 1, 1 /");
+  assert_null(particle_set_make(b.deck, 0, &b.d));
+  const diagnostic *said = &b.d.items[b.d.count - 1];
+  assert_int_equal(said->code, DIAG_CONFLICT);
+  assert_non_null(strstr(said->message, "particle 1 of the result and particle 2 of the result"));
+  end(&b, NULL);
+  remove_result(path);
 }
 
 /* --- any text --------------------------------------------------------------------------------- */
@@ -433,6 +460,7 @@ int main(void) {
                                      cmocka_unit_test(impossible_sets_are_refused),
                                      cmocka_unit_test(bodies_may_hold_none),
                                      cmocka_unit_test(results_are_read_back),
+                                     cmocka_unit_test(particles_of_results_keep_their_names),
                                      cmocka_unit_test(any_table_is_a_set_or_a_message)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -375,6 +375,21 @@ static void cells_reach_across_gaps(void **state) {
   end(b);
 }
 
+/* Thousands at one end of the bar, and two far from them. */
+static void cells_of_stragglers_are_whole(void **state) {
+  (void)state;
+  bench *b = begin(2, 0.002);
+  add_body(b, (deck_shape){.kind = SHAPE_RECTANGLE, .size = {10, 0.1}});
+  solid_begin(&b->solid, &b->deck, 0);
+  for (int k = 0; k < 3000; k++)
+    add_point(b, uniform(b, 0, 0.1), uniform(b, 0, 0.1), 0);
+  add_point(b, 6, 0.05, 0);
+  add_point(b, 9, 0.05, 0);
+  assert_true(fabs(measure(b, 1e-10) - 1) < 1e-12);
+  assert_true(fabs(b->volume[3001] - 0.1 * 2.5) < 1e-12);
+  end(b);
+}
+
 static void the_nearest_pair_is_found(void **state) {
   (void)state;
   bench *b = begin(3, 0.1);
@@ -413,10 +428,14 @@ static void threads_do_not_matter(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
-      cmocka_unit_test(cells_of_lattices_are_known), cmocka_unit_test(a_cell_may_have_many_sides),
-      cmocka_unit_test(volumes_add_up_to_the_body),  cmocka_unit_test(cells_hold_what_is_nearest),
-      cmocka_unit_test(centroids_balance),           cmocka_unit_test(cells_reach_across_gaps),
-      cmocka_unit_test(the_nearest_pair_is_found),   cmocka_unit_test(threads_do_not_matter)};
+  const struct CMUnitTest tests[] = {cmocka_unit_test(cells_of_lattices_are_known),
+                                     cmocka_unit_test(a_cell_may_have_many_sides),
+                                     cmocka_unit_test(volumes_add_up_to_the_body),
+                                     cmocka_unit_test(cells_hold_what_is_nearest),
+                                     cmocka_unit_test(centroids_balance),
+                                     cmocka_unit_test(cells_reach_across_gaps),
+                                     cmocka_unit_test(cells_of_stragglers_are_whole),
+                                     cmocka_unit_test(the_nearest_pair_is_found),
+                                     cmocka_unit_test(threads_do_not_matter)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
