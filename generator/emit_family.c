@@ -317,14 +317,26 @@ static void write_neighbours(emitter *e, const segment *a) {
 
 /* --- passes ----------------------------------------------------------------------------------- */
 
+/* Particles at a time. Long chunks read the planes of large families in long pieces; what a pass keeps between its segments
+   should stay in the first cache. */
+static int chunk_of(const family_pass *p) {
+  enum { LONGEST = 512, KEPT = 16384 }; /* B */
+  int chunk = LONGEST;
+  if (p->plane_count > 0) return FAMILY_CHUNK;
+  while (chunk > FAMILY_CHUNK && p->slot_count * chunk * (int)sizeof(double) > KEPT)
+    chunk /= 2;
+  return chunk;
+}
+
 static void write_pass(emitter *e, const family_program *q, int number) {
   const family_pass *p = &q->passes[number];
   c_text_add(
       e->out,
       "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
+      "  enum { CHUNK = %d };\n"
       "  const long half = family->neighbours / 2;\n"
       "  (void)law, (void)uniforms, (void)half;\n",
-      q->name, number);
+      q->name, number, chunk_of(p));
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double slot_%d[CHUNK];\n", k);
   for (int k = 0; k < p->plane_count; k++)
@@ -355,8 +367,7 @@ static void write_program(emitter *e, const family_program *q) {
 }
 
 void emit_programs(emitter *e) {
-  c_text_add(e->out, "enum { CHUNK = %d, UNIFORMS = %d };\n\n", FAMILY_CHUNK,
-             e->plan->uniform_count);
+  c_text_add(e->out, "enum { UNIFORMS = %d };\n\n", e->plan->uniform_count);
   write_program(e, &e->plan->step);
   write_program(e, &e->plan->observe);
 }

@@ -11,7 +11,7 @@
 #include "dsl/arena.h"
 #include "generator/ir.h"
 
-/* Particles that the segments of a pass take at a time. */
+/* Particles that the segments of a pass take at a time on the interpreter; in C it may be more (emit_family.c). */
 enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS, OVER_BONDS } segment_kind;

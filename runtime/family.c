@@ -92,20 +92,35 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
   return run;
 }
 
-static void run_row(const sweep *w, pl_family_function pass, int block, int row) {
+/* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
+   long row, with absent sites in between. */
+static int end_of_alike(const sweep *w, int row, int last) {
+  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
+  int end = row + 1;
+  while (end < last && w->count[row] > 0 && w->count[end] > 0 && kind[end] == kind[row])
+    end++;
+  return end;
+}
+
+/* Rows first .. last-1. */
+static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
   double *force[3];
-  if (w->count[row] == 0) return;
-  pl_family run = run_of(w, &own(w)->blocks[block], row);
-  for (int d = 0; d < w->dof; d++)
-    force[d] = w->force[d] + sweep_start(w, row);
-  run.force = force;
-  pass(w->law, own(w)->uniforms, &run);
+  for (int row = first, end; row < last; row = end) {
+    end = end_of_alike(w, row, last);
+    if (w->count[row] == 0) continue;
+    const long start = sweep_start(w, row);
+    pl_family run = run_of(w, &own(w)->blocks[block], row);
+    run.count = sweep_start(w, end - 1) + w->count[end - 1] - start;
+    for (int d = 0; d < w->dof; d++)
+      force[d] = w->force[d] + start;
+    run.force = force;
+    pass(w->law, own(w)->uniforms, &run);
+  }
 }
 
 static void run_pass(const sweep *w, const pl_program *program, int pass, int block) {
   const sweep_block *b = &w->blocks[block];
-  for (int row = b->first; row < b->last; row++)
-    run_row(w, program->pass[pass], block, row);
+  run_rows(w, program->pass[pass], block, b->first, b->last);
 }
 
 /* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs the pass before on all
@@ -125,16 +140,20 @@ static int least(int a, int b) {
 /* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
    leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {
-  enum { ROWS_AT_A_TIME = 16 };
+  enum {
+    ROWS_AT_A_TIME = 16,
+    FARTHEST = 100
+  }; /* rows between passes that a cache may still hold */
+  const int at_a_time = own(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
   const int passes = program->pass_count;
   for (int p = 0; p < passes; p++)
     inner_rows(w, block, p, &next[p], &last[p]);
   while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
+    int end = least(next[0] + at_a_time, last[0]);
     for (int p = 0; p < passes; p++) {
-      for (; next[p] < end; next[p]++)
-        run_row(w, program->pass[p], block, next[p]);
+      run_rows(w, program->pass[p], block, next[p], end);
+      next[p] = end > next[p] ? end : next[p];
       if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - own(w)->reach;
     }
   }
@@ -145,8 +164,8 @@ static void run_outer(const sweep *w, const pl_program *program, int pass, int b
   const sweep_block *b = &w->blocks[block];
   int first, last;
   inner_rows(w, block, pass, &first, &last);
-  for (int row = b->first; row < b->last; row++)
-    if (row < first || row >= last) run_row(w, program->pass[pass], block, row);
+  run_rows(w, program->pass[pass], block, b->first, first);
+  run_rows(w, program->pass[pass], block, last, b->last);
 }
 
 /* Stages of a program: the inner rows, then what is left for each pass after the first. */
