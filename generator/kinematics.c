@@ -119,13 +119,11 @@ static ir_node elongation(ir *g, const bond_kinematics *k, ir_node growth) {
   return ir_add(g, rough, ir_mul(g, missing, half));
 }
 
-/* Divisions are what such loops spend their time on: where the chord is uniform there is none. */
-bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
+/* Divisions are what such loops spend their time on: here there is none. */
+bond_kinematics kinematics_bond(ir *g, bool rotations) {
   bond_kinematics k = {0};
-  vector chord = uniform_chord ? inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)
-                               : inputs(g, ENDS_CHORD_X, ENDS_CHORD_Y);
-  k.s = uniform_chord ? ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY)
-                      : named(g, ir_make(g, IR_SQRT, dot(g, chord, chord), IR_NONE, IR_NONE), "s");
+  vector chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y);
+  k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   vector d =
       difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
   vector now = sum(g, chord, d);

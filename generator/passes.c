@@ -10,7 +10,7 @@
 #include "generator/rewrite.h"
 
 static const char *const pass_names[PASS_COUNT] = {
-#define X(pass, member, topology, task) [pass] = #member,
+#define X(pass, member, task) [pass] = #member,
     STRIP_PASSES(X)
 #undef X
         [PASS_STATES] = "states",
@@ -24,14 +24,14 @@ typedef struct planner {
   lowered_law frozen; /* as lowered */
 } planner;
 
-/* One law seen on one topology: everything in terms of what particles have. */
-typedef struct topology {
+/* The law in terms of what particles have. */
+typedef struct seen_law {
   bond_kinematics k;
   lowered_law step;
   ir_node stored;     /* J, with the fields at hand */
   ir_node rate_power; /* W, with the fields at hand; IR_NONE */
   ir_node *outputs;   /* with the fields at hand */
-} topology;
+} seen_law;
 
 /* --- substitution ----------------------------------------------------------------------------- */
 
@@ -73,7 +73,7 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
   free(all);
 }
 
-/* --- topologies ------------------------------------------------------------------------------- */
+/* --- the law on particles --------------------------------------------------------------------- */
 
 /* Parameters that differ from bond to bond, and the values that a strip brings. */
 static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
@@ -86,8 +86,7 @@ static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
 }
 
 /* Law-level inputs and the kinematics that take their place. */
-static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, ir_node *from,
-                           ir_node *to) {
+static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_node *to) {
   const ir_node values[PL_STATE_INPUTS] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
                                            k->length};
   int pairs = 0;
@@ -96,22 +95,18 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, 
     from[pairs] = lower_quantity(g, law_motion[q]);
     to[pairs++] = values[q];
   }
-  if (!uniform_chord) {
-    from[pairs] = lower_quantity(g, QUANTITY_S);
-    to[pairs++] = k->s;
-  }
   return pairs;
 }
 
-static topology see_topology(planner *p, bool uniform_chord) {
+static seen_law see_law(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
-  topology t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, uniform_chord)};
-  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->varying_count);
+  seen_law t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR)};
+  const size_t most = (size_t)(PL_STATE_INPUTS + p->plan->varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
-  int pairs = kinematic_pairs(g, &t.k, uniform_chord, from, to);
+  int pairs = kinematic_pairs(g, &t.k, from, to);
   pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
   t.step = p->step;
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
@@ -130,7 +125,7 @@ static topology see_topology(planner *p, bool uniform_chord) {
 }
 
 /* The same node with the new fields in place of those at hand. */
-static ir_node with_new_fields(planner *p, const topology *t, ir_node n) {
+static ir_node with_new_fields(planner *p, const seen_law *t, ir_node n) {
   ir *g = p->plan->graph;
   int fields = p->plan->law->fields.count;
   ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
@@ -156,7 +151,7 @@ static void write_root(pass *a, ir_node node, pass_target target, int index) {
   a->roots[a->root_count++] = (pass_root){node, target, index};
 }
 
-static void plan_step(planner *p, const topology *t, pass_kind kind) {
+static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
   bond_forces f = kinematics_forces(p->plan->graph, &t->k, t->step.N, t->step.M_i, t->step.M_j);
@@ -170,7 +165,7 @@ static void plan_step(planner *p, const topology *t, pass_kind kind) {
 /* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
    with the new ones, both at the present deformation. Lost to rate terms: their power over the
    step. */
-static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
+static void plan_ledger(planner *p, const seen_law *t, pass_kind kind) {
   ir *g = p->plan->graph;
   plan_step(p, t, kind);
   pass *a = &p->plan->passes[kind];
@@ -184,7 +179,7 @@ static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
   write_root(a, rate_lost, TO_DISSIPATED_RATE, 0);
 }
 
-static void plan_observe(planner *p, const topology *t, pass_kind kind) {
+static void plan_observe(planner *p, const seen_law *t, pass_kind kind) {
   int outputs = p->plan->law->outputs.count;
   pass *a = begin_pass(p->plan, kind, 1 + outputs);
   write_root(a, t->stored, TO_OBSERVED, 0);
@@ -344,11 +339,10 @@ kernel_plan *plan_begin(const law *l) {
 static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
   if (!lower_both(&p, d)) return false;
-  static void (*const plan_strip[])(planner *, const topology *, pass_kind) = {
+  static void (*const plan_strip[])(planner *, const seen_law *, pass_kind) = {
       [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
-  topology rows = see_topology(&p, true), list = see_topology(&p, false);
-#define X(pass, member, topology, task)                                                            \
-  plan_strip[task](&p, (topology) == STRIP_LIST ? &list : &rows, pass);
+  const seen_law seen = see_law(&p);
+#define X(pass, member, task) plan_strip[task](&p, &seen, pass);
   STRIP_PASSES(X)
 #undef X
   lowered_law bare = unprotected_step(&p);
