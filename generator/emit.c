@@ -92,6 +92,7 @@ static bool is_inline(const emitter *e, ir_node n) {
   case IR_ADD:
   case IR_SUB:
   case IR_MUL:
+  case IR_FMA:
   case IR_NEG:
   case IR_ABS:
     return true;

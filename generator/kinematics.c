@@ -109,14 +109,12 @@ static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
   k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
 }
 
-/* L - s is as good as L; a step of Newton's on L^2 - s^2 makes it as good as the displacements are,
-   and needs no division. */
-static ir_node elongation(ir *g, const bond_kinematics *k, ir_node growth) {
-  ir_node rough = ir_sub(g, k->length, k->s);
-  ir_node twice_s = ir_mul(g, ir_constant(g, 2), k->s);
-  ir_node missing = ir_sub(g, growth, ir_mul(g, rough, ir_add(g, rough, twice_s)));
-  ir_node half = ir_mul(g, ir_constant(g, 0.5), k->per_length);
-  return ir_add(g, rough, ir_mul(g, missing, half));
+/* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s). With L - s, which is
+   as good as L, for the small e on the right the left one is as good as the displacements are, and needs no division. */
+static ir_node stretch_of(ir *g, const bond_kinematics *k, ir_node growth) {
+  const ir_node rough = ir_sub(g, k->length, k->s), square = ir_mul(g, rough, rough);
+  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, k->s, k->s));
+  return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
 /* Divisions are what such loops spend their time on: here there is none. */
@@ -134,7 +132,7 @@ bond_kinematics kinematics_bond(ir *g, bool rotations) {
   k.length = named(g, ir_mul(g, square, k.per_length), "length");
   ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
   ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
-  k.stretch = named(g, ir_mul(g, elongation(g, &k, growth), per_s), "stretch");
+  k.stretch = named(g, stretch_of(g, &k, growth), "stretch");
   vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");

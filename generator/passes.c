@@ -26,7 +26,7 @@ typedef struct planner {
 
 /* The law in terms of what particles have. */
 typedef struct seen_law {
-  bond_kinematics k;
+  bond_forces force;
   lowered_law step;
   ir_node stored;     /* J, with the fields at hand */
   ir_node rate_power; /* W, with the fields at hand; IR_NONE */
@@ -98,29 +98,55 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_no
   return pairs;
 }
 
+/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all passes compute a value
+   in the same way, and energies with old and new fields differ in no bit where the fields do not differ. */
+static void fuse(planner *p, seen_law *t) {
+  const law *l = p->plan->law;
+  const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
+  ir_node *all = must_alloc((size_t)most * sizeof *all);
+  ir_node *const single[] = {&t->force.f_x,      &t->force.f_y, &t->force.moment_i,
+                             &t->force.moment_j, &t->stored,    &t->rate_power};
+  const int singles = (int)(sizeof single / sizeof *single);
+  int count = 0;
+  for (int k = 0; k < singles; k++)
+    all[count++] = *single[k];
+  for (int k = 0; k < l->fields.count; k++)
+    all[count++] = t->step.fields[k];
+  for (int k = 0; k < l->outputs.count; k++)
+    all[count++] = t->outputs[k];
+  rewrite_fused(p->plan->graph, all, count, all);
+  for (int k = 0; k < singles; k++)
+    *single[k] = all[k];
+  memcpy(t->step.fields, all + singles, (size_t)l->fields.count * sizeof *all);
+  memcpy(t->outputs, all + singles + l->fields.count, (size_t)l->outputs.count * sizeof *all);
+  free(all);
+}
+
 static seen_law see_law(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
-  seen_law t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR)};
+  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR);
+  seen_law t = {.step = p->step};
   const size_t most = (size_t)(PL_STATE_INPUTS + p->plan->varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
-  int pairs = kinematic_pairs(g, &t.k, from, to);
+  int pairs = kinematic_pairs(g, &k, from, to);
   pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
-  t.step = p->step;
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
   substitute_law(g, l, &t.step, from, to, pairs);
+  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
 
   t.stored = lower_stored_energy(l, g, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(l, g, &p->frozen, t.k.theta_rate_i, t.k.theta_rate_j);
+  t.rate_power = lower_rate_power(l, g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
   rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
   substitute(g, t.outputs, l->outputs.count, from, to, pairs);
+  fuse(p, &t);
   return t;
 }
 
@@ -154,8 +180,7 @@ static void write_root(pass *a, ir_node node, pass_target target, int index) {
 static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
-  bond_forces f = kinematics_forces(p->plan->graph, &t->k, t->step.N, t->step.M_i, t->step.M_j);
-  ir_node planes[] = {f.f_x, f.f_y, f.moment_i, f.moment_j};
+  const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j};
   for (int k = 0; k < p->plan->force_planes; k++)
     write_root(a, planes[k], TO_FORCE, k);
   for (int k = 0; k < fields; k++)

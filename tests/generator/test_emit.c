@@ -197,9 +197,10 @@ static int make_expressions(ir *g, ir_node x, ir_node y, ir_node *out, int room)
   int n = 0, count = 0;
   for (int op = IR_ADD; op < IR_FAMILY_SUM; op++) {
     int arity = ir_arity((ir_op)op);
-    first[n++] = arity == 1   ? un(g, (ir_op)op, x)
-                 : arity == 2 ? bi(g, (ir_op)op, x, y)
-                              : ir_make(g, IR_SELECT, bi(g, IR_LT, x, y), x, y);
+    first[n++] = arity == 1     ? un(g, (ir_op)op, x)
+                 : arity == 2   ? bi(g, (ir_op)op, x, y)
+                 : op == IR_FMA ? ir_make(g, IR_FMA, x, y, x)
+                                : ir_make(g, IR_SELECT, bi(g, IR_LT, x, y), x, y);
   }
   for (int a = 0; a < n; a++)
     for (int op = IR_ADD; op < IR_FAMILY_SUM && count + 2 < room; op++) {
@@ -209,7 +210,10 @@ static int make_expressions(ir *g, ir_node x, ir_node y, ir_node *out, int room)
       else if (op == IR_SELECT)
         out[count++] = ir_make(g, IR_SELECT, bi(g, IR_LE, first[a], b), b,
                                ir_make(g, IR_SELECT, bi(g, IR_LT, y, b), x, first[a]));
-      else {
+      else if (op == IR_FMA) {
+        out[count++] = ir_make(g, IR_FMA, first[a], b, x);
+        out[count++] = ir_make(g, IR_FMA, y, un(g, IR_NEG, b), first[a]);
+      } else {
         out[count++] = bi(g, (ir_op)op, first[a], b);
         out[count++] = bi(g, (ir_op)op, b, first[a]);
       }
