@@ -50,6 +50,8 @@ static bool read_run_options(option_reader reader, const char *program, int argc
       o->no_physics = true;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       o->overrides[o->override_count++].text = value;
+    else if (reader != CHECK && option_flag(argv, &at, "--profile"))
+      o->profile = true;
     else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
       bad = bad || !read_threads(value, &o->threads);
     else if (reader == CHECK && (value = option_value(argc, argv, &at, "--dump", &bad)))

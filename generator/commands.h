@@ -32,6 +32,7 @@
 #define OPTIONS_OF_SOLVERS(X, command)                                                                                 \
   X(command, "--threads", "N", "number of threads; the results are the same for any number")                           \
   X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                                      \
+  X(command, "--profile", "", "say at the end where the time of the run went and what limits it")                      \
   X(command, "--set", "group.key=value", "set a value of the deck, `group.key=` its default; may be given several times")
 #define COMMAND_OPTIONS(X)                                                                                             \
   X(new, "--kind", "central|micropolar", "whether ends of bonds can turn (micropolar) or not (central, the default)")  \

@@ -118,6 +118,8 @@ static ir_node of_operation(ir *g, const term *t) {
     return difference(g, t->da, t->db);
   case IR_MUL:
     return of_product(g, t);
+  case IR_FMA:
+    return sum(g, of_product(g, t), t->dc);
   case IR_DIV:
     return of_quotient(g, t);
   case IR_NEG:

@@ -92,6 +92,7 @@ static bool is_inline(const emitter *e, ir_node n) {
   case IR_ADD:
   case IR_SUB:
   case IR_MUL:
+  case IR_FMA:
   case IR_NEG:
   case IR_ABS:
     return true;
@@ -133,37 +134,12 @@ static void choose_names(emitter *e) {
 }
 
 void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count) {
-  static const char *const own[] = {"law",
-                                    "uniforms",
-                                    "strip",
-                                    "count",
-                                    "q",
-                                    "flags",
-                                    "i",
-                                    "j",
-                                    "in",
-                                    "out",
-                                    "bonds",
-                                    "present",
-                                    "lower",
-                                    "upper",
-                                    "low_open",
-                                    "high_open",
-                                    "parameters",
-                                    "present_bit",
-                                    "protected_bit",
-                                    "family",
-                                    "first",
-                                    "lanes",
-                                    "k",
-                                    "to",
-                                    "half",
-                                    "back",
-                                    "last",
-                                    "kept",
-                                    "unusual",
-                                    "owned",
-                                    "owner"};
+  static const char *const own[] = {
+      "law",        "uniforms",    "strip",         "count",  "q",     "flags",    "in",
+      "out",        "bonds",       "present",       "lower",  "upper", "low_open", "high_open",
+      "parameters", "present_bit", "protected_bit", "family", "first", "lanes",    "k",
+      "to",         "half",        "back",          "last",   "kept",  "unusual",  "owned",
+      "owner"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -421,13 +397,8 @@ static void write_loop_input(emitter *e, ir_node n) {
     c_text_add(e->out, "(flags[q] & protected_bit) != 0 ? 1.0 : 0.0");
   else if (e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD)
     c_text_add(e->out, "at_field_%d[q]", ir_input_index(e->graph, n));
-  else if (ir_input_source(e->graph, n) == IR_FROM_BOND_PARAMETER)
+  else
     c_text_add(e->out, "at_%s[q]", e->name[n]);
-  else {
-    const ends_owner owner = e->scope == IN_LIST ? origin_of(e, n)->owner : OF_BOND;
-    const char *index = owner == OF_I ? "i[q]" : owner == OF_J ? "j[q]" : "q";
-    c_text_add(e->out, "at_%s[%s]", e->name[n], index);
-  }
 }
 
 static void write_body_input(emitter *e, ir_node n) {
@@ -649,7 +620,7 @@ static void write_entry(emitter *e, const char *key) {
                        "const pl_law *perilat_kernel(void) { return &the_law; }\n");
     return;
   }
-#define X(pass, member, topology, task) c_text_add(e->out, "    .%s = %s,\n", #member, #member);
+#define X(pass, member, task) c_text_add(e->out, "    .%s = %s,\n", #member, #member);
   STRIP_PASSES(X)
 #undef X
   c_text_add(e->out, "    .states = states,\n    .tangent = tangent,\n};\n\n"
@@ -701,8 +672,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
     free(e.uniform_of);
     return out.text;
   }
-#define X(pass, member, topology, task)                                                            \
-  emit_strip_pass(&e, (topology) == STRIP_LIST ? IN_LIST : IN_ROWS, &p->passes[pass], #member);
+#define X(pass, member, task) emit_strip_pass(&e, &p->passes[pass], #member);
   STRIP_PASSES(X)
 #undef X
   write_states_pass(&e, &p->passes[PASS_STATES], "states", PL_STATE_RESULTS + p->law->fields.count);

@@ -11,7 +11,6 @@ typedef enum scope_kind {
   IN_PREPARE,
   IN_BOUNDS,
   IN_ROWS,
-  IN_LIST,
   IN_STATES,
   IN_PARTICLES, /* segments of families */
   IN_NEIGHBOURS
@@ -63,7 +62,7 @@ void emit_find_uniforms(emitter *e);
 
 /* --- emit_strip.c --- */
 
-void emit_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name);
+void emit_strip_pass(emitter *e, const pass *p, const char *name);
 
 /* --- emit_family.c --- */
 

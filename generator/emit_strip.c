@@ -81,22 +81,17 @@ static void write_store(emitter *e, const pass_root *r) {
 /* `present` has 32 bits on purpose: gcc then takes twice as many bonds at a time, as pairs of
    vectors, and the divisions of one hide those of the other (5 to 40 % faster on all laws tried).
  */
-static void write_strip_head(emitter *e, const char *name, bool rare, bool cut) {
+static void write_strip_head(emitter *e, const char *name, bool cut) {
   const int bits = cut ? 64 : 32;
-  c_text_add(
-      e->out,
-      "%sstatic void %s(const pl_law *law, const double *uniforms, const pl_strip *strip) {\n"
-      "  (void)law, (void)uniforms;\n"
-      "  const long count = %s;\n"
-      "  const int64_t *restrict flags = strip->flags;\n"
-      "  const int%d_t present_bit = (int%d_t)PL_PRESENT(strip->direction);\n",
-      rare ? "PL_RARE " : "", name,
-      e->scope == IN_LIST ? "strip->count" : "strip->count / PL_LANES * PL_LANES", bits, bits);
+  c_text_add(e->out,
+             "static void %s(const pl_law *law, const double *uniforms, const pl_strip *strip) {\n"
+             "  (void)law, (void)uniforms;\n"
+             "  const long count = strip->count / PL_LANES * PL_LANES;\n"
+             "  const int64_t *restrict flags = strip->flags;\n"
+             "  const int%d_t present_bit = (int%d_t)PL_PRESENT(strip->direction);\n",
+             name, bits, bits);
   if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
     c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
-  if (e->scope == IN_LIST)
-    c_text_add(e->out, "  const int32_t *restrict i = strip->i, *restrict j = strip->j;\n"
-                       "  (void)i, (void)j;\n");
   if (!e->root_count) c_text_add(e->out, "  (void)flags, (void)present_bit;\n");
   emit_inputs_before_loop(e);
   write_output_arrays(e);
@@ -207,13 +202,13 @@ static void describe(const stages *s, c_text *out) {
   if (s->conditions) c_text_add(out, ", %d choices expected", s->conditions);
 }
 
-void emit_strip_pass(emitter *e, scope_kind scope, const pass *p, const char *name) {
-  emit_open_roots(e, scope, p->roots, p->root_count);
+void emit_strip_pass(emitter *e, const pass *p, const char *name) {
+  emit_open_roots(e, IN_ROWS, p->roots, p->root_count);
   stages *s = stages_plan(e, e->plan->cutting);
   c_text_add(e->out, "/* ");
   describe(s, e->out);
   c_text_add(e->out, " */\n");
-  write_strip_head(e, name, p->kind == PASS_LIST_OBSERVE, s->count > 1);
+  write_strip_head(e, name, s->count > 1);
   if (s->count > 1)
     write_stages(e, s);
   else
@@ -237,17 +232,17 @@ static void describe_stages(const emitter *e, const stages *s, FILE *out) {
 }
 
 void emit_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out) {
-  static const signed char scopes[PASS_COUNT] = {
-#define X(pass, member, topology, task) [pass] = (topology) == STRIP_LIST ? IN_LIST : IN_ROWS,
+  static const bool over_strips[PASS_COUNT] = {
+#define X(pass, member, task) [pass] = true,
       STRIP_PASSES(X)
 #undef X
   };
   const pass *a = &p->passes[kind];
-  if (!scopes[kind] || !a->root_count) return;
+  if (!over_strips[kind] || !a->root_count) return;
   c_text text = {0};
   emitter e = {.plan = p, .graph = p->graph, .out = &text, .node_count = ir_count(p->graph)};
   emit_find_uniforms(&e);
-  emit_open_roots(&e, (scope_kind)scopes[kind], a->roots, a->root_count);
+  emit_open_roots(&e, IN_ROWS, a->roots, a->root_count);
   stages *s = stages_plan(&e, p->cutting);
   describe(s, &text);
   fprintf(out, "  loops  %s\n", text.text);

@@ -12,7 +12,7 @@
 /* X(code, value of the operation on a, b, c) */
 /* clang-format off */
 #define EVALUATIONS(X)                                                                             \
-  X(ADD, a + b) X(SUB, a - b) X(MUL, a * b) X(DIV, a / b) X(NEG, -a)                               \
+  X(ADD, a + b) X(SUB, a - b) X(MUL, a * b) X(DIV, a / b) X(NEG, -a) X(FMA, pl_fma(a, b, c))       \
   X(ABS, pl_abs(a)) X(SQRT, pl_sqrt(a)) X(MIN, pl_min(a, b)) X(MAX, pl_max(a, b))                  \
   X(SIGN, pl_sign(a)) X(INVERSE_ROOT, pl_inverse_root(a)) X(EXP, pl_exp(a)) X(LOG, pl_log(a)) X(POW, pl_pow(a, b))                     \
   X(CBRT, pl_cbrt(a)) X(SIN, pl_sin(a)) X(COS, pl_cos(a)) X(TAN, pl_tan(a)) X(TANH, pl_tanh(a))    \

@@ -29,7 +29,7 @@ typedef struct worker {
   const double *quantities[QUANTITY_COUNT];
   const double *ends[ENDS_COUNT];
   unsigned char quantity_stride[QUANTITY_COUNT];
-  double gathered[ENDS_COUNT][LANES];
+  double is_protected[LANES];
   double *results; /* [most roots][LANES] */
   double **result; /* [most roots] */
 } worker;
@@ -126,27 +126,20 @@ static const double *strip_array(const pl_strip *s, const ends_origin *o) {
     return o->owner == OF_I ? s->displacement_i[o->component] : s->displacement_j[o->component];
   case FROM_VELOCITY:
     return o->owner == OF_I ? s->velocity_i[o->component] : s->velocity_j[o->component];
-  case FROM_CHORD:
-    return s->chord[o->component];
   default:
     return NULL;
   }
 }
 
-/* Arrays that a topology or a law without rotations does not have stay NULL: no root needs them. */
-static void point_at_ends(worker *w, const pl_strip *s, bool list, long first, int count) {
+/* Arrays that strips, or a law without rotations, do not have stay NULL: no root needs them. */
+static void point_at_ends(worker *w, const pl_strip *s, long first, int count) {
   for (int k = 0; k < ENDS_COUNT; k++) {
-    const ends_origin *o = &ends_origins[k];
-    const double *array = strip_array(s, o);
-    bool gather = list && array && (o->owner == OF_I || o->owner == OF_J);
-    w->ends[k] = gather ? w->gathered[k] : array ? array + first : NULL;
-    const int32_t *index = o->owner == OF_I ? s->i : s->j;
-    for (int lane = 0; gather && lane < count; lane++)
-      w->gathered[k][lane] = array[index[first + lane]];
+    const double *array = strip_array(s, &ends_origins[k]);
+    w->ends[k] = array ? array + first : NULL;
   }
   for (int lane = 0; lane < count; lane++)
-    w->gathered[ENDS_PROTECTED][lane] = s->flags[first + lane] & PL_PROTECTED(s->direction) ? 1 : 0;
-  w->ends[ENDS_PROTECTED] = w->gathered[ENDS_PROTECTED];
+    w->is_protected[lane] = s->flags[first + lane] & PL_PROTECTED(s->direction) ? 1 : 0;
+  w->ends[ENDS_PROTECTED] = w->is_protected;
   w->ends[ENDS_TIME_STEP] = &s->time_step;
 }
 
@@ -177,14 +170,14 @@ static void store(const pass_root *r, const pl_strip *s, long first, int count,
 }
 
 static void run_strip(const pl_law *kernel, const double *uniforms, const pl_strip *s,
-                      pass_kind kind, bool list) {
+                      pass_kind kind) {
   const interpreted *p = kernel->context;
   const pass *a = &p->plan->passes[kind];
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
   for (long first = 0; first < s->count; first += LANES) {
     int count = s->count - first < LANES ? (int)(s->count - first) : LANES;
-    point_at_ends(w, s, list, first, count);
+    point_at_ends(w, s, first, count);
     for (int k = 0; k < p->plan->law->fields.count; k++)
       w->fields[k] = s->field[k] + first;
     for (int k = 0; k < p->plan->varying_count; k++)
@@ -197,9 +190,9 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
   give_back(w);
 }
 
-#define X(pass, member, topology, task)                                                            \
+#define X(pass, member, task)                                                                      \
   static void run_##member(const pl_law *kernel, const double *uniforms, const pl_strip *s) {      \
-    run_strip(kernel, uniforms, s, pass, (topology) == STRIP_LIST);                                \
+    run_strip(kernel, uniforms, s, pass);                                                          \
   }
 STRIP_PASSES(X)
 #undef X
@@ -366,7 +359,7 @@ static void describe(interpreted *p, const char *key) {
       .divisions_per_bond = plan->divisions_per_bond,
       .prepare = run_prepare,
       .bounds = run_bounds,
-#define X(pass, member, topology, task) .member = run_##member,
+#define X(pass, member, task) .member = run_##member,
       STRIP_PASSES(X)
 #undef X
           .states = run_states,
@@ -375,7 +368,6 @@ static void describe(interpreted *p, const char *key) {
   };
   if (plan->kind != PL_STATE) return;
   p->law.rows = p->law.rows_ledger = p->law.rows_observe = NULL;
-  p->law.list = p->law.list_ledger = p->law.list_observe = NULL;
   p->law.states = NULL;
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;

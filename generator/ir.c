@@ -491,6 +491,10 @@ static void count_operation(ir_op op, ir_cost *cost) {
   case IR_MUL:
     cost->multiplications++;
     return;
+  case IR_FMA:
+    cost->additions++;
+    cost->multiplications++;
+    return;
   case IR_DIV:
   case IR_SQRT:
     cost->divisions++;

@@ -21,6 +21,7 @@ typedef int32_t ir_node;
 #define IR_OPERATIONS(X)                                                                           \
   X(CONSTANT, "constant", 0, 0) X(INPUT, "input", 0, 0)                                            \
   X(ADD, "add", 2, 0) X(SUB, "sub", 2, 0) X(MUL, "mul", 2, 0) X(DIV, "div", 2, 0)                  \
+  X(FMA, "fma", 3, 0) /* a*b + c, rounded once: rewrite_fused */                                \
   X(NEG, "neg", 1, 0) X(ABS, "abs", 1, 0) X(SQRT, "sqrt", 1, 0)                                    \
   X(MIN, "min", 2, 0) X(MAX, "max", 2, 0) X(SIGN, "sign", 1, 0)                                    \
   X(INVERSE_ROOT, "inverse_root", 1, 0) X(EXP, "exp", 1, 0) X(LOG, "log", 1, 0) X(POW, "pow", 2, 0) X(CBRT, "cbrt", 1, 0)                \

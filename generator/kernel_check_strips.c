@@ -12,7 +12,6 @@
 
 enum {
   SITES = 1024,
-  LISTED = 1003,
   MOTIONS = 12, /* planes: displacement of i, of j, velocity of i, of j; 3 each */
   DIRECTION = 5,
   CALM = 256
@@ -25,20 +24,17 @@ typedef struct strip_arrays {
   const pl_law *law;
   int kept_planes;    /* the fields, then the two dissipated energies: updated in place */
   double **motion;    /* [MOTIONS][SITES + 1]: far ends stand one further than near ends */
-  double **chord;     /* [2][SITES] */
   double **parameter; /* [varying][SITES] */
   double **before;    /* [kept_planes][SITES] */
   double **kept[2];   /* [kept_planes][SITES] */
   double **force[2], **observed[2];
   int64_t *flags;
-  int32_t *i, *j;
 } strip_arrays;
 
 static strip_arrays arrays_new(const pl_law *kernel) {
   strip_arrays a = {.law = kernel,
                     .kept_planes = kernel->field_count + 2,
-                    .motion = planes_new(MOTIONS, SITES + 1),
-                    .chord = planes_new(2, SITES)};
+                    .motion = planes_new(MOTIONS, SITES + 1)};
   a.parameter = planes_new(kernel->varying_count, SITES);
   a.before = planes_new(a.kept_planes, SITES);
   for (int side = 0; side < 2; side++) {
@@ -47,14 +43,11 @@ static strip_arrays arrays_new(const pl_law *kernel) {
     a.observed[side] = planes_new(1 + kernel->output_count, SITES);
   }
   a.flags = must_calloc(SITES, sizeof *a.flags);
-  a.i = must_calloc(SITES, sizeof *a.i);
-  a.j = must_calloc(SITES, sizeof *a.j);
   return a;
 }
 
 static void arrays_free(strip_arrays *a) {
   planes_free(a->motion, MOTIONS);
-  planes_free(a->chord, 2);
   planes_free(a->parameter, a->law->varying_count);
   planes_free(a->before, a->kept_planes);
   for (int side = 0; side < 2; side++) {
@@ -63,8 +56,6 @@ static void arrays_free(strip_arrays *a) {
     planes_free(a->observed[side], 1 + a->law->output_count);
   }
   free(a->flags);
-  free(a->i);
-  free(a->j);
 }
 
 /* --- random bonds ----------------------------------------------------------------------------- */
@@ -101,16 +92,10 @@ static int64_t draw_flags(uint64_t *seed) {
   return others | (kind ? PL_PRESENT(DIRECTION) : 0) | (kind == 1 ? PL_PROTECTED(DIRECTION) : 0);
 }
 
-static void fill_bonds(strip_arrays *a, const pl_bond_class *b, const double *parameters,
-                       uint64_t *seed) {
+static void fill_bonds(strip_arrays *a, const double *parameters, uint64_t *seed) {
   const int fields = a->law->field_count;
   for (int q = 0; q < SITES; q++) {
-    double angle = draw_uniform(seed, -3.2, 3.2), size = b->s * draw_uniform(seed, 0.3, 3);
-    a->chord[0][q] = size * cos(angle);
-    a->chord[1][q] = size * sin(angle);
     a->flags[q] = draw_flags(seed);
-    a->i[q] = (int32_t)(draw_bits(seed) % SITES);
-    a->j[q] = (int32_t)(draw_bits(seed) % SITES);
     for (int k = 0; k < a->law->varying_count; k++)
       a->parameter[k][q] = parameters[a->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
     for (int k = 0; k < a->kept_planes; k++)
@@ -118,29 +103,25 @@ static void fill_bonds(strip_arrays *a, const pl_bond_class *b, const double *pa
   }
 }
 
-/* --- the six functions ------------------------------------------------------------------------ */
+/* --- the functions ---------------------------------------------------------------------------- */
 
 typedef struct strip_pass {
   const char *name;
   size_t function; /* offset in pl_law */
-  bool list, forces, ledger, observes;
+  bool forces, ledger, observes;
 } strip_pass;
 
 static const strip_pass passes[] = {
-#define X(pass, member, topology, task)                                                            \
-  {#member,                                                                                        \
-   offsetof(pl_law, member),                                                                       \
-   .list = (topology) == STRIP_LIST,                                                               \
-   .forces = (task) != STRIP_OBSERVE,                                                              \
-   .ledger = (task) == STRIP_LEDGER,                                                               \
-   .observes = (task) == STRIP_OBSERVE},
+#define X(pass, member, task)                                                                      \
+  {#member, offsetof(pl_law, member), .forces = (task) != STRIP_OBSERVE,                           \
+   .ledger = (task) == STRIP_LEDGER, .observes = (task) == STRIP_OBSERVE},
     STRIP_PASSES(X)
 #undef X
 };
 
-static pl_strip strip_of(const strip_arrays *a, const strip_pass *p, int side) {
-  const int fields = a->law->field_count, shift = p->list ? 0 : 1;
-  pl_strip s = {.count = p->list ? LISTED : SITES,
+static pl_strip strip_of(const strip_arrays *a, int side) {
+  const int fields = a->law->field_count;
+  pl_strip s = {.count = SITES,
                 .direction = DIRECTION,
                 .flags = a->flags,
                 .time_step = 1.7e-7,
@@ -152,15 +133,9 @@ static pl_strip strip_of(const strip_arrays *a, const strip_pass *p, int side) {
                 .dissipated_rate = a->kept[side][fields + 1]};
   for (int k = 0; k < 3; k++) {
     s.displacement_i[k] = a->motion[k];
-    s.displacement_j[k] = a->motion[3 + k] + shift;
+    s.displacement_j[k] = a->motion[3 + k] + 1;
     s.velocity_i[k] = a->motion[6 + k];
-    s.velocity_j[k] = a->motion[9 + k] + shift;
-  }
-  if (p->list) {
-    s.i = a->i;
-    s.j = a->j;
-    s.chord[0] = a->chord[0];
-    s.chord[1] = a->chord[1];
+    s.velocity_j[k] = a->motion[9 + k] + 1;
   }
   return s;
 }
@@ -170,7 +145,7 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
     memcpy(a->kept[side][k], a->before[k], SITES * sizeof(double));
   planes_poison(a->force[side], a->law->force_planes, SITES);
   planes_poison(a->observed[side], 1 + a->law->output_count, SITES);
-  pl_strip strip = strip_of(a, p, side);
+  pl_strip strip = strip_of(a, side);
   pl_strip_function run;
   memcpy(&run, (const char *)l->law[side] + p->function, sizeof run);
   run(l->law[side], l->uniforms[side], &strip);
@@ -180,13 +155,12 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
 
 static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison *c) {
   const pl_law *kernel = a->law;
-  const long count = p->list ? LISTED : SITES;
   const char *energies[2] = {"dissipated_state", "dissipated_rate"};
   for (int k = 0; p->forces && k < kernel->force_planes; k++)
-    comparison_add(c, p->name, "force", k, a->force[0][k], a->force[1][k], count);
+    comparison_add(c, p->name, "force", k, a->force[0][k], a->force[1][k], SITES);
   for (int k = 0; p->observes && k <= kernel->output_count; k++)
     comparison_add(c, p->name, k ? kernel->outputs[k - 1].name : "stored energy", -1,
-                   a->observed[0][k], a->observed[1][k], count);
+                   a->observed[0][k], a->observed[1][k], SITES);
   for (int k = 0; k < a->kept_planes; k++) {
     const int energy = k - kernel->field_count;
     comparison_add(c, p->name, energy < 0 ? kernel->fields[k].name : energies[energy], -1,
@@ -195,8 +169,7 @@ static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison 
 }
 
 static bool may_change(const strip_arrays *a, const strip_pass *p, int plane, long q) {
-  const long count = p->list ? LISTED : SITES;
-  if (q >= count || !(a->flags[q] & PL_PRESENT(DIRECTION))) return false;
+  if (!(a->flags[q] & PL_PRESENT(DIRECTION))) return false;
   if (plane >= a->law->field_count) return p->ledger;
   bool damage = a->law->fields[plane].kind == PL_FIELD_DAMAGE;
   return p->forces && !(damage && (a->flags[q] & PL_PROTECTED(DIRECTION)));
@@ -212,17 +185,17 @@ static void find_misplaced(const strip_arrays *a, const strip_pass *p, compariso
   double *const *written = p->forces ? a->force[0] : a->observed[0];
   const int planes = p->forces ? a->law->force_planes : 1 + a->law->output_count;
   for (int k = 0; k < planes; k++)
-    for (long q = 0; q < (p->list ? LISTED : SITES); q++)
+    for (long q = 0; q < SITES; q++)
       c->misplaced += !(a->flags[q] & PL_PRESENT(DIRECTION)) && written[k][q] != 0;
 }
 
 long kernel_check_strips(const law_readers *l, long wanted, uint64_t *seed, comparison *c) {
   strip_arrays a = arrays_new(l->law[0]);
   long done = 0;
-  for (; done < wanted; done += LISTED)
+  for (; done < wanted; done += SITES)
     for (size_t k = 0; k < sizeof passes / sizeof *passes; k++) {
       fill_motion(&a, l->bonds, seed);
-      fill_bonds(&a, l->bonds, l->parameters, seed);
+      fill_bonds(&a, l->parameters, seed);
       run_pass(l, &a, &passes[k], 0);
       run_pass(l, &a, &passes[k], 1);
       compare_pass(&a, &passes[k], c);

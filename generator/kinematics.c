@@ -109,23 +109,19 @@ static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
   k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
 }
 
-/* L - s is as good as L; a step of Newton's on L^2 - s^2 makes it as good as the displacements are,
-   and needs no division. */
-static ir_node elongation(ir *g, ir_node s, ir_node length, ir_node per_length, ir_node growth) {
-  ir_node rough = ir_sub(g, length, s);
-  ir_node twice_s = ir_mul(g, ir_constant(g, 2), s);
-  ir_node missing = ir_sub(g, growth, ir_mul(g, rough, ir_add(g, rough, twice_s)));
-  ir_node half = ir_mul(g, ir_constant(g, 0.5), per_length);
-  return ir_add(g, rough, ir_mul(g, missing, half));
+/* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s). With L - s, which is
+   as good as L, for the small e on the right the left one is as good as the displacements are, and needs no division. */
+static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
+  const ir_node rough = ir_sub(g, length, s), square = ir_mul(g, rough, rough);
+  const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, s, s));
+  return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
-/* Divisions are what such loops spend their time on: where the chord is uniform there is none. */
-bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
+/* Divisions are what such loops spend their time on: here there is none. */
+bond_kinematics kinematics_bond(ir *g, bool rotations) {
   bond_kinematics k = {0};
-  vector chord = uniform_chord ? inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)
-                               : inputs(g, ENDS_CHORD_X, ENDS_CHORD_Y);
-  k.s = uniform_chord ? ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY)
-                      : named(g, ir_make(g, IR_SQRT, dot(g, chord, chord), IR_NONE, IR_NONE), "s");
+  vector chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y);
+  k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   vector d =
       difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
   vector now = sum(g, chord, d);
@@ -136,8 +132,7 @@ bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord) {
   k.length = named(g, ir_mul(g, square, k.per_length), "length");
   ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
   ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
-  k.stretch =
-      named(g, ir_mul(g, elongation(g, k.s, k.length, k.per_length, growth), per_s), "stretch");
+  k.stretch = named(g, stretch_of(g, k.s, k.length, growth), "stretch");
   vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
@@ -191,8 +186,7 @@ family_kinematics kinematics_family(ir *g, int dimensions) {
       named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
   k.length = named(g, ir_mul(g, square, per_length), "length");
   ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
-  ir_node longer = elongation(g, s, k.length, per_length, growth);
-  k.stretch = named(g, ir_mul(g, longer, per_s), "stretch");
+  k.stretch = named(g, stretch_of(g, s, k.length, growth), "stretch");
   for (int c = 0; c < dimensions; c++)
     k.now[c] = named(g, ir_mul(g, now[c], per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);

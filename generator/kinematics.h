@@ -7,7 +7,8 @@
 #include "generator/ir.h"
 
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
-   rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists);
+   rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists of
+   families);
    CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS: of the particles
    (lists of families). PROTECTED: 1 where the damage of the bond stays as it is, else 0 (a number; the
    graph asks 0 < protected). HELD: the same for particle i or j, in families; what belongs to particle
@@ -89,12 +90,11 @@ typedef struct bond_kinematics {
   ir_node theta_rate_i, theta_rate_j; /* rad/s */
 } bond_kinematics;
 
-/* 2D. uniform_chord: the chord is the same along a strip (rows), so what depends on it alone is
-   hoisted; otherwise s is computed from the chord of each bond. Without rotations the angles are
-   IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
+/* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without rotations
+   the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
    rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
    (-pi, pi]; that chords turn little and angles stay below half a turn is expected (ir_expect). */
-bond_kinematics kinematics_bond(ir *g, bool rotations, bool uniform_chord);
+bond_kinematics kinematics_bond(ir *g, bool rotations);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. */
 typedef struct family_kinematics {

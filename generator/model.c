@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include "dsl/parse.h"
-#include "generator/clock.h"
+#include "runtime/clock.h"
 #include "generator/emit.h"
 
 #define MODEL_LIMIT ((size_t)1 << 20)

@@ -10,7 +10,7 @@
 #include "generator/rewrite.h"
 
 static const char *const pass_names[PASS_COUNT] = {
-#define X(pass, member, topology, task) [pass] = #member,
+#define X(pass, member, task) [pass] = #member,
     STRIP_PASSES(X)
 #undef X
         [PASS_STATES] = "states",
@@ -24,14 +24,14 @@ typedef struct planner {
   lowered_law frozen; /* as lowered */
 } planner;
 
-/* One law seen on one topology: everything in terms of what particles have. */
-typedef struct topology {
-  bond_kinematics k;
+/* The law in terms of what particles have. */
+typedef struct seen_law {
+  bond_forces force;
   lowered_law step;
   ir_node stored;     /* J, with the fields at hand */
   ir_node rate_power; /* W, with the fields at hand; IR_NONE */
   ir_node *outputs;   /* with the fields at hand */
-} topology;
+} seen_law;
 
 /* --- substitution ----------------------------------------------------------------------------- */
 
@@ -73,7 +73,7 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
   free(all);
 }
 
-/* --- topologies ------------------------------------------------------------------------------- */
+/* --- the law on particles --------------------------------------------------------------------- */
 
 /* Parameters that differ from bond to bond, and the values that a strip brings. */
 static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
@@ -86,8 +86,7 @@ static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
 }
 
 /* Law-level inputs and the kinematics that take their place. */
-static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, ir_node *from,
-                           ir_node *to) {
+static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_node *to) {
   const ir_node values[PL_STATE_INPUTS] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
                                            k->length};
   int pairs = 0;
@@ -96,41 +95,63 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, bool uniform_chord, 
     from[pairs] = lower_quantity(g, law_motion[q]);
     to[pairs++] = values[q];
   }
-  if (!uniform_chord) {
-    from[pairs] = lower_quantity(g, QUANTITY_S);
-    to[pairs++] = k->s;
-  }
   return pairs;
 }
 
-static topology see_topology(planner *p, bool uniform_chord) {
+/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all passes compute a value
+   in the same way, and energies with old and new fields differ in no bit where the fields do not differ. */
+static void fuse(planner *p, seen_law *t) {
+  const law *l = p->plan->law;
+  const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
+  ir_node *all = must_alloc((size_t)most * sizeof *all);
+  ir_node *const single[] = {&t->force.f_x,      &t->force.f_y, &t->force.moment_i,
+                             &t->force.moment_j, &t->stored,    &t->rate_power};
+  const int singles = (int)(sizeof single / sizeof *single);
+  int count = 0;
+  for (int k = 0; k < singles; k++)
+    all[count++] = *single[k];
+  for (int k = 0; k < l->fields.count; k++)
+    all[count++] = t->step.fields[k];
+  for (int k = 0; k < l->outputs.count; k++)
+    all[count++] = t->outputs[k];
+  rewrite_fused(p->plan->graph, all, count, all);
+  for (int k = 0; k < singles; k++)
+    *single[k] = all[k];
+  memcpy(t->step.fields, all + singles, (size_t)l->fields.count * sizeof *all);
+  memcpy(t->outputs, all + singles + l->fields.count, (size_t)l->outputs.count * sizeof *all);
+  free(all);
+}
+
+static seen_law see_law(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
-  topology t = {.k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, uniform_chord)};
-  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->varying_count);
+  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR);
+  seen_law t = {.step = p->step};
+  const size_t most = (size_t)(PL_STATE_INPUTS + p->plan->varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
-  int pairs = kinematic_pairs(g, &t.k, uniform_chord, from, to);
+  int pairs = kinematic_pairs(g, &k, from, to);
   pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
-  t.step = p->step;
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
   substitute_law(g, l, &t.step, from, to, pairs);
+  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
 
   t.stored = lower_stored_energy(l, g, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(l, g, &p->frozen, t.k.theta_rate_i, t.k.theta_rate_j);
+  t.rate_power = lower_rate_power(l, g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
   rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
   substitute(g, t.outputs, l->outputs.count, from, to, pairs);
+  fuse(p, &t);
   return t;
 }
 
 /* The same node with the new fields in place of those at hand. */
-static ir_node with_new_fields(planner *p, const topology *t, ir_node n) {
+static ir_node with_new_fields(planner *p, const seen_law *t, ir_node n) {
   ir *g = p->plan->graph;
   int fields = p->plan->law->fields.count;
   ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
@@ -156,11 +177,10 @@ static void write_root(pass *a, ir_node node, pass_target target, int index) {
   a->roots[a->root_count++] = (pass_root){node, target, index};
 }
 
-static void plan_step(planner *p, const topology *t, pass_kind kind) {
+static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
-  bond_forces f = kinematics_forces(p->plan->graph, &t->k, t->step.N, t->step.M_i, t->step.M_j);
-  ir_node planes[] = {f.f_x, f.f_y, f.moment_i, f.moment_j};
+  const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j};
   for (int k = 0; k < p->plan->force_planes; k++)
     write_root(a, planes[k], TO_FORCE, k);
   for (int k = 0; k < fields; k++)
@@ -170,7 +190,7 @@ static void plan_step(planner *p, const topology *t, pass_kind kind) {
 /* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
    with the new ones, both at the present deformation. Lost to rate terms: their power over the
    step. */
-static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
+static void plan_ledger(planner *p, const seen_law *t, pass_kind kind) {
   ir *g = p->plan->graph;
   plan_step(p, t, kind);
   pass *a = &p->plan->passes[kind];
@@ -184,7 +204,7 @@ static void plan_ledger(planner *p, const topology *t, pass_kind kind) {
   write_root(a, rate_lost, TO_DISSIPATED_RATE, 0);
 }
 
-static void plan_observe(planner *p, const topology *t, pass_kind kind) {
+static void plan_observe(planner *p, const seen_law *t, pass_kind kind) {
   int outputs = p->plan->law->outputs.count;
   pass *a = begin_pass(p->plan, kind, 1 + outputs);
   write_root(a, t->stored, TO_OBSERVED, 0);
@@ -344,11 +364,10 @@ kernel_plan *plan_begin(const law *l) {
 static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
   if (!lower_both(&p, d)) return false;
-  static void (*const plan_strip[])(planner *, const topology *, pass_kind) = {
+  static void (*const plan_strip[])(planner *, const seen_law *, pass_kind) = {
       [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
-  topology rows = see_topology(&p, true), list = see_topology(&p, false);
-#define X(pass, member, topology, task)                                                            \
-  plan_strip[task](&p, (topology) == STRIP_LIST ? &list : &rows, pass);
+  const seen_law seen = see_law(&p);
+#define X(pass, member, task) plan_strip[task](&p, &seen, pass);
   STRIP_PASSES(X)
 #undef X
   lowered_law bare = unprotected_step(&p);

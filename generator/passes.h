@@ -8,21 +8,17 @@
 #include "generator/program.h"
 #include "runtime/kernel.h"
 
-/* How bonds find their particles, and what is done over them. */
-typedef enum strip_topology { STRIP_ROWS, STRIP_LIST } strip_topology;
+/* What is done over strips of bonds. */
 typedef enum strip_task { STRIP_STEP, STRIP_LEDGER, STRIP_OBSERVE } strip_task;
 
-/* The functions over strips. X(pass, member of pl_law, topology, task) */
+/* The functions over strips. X(pass, member of pl_law, task) */
 #define STRIP_PASSES(X)                                                                            \
-  X(PASS_ROWS, rows, STRIP_ROWS, STRIP_STEP)                                                       \
-  X(PASS_ROWS_LEDGER, rows_ledger, STRIP_ROWS, STRIP_LEDGER)                                       \
-  X(PASS_ROWS_OBSERVE, rows_observe, STRIP_ROWS, STRIP_OBSERVE)                                    \
-  X(PASS_LIST, list, STRIP_LIST, STRIP_STEP)                                                       \
-  X(PASS_LIST_LEDGER, list_ledger, STRIP_LIST, STRIP_LEDGER)                                       \
-  X(PASS_LIST_OBSERVE, list_observe, STRIP_LIST, STRIP_OBSERVE)
+  X(PASS_ROWS, rows, STRIP_STEP)                                                                   \
+  X(PASS_ROWS_LEDGER, rows_ledger, STRIP_LEDGER)                                                   \
+  X(PASS_ROWS_OBSERVE, rows_observe, STRIP_OBSERVE)
 
 typedef enum pass_kind {
-#define X(pass, member, topology, task) pass,
+#define X(pass, member, task) pass,
   STRIP_PASSES(X)
 #undef X
   PASS_STATES,

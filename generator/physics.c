@@ -3,7 +3,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
-#include "generator/clock.h"
+#include "runtime/clock.h"
 #include "generator/physics_family.h"
 #include "generator/physics_parts.h"
 

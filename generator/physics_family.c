@@ -1,6 +1,6 @@
 #include "generator/physics_family.h"
 
-#include "generator/clock.h"
+#include "runtime/clock.h"
 #include "generator/physics_family_parts.h"
 
 /* What a more telling check has found already is not said again as net work out of a cycle. */

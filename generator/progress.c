@@ -3,7 +3,7 @@
 #include <stdio.h>
 #include <unistd.h>
 
-#include "generator/clock.h"
+#include "runtime/clock.h"
 
 enum { BAR_WIDTH = 24 };
 

@@ -17,7 +17,9 @@ struct rebuilding {
   rebuild_rule rule;
   const ir_node *inputs; /* rewrite_zero */
   int input_count;
-  const unsigned char *shared; /* rewrite_reciprocals: denominators of several divisions */
+  const unsigned char *
+      shared; /* rewrite_reciprocals: denominators of several divisions; rewrite_fused: nodes that are
+                                  used several times */
 };
 
 static unsigned char *marks_of(const ir *g, const ir_node *roots, int root_count) {
@@ -120,6 +122,57 @@ void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *o
   free(marks);
 }
 
+/* --- fused sums of products ------------------------------------------------------------------- */
+
+/* What has a name stays a value of its own: bodies at rest count on a length that is rounded before its reference is taken
+   from it. */
+static bool is_local_product(const ir *g, ir_node n) {
+  return ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && !ir_name(g, n);
+}
+
+/* Of two products the one that nothing else needs, else the second. */
+static int product_to_fuse(const rebuilding *r, ir_node old, const ir_node *operand) {
+  const bool first = is_local_product(r->graph, operand[0]),
+             second = is_local_product(r->graph, operand[1]);
+  if (first && second)
+    return r->shared[ir_operand(r->graph, old, 1)] && !r->shared[ir_operand(r->graph, old, 0)] ? 0
+                                                                                               : 1;
+  return first ? 0 : second ? 1 : -1;
+}
+
+static ir_node fused_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  const ir_op op = ir_operation(g, old);
+  const int k = op == IR_ADD || op == IR_SUB ? product_to_fuse(r, old, operand) : -1;
+  if (k < 0) return again(g, old, operand);
+  ir_node a = ir_operand(g, operand[k], 0), b = ir_operand(g, operand[k], 1), rest = operand[1 - k];
+  if (op == IR_SUB && k == 1) a = ir_neg(g, a);
+  if (op == IR_SUB && k == 0) rest = ir_neg(g, rest);
+  return ir_make(g, IR_FMA, a, b, rest);
+}
+
+/* 1 for each node that two or more of the needed ones use. */
+static unsigned char *shared_nodes(const ir *g, const unsigned char *marks) {
+  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++)
+    for (int k = 0; marks[n] && k < ir_arity(ir_operation(g, n)); k++) {
+      unsigned char *use = &uses[ir_operand(g, n, k)];
+      *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
+    }
+  for (ir_node n = 0; n < ir_count(g); n++)
+    uses[n] = uses[n] >= 2;
+  return uses;
+}
+
+void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out) {
+  unsigned char *marks = marks_of(g, roots, root_count);
+  unsigned char *shared = shared_nodes(g, marks);
+  rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared};
+  rebuild(&r, roots, root_count, out);
+  free(shared);
+  free(marks);
+}
+
 /* --- questions -------------------------------------------------------------------------------- */
 
 bool rewrite_depends(const ir *g, const ir_node *roots, int root_count, const ir_node *nodes,
@@ -183,6 +236,8 @@ static double degree_of(const ir *g, ir_node n, const double *degree) {
   case IR_MUL:
   case IR_DIV:
     return degree_of_product(op, a, b);
+  case IR_FMA:
+    return common_degree(degree_of_product(IR_MUL, a, b), c);
   case IR_NEG:
   case IR_ABS:
     return a;

@@ -16,6 +16,10 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
    instead of 0.5. Assumes that 1/u does not overflow. */
 void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
+/* a*b + c, where it differs from bond to bond and a*b has no name, becomes one operation that rounds once: faster, and
+   closer to the exact sum. What is a difference of equal products in the roots need not be exactly 0 afterwards. */
+void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out);
+
 /* True when any root needs any of the nodes. */
 bool rewrite_depends(const ir *g, const ir_node *roots, int root_count, const ir_node *nodes,
                      int node_count);

@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "generator/clock.h"
+#include "runtime/clock.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
 #include "generator/progress.h"
@@ -131,6 +131,13 @@ static long next_stride(long stride, double seconds) {
   return seconds > 0.4 && stride > 1 ? stride / 2 : stride;
 }
 
+static bool write_timed(run *r, bool (*write)(run *)) {
+  const double begun = monotonic_seconds();
+  const bool good = write(r);
+  r->profile.part[PROFILE_WRITING] += monotonic_seconds() - begun;
+  return good;
+}
+
 /* Time loop with frames and checkpoints. */
 static step_status march(run *r, bool *written) {
   progress bar;
@@ -141,7 +148,7 @@ static step_status march(run *r, bool *written) {
   step_status status = STEP_OK;
   *written = true;
   while (status == STEP_OK && !interrupted) {
-    if (simulation_frame_due(r->simulation) && !(*written = write_frame(r))) break;
+    if (simulation_frame_due(r->simulation) && !(*written = write_timed(r, write_frame))) break;
     double entered = monotonic_seconds();
     status = simulation_advance(r->simulation, stride, &interrupted);
     stride = next_stride(stride, monotonic_seconds() - entered);
@@ -152,12 +159,12 @@ static step_status march(run *r, bool *written) {
     if (first_checkpoint && interval > EARLY_CHECKPOINT) interval = EARLY_CHECKPOINT;
     if (interval > 0 && status == STEP_OK && monotonic_seconds() - last_checkpoint > interval) {
       first_checkpoint = false;
-      write_checkpoint(r);
+      write_timed(r, write_checkpoint);
       last_checkpoint = monotonic_seconds();
     }
   }
   if (*written && status != STEP_BAD && simulation_frame_due(r->simulation))
-    *written = write_frame(r);
+    *written = write_timed(r, write_frame);
   progress_end(&bar);
   if (interrupted && status == STEP_OK)
     fputs("stopping: the result so far and a checkpoint are being written\n", stderr);
@@ -180,6 +187,7 @@ static int execute(run *r, long resume_frames) {
   long first = simulation_step_done(r->simulation);
   double begun = monotonic_seconds();
   bool written;
+  if (r->options->profile) simulation_measure(r->simulation, &r->profile);
   step_status status = march(r, &written);
   double seconds = monotonic_seconds() - begun;
   bool stopped_by_user = interrupted && status == STEP_OK;
@@ -191,6 +199,8 @@ static int execute(run *r, long resume_frames) {
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
+  if (r->options->profile)
+    print_profile(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user) {
     char text[MOMENT_TEXT];
     printf("stopped at %s as asked; this goes on from here:\n",

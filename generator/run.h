@@ -29,7 +29,7 @@ typedef struct run_options {
   bool interpret;    /* no compiler: run on the interpreter */
   bool check_kernel; /* compare kernel and interpreter on random states first */
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
-  bool profile;
+  bool profile;      /* say at the end where the time went */
   bool no_physics;   /* leave out the physics checks of the deck's laws */
   diag_json *report; /* diagnostics go here; NULL: to stderr as text */
 } run_options;

@@ -26,6 +26,7 @@ typedef struct run {
   const char *fingerprint;
   char started[32];
   double *frame_buffer;
+  profile profile; /* with --profile */
 } run;
 
 /* Prints diagnostics, or adds them to the report that the caller has asked for. */
@@ -69,5 +70,10 @@ void print_misfit(const run *r);
 void conclude(const run *r, double seconds, long steps);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
+
+/* --- run_profile.c --- */
+
+/* --profile: where the time of the march went, what a particle's step costs, and what limits it. Takes half a second. */
+void print_profile(const run *r, double seconds, long steps);
 
 #endif

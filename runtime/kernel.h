@@ -1,9 +1,9 @@
 /* Where a compiled law and the runtime meet; nothing else crosses. A kernel is a table of facts about a law
    and a few functions over strips of bonds. It knows nothing of lattices, loads or files.
 
-   A strip is a run of bonds of one direction: bond k joins particle i(k) to j(k). On rows, i and j are unit-stride
-   (near end and far end arrays, same index); on lists they are gathered through index arrays. Arrays hold, per
-   degree of freedom, displacement (m) and velocity (m/s) components first, then rotations (rad, rad/s).
+   A strip is a run of bonds of one direction on lattice rows: bond k joins particle k of the near ends to particle k of
+   the far ends. Arrays hold, per degree of freedom, displacement (m) and velocity (m/s) components first, then rotations
+   (rad, rad/s).
    Strips are of the plane; dof = 2 (central) or 3 (micropolar).
 
    A law that reads a particle's whole family comes as programs instead: passes over runs of particles, one after the
@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 5
+#define PL_KERNEL_ABI 6
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -47,8 +47,7 @@ typedef struct pl_bond_class {
   double area;           /* m^2, bars */
   double shell;          /* 1, 2, ... */
   double n;              /* bonds of a full family */
-  double
-      chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists carry their own) */
+  double chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists of families carry their own) */
   double horizon; /* m: how far neighbours may be */
   double weight; /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
 } pl_bond_class;
@@ -67,13 +66,11 @@ typedef struct pl_field {
 } pl_field;
 
 typedef struct pl_strip {
-  long count;           /* bonds; on rows a multiple of PL_LANES */
+  long count;           /* bonds, a multiple of PL_LANES */
   long direction;       /* which bits of `flags` are meant */
-  const int64_t *flags; /* [count] rows: flags of the sites i; lists: of the bonds */
+  const int64_t *flags; /* [count] of the sites i */
   const double *displacement_i[PL_MAX_DOF], *displacement_j[PL_MAX_DOF];
   const double *velocity_i[PL_MAX_DOF], *velocity_j[PL_MAX_DOF];
-  const int32_t *i, *j;   /* lists: the displacement and velocity arrays are indexed by these */
-  const double *chord[3]; /* lists: reference chord components, m */
   const double *const
       *parameter; /* [varying][count] values of the parameters that differ from bond to bond */
   double *const *field; /* [fields][count] read and written in place */
@@ -140,7 +137,7 @@ typedef struct pl_program {
 typedef struct pl_law {
   int abi;        /* PL_KERNEL_ABI; checked at load */
   int kind;       /* pl_law_kind */
-  int topology;   /* pl_topology of laws of families; laws of bonds have strips for both */
+  int topology;   /* pl_topology; laws of bonds: PL_ROWS */
   int dimensions; /* 2 */
   int dof;        /* per particle */
   int force_planes;
@@ -168,7 +165,6 @@ typedef struct pl_law {
   pl_strip_function rows;         /* forces and new fields */
   pl_strip_function rows_ledger;  /* the same and dissipated energies */
   pl_strip_function rows_observe; /* stored energy and outputs; changes nothing */
-  pl_strip_function list, list_ledger, list_observe;
 
   /* The law alone, state by state. in: [PL_STATE_INPUTS + fields][count] stretch, stretch_rate, theta_i, theta_j,
      length (m), then fields; out: [PL_STATE_RESULTS + fields][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "runtime/clock.h"
 #include "runtime/sweep_parts.h"
 
 /* Bond forces of one row. Only the places from `begin` to `end` of a row are not zero. */
@@ -205,6 +206,13 @@ static void move_row(sweep *w, sweep_block *b, int row, const row_forces *here,
     sweep_drift(w, b, row);
 }
 
+static void move_timed_row(sweep *w, sweep_block *b, int row, const row_forces *here,
+                           const row_forces *below) {
+  const double begun = w->timed ? monotonic_seconds() : 0;
+  move_row(w, b, row, here, below);
+  if (w->timed) b->moving += monotonic_seconds() - begun;
+}
+
 static void evaluate_seam(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
@@ -220,7 +228,7 @@ static void move_rows(sweep *w, int block) {
   for (int r = b->first; r < b->last; r++) {
     row_forces *here = r == b->last - 1 ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (here != &p->seam) evaluate(w, p, r, here);
-    move_row(w, b, r, here, below);
+    move_timed_row(w, b, r, here, below);
     below = here;
   }
 }

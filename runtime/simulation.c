@@ -356,7 +356,7 @@ static int64_t next_sample(const simulation *s) {
 
 /* Values of the present state into the history. The end is sampled also when it lies between two
  * samples. */
-static void record_sample(simulation *s) {
+static void take_sample(simulation *s) {
   const double time = simulation_time(s);
   const int watched = s->monitors->count;
   monitors_sample(s->monitors, time, s->sampled);
@@ -377,6 +377,12 @@ static void record_sample(simulation *s) {
     s->at.status = STEP_STOPPED;
     s->go_on = false;
   }
+}
+
+static void record_sample(simulation *s) {
+  const double begun = s->profile ? monotonic_seconds() : 0;
+  take_sample(s);
+  if (s->profile) s->profile->part[PROFILE_SAMPLING] += monotonic_seconds() - begun;
 }
 
 const deck_stop *simulation_stopped_by(const simulation *s) {
@@ -452,13 +458,45 @@ static void after_observing(simulation *s) {
     record_sample(s);
 }
 
+void simulation_measure(simulation *s, profile *p) {
+  s->profile = p;
+  s->state->timed = p != NULL;
+}
+
+/* What has to be done alone, with its time; sampling counts for itself (record_sample). */
+static void meet_alone(simulation *s, void (*alone)(simulation *)) {
+  profile *p = s->profile;
+  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->part[PROFILE_SAMPLING] : 0;
+  if (alone) alone(s);
+  if (!p) return;
+  p->alone = monotonic_seconds() - begun;
+  p->part[PROFILE_LOADS] += p->alone - (p->part[PROFILE_SAMPLING] - sampled);
+}
+
+/* The first thread's part of a stage. */
+static void note_stage(simulation *s, int stage, bool observing, double seconds) {
+  profile *p = s->profile;
+  double moving = 0;
+  for (int b = 0; b < s->state->block_count; b += omp_get_num_threads()) {
+    moving += s->state->blocks[b].moving;
+    s->state->blocks[b].moving = 0;
+  }
+  if (observing) {
+    p->part[PROFILE_SAMPLING] += seconds;
+    return;
+  }
+  p->part[PROFILE_PARTICLES] += moving;
+  p->part[PROFILE_LAW] += seconds - moving;
+  p->stage[stage < PROFILE_MOST_STAGES ? stage : PROFILE_MOST_STAGES - 1] += seconds - moving;
+}
+
 /* A barrier; the last to arrive does what has to be done alone. Steps are short, so that waiting is
    first a look at a number; where there are more threads than processors the others get theirs. */
 static void meet(simulation *s, void (*alone)(simulation *)) {
   enum { PATIENCE = 4000 };
   const long round = atomic_load(&s->meeting.round);
   if (atomic_fetch_add(&s->meeting.arrived, 1) == omp_get_num_threads() - 1) {
-    if (alone) alone(s);
+    meet_alone(s, alone);
     atomic_store(&s->meeting.arrived, 0);
     atomic_store(&s->meeting.round, round + 1);
     return;
@@ -471,10 +509,16 @@ static void meet(simulation *s, void (*alone)(simulation *)) {
    than the number of blocks; the blocks, and so the results, stay the same. */
 static void run_stages(simulation *s, int stages, void (*work)(sweep *, int, int),
                        void (*alone)(simulation *)) {
+  const bool measured = s->profile && omp_get_thread_num() == 0;
   for (int stage = 0; stage < stages; stage++) {
+    const double begun = measured ? monotonic_seconds() : 0;
     for (int b = omp_get_thread_num(); b < s->state->block_count; b += omp_get_num_threads())
       work(s->state, stage, b);
+    const double done = measured ? monotonic_seconds() : 0;
+    if (measured) note_stage(s, stage, work == s->state->engine.observe, done - begun);
     meet(s, stage == stages - 1 ? alone : NULL);
+    if (measured)
+      s->profile->part[PROFILE_WAITING] += monotonic_seconds() - done - s->profile->alone;
   }
 }
 

@@ -65,6 +65,7 @@ struct simulation {
   bad_neighbour *bad_family;
   progress_state at;
   bool observe, go_on;         /* set by one thread for all */
+  profile *profile;            /* NULL: nothing is measured */
   const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
   const volatile sig_atomic_t *interrupted;

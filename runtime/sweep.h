@@ -19,6 +19,7 @@ typedef struct sweep_block { /* what one thread works on */
   long bad_site;             /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
+  double moving; /* s spent on moving particles since it was last set to 0; only kept when `timed` */
 } sweep_block;
 
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
@@ -54,6 +55,7 @@ struct sweep {
   double push_work[3];
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
+  bool timed;     /* blocks keep the time that moving particles takes */
   int dimensions, dof;
   double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
   double *relative_mass;   /* [size] of a particle, over the mean; NULL where all are alike */

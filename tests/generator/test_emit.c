@@ -197,9 +197,10 @@ static int make_expressions(ir *g, ir_node x, ir_node y, ir_node *out, int room)
   int n = 0, count = 0;
   for (int op = IR_ADD; op < IR_FAMILY_SUM; op++) {
     int arity = ir_arity((ir_op)op);
-    first[n++] = arity == 1   ? un(g, (ir_op)op, x)
-                 : arity == 2 ? bi(g, (ir_op)op, x, y)
-                              : ir_make(g, IR_SELECT, bi(g, IR_LT, x, y), x, y);
+    first[n++] = arity == 1     ? un(g, (ir_op)op, x)
+                 : arity == 2   ? bi(g, (ir_op)op, x, y)
+                 : op == IR_FMA ? ir_make(g, IR_FMA, x, y, x)
+                                : ir_make(g, IR_SELECT, bi(g, IR_LT, x, y), x, y);
   }
   for (int a = 0; a < n; a++)
     for (int op = IR_ADD; op < IR_FAMILY_SUM && count + 2 < room; op++) {
@@ -209,7 +210,10 @@ static int make_expressions(ir *g, ir_node x, ir_node y, ir_node *out, int room)
       else if (op == IR_SELECT)
         out[count++] = ir_make(g, IR_SELECT, bi(g, IR_LE, first[a], b), b,
                                ir_make(g, IR_SELECT, bi(g, IR_LT, y, b), x, first[a]));
-      else {
+      else if (op == IR_FMA) {
+        out[count++] = ir_make(g, IR_FMA, first[a], b, x);
+        out[count++] = ir_make(g, IR_FMA, y, un(g, IR_NEG, b), first[a]);
+      } else {
         out[count++] = bi(g, (ir_op)op, first[a], b);
         out[count++] = bi(g, (ir_op)op, b, first[a]);
       }
@@ -334,9 +338,9 @@ static ir_node bilinear_damage(ir *g, const bond_kinematics *k, ir_node twice_i,
 }
 
 /* The micropolar law with bilinear softening and damping, as one pass over strips. */
-static void plan_strips(hand_made *h, pass_kind kind, bool uniform_chord) {
+static void plan_strips(hand_made *h, pass_kind kind) {
   ir *g = h->plan.graph;
-  bond_kinematics k = kinematics_bond(g, true, uniform_chord);
+  bond_kinematics k = kinematics_bond(g, true);
   ir_node two = number(g, 2), one = number(g, 1);
   ir_node twice_i = ir_add(g, ir_mul(g, two, k.theta_i), k.theta_j);
   ir_node twice_j = ir_add(g, ir_mul(g, two, k.theta_j), k.theta_i);
@@ -360,8 +364,7 @@ static void plan_strips(hand_made *h, pass_kind kind, bool uniform_chord) {
 
 static hand_made *beam_new(void) {
   hand_made *h = hand_new("EA", "omega");
-  plan_strips(h, PASS_ROWS, true);
-  plan_strips(h, PASS_LIST, false);
+  plan_strips(h, PASS_ROWS);
   find_uniforms(h);
   return h;
 }
@@ -405,25 +408,22 @@ static void the_loops_vectorise(void **state) {
   hand_made *h = beam_new();
   char *text = text_of(h), place_of_loop[64];
   int loops = 0;
-  const char *const functions[] = {"static void rows(", "static void list("};
   char *gcc = compiler_says(text, "gcc", "-fopt-info-vec-optimized -o /dev/null");
   char *clang = compiler_says(text, "clang", "-Rpass=loop-vectorize -o /dev/null");
-  for (int k = 0; k < 2; k++) {
-    const char *at = strstr(text, functions[k]), *end = at ? strstr(at, "\n}\n") : NULL;
-    assert_non_null(end);
-    while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
-      at += strlen("  PL_INDEPENDENT\n");
-      const int line = line_at(text, at);
-      snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: optimized: loop vectorized", line);
-      if (gcc && !strstr(gcc, place_of_loop))
-        fail_msg("gcc does not vectorise `%s`, line %d: %s", functions[k], line, gcc);
-      snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: remark: vectorized loop", line);
-      if (clang && !strstr(clang, place_of_loop))
-        fail_msg("clang does not vectorise `%s`, line %d: %s", functions[k], line, clang);
-      loops++;
-    }
+  const char *at = strstr(text, "static void rows("), *end = at ? strstr(at, "\n}\n") : NULL;
+  assert_non_null(end);
+  while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
+    at += strlen("  PL_INDEPENDENT\n");
+    const int line = line_at(text, at);
+    snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: optimized: loop vectorized", line);
+    if (gcc && !strstr(gcc, place_of_loop))
+      fail_msg("gcc does not vectorise line %d: %s", line, gcc);
+    snprintf(place_of_loop, sizeof place_of_loop, ".c:%d:3: remark: vectorized loop", line);
+    if (clang && !strstr(clang, place_of_loop))
+      fail_msg("clang does not vectorise line %d: %s", line, clang);
+    loops++;
   }
-  assert_true(loops > 3);
+  assert_true(loops > 1);
   assert_true(gcc || clang);
   free(gcc);
   free(clang);
@@ -484,7 +484,6 @@ static void hostile_names_do_no_harm(void **state) {
   for (int k = 0; k < COUNT; k++)
     total = named(g, ir_add(g, total, ir_mul(g, x, parameter(g, k, names[k]))), names[k]);
   add_root(h, PASS_ROWS, total, TO_FORCE, 0);
-  add_root(h, PASS_LIST, total, TO_FORCE, 0);
   find_uniforms(h);
   char *text = text_of(h), *loaded_text;
   free(compiler_says(text, "gcc", "-Wall -Wextra -Werror -o /dev/null"));

@@ -372,14 +372,14 @@ static void observes_nothing(const pl_law *faulty, const double *uniforms, const
 }
 
 static void loads_absent_bonds(const pl_law *faulty, const double *uniforms, const pl_strip *s) {
-  good(faulty)->list_ledger(good(faulty), uniforms, s);
+  good(faulty)->rows_ledger(good(faulty), uniforms, s);
   for (long q = 0; q < s->count; q++)
     if (!(s->flags[q] & PL_PRESENT(s->direction))) s->force[1][q] = 1e-300;
 }
 
 static void breaks_protected_bonds(const pl_law *faulty, const double *uniforms,
                                    const pl_strip *s) {
-  good(faulty)->list(good(faulty), uniforms, s);
+  good(faulty)->rows(good(faulty), uniforms, s);
   for (long q = 0; q < s->count; q++)
     if (s->flags[q] & PL_PROTECTED(s->direction)) s->field[0][q] += 0.5;
 }
@@ -417,8 +417,8 @@ static void faults_are_caught(void **state) {
   assert_string_equal(c.outputs.worst, "rows: force 0");
   assert_int_equal(c.outputs.unwritten + c.outputs.misplaced, 0);
   assert_true(WITH(rows_observe, observes_nothing).outputs.unwritten > 1000);
-  assert_true(WITH(list_ledger, loads_absent_bonds).outputs.misplaced > 100);
-  assert_true(WITH(list, breaks_protected_bonds).outputs.misplaced > 100);
+  assert_true(WITH(rows_ledger, loads_absent_bonds).outputs.misplaced > 100);
+  assert_true(WITH(rows, breaks_protected_bonds).outputs.misplaced > 100);
   assert_string_equal(WITH(tangent, tangent_of_no_moment).outputs.worst, "tangent: derivative 11");
   assert_string_equal(WITH(bounds, bounds_all_open).outputs.worst, "bounds: low_open");
   model_close(&m);

@@ -198,9 +198,8 @@ enum { MOST_BONDS = 200, PLANES = 4, DOF = 3 };
 
 /* Bonds of one direction with all their arrays. */
 typedef struct bonds {
-  double u[2][DOF][MOST_BONDS], v[2][DOF][MOST_BONDS], chord[2][MOST_BONDS];
+  double u[2][DOF][MOST_BONDS], v[2][DOF][MOST_BONDS];
   int64_t flags[MOST_BONDS];
-  int32_t index[2][MOST_BONDS];
   double omega[MOST_BONDS], force[PLANES][MOST_BONDS], lost[2][MOST_BONDS], observed[1][MOST_BONDS];
   double *field_at[1], *force_at[PLANES], *observed_at[1];
   pl_strip strip;
@@ -214,9 +213,6 @@ static void connect(bonds *b, int count) {
   b->strip = (pl_strip){.count = count,
                         .direction = 2,
                         .flags = b->flags,
-                        .i = b->index[0],
-                        .j = b->index[1],
-                        .chord = {b->chord[0], b->chord[1]},
                         .field = b->field_at,
                         .force = b->force_at,
                         .observed = b->observed_at,
@@ -240,10 +236,7 @@ static bonds *random_bonds(int count, double most) {
         b->u[end][k][n] = spread(1e-9, most) * (k < 2 ? c.s : 1);
         b->v[end][k][n] = spread(1e-6, 1);
       }
-      b->index[end][n] = (int32_t)n;
     }
-    b->chord[0][n] = c.chord[0];
-    b->chord[1][n] = c.chord[1];
     b->omega[n] = fmax(0, uniform(-0.5, 1));
     b->flags[n] = PL_PRESENT(2);
     for (int k = 0; k < PLANES; k++)
@@ -383,39 +376,6 @@ static void the_ledger_changes_no_bit_and_counts_losses(void **state) {
   close_law(t);
 }
 
-/* The same bonds as a list: scrambled particles, chords of their own. */
-static void a_list_gives_what_rows_give(void **state) {
-  (void)state;
-  tested_law *t = must_open_model();
-  bonds *b = random_bonds(MOST_BONDS, 0.02), *list = copy_bonds(b);
-  for (int n = 0; n < MOST_BONDS; n++) {
-    int at = n * 77 % MOST_BONDS; /* 77 and 200 have no common factor */
-    for (int end = 0; end < 2; end++) {
-      list->index[end][n] = (int32_t)at;
-      for (int k = 0; k < DOF; k++) {
-        list->u[end][k][at] = b->u[end][k][n];
-        list->v[end][k][at] = b->v[end][k][n];
-      }
-    }
-  }
-  t->kernel->rows_ledger(t->kernel, t->uniforms, &b->strip);
-  t->kernel->list_ledger(t->kernel, t->uniforms, &list->strip);
-  t->kernel->rows_observe(t->kernel, t->uniforms, &b->strip);
-  t->kernel->list_observe(t->kernel, t->uniforms, &list->strip);
-  for (int n = 0; n < MOST_BONDS; n++) {
-    double size = 0;
-    for (int k = 0; k < 2; k++)
-      size += fabs(b->force[k][n]);
-    assert_near(list->omega[n], b->omega[n], 1e-12, "omega");
-    for (int k = 0; k < PLANES; k++)
-      assert_near(list->force[k][n], b->force[k][n], 1e-9 * size, "force");
-    assert_near(list->observed[0][n], b->observed[0][n], 1e-9 * b->observed[0][n], "stored");
-    assert_near(list->lost[1][n], b->lost[1][n], 1e-9 * b->lost[1][n], "dissipated by rates");
-  }
-  free(b), free(list);
-  close_law(t);
-}
-
 /* More callers than workers: each strip comes out as if it were alone. */
 static void many_threads_give_the_same_bits(void **state) {
   (void)state;
@@ -501,7 +461,7 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
   fclose(out);
   static const char *const expected[] = {"kernel of mplm_bilinear: micropolar bond",
                                          "pass rows\n",
-                                         "pass list_observe\n",
+                                         "pass rows_observe\n",
                                          "pass tangent\n",
                                          "pass bounds\n",
                                          " EA\n",
@@ -571,7 +531,6 @@ int main(void) {
       cmocka_unit_test(forces_are_the_slope_of_the_energy),
       cmocka_unit_test(a_rigid_rotation_gives_no_force),
       cmocka_unit_test(the_ledger_changes_no_bit_and_counts_losses),
-      cmocka_unit_test(a_list_gives_what_rows_give),
       cmocka_unit_test(many_threads_give_the_same_bits),
       cmocka_unit_test(bounds_follow_the_parameters),
       cmocka_unit_test(uniform_values_are_hoisted),

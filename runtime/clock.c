@@ -1,4 +1,4 @@
-#include "generator/clock.h"
+#include "runtime/clock.h"
 
 #include <time.h>
 

@@ -1,0 +1,34 @@
+/* Where the time of a run goes, by the clock of its first thread: what that thread works on, and how long it waits for the
+   others. Parts do not overlap, so that they add up to what the run took but for the little that is in none. */
+#ifndef PERILAT_RUNTIME_PROFILE_H
+#define PERILAT_RUNTIME_PROFILE_H
+
+#include "runtime/clock.h"
+
+/* X(code, name) */
+#define PROFILE_PARTS(X)                                                                           \
+  X(LAW, "law")                                                                                    \
+  X(PARTICLES, "moving particles")                                                                 \
+  X(LOADS, "loads and monitors")                                                                   \
+  X(SAMPLING, "sampling")                                                                          \
+  X(WAITING, "waiting for threads")                                                                \
+  X(WRITING, "frames, checkpoints")
+
+typedef enum profile_part {
+#define X(code, name) PROFILE_##code,
+  PROFILE_PARTS(X)
+#undef X
+  PROFILE_PART_COUNT
+} profile_part;
+
+enum { PROFILE_MOST_STAGES = 8 };
+
+typedef struct profile {
+  double part[PROFILE_PART_COUNT];    /* s */
+  double stage[PROFILE_MOST_STAGES];  /* s: the law's, pass by pass of a law of families */
+  double alone;                       /* s: what one thread did in the last meeting, while all others waited */
+} profile;
+
+extern const char *const profile_names[PROFILE_PART_COUNT];
+
+#endif
