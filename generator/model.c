@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "dsl/parse.h"
-#include "runtime/clock.h"
 #include "generator/emit.h"
+#include "runtime/clock.h"
 
 #define MODEL_LIMIT ((size_t)1 << 20)
 #define PATH_LIMIT  4096

@@ -3,9 +3,9 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
-#include "runtime/clock.h"
 #include "generator/physics_family.h"
 #include "generator/physics_parts.h"
+#include "runtime/clock.h"
 
 /* What a more telling check has found already is not said again as net work out of a cycle. */
 static bool energy_is_wrong(const physics *p) {

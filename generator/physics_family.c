@@ -1,7 +1,7 @@
 #include "generator/physics_family.h"
 
-#include "runtime/clock.h"
 #include "generator/physics_family_parts.h"
+#include "runtime/clock.h"
 
 /* What a more telling check has found already is not said again as net work out of a cycle. */
 static bool energy_is_wrong(const family_bench *b) {

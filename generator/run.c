@@ -8,11 +8,11 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "runtime/clock.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
 #include "generator/progress.h"
 #include "generator/run_parts.h"
+#include "runtime/clock.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
 #define DECK_LIMIT ((size_t)16 << 20)
@@ -199,8 +199,7 @@ static int execute(run *r, long resume_frames) {
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
-  if (r->options->profile)
-    print_profile(r, seconds, simulation_step_done(r->simulation) - first);
+  if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
   if (stopped_by_user) {
     char text[MOMENT_TEXT];
     printf("stopped at %s as asked; this goes on from here:\n",

@@ -91,7 +91,8 @@ static const char *limit_of(const run *r, double share_of_triad) {
   const double *part = r->profile.part, steps = part[PROFILE_LAW] + part[PROFILE_PARTICLES];
   if (part[PROFILE_WAITING] > 0.5 * steps)
     return "threads that wait for each other: a body with few rows runs as fast with fewer";
-  if (part[PROFILE_SAMPLING] > steps) return "sampling: samples can be further apart (output.sample)";
+  if (part[PROFILE_SAMPLING] > steps)
+    return "sampling: samples can be further apart (output.sample)";
   if (part[PROFILE_WRITING] > steps) return "writing: frames can be fewer (output.frames)";
   if (part[PROFILE_LOADS] > steps) return "loads and monitors";
   return share_of_triad > 0.6 ? "memory" : "the operations of the law";

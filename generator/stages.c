@@ -242,7 +242,8 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
   if (stage == p->s->count - 1) c.stores += e->root_count;
   const double busy = most(most(0.5 * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
-  c.cycles = hypot(busy, waiting) + LOOP_CYCLES; /* neither hides all of the other: within 6 % of what was measured */
+  c.cycles = hypot(busy, waiting) +
+             LOOP_CYCLES; /* neither hides all of the other: within 6 % of what was measured */
   return c;
 }
 

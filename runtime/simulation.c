@@ -531,6 +531,7 @@ static void time_loop(simulation *s) {
     run_stages(s, engine->step_stages, engine->step, after_step);
   }
   sweep_leave(environment);
+  if (s->profile && omp_get_thread_num() == 0) s->profile->left = monotonic_seconds();
 }
 
 /* First frame after the present step bounds an advance; one that is due but not taken does not. */
@@ -564,6 +565,7 @@ step_status simulation_advance(simulation *s, long steps,
   if (!s->at.begun) begin(s);
 #pragma omp parallel num_threads(s->state->block_count)
   time_loop(s);
+  if (s->profile) s->profile->part[PROFILE_WAITING] += monotonic_seconds() - s->profile->left;
   if (s->at.status == STEP_OK && s->at.step == s->step_count) s->at.status = STEP_END;
   return (step_status)s->at.status;
 }

@@ -504,6 +504,30 @@ static void degrees_are_seen(void **state) {
   ir_free(g);
 }
 
+/* Products of sums and differences, on either side; what is named, or the same for all bonds, stays as it is. */
+static void sums_of_products_are_fused(void **state) {
+  (void)state;
+  ir *g = ir_new();
+  const ir_node x = input(g, 0, ON_BOND), y = input(g, 1, ON_BOND), k = input(g, 2, ON_BODY),
+                xy = ir_mul(g, x, y), yy = ir_mul(g, y, y), kk = ir_mul(g, k, k);
+  const ir_node area = ir_mul(g, x, x);
+  ir_set_name(g, area, "area", (span){0, 0, 0});
+  const ir_node roots[] = {ir_add(g, xy, x),   ir_sub(g, xy, x), ir_sub(g, x, xy),
+                           ir_add(g, area, y), ir_add(g, kk, x), ir_add(g, xy, yy)};
+  ir_node fused[6];
+  rewrite_fused(g, roots, 6, fused);
+  assert_int_equal(fused[0], ir_make(g, IR_FMA, x, y, x));
+  assert_int_equal(fused[1], ir_make(g, IR_FMA, x, y, ir_neg(g, x)));
+  assert_int_equal(fused[2], ir_make(g, IR_FMA, ir_neg(g, x), y, x));
+  assert_int_equal(fused[3], roots[3]);
+  assert_int_equal(fused[4], roots[4]);
+  /* of two products the one that nothing else needs */
+  assert_int_equal(fused[5], ir_make(g, IR_FMA, y, y, xy));
+  /* d(x y + x)/dx = y + 1, as before */
+  assert_int_equal(ir_derivative(g, fused[0], x), ir_derivative(g, roots[0], x));
+  ir_free(g);
+}
+
 static void zero_and_reciprocal_rewrites(void **state) {
   (void)state;
   ir *g = ir_new();
@@ -536,6 +560,7 @@ int main(void) {
       cmocka_unit_test(uniform_values_are_hoisted),
       cmocka_unit_test(the_dump_names_passes_and_hoisted_values),
       cmocka_unit_test(degrees_are_seen),
+      cmocka_unit_test(sums_of_products_are_fused),
       cmocka_unit_test(zero_and_reciprocal_rewrites),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

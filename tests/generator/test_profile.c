@@ -38,7 +38,6 @@ static void parts_add_up_to_the_run(void **state) {
     const double rest = share(w, "rest");
     assert_true(sum + rest > 99 && sum + rest < 101); /* percent are rounded */
     assert_true(share(w, "law") > 1 && share(w, "moving particles") > 0.1);
-    if (threads == 1) assert_true(share(w, "waiting for threads") < 10);
     assert_non_null(strstr(w->said, "    a particle's step: "));
     assert_non_null(strstr(w->said, "    limited by "));
   }
