@@ -178,6 +178,20 @@ static void draw_list(body *b, double s, double mass, uint64_t *seed) {
   }
 }
 
+static long neighbour_of(const body *b, long k, long q) {
+  return q + (is_list(b) ? b->neighbour[k * SIZE + q] : b->offset[k]);
+}
+
+/* A field on bonds has one value, which stands at both ends. */
+static void match_ends(const body *b, double *field) {
+  const long half = b->neighbours / 2;
+  for (long k = 0; k < half; k++)
+    for (long q = 0; q < SIZE; q++) {
+      const long other = neighbour_of(b, k, q);
+      if (other < SIZE) field[(k + half) * SIZE + other] = field[k * SIZE + q];
+    }
+}
+
 static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
   const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
   draw_motion(b, bonds->s, seed);
@@ -192,16 +206,14 @@ static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
   for (int f = 0; f < b->law->field_count; f++)
     for (long q = 0; q < planes_of(b, &b->law->fields[f]) * SIZE; q++)
       b->before[f][q] = draw_field(seed, &b->law->fields[f]);
+  for (int f = 0; f < b->law->field_count; f++)
+    if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
   for (int k = 0; k < b->law->link_count; k++)
     for (int q = 0; q < SIZE; q++)
       b->link[0][k][q] = b->link[1][k][q] = draw_size(seed, -6, 0);
   for (int k = 0; k < b->law->bond_link_count; k++)
     for (long q = 0; q < (long)b->neighbours * SIZE; q++)
       b->bond_link[0][k][q] = b->bond_link[1][k][q] = draw_size(seed, -6, 0);
-}
-
-static long neighbour_of(const body *b, long k, long q) {
-  return q + (is_list(b) ? b->neighbour[k * SIZE + q] : b->offset[k]);
 }
 
 static bool has_bond(const body *b, int k, long q) {
@@ -338,6 +350,12 @@ static long written_for_absent(const body *b, const pl_field *f, const double *v
   return count;
 }
 
+/* The end that computes what both share was among the sites of the run. */
+static bool owner_has_run(const body *b, long k, long q) {
+  const long owner = k < b->neighbours / 2 ? q : neighbour_of(b, k, q);
+  return owner >= MARGIN && owner < MARGIN + SITES;
+}
+
 /* A damage stays with its particle; on a bond with either. */
 static long changed_where_held(const body *b, int field) {
   const pl_field *f = &b->law->fields[field];
@@ -348,7 +366,7 @@ static long changed_where_held(const body *b, int field) {
     for (long q = MARGIN; q < MARGIN + SITES; q++) {
       const bool toward = f->place != PL_ON_PARTICLE;
       const bool held = b->held[q] || (toward && b->held[neighbour_of(b, k, q)]);
-      if (!held || (toward && !has_bond(b, (int)k, q))) continue;
+      if (!held || (toward && (!has_bond(b, (int)k, q) || !owner_has_run(b, k, q)))) continue;
       count += memcmp(&before[k * SIZE + q], &after[k * SIZE + q], sizeof *before) != 0;
     }
   return count;
