@@ -1,64 +1,10 @@
-#include "generator/program.h"
+#include "generator/program_parts.h"
 
 #include <assert.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "dsl/builtins.h"
 #include "generator/kinematics.h"
-
-/* Values by node, for a graph that grows while they are found. */
-typedef struct node_map {
-  int *value; /* -1: none yet */
-  int room;
-} node_map;
-
-static int map_get(const node_map *m, ir_node n) {
-  return n < m->room ? m->value[n] : -1;
-}
-
-static void map_set(node_map *m, ir_node n, int value) {
-  if (n >= m->room) {
-    int room = 2 * n + 64;
-    m->value = must_realloc(m->value, (size_t)room * sizeof *m->value);
-    for (int k = m->room; k < room; k++)
-      m->value[k] = -1;
-    m->room = room;
-  }
-  m->value[n] = value;
-}
-
-static void map_clear(node_map *m) {
-  free(m->value);
-  *m = (node_map){0};
-}
-
-enum { MOST_LINKS = 4096 };
-
-typedef struct builder {
-  ir *g;
-  arena *memory;
-  ir_node *link;    /* [link_count] what each link holds, in the terms of the particle itself */
-  int *link_number; /* [link_count] among those of particles, or those of bonds */
-  int link_count;
-  program_links links; /* how many of either */
-  ir_node
-      *shared; /* [shared_count] values that the ends of a bond share, numbered from first_shared */
-  int shared_count, first_shared, round;
-  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted;
-} builder;
-
-static bool is_leaf(const ir *g, ir_node n) {
-  return ir_arity(ir_operation(g, n)) == 0;
-}
-
-static bool is_uniform(const ir *g, ir_node n) {
-  return ir_place(g, n) <= ON_BODY;
-}
-
-static bool is_of_particle(const ir *g, ir_node n) {
-  return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
-}
 
 /* The same operation of other operands, with the name of the first. */
 static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {
@@ -80,8 +26,7 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
   return changed ? made_again(b->g, n, operand) : n;
 }
 
-/* In additions. */
-static int cost_of_operation(const ir *g, ir_node n) {
+int program_cost(const ir *g, ir_node n) {
   ir_op op = ir_operation(g, n);
   bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
                op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
@@ -92,7 +37,7 @@ static int cost_of_operation(const ir *g, ir_node n) {
 static int cost_again(const ir *g, ir_node n, int most) {
   if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
   ir_op op = ir_operation(g, n);
-  int cost = cost_of_operation(g, n);
+  int cost = program_cost(g, n);
   for (int k = 0; k < ir_arity(op) && cost < most; k++)
     cost += cost_again(g, ir_operand(g, n, k), most - cost);
   return cost;
@@ -216,8 +161,7 @@ static ir_node mirror_input(builder *b, ir_node n) {
   }
 }
 
-/* What the neighbour has for a resolved value. */
-static ir_node mirror(builder *b, ir_node n) {
+ir_node program_mirror(builder *b, ir_node n) {
   int known = map_get(&b->mirrored, n);
   if (known >= 0) return known;
   ir_node image;
@@ -228,7 +172,7 @@ static ir_node mirror(builder *b, ir_node n) {
   else if (is_of_particle(b->g, n) && goes_over_family(b, n))
     image = neighbour_link(b, n);
   else
-    image = with_images(b, n, mirror);
+    image = with_images(b, n, program_mirror);
   map_set(&b->mirrored, n, image);
   return image;
 }
@@ -260,221 +204,11 @@ static ir_node resolve(builder *b, ir_node n) {
   ir_node image = n;
   if (ir_operation(b->g, n) == IR_NEIGHBOUR) {
     ir_node theirs = resolve(b, ir_operand(b->g, n, 0));
-    image = is_dear(b, theirs) ? neighbour_link(b, theirs) : mirror(b, theirs);
+    image = is_dear(b, theirs) ? neighbour_link(b, theirs) : program_mirror(b, theirs);
   } else if (!is_leaf(b->g, n))
     image = with_images(b, n, resolve);
   map_set(&b->resolved, n, image);
   return image;
-}
-
-/* --- what both ends of a bond share ----------------------------------------------------------- */
-
-/* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
-static bool is_plain(builder *b, ir_node n) {
-  int known = map_get(&b->plain, n);
-  if (known >= 0) return known != 0;
-  const ir_op op = ir_operation(b->g, n);
-  bool plain = !ir_is_reduction(op);
-  if (op == IR_INPUT) {
-    const ir_source from = ir_input_source(b->g, n);
-    plain = from == IR_FROM_FIELD || from == IR_FROM_NEIGHBOUR_FIELD || from == IR_FROM_ENDS ||
-            is_uniform(b->g, n);
-  }
-  for (int k = 0; k < ir_arity(op) && plain; k++)
-    plain = is_plain(b, ir_operand(b->g, n, k));
-  map_set(&b->plain, n, plain);
-  return plain;
-}
-
-/* The terms of a sum, or the factors of a product. */
-enum { MOST_TERMS = 24 };
-typedef struct term_list {
-  ir_node term[MOST_TERMS];
-  int sign[MOST_TERMS]; /* of a term; of a factor: -1 below the line */
-  int count;
-} term_list;
-
-static bool add_terms(const ir *g, ir_node n, bool of_sum, int sign, term_list *t) {
-  const ir_op op = ir_operation(g, n);
-  const ir_op join = of_sum ? IR_ADD : IR_MUL, part = of_sum ? IR_SUB : IR_DIV;
-  if (op == join || op == part)
-    return add_terms(g, ir_operand(g, n, 0), of_sum, sign, t) &&
-           add_terms(g, ir_operand(g, n, 1), of_sum, op == join ? sign : -sign, t);
-  if (of_sum && op == IR_NEG) return add_terms(g, ir_operand(g, n, 0), of_sum, -sign, t);
-  if (t->count == MOST_TERMS) return false;
-  t->term[t->count] = n;
-  t->sign[t->count++] = sign;
-  return true;
-}
-
-static int parity(builder *b, ir_node n);
-
-/* Takes the mirror image of term k, with that sign, out of the list. */
-static bool take_partner(builder *b, term_list *t, int k, int sign) {
-  const ir_node image = mirror(b, t->term[k]);
-  for (int other = k + 1; other < t->count; other++)
-    if (t->term[other] == image && t->sign[other] == sign) {
-      t->term[other] = t->term[--t->count];
-      t->sign[other] = t->sign[t->count];
-      return true;
-    }
-  return false;
-}
-
-/* A sum has the parity of its terms, or its terms come in pairs that the ends exchange. */
-static int parity_of_sum(builder *b, ir_node n) {
-  for (int wanted = 1; wanted >= -1; wanted -= 2) {
-    term_list t = {.count = 0};
-    if (!add_terms(b->g, n, true, 1, &t)) return 0;
-    bool all = true;
-    for (int k = 0; k < t.count && all; k++)
-      all = parity(b, t.term[k]) == wanted || take_partner(b, &t, k, wanted * t.sign[k]);
-    if (all) return wanted;
-  }
-  return 0;
-}
-
-static int parity_of_product(builder *b, ir_node n) {
-  term_list t = {.count = 0};
-  int all = 1;
-  if (!add_terms(b->g, n, false, 1, &t)) return 0;
-  for (int k = 0; k < t.count && all; k++) {
-    const int one = parity(b, t.term[k]);
-    if (one)
-      all *= one;
-    else
-      all = take_partner(b, &t, k, t.sign[k]) ? all : 0;
-  }
-  return all;
-}
-
-static int parity_of_leaf(builder *b, ir_node n) {
-  if (ir_operation(b->g, n) == IR_CONSTANT) return 1;
-  const ir_node image = mirror(b, n);
-  return image == n ? 1 : image == ir_neg(b->g, n) ? -1 : 0;
-}
-
-/* Of any other operation: even when its operands are, or when the ends exchange them. */
-static int parity_of_others(builder *b, ir_node n) {
-  const ir_op op = ir_operation(b->g, n);
-  int operand[3] = {1, 1, 1};
-  for (int k = 0; k < ir_arity(op); k++)
-    operand[k] = parity(b, ir_operand(b->g, n, k));
-  if (op == IR_NEG) return operand[0];
-  if (op == IR_ABS && operand[0]) return 1;
-  if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
-  if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
-  return mirror(b, n) == n ? 1 : 0;
-}
-
-/* 1: the value is the same from either end of the bond; -1: it changes its sign; 0: neither can be seen. For plain values;
-   rounding is left aside, since only one end will compute it. */
-static int parity(builder *b, ir_node n) {
-  int known = map_get(&b->parity, n);
-  if (known >= 0) return known - 1;
-  const ir_op op = ir_operation(b->g, n);
-  int p = 0;
-  if (is_leaf(b->g, n))
-    p = parity_of_leaf(b, n);
-  else if (op == IR_ADD || op == IR_SUB)
-    p = parity_of_sum(b, n);
-  else if (op == IR_MUL || op == IR_DIV)
-    p = parity_of_product(b, n);
-  else
-    p = parity_of_others(b, n);
-  map_set(&b->parity, n, p + 1);
-  return p;
-}
-
-/* Operations that have not been counted since `round` began. */
-static int cost_in_round(builder *b, ir_node n, int most) {
-  if (map_get(&b->counted, n) == b->round) return 0;
-  map_set(&b->counted, n, b->round);
-  for (int k = 0; k < b->shared_count; k++)
-    if (b->shared[k] == n) return 0;
-  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
-  int cost = cost_of_operation(b->g, n);
-  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
-    cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
-  return cost;
-}
-
-/* What a value toward a neighbour costs beyond the shared values found so far, in additions. */
-static int cost_beyond(builder *b, ir_node n, int most) {
-  b->round++;
-  return cost_in_round(b, n, most);
-}
-
-/* A store and two loads for each bond against what one end need not compute. */
-static bool is_worth_sharing(builder *b, ir_node n) {
-  enum { DEAR = 25 };
-  return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
-         !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
-}
-
-/* Whether little is left to do for a value when the part is shared. */
-static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
-  enum { CHEAP = 6 };
-  b->shared[b->shared_count++] = part;
-  const bool does = cost_beyond(b, n, CHEAP + 1) <= CHEAP;
-  b->shared_count--;
-  return does;
-}
-
-/* The part of a value that costs nearly all: shared in its place, it serves others, too. */
-static ir_node dear_part(builder *b, ir_node n) {
-  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
-    const ir_node part = ir_operand(b->g, n, k);
-    if (is_worth_sharing(b, part) && costs_nearly_all(b, part, n)) return dear_part(b, part);
-  }
-  return n;
-}
-
-typedef struct node_list {
-  ir_node *items;
-  int count;
-} node_list;
-
-/* The largest values that the ends could share. */
-static void find_shareable(builder *b, ir_node n, node_map *seen, node_list *found) {
-  if (map_get(seen, n) >= 0) return;
-  map_set(seen, n, 1);
-  if (is_worth_sharing(b, n) && found->count < MOST_LINKS) {
-    found->items[found->count++] = n;
-    return;
-  }
-  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++)
-    find_shareable(b, ir_operand(b->g, n, k), seen, found);
-}
-
-static int by_number(const void *a, const void *b) {
-  const ir_node x = *(const ir_node *)a, y = *(const ir_node *)b;
-  return (x > y) - (x < y);
-}
-
-/* Chooses b->shared: of what could be shared, operands first, what is still dear given those before. */
-static void choose_shared(builder *b, const segment_root *roots, int root_count) {
-  node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
-  node_map seen = {0};
-  for (int k = 0; k < root_count; k++)
-    find_shareable(b, roots[k].node, &seen, &found);
-  for (int k = 0; k < b->link_count; k++)
-    find_shareable(b, b->link[k], &seen, &found);
-  qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
-  b->shared = arena_alloc(b->memory, ((size_t)found.count + 1) * sizeof *b->shared);
-  for (int k = 0; k < found.count; k++)
-    if (is_worth_sharing(b, found.items[k])) {
-      const ir_node dear = dear_part(b, found.items[k]);
-      b->shared[b->shared_count++] = dear;
-    }
-  map_clear(&seen);
-  free(found.items);
-}
-
-static ir_node shared_input(builder *b, int k) {
-  const char *name = ir_name(b->g, b->shared[k]);
-  return ir_input(b->g, IR_FROM_SHARED, b->first_shared + k,
-                  name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
 }
 
 /* --- passes ----------------------------------------------------------------------------------- */
@@ -727,9 +461,15 @@ static void substitute(builder *b, segment_root *roots, int root_count, const ir
   free(all);
 }
 
+static ir_node shared_input(builder *b, int k) {
+  const char *name = ir_name(b->g, b->shared[k]);
+  return ir_input(b->g, IR_FROM_SHARED, b->first_shared + k,
+                  name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
+}
+
 /* Values that the ends of bonds share become inputs. */
 static void share(builder *b, segment_root *roots, int root_count) {
-  choose_shared(b, roots, root_count);
+  program_choose_shared(b, roots, root_count);
   b->first_shared = 2 * b->links.of_bonds;
   b->links.of_bonds += (b->shared_count + 1) / 2;
   ir_node *inputs = must_alloc(((size_t)b->shared_count + 1) * sizeof *inputs);

@@ -90,7 +90,7 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
 #define PL_SHAPE_PLANES(dimensions) (PL_SHAPE_VALUES(dimensions) + 1)
 
-/* A run of particles of one row. Arrays begin at the run's first site. On rows neighbour k of site q is site
+/* A run of particles: a row, or some that go on in memory with absent sites between. Arrays begin at the run's first site. On rows neighbour k of site q is site
    q + offset[k], on lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
    neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. In a law of families a bond's field, too,
    has a value on either side. Fields on particles have one plane, all others one for each neighbour, `plane` doubles

@@ -22,7 +22,7 @@ double particle_measure(int dimensions, double spacing) {
   return dimensions == 2 ? sqrt(0.75) * spacing * spacing : sqrt(0.5) * spacing * spacing * spacing;
 }
 
-double particle_spacing(int dimensions, double measure) {
+static double spacing_for(int dimensions, double measure) {
   return dimensions == 2 ? sqrt(measure / sqrt(0.75)) : cbrt(measure / sqrt(0.5));
 }
 
@@ -225,7 +225,7 @@ static double mean_of(const double *x, long count) {
 static double spacing_of(const maker *m, const particle_table *t) {
   if (m->lattice->spacing > 0) return m->lattice->spacing;
   const double measure = t->volume ? mean_of(t->volume, t->count) : m->size / (double)t->count;
-  return particle_spacing(t->dimensions, measure);
+  return spacing_for(t->dimensions, measure);
 }
 
 static bool all_apart(const maker *m, particle_table *t, double spacing) {
@@ -280,7 +280,7 @@ static particle_set *take_table(maker *m, particle_table *t, double spacing) {
     measure_cells(m, set);
   }
   if (!(m->lattice->spacing > 0))
-    set->spacing = particle_spacing(set->dimensions, mean_of(set->volume, set->count));
+    set->spacing = spacing_for(set->dimensions, mean_of(set->volume, set->count));
   if (cells_are_filled(m, set, t) && bodies_have_particles(m, set)) return set;
   particle_set_free(set);
   return NULL;

@@ -24,8 +24,7 @@ typedef struct particle_set {
 particle_set *particle_set_make(const deck *k, int lattice, diagnostics *d);
 void particle_set_free(particle_set *set);
 
-/* m^2 or m^3 that a site of the hexagonal or fcc lattice of that spacing stands for, and the spacing for a measure. */
+/* m^2 or m^3 that a site of the hexagonal or fcc lattice of that spacing stands for. */
 double particle_measure(int dimensions, double spacing);
-double particle_spacing(int dimensions, double measure);
 
 #endif

@@ -21,19 +21,22 @@ typedef struct workplace {
   char said[SAID_SIZE]; /* both outputs of the last command */
 } workplace;
 
+/* The body of small decks: a short beam on two points. */
+#define SMALL_BEAM                                                                                 \
+  "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '6.35 mm'  thickness = '152.4 "   \
+  "mm'  /\n"                                                                                       \
+  "&material    lattice = 'concrete'  model = 'mplm_bilinear'  /\n"                                \
+  "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '38.1 mm', '12 "  \
+  "mm'  /\n"                                                                                       \
+  "&region      name = 'left'  shape = 'point'  at = 0, 0  /\n"                                    \
+  "&region      name = 'right'  shape = 'point'  at = '38.1 mm', 0  /\n"                           \
+  "&region      name = 'loader'  shape = 'point'  at = '19.05 mm', '11 mm'  /\n"                   \
+  "&support     region = 'left'  fix = 'xy'  /\n"                                                  \
+  "&support     region = 'right'  fix = 'y'  /\n"
+
 static const char small_deck[] =
     "! A small beam, pushed down in the middle\n"
-    "&simulation  title = 'small beam'  end_time = '1 ms'  /\n"
-    "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '6.35 mm'  thickness = '152.4 "
-    "mm'  /\n"
-    "&material    lattice = 'concrete'  model = 'mplm_bilinear'  /\n"
-    "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '38.1 mm', '12 "
-    "mm'  /\n"
-    "&region      name = 'left'  shape = 'point'  at = 0, 0  /\n"
-    "&region      name = 'right'  shape = 'point'  at = '38.1 mm', 0  /\n"
-    "&region      name = 'loader'  shape = 'point'  at = '19.05 mm', '11 mm'  /\n"
-    "&support     region = 'left'  fix = 'xy'  /\n"
-    "&support     region = 'right'  fix = 'y'  /\n"
+    "&simulation  title = 'small beam'  end_time = '1 ms'  /\n" SMALL_BEAM
     "&drive       region = 'loader'  component = 'y'  velocity = '-20 mm/s'  rise = '0.2 ms'  /\n"
     "&monitor     name = 'load'  kind = 'reaction'  region = 'loader'  component = 'y'  scale = -1 "
     " /\n"

@@ -16,17 +16,7 @@
 /* A beam pushed down: the load is negative where nothing turns it round. */
 static const char quiet[] =
     "&simulation  title = 'quiet, small'  end_time = 1  /\n"
-    "&relaxation  increments = 8  tolerance = 1e-3  /\n"
-    "&lattice     name = 'concrete'  kind = 'hexagonal'  spacing = '6.35 mm'  thickness = '152.4 "
-    "mm'  /\n"
-    "&material    lattice = 'concrete'  model = 'mplm_bilinear'  /\n"
-    "&body        lattice = 'concrete'  shape = 'rectangle'  corner = 0, 0  size = '38.1 mm', '12 "
-    "mm'  /\n"
-    "&region      name = 'left'  shape = 'point'  at = 0, 0  /\n"
-    "&region      name = 'right'  shape = 'point'  at = '38.1 mm', 0  /\n"
-    "&region      name = 'loader'  shape = 'point'  at = '19.05 mm', '11 mm'  /\n"
-    "&support     region = 'left'  fix = 'xy'  /\n"
-    "&support     region = 'right'  fix = 'y'  /\n"
+    "&relaxation  increments = 8  tolerance = 1e-3  /\n" SMALL_BEAM
     "&drive       region = 'loader'  component = 'y'  displacement = '-1 um'  /\n"
     "&monitor     name = 'load'  kind = 'reaction'  region = 'loader'  component = 'y'  /\n"
     "&monitor     name = 'moved'  kind = 'displacement'  region = 'loader'  component = 'y'  /\n"

@@ -66,4 +66,14 @@ static inline step_status small_go(small_run *r) {
   return status;
 }
 
+/* Largest size of a series in the history so far. */
+static inline double small_largest(const small_run *r, const char *name) {
+  const double *values;
+  double most = 0;
+  simulation_series(r->simulation, small_series(r, name), NULL, &values);
+  for (long k = 0; k < simulation_history(r->simulation, NULL); k++)
+    most = fmax(most, fabs(values[k]));
+  return most;
+}
+
 #endif

@@ -40,15 +40,6 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
   assert_non_null(r->simulation);
 }
 
-static double largest_of(const small_run *r, const char *name) {
-  const double *values;
-  double most = 0;
-  simulation_series(r->simulation, small_series(r, name), NULL, &values);
-  for (long k = 0; k < simulation_history(r->simulation, NULL); k++)
-    most = fmax(most, fabs(values[k]));
-  return most;
-}
-
 /* --- energies --------------------------------------------------------------------------------- */
 
 /* Undamaged springs take nothing; what stretches of 1e-5 leave is of their second order in time. */
@@ -57,14 +48,14 @@ static void an_elastic_body_loses_nothing(void **state) {
   small_run r;
   open_busy(&r, 2, "", "/");
   assert_int_equal(small_go(&r), STEP_END);
-  const double external = largest_of(&r, "energy/external");
-  assert_true(external > 1e-3 && largest_of(&r, "energy/stored") > 0.1 * external);
-  assert_true(largest_of(&r, "energy/dissipated_damping") > 1e-3 * external);
+  const double external = small_largest(&r, "energy/external");
+  assert_true(external > 1e-3 && small_largest(&r, "energy/stored") > 0.1 * external);
+  assert_true(small_largest(&r, "energy/dissipated_damping") > 1e-3 * external);
   print_message("elastic body: imbalance %.1e, taken by the law %.1e of the work\n",
-                largest_of(&r, "energy/imbalance") / external,
-                largest_of(&r, "energy/dissipated_damage") / external);
-  assert_true(largest_of(&r, "energy/imbalance") <= 1e-12 * external);
-  assert_true(largest_of(&r, "energy/dissipated_damage") <= 1e-6 * external);
+                small_largest(&r, "energy/imbalance") / external,
+                small_largest(&r, "energy/dissipated_damage") / external);
+  assert_true(small_largest(&r, "energy/imbalance") <= 1e-12 * external);
+  assert_true(small_largest(&r, "energy/dissipated_damage") <= 1e-6 * external);
   small_close(&r);
 }
 
@@ -77,7 +68,7 @@ static void a_breaking_body_takes_energy(void **state) {
     small_run r;
     open_busy(&r, 2, damper ? "S_t = 1e-4 tau = 1e-7" : "S_t = 1e-4", "/");
     assert_int_equal(small_go(&r), STEP_END);
-    const double external = largest_of(&r, "energy/external");
+    const double external = small_largest(&r, "energy/external");
     const double *damage;
     simulation_series(r.simulation, small_series(&r, "energy/dissipated_damage"), NULL, &damage);
     const long samples = simulation_history(r.simulation, NULL);
@@ -85,7 +76,7 @@ static void a_breaking_body_takes_energy(void **state) {
       assert_true(damage[k] >= damage[k - 1] - 1e-3 * external);
     taken[damper] = damage[samples - 1];
     assert_true(taken[damper] > 0.1 * external);
-    assert_true(largest_of(&r, "energy/imbalance") <= 1e-12 * external);
+    assert_true(small_largest(&r, "energy/imbalance") <= 1e-12 * external);
     assert_true(small_last(&r, "cracks") > 0);
     small_close(&r);
   }

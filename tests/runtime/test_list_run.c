@@ -45,15 +45,6 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
   assert_non_null(r->simulation);
 }
 
-static double largest_of(const small_run *r, const char *name) {
-  const double *values;
-  double most = 0;
-  simulation_series(r->simulation, small_series(r, name), NULL, &values);
-  for (long k = 0; k < simulation_history(r->simulation, NULL); k++)
-    most = fmax(most, fabs(values[k]));
-  return most;
-}
-
 /* Masses differ, loads act, mass is damped: all that comes in goes somewhere. What an undamaged body takes is of the second order
    in time. */
 static void energies_add_up(void **state) {
@@ -61,14 +52,14 @@ static void energies_add_up(void **state) {
   small_run r;
   open_busy(&r, 2, "", "");
   assert_int_equal(small_go(&r), STEP_END);
-  const double external = largest_of(&r, "energy/external");
-  assert_true(external > 1e-3 && largest_of(&r, "energy/stored") > 0.1 * external);
-  assert_true(largest_of(&r, "energy/dissipated_damping") > 1e-3 * external);
+  const double external = small_largest(&r, "energy/external");
+  assert_true(external > 1e-3 && small_largest(&r, "energy/stored") > 0.1 * external);
+  assert_true(small_largest(&r, "energy/dissipated_damping") > 1e-3 * external);
   print_message("imbalance %.1e, taken by the law %.1e of the work\n",
-                largest_of(&r, "energy/imbalance") / external,
-                largest_of(&r, "energy/dissipated_damage") / external);
-  assert_true(largest_of(&r, "energy/imbalance") <= 1e-12 * external);
-  assert_true(largest_of(&r, "energy/dissipated_damage") <= 1e-6 * external);
+                small_largest(&r, "energy/imbalance") / external,
+                small_largest(&r, "energy/dissipated_damage") / external);
+  assert_true(small_largest(&r, "energy/imbalance") <= 1e-12 * external);
+  assert_true(small_largest(&r, "energy/dissipated_damage") <= 1e-6 * external);
   small_close(&r);
 }
 

@@ -1,0 +1,203 @@
+/* What both ends of a bond share: values whose mirror image is the value itself. */
+#include "generator/program_parts.h"
+
+/* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
+static bool is_plain(builder *b, ir_node n) {
+  int known = map_get(&b->plain, n);
+  if (known >= 0) return known != 0;
+  const ir_op op = ir_operation(b->g, n);
+  bool plain = !ir_is_reduction(op);
+  if (op == IR_INPUT) {
+    const ir_source from = ir_input_source(b->g, n);
+    plain = from == IR_FROM_FIELD || from == IR_FROM_NEIGHBOUR_FIELD || from == IR_FROM_ENDS ||
+            is_uniform(b->g, n);
+  }
+  for (int k = 0; k < ir_arity(op) && plain; k++)
+    plain = is_plain(b, ir_operand(b->g, n, k));
+  map_set(&b->plain, n, plain);
+  return plain;
+}
+
+/* The terms of a sum, or the factors of a product. */
+enum { MOST_TERMS = 24 };
+typedef struct term_list {
+  ir_node term[MOST_TERMS];
+  int sign[MOST_TERMS]; /* of a term; of a factor: -1 below the line */
+  int count;
+} term_list;
+
+static bool add_terms(const ir *g, ir_node n, bool of_sum, int sign, term_list *t) {
+  const ir_op op = ir_operation(g, n);
+  const ir_op join = of_sum ? IR_ADD : IR_MUL, part = of_sum ? IR_SUB : IR_DIV;
+  if (op == join || op == part)
+    return add_terms(g, ir_operand(g, n, 0), of_sum, sign, t) &&
+           add_terms(g, ir_operand(g, n, 1), of_sum, op == join ? sign : -sign, t);
+  if (of_sum && op == IR_NEG) return add_terms(g, ir_operand(g, n, 0), of_sum, -sign, t);
+  if (t->count == MOST_TERMS) return false;
+  t->term[t->count] = n;
+  t->sign[t->count++] = sign;
+  return true;
+}
+
+static int parity(builder *b, ir_node n);
+
+/* Takes the mirror image of term k, with that sign, out of the list. */
+static bool take_partner(builder *b, term_list *t, int k, int sign) {
+  const ir_node image = program_mirror(b, t->term[k]);
+  for (int other = k + 1; other < t->count; other++)
+    if (t->term[other] == image && t->sign[other] == sign) {
+      t->term[other] = t->term[--t->count];
+      t->sign[other] = t->sign[t->count];
+      return true;
+    }
+  return false;
+}
+
+/* A sum has the parity of its terms, or its terms come in pairs that the ends exchange. */
+static int parity_of_sum(builder *b, ir_node n) {
+  for (int wanted = 1; wanted >= -1; wanted -= 2) {
+    term_list t = {.count = 0};
+    if (!add_terms(b->g, n, true, 1, &t)) return 0;
+    bool all = true;
+    for (int k = 0; k < t.count && all; k++)
+      all = parity(b, t.term[k]) == wanted || take_partner(b, &t, k, wanted * t.sign[k]);
+    if (all) return wanted;
+  }
+  return 0;
+}
+
+static int parity_of_product(builder *b, ir_node n) {
+  term_list t = {.count = 0};
+  int all = 1;
+  if (!add_terms(b->g, n, false, 1, &t)) return 0;
+  for (int k = 0; k < t.count && all; k++) {
+    const int one = parity(b, t.term[k]);
+    if (one)
+      all *= one;
+    else
+      all = take_partner(b, &t, k, t.sign[k]) ? all : 0;
+  }
+  return all;
+}
+
+static int parity_of_leaf(builder *b, ir_node n) {
+  if (ir_operation(b->g, n) == IR_CONSTANT) return 1;
+  const ir_node image = program_mirror(b, n);
+  return image == n ? 1 : image == ir_neg(b->g, n) ? -1 : 0;
+}
+
+/* Of any other operation: even when its operands are, or when the ends exchange them. */
+static int parity_of_others(builder *b, ir_node n) {
+  const ir_op op = ir_operation(b->g, n);
+  int operand[3] = {1, 1, 1};
+  for (int k = 0; k < ir_arity(op); k++)
+    operand[k] = parity(b, ir_operand(b->g, n, k));
+  if (op == IR_NEG) return operand[0];
+  if (op == IR_ABS && operand[0]) return 1;
+  if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
+  if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
+  return program_mirror(b, n) == n ? 1 : 0;
+}
+
+/* 1: the value is the same from either end of the bond; -1: it changes its sign; 0: neither can be seen. For plain values;
+   rounding is left aside, since only one end will compute it. */
+static int parity(builder *b, ir_node n) {
+  int known = map_get(&b->parity, n);
+  if (known >= 0) return known - 1;
+  const ir_op op = ir_operation(b->g, n);
+  int p = 0;
+  if (is_leaf(b->g, n))
+    p = parity_of_leaf(b, n);
+  else if (op == IR_ADD || op == IR_SUB)
+    p = parity_of_sum(b, n);
+  else if (op == IR_MUL || op == IR_DIV)
+    p = parity_of_product(b, n);
+  else
+    p = parity_of_others(b, n);
+  map_set(&b->parity, n, p + 1);
+  return p;
+}
+
+/* Operations that have not been counted since `round` began. */
+static int cost_in_round(builder *b, ir_node n, int most) {
+  if (map_get(&b->counted, n) == b->round) return 0;
+  map_set(&b->counted, n, b->round);
+  for (int k = 0; k < b->shared_count; k++)
+    if (b->shared[k] == n) return 0;
+  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
+  int cost = program_cost(b->g, n);
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
+    cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
+  return cost;
+}
+
+/* What a value toward a neighbour costs beyond the shared values found so far, in additions. */
+static int cost_beyond(builder *b, ir_node n, int most) {
+  b->round++;
+  return cost_in_round(b, n, most);
+}
+
+/* A store and two loads for each bond against what one end need not compute. */
+static bool is_worth_sharing(builder *b, ir_node n) {
+  enum { DEAR = 25 };
+  return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
+         !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
+}
+
+/* Whether little is left to do for a value when the part is shared. */
+static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
+  enum { CHEAP = 6 };
+  b->shared[b->shared_count++] = part;
+  const bool does = cost_beyond(b, n, CHEAP + 1) <= CHEAP;
+  b->shared_count--;
+  return does;
+}
+
+/* The part of a value that costs nearly all: shared in its place, it serves others, too. */
+static ir_node dear_part(builder *b, ir_node n) {
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
+    const ir_node part = ir_operand(b->g, n, k);
+    if (is_worth_sharing(b, part) && costs_nearly_all(b, part, n)) return dear_part(b, part);
+  }
+  return n;
+}
+
+typedef struct node_list {
+  ir_node *items;
+  int count;
+} node_list;
+
+/* The largest values that the ends could share. */
+static void find_shareable(builder *b, ir_node n, node_map *seen, node_list *found) {
+  if (map_get(seen, n) >= 0) return;
+  map_set(seen, n, 1);
+  if (is_worth_sharing(b, n) && found->count < MOST_LINKS) {
+    found->items[found->count++] = n;
+    return;
+  }
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++)
+    find_shareable(b, ir_operand(b->g, n, k), seen, found);
+}
+
+static int by_number(const void *a, const void *b) {
+  const ir_node x = *(const ir_node *)a, y = *(const ir_node *)b;
+  return (x > y) - (x < y);
+}
+
+void program_choose_shared(builder *b, const segment_root *roots, int root_count) {
+  node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
+  node_map seen = {0};
+  for (int k = 0; k < root_count; k++)
+    find_shareable(b, roots[k].node, &seen, &found);
+  for (int k = 0; k < b->link_count; k++)
+    find_shareable(b, b->link[k], &seen, &found);
+  qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
+  b->shared = arena_alloc(b->memory, ((size_t)found.count + 1) * sizeof *b->shared);
+  for (int k = 0; k < found.count; k++)
+    if (is_worth_sharing(b, found.items[k])) {
+      const ir_node dear = dear_part(b, found.items[k]);
+      b->shared[b->shared_count++] = dear;
+    }
+  map_clear(&seen);
+  free(found.items);
+}
