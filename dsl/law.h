@@ -68,6 +68,7 @@ typedef struct law {
   tree *tree;
   law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
+  int neighbours; /* of a full family, where they are known; else 0 */
   arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;

@@ -58,7 +58,8 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   }
   roots[count] = (segment_root){step.F, TO_NEIGHBOUR_OBSERVED, own + count};
   program_motion motion = plan_motion(p, step.along_reference);
-  program_build(&p->observe, "stress", g, p->memory, roots, count + 1, &motion, false, &p->links);
+  program_build(&p->observe, "stress", g, p->memory, roots, count + 1, &motion, SHARE_NOTHING,
+                &p->links);
   plan_hoist(p);
   return p;
 }

@@ -7,17 +7,14 @@
 #include "generator/emit_parts.h"
 #include "generator/kinematics.h"
 
-static const char *const reduction_start[] = {
-    [TO_SUM] = "0.0", [TO_LARGEST] = "-__builtin_inf()", [TO_SMALLEST] = "__builtin_inf()"};
-
 /* --- inputs ----------------------------------------------------------------------------------- */
 
-static bool is_time_step(const emitter *e, ir_node n) {
+bool emit_is_time_step(const emitter *e, ir_node n) {
   return ir_input_source(e->graph, n) == IR_FROM_ENDS &&
          ir_input_index(e->graph, n) == ENDS_TIME_STEP;
 }
 
-static bool is_held(const emitter *e, ir_node n) {
+bool emit_is_held(const emitter *e, ir_node n) {
   return ir_input_source(e->graph, n) == IR_FROM_ENDS &&
          ends_origins[ir_input_index(e->graph, n)].array == FROM_HELD;
 }
@@ -45,73 +42,82 @@ static bool is_of_neighbour(const emitter *e, ir_node n) {
 }
 
 void emit_segment_input(emitter *e, ir_node n) {
+  if (e->unrolled) {
+    emit_unrolled_input(e, n);
+    return;
+  }
+  const bool odd = ir_input_source(e->graph, n) == IR_FROM_SHARED_ODD;
   const char *at = is_list(e) && is_of_neighbour(e, n) ? "q + to[q]" : "q";
-  if (is_time_step(e, n))
+  if (emit_is_time_step(e, n))
     c_text_add(e->out, "family->time_step");
   else
-    c_text_add(e->out, "at_%s[%s]%s", e->name[n], at, is_held(e, n) ? " != 0 ? 1.0 : 0.0" : "");
+    c_text_add(e->out, "%sat_%s[%s]%s", odd ? "sign*" : "", e->name[n], at,
+               emit_is_held(e, n) ? " != 0 ? 1.0 : 0.0" : "");
 }
 
 /* Where the array of an input of particle positions, velocities, flags, volumes or masses begins, or of bonds' chords. */
 static void write_ends_array(emitter *e, ir_node n) {
   const ends_origin *o = &ends_origins[ir_input_index(e->graph, n)];
+  const family_words *w = e->words;
   switch (o->array) {
   case FROM_HELD:
-    c_text_add(e->out, "family->held + first");
+    c_text_add(e->out, "family->held%s", w->first);
     break;
   case FROM_VOLUME:
-    c_text_add(e->out, "family->volume + first");
+    c_text_add(e->out, "family->volume%s", w->first);
     break;
   case FROM_MASS:
-    c_text_add(e->out, "family->mass + first");
+    c_text_add(e->out, "family->mass%s", w->first);
     break;
   case FROM_LENGTH:
-    c_text_add(e->out, "family->length + first + k*family->plane");
+    c_text_add(e->out, "family->length%s + %s*family->plane", w->first, w->k);
     break;
   case FROM_CHORD:
-    c_text_add(e->out, "family->chord[%d] + first + k*family->plane", o->component);
+    c_text_add(e->out, "family->chord[%d]%s + %s*family->plane", o->component, w->first, w->k);
     break;
   default:
-    c_text_add(e->out, "family->%s[%d] + first",
-               o->array == FROM_DISPLACEMENT ? "displacement" : "velocity", o->component);
+    c_text_add(e->out, "family->%s[%d]%s",
+               o->array == FROM_DISPLACEMENT ? "displacement" : "velocity", o->component, w->first);
   }
 }
 
 /* A value that both ends of a bond share, in the plane of the bond's number at its owner. */
 static void write_shared(emitter *e, int index, const char *number, const char *at) {
   const shared_place stands = program_shared_place(index);
-  c_text_add(e->out, "family->bond_link[%d] + first + %s + (%s%s)*family->plane", stands.link, at,
-             stands.upper ? "half + " : "", number);
+  c_text_add(e->out, "family->bond_link[%d]%s + %s + (%s%s)*family->plane", stands.link,
+             e->words->first, at, stands.upper ? "half + " : "", number);
 }
 
 /* Of the particle at hand, or at lane 0 of the chunk's neighbours; on lists the loop adds the way to the neighbour. */
-static void write_array(emitter *e, ir_node n) {
+void emit_family_array(emitter *e, ir_node n) {
   const int index = ir_input_index(e->graph, n);
   const bool own = ir_place(e->graph, n) != ON_BOND; /* of a neighbour's fields: toward me */
+  const family_words *w = e->words;
   switch (ir_input_source(e->graph, n)) {
   case IR_FROM_FIELD:
-    c_text_add(e->out, "family->old_field[%d] + first%s", index,
-               is_of_particle(e, index) ? "" : " + k*family->plane");
+    c_text_add(e->out, "family->old_field[%d]%s", index, w->first);
+    if (!is_of_particle(e, index)) c_text_add(e->out, " + %s*family->plane", w->k);
     break;
   case IR_FROM_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "family->old_field[%d] + first%s", index,
-               own ? " + back*family->plane" : "");
+    c_text_add(e->out, "family->old_field[%d]%s", index, w->first);
+    if (own) c_text_add(e->out, " + %s*family->plane", w->back);
     break;
   case IR_FROM_LINK:
   case IR_FROM_NEIGHBOUR_LINK:
-    c_text_add(e->out, "family->link[%d] + first", index);
+    c_text_add(e->out, "family->link[%d]%s", index, w->first);
     break;
   case IR_FROM_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", index);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->k);
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d] + first + back*family->plane", index);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->back);
     break;
   case IR_FROM_SHARED:
-    write_shared(e, index, "owned", "owner");
+  case IR_FROM_SHARED_ODD:
+    write_shared(e, index, w->owned, w->owner);
     break;
   case IR_FROM_SHAPE:
-    c_text_add(e->out, "family->shape[%d] + first", index);
+    c_text_add(e->out, "family->shape[%d]%s", index, w->first);
     break;
   case IR_FROM_SLOT:
     c_text_add(e->out, "slot_%d", index);
@@ -122,7 +128,7 @@ static void write_array(emitter *e, ir_node n) {
   default:
     write_ends_array(e, n);
   }
-  if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + to");
+  if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + %s", w->to);
 }
 
 static void write_inputs(emitter *e) {
@@ -133,10 +139,10 @@ static void write_inputs(emitter *e) {
       c_text_add(e->out, "%sconst double %s = uniforms[%s%d]", indent, e->name[n],
                  e->scope == IN_NEIGHBOURS && !is_list(e) ? "k*UNIFORMS + " : "", e->uniform_of[n]);
       emit_line_end(e, n);
-    } else if (emit_is_input(e, n) && !is_time_step(e, n)) {
+    } else if (emit_is_input(e, n) && !emit_is_time_step(e, n)) {
       c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
-                 is_held(e, n) ? "uint64_t" : "double", e->name[n]);
-      write_array(e, n);
+                 emit_is_held(e, n) ? "uint64_t" : "double", e->name[n]);
+      emit_family_array(e, n);
       c_text_add(e->out, ";\n");
     }
   }
@@ -145,34 +151,35 @@ static void write_inputs(emitter *e) {
 /* --- outputs ---------------------------------------------------------------------------------- */
 
 /* The array that a root is written to. Slots and planes are the pass's own. */
-static void write_target(emitter *e, const segment_root *r) {
+void emit_family_target(emitter *e, const segment_root *r) {
+  const family_words *w = e->words;
   switch (r->target) {
   case TO_LINK:
-    c_text_add(e->out, "family->link[%d] + first", r->index);
+    c_text_add(e->out, "family->link[%d]%s", r->index, w->first);
     break;
   case TO_PARTICLE_FIELD:
-    c_text_add(e->out, "family->new_field[%d] + first", r->index);
+    c_text_add(e->out, "family->new_field[%d]%s", r->index, w->first);
     break;
   case TO_PARTICLE_FORCE:
-    c_text_add(e->out, "family->force[%d] + first", r->index);
+    c_text_add(e->out, "family->force[%d]%s", r->index, w->first);
     break;
   case TO_PARTICLE_OBSERVED:
-    c_text_add(e->out, "family->observed[%d] + first", r->index);
+    c_text_add(e->out, "family->observed[%d]%s", r->index, w->first);
     break;
   case TO_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "family->new_field[%d] + first + k*family->plane", r->index);
+    c_text_add(e->out, "family->new_field[%d]%s + %s*family->plane", r->index, w->first, w->k);
     break;
   case TO_NEIGHBOUR_OBSERVED:
-    c_text_add(e->out, "family->observed[%d] + first + k*family->plane", r->index);
+    c_text_add(e->out, "family->observed[%d]%s + %s*family->plane", r->index, w->first, w->k);
     break;
   case TO_PLANE:
     c_text_add(e->out, "plane_%d[k]", r->index);
     break;
   case TO_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d] + first + k*family->plane", r->index);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", r->index, w->first, w->k);
     break;
   case TO_SHARED:
-    write_shared(e, r->index, "k", "0");
+    write_shared(e, r->index, w->k, "0");
     break;
   default:
     c_text_add(e->out, "slot_%d", r->index);
@@ -183,37 +190,34 @@ static void write_outputs(emitter *e, const segment *a) {
   const char *indent = a->kind == OVER_PARTICLES ? "    " : "      ";
   for (int k = 0; k < a->root_count; k++) {
     c_text_add(e->out, "%sdouble *restrict to_%d = ", indent, k);
-    write_target(e, &a->roots[k]);
+    emit_family_target(e, &a->roots[k]);
     c_text_add(e->out, ";\n");
   }
 }
 
-static void write_value_or(emitter *e, ir_node n, const char *format, int root) {
+static void write_value_or(emitter *e, ir_node n, const char *otherwise) {
   c_text_add(e->out, "present ? ");
   emit_value(e, n);
-  c_text_add(e->out, " : ");
-  c_text_add(e->out, format, root);
-  c_text_add(e->out, ";\n");
+  c_text_add(e->out, " : %s;\n", otherwise);
 }
 
-static void write_store(emitter *e, const segment_root *r, int root) {
-  c_text_add(e->out, "        to_%d[q] ", root);
+void emit_family_store(emitter *e, const segment_root *r, const char *to) {
+  c_text_add(e->out, "        %s ", to);
   switch (r->target) {
   case TO_SUM:
     c_text_add(e->out, "+= ");
-    write_value_or(e, r->node, "0.0", root);
+    write_value_or(e, r->node, "0.0");
     break;
   case TO_LARGEST:
   case TO_SMALLEST:
-    c_text_add(e->out, "= present ? pl_%s(to_%d[q], ", r->target == TO_LARGEST ? "max" : "min",
-               root);
+    c_text_add(e->out, "= present ? pl_%s(%s, ", r->target == TO_LARGEST ? "max" : "min", to);
     emit_value(e, r->node);
-    c_text_add(e->out, ") : to_%d[q];\n", root);
+    c_text_add(e->out, ") : %s;\n", to);
     break;
   case TO_NEIGHBOUR_OBSERVED:
   case TO_NEIGHBOUR_FIELD:
     c_text_add(e->out, "= ");
-    write_value_or(e, r->node, "0.0", root);
+    write_value_or(e, r->node, "0.0");
     break;
   default:
     c_text_add(e->out, "= ");
@@ -222,9 +226,17 @@ static void write_store(emitter *e, const segment_root *r, int root) {
   }
 }
 
+static void write_stores(emitter *e, const segment *a) {
+  char to[32];
+  for (int k = 0; k < a->root_count; k++) {
+    snprintf(to, sizeof to, "to_%d[q]", k);
+    emit_family_store(e, &a->roots[k], to);
+  }
+}
+
 /* --- segments --------------------------------------------------------------------------------- */
 
-static void open_segment(emitter *e, const segment *a) {
+void emit_open_segment(emitter *e, const segment *a) {
   ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
   for (int k = 0; k < a->root_count; k++)
     nodes[k] = a->roots[k].node;
@@ -243,26 +255,34 @@ static void write_particles(emitter *e, const segment *a) {
   write_outputs(e, a);
   write_loop(e, "    ");
   emit_lines(e);
-  for (int k = 0; k < a->root_count; k++)
-    write_store(e, &a->roots[k], k);
+  write_stores(e, a);
   c_text_add(e->out, "    }\n    }\n");
+}
+
+bool emit_is_reduction(const segment_root *r) {
+  return r->target >= TO_SUM && r->target <= TO_SMALLEST;
+}
+
+const char *emit_reduction_start(const segment_root *r) {
+  static const char *const starts[] = {
+      [TO_SUM] = "0.0", [TO_LARGEST] = "-__builtin_inf()", [TO_SMALLEST] = "__builtin_inf()"};
+  return starts[r->target];
 }
 
 static void write_starts(emitter *e, const segment *a) {
   bool any = false;
   for (int k = 0; k < a->root_count; k++)
-    any = any || (a->roots[k].target >= TO_SUM && a->roots[k].target <= TO_SMALLEST);
+    any = any || emit_is_reduction(&a->roots[k]);
   if (!any) return;
   c_text_add(e->out, "    for (long q = 0; q < lanes; q++) {\n");
   for (int k = 0; k < a->root_count; k++)
-    if (a->roots[k].target >= TO_SUM && a->roots[k].target <= TO_SMALLEST)
+    if (emit_is_reduction(&a->roots[k]))
       c_text_add(e->out, "      slot_%d[q] = %s;\n", a->roots[k].index,
-                 reduction_start[a->roots[k].target]);
+                 emit_reduction_start(&a->roots[k]));
   c_text_add(e->out, "    }\n");
 }
 
-/* Some value is another one where the bond is absent. */
-static bool asks_for_presence(const segment *a) {
+bool emit_asks_for_presence(const segment *a) {
   bool asks = false;
   for (int k = 0; k < a->root_count; k++)
     asks = asks || (a->roots[k].target != TO_PLANE && a->roots[k].target != TO_BOND_LINK &&
@@ -277,12 +297,12 @@ static void write_presence(emitter *e) {
   c_text_add(e->out, "      const uint64_t present_bit = UINT64_C(1) << (k < half ? k : back);\n");
 }
 
-static bool reads_shared(const emitter *e) {
-  bool reads = false;
-  for (ir_node n = 0; n < e->node_count && !reads; n++)
-    reads = e->needed[n] && ir_operation(e->graph, n) == IR_INPUT &&
-            ir_input_source(e->graph, n) == IR_FROM_SHARED;
-  return reads;
+static bool reads(const emitter *e, ir_source from) {
+  bool does = false;
+  for (ir_node n = 0; n < e->node_count && !does; n++)
+    does = e->needed[n] && ir_operation(e->graph, n) == IR_INPUT &&
+           ir_input_source(e->graph, n) == from;
+  return does;
 }
 
 static void write_neighbours(emitter *e, const segment *a) {
@@ -300,18 +320,19 @@ static void write_neighbours(emitter *e, const segment *a) {
           ? "      const int32_t *restrict to = family->neighbour + first + k*family->plane;\n"
           : "      const long to = family->offset[k];\n");
   c_text_add(e->out, "      (void)to, (void)back;\n");
-  if (asks_for_presence(a)) write_presence(e);
-  if (reads_shared(e))
+  if (emit_asks_for_presence(a)) write_presence(e);
+  if (reads(e, IR_FROM_SHARED_ODD))
+    c_text_add(e->out, "      const double sign = k < half ? 1.0 : -1.0;\n");
+  if (reads(e, IR_FROM_SHARED) || reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out,
                "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");
   emit_lines(e);
-  if (asks_for_presence(a))
+  if (emit_asks_for_presence(a))
     c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
-  for (int k = 0; k < a->root_count; k++)
-    write_store(e, &a->roots[k], k);
+  write_stores(e, a);
   c_text_add(e->out, "      }\n    }\n");
 }
 
@@ -328,15 +349,10 @@ static int chunk_of(const family_pass *p) {
   return chunk;
 }
 
-static void write_pass(emitter *e, const family_program *q, int number) {
-  const family_pass *p = &q->passes[number];
-  c_text_add(
-      e->out,
-      "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
-      "  enum { CHUNK = %d };\n"
-      "  const long half = family->neighbours / 2;\n"
-      "  (void)law, (void)uniforms, (void)half;\n",
-      q->name, number, chunk_of(p));
+static void write_rolled_pass(emitter *e, const family_pass *p) {
+  static const family_words rolled = {" + first", "k", "back", "to", "owned", "owner", false};
+  e->words = &rolled;
+  c_text_add(e->out, "  enum { CHUNK = %d };\n", chunk_of(p));
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double slot_%d[CHUNK];\n", k);
   for (int k = 0; k < p->plane_count; k++)
@@ -347,14 +363,28 @@ static void write_pass(emitter *e, const family_program *q, int number) {
                      "    const long lanes = left < CHUNK ? left / PL_LANES * PL_LANES : CHUNK;\n");
   for (int k = 0; k < p->segment_count; k++) {
     const segment *a = &p->segments[k];
-    open_segment(e, a);
+    emit_open_segment(e, a);
     if (a->kind == OVER_PARTICLES)
       write_particles(e, a);
     else
       write_neighbours(e, a);
     emit_close(e);
   }
-  c_text_add(e->out, "  }\n}\n\n");
+  c_text_add(e->out, "  }\n");
+}
+
+static void write_pass(emitter *e, const family_program *q, int number) {
+  c_text_add(
+      e->out,
+      "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
+      "  const long half = family->neighbours / 2;\n"
+      "  (void)law, (void)uniforms, (void)half;\n",
+      q->name, number);
+  if (q == &e->plan->step && plan_is_of_small_family(e->plan))
+    emit_unrolled_pass(e, &q->passes[number]);
+  else
+    write_rolled_pass(e, &q->passes[number]);
+  c_text_add(e->out, "}\n\n");
 }
 
 static void write_program(emitter *e, const family_program *q) {
@@ -374,11 +404,12 @@ void emit_programs(emitter *e) {
 
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
-             "    .topology = %s,\n    .link_count = %d,\n    .bond_link_count = %d,\n    "
+             "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    .bond_link_count = %d,\n    "
              ".reads_shape = %d,\n    .step "
              "= {%d, step_passes},\n"
              "    .observe = {%d, observe_passes},\n",
-             is_list(e) ? "PL_LIST" : "PL_ROWS", e->plan->links.of_particles,
+             is_list(e) ? "PL_LIST" : "PL_ROWS",
+             plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0, e->plan->links.of_particles,
              e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count,
              e->plan->observe.pass_count);
 }

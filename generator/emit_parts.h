@@ -16,6 +16,13 @@ typedef enum scope_kind {
   IN_NEIGHBOURS
 } scope_kind;
 
+/* How the loops of a segment are written: what stands for the first particle of a chunk, for the number of the neighbour
+   here and there, for the way to it, and for number and place of the bond at its owner. */
+typedef struct family_words {
+  const char *first, *k, *back, *to, *owned, *owner;
+  bool far; /* the bond is the neighbour's, which is known only where families are unrolled */
+} family_words;
+
 typedef struct emitter {
   const kernel_plan *plan;
   const ir *graph;
@@ -34,6 +41,8 @@ typedef struct emitter {
   ir_node *user;         /* [node_count] the last of them; IR_NONE: a root */
   int *size;             /* [node_count] operations written in place of the node */
   const char **name;     /* [node_count] NULL: written in place */
+  const family_words *words;  /* of segments */
+  struct unrolled *unrolled;  /* of a pass that is one loop (emit_unrolled.c); else NULL */
 } emitter;
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
@@ -72,5 +81,26 @@ void emit_programs(emitter *e);
 void emit_program_members(emitter *e);
 /* What a segment loads for an input. */
 void emit_segment_input(emitter *e, ir_node n);
+/* Where the array of an input begins, and that of a root; not of slots and planes. */
+void emit_family_array(emitter *e, ir_node n);
+void emit_family_target(emitter *e, const segment_root *r);
+bool emit_is_held(const emitter *e, ir_node n);
+bool emit_is_time_step(const emitter *e, ir_node n);
+/* Some value of the segment is another one where the bond is absent. */
+bool emit_asks_for_presence(const segment *a);
+/* What a sum, a largest or smallest value begins with. */
+bool emit_is_reduction(const segment_root *r);
+const char *emit_reduction_start(const segment_root *r);
+/* Begins a segment; emit_close ends it. */
+void emit_open_segment(emitter *e, const segment *a);
+/* `to = value;`, or what becomes of `to` where it is a reduction. */
+void emit_family_store(emitter *e, const segment_root *r, const char *to);
+
+/* --- emit_unrolled.c --- */
+
+/* A pass over small families as one loop over the particles of a run, without loops over neighbours: what segments leave
+   for each other stays in registers. */
+void emit_unrolled_pass(emitter *e, const family_pass *p);
+void emit_unrolled_input(emitter *e, ir_node n);
 
 #endif

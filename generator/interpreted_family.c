@@ -16,11 +16,12 @@ struct family_runner {
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
   const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
-      **neighbour_bond_links, **shared, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
+      **neighbour_bond_links, **shared, **shared_odd, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
       *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
+  double *opposite; /* [2 links of bonds][LANES] shared values as the far end has them, when their sign differs */
   double *gathered; /* [most][LANES] values of neighbours, on lists */
   int gathered_count;
   double *results, **result; /* [most roots][LANES] */
@@ -85,6 +86,8 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->bond_links = pointers(r, p->links.of_bonds);
   r->neighbour_bond_links = pointers(r, p->links.of_bonds);
   r->shared = pointers(r, 2 * p->links.of_bonds);
+  r->shared_odd = pointers(r, 2 * p->links.of_bonds);
+  r->opposite = must_calloc((size_t)(2 * p->links.of_bonds) * LANES + 1, sizeof(double));
   r->slots = pointers(r, slots);
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
@@ -118,6 +121,7 @@ void family_runner_free(family_runner *r) {
   free(r->slot);
   free(r->plane);
   free(r->gathered);
+  free(r->opposite);
   free(r->results);
   arena_free(r->memory);
   free(r);
@@ -189,9 +193,14 @@ static double *shared_plane(const pl_family *f, int index, long owned) {
 /* What the owner of the bond has left. */
 static void point_at_shared(family_runner *r, const pl_family *f, long first, long k) {
   const long half = f->neighbours / 2;
-  for (int n = 0; n < 2 * r->plan->links.of_bonds; n++)
+  for (int n = 0; n < 2 * r->plan->links.of_bonds; n++) {
+    double *opposite = r->opposite + (size_t)n * LANES;
     r->shared[n] = k < half ? shared_plane(f, n, k) + first
                             : at_neighbours(r, f, shared_plane(f, n, k - half), first, k);
+    for (long q = 0; k >= half && q < LANES && first + q < f->count; q++)
+      opposite[q] = -r->shared[n][q];
+    r->shared_odd[n] = k < half ? r->shared[n] : opposite;
+  }
 }
 
 static void point_at_list(family_runner *r, const pl_family *f, long first, long k) {
@@ -243,6 +252,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_BOND_LINK] = r->bond_links,
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->neighbour_bond_links,
                                          [IR_FROM_SHARED] = r->shared,
+                                         [IR_FROM_SHARED_ODD] = r->shared_odd,
                                          [IR_FROM_SLOT] = r->slots,
                                          [IR_FROM_PLANE] = r->planes},
                               .stride = {[IR_FROM_FIELD] = r->ones,
@@ -254,6 +264,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_BOND_LINK] = r->ones,
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->ones,
                                          [IR_FROM_SHARED] = r->ones,
+                                         [IR_FROM_SHARED_ODD] = r->ones,
                                          [IR_FROM_SLOT] = r->ones,
                                          [IR_FROM_PLANE] = r->ones}};
 }

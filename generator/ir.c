@@ -543,7 +543,8 @@ static const char *const source_names[IR_SOURCE_COUNT] = {
     [IR_FROM_LINK] = "link",           [IR_FROM_NEIGHBOUR_LINK] = "neighbour's link",
     [IR_FROM_BOND_LINK] = "link of bonds",
     [IR_FROM_NEIGHBOUR_BOND_LINK] = "neighbour's link of bonds",
-    [IR_FROM_SHARED] = "shared",       [IR_FROM_SLOT] = "slot",
+    [IR_FROM_SHARED] = "shared",       [IR_FROM_SHARED_ODD] = "shared_odd",
+    [IR_FROM_SLOT] = "slot",
     [IR_FROM_PLANE] = "plane",
 };
 

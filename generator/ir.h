@@ -56,6 +56,7 @@ typedef enum ir_source {
   IR_FROM_BOND_LINK,       /* index: value toward each neighbour that an earlier pass left */
   IR_FROM_NEIGHBOUR_BOND_LINK, /* the same of the neighbour toward me */
   IR_FROM_SHARED,          /* index: value that the owner of the bond has left for both ends */
+  IR_FROM_SHARED_ODD,      /* the same of a value that has the opposite sign at the other end */
   IR_FROM_SLOT,            /* index: value of the particle within a pass */
   IR_FROM_PLANE,           /* index: value toward each neighbour within a pass */
   IR_SOURCE_COUNT

@@ -89,6 +89,13 @@ typedef struct kernel_plan {
   arena *memory;
 } kernel_plan;
 
+/* Families that a kernel is written for neighbour by neighbour (law->neighbours): a pass is one loop over the particles,
+   without loops over their neighbours. */
+static inline bool plan_is_of_small_family(const kernel_plan *p) {
+  enum { SMALL = 18 };
+  return !p->law->irregular && p->law->neighbours > 0 && p->law->neighbours <= SMALL;
+}
+
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
    when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);

@@ -94,6 +94,7 @@ static read_kind kind_of_input(const ir *g, ir_node n) {
   case IR_FROM_BOND_LINK:
     return READ_LINKS;
   case IR_FROM_SHARED:
+  case IR_FROM_SHARED_ODD:
     return READ_SHARED;
   case IR_FROM_SLOT:
     return READ_SLOTS;

@@ -222,7 +222,7 @@ static int level_of(builder *b, ir_node n) {
     ir_source from = ir_operation(b->g, n) == IR_INPUT ? ir_input_source(b->g, n) : IR_SOURCE_COUNT;
     if (from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK)
       level = level_of(b, linked_node(b, n)) + 1;
-    if (from == IR_FROM_SHARED) level = 1;
+    if (from == IR_FROM_SHARED || from == IR_FROM_SHARED_ODD) level = 1;
   } else {
     for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
       int below = level_of(b, ir_operand(b->g, n, k));
@@ -463,7 +463,9 @@ static void substitute(builder *b, segment_root *roots, int root_count, const ir
 
 static ir_node shared_input(builder *b, int k) {
   const char *name = ir_name(b->g, b->shared[k]);
-  return ir_input(b->g, IR_FROM_SHARED, b->first_shared + k,
+  const ir_source from =
+      program_parity(b, b->shared[k]) < 0 ? IR_FROM_SHARED_ODD : IR_FROM_SHARED;
+  return ir_input(b->g, from, b->first_shared + k,
                   name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
 }
 
@@ -504,8 +506,8 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
 
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   bool shares, program_links *links) {
-  builder b = {.g = g, .memory = memory};
+                   program_sharing sharing, program_links *links) {
+  builder b = {.g = g, .memory = memory, .sharing = sharing};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
   b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);
   segment_root *own = arena_alloc(memory, ((size_t)root_count + 1) * sizeof *own);
@@ -515,7 +517,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
     own[k].node = resolve(&b, roots[k].node);
   }
   substitute(&b, own, root_count, motion->from, motion->to, motion->count);
-  if (shares) share(&b, own, root_count);
+  if (sharing != SHARE_NOTHING) share(&b, own, root_count);
   for (int k = 0; k < root_count; k++) {
     int level = level_of(&b, own[k].node);
     last = level > last ? level : last;
@@ -536,4 +538,5 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.parity);
   map_clear(&b.plain);
   map_clear(&b.counted);
+  map_clear(&b.users);
 }

@@ -66,6 +66,13 @@ typedef struct program_motion {
 
 /* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the
    latter, since only owners write them. */
+/* What both ends of a bond share. */
+typedef enum program_sharing {
+  SHARE_NOTHING,
+  SHARE_DEAR, /* what costs much more to compute than to leave and find */
+  SHARE_MOST  /* also what costs a little more: of small families, whose values stay in caches */
+} program_sharing;
+
 typedef struct program_links {
   int of_particles, of_bonds;
 } program_links;
@@ -83,10 +90,10 @@ static inline shared_place program_shared_place(int index) {
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for
    x, to the bit: values of particles that go over a family are links, and so are values toward a neighbour that are dear;
    all others are evaluated again with both sides exchanged. Motion is substituted after that, since stretch and length are the same from either side. `memory` holds
-   the program; *links is raised to what it needs. With `share` what is the same from either end of a bond is evaluated
-   once, where that pays. */
+   the program; *links is raised to what it needs. What is the same from either end of a bond, or differs
+   by its sign, is evaluated once where that pays, as `sharing` says. */
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
-                   bool share, program_links *links);
+                   program_sharing sharing, program_links *links);
 
 #endif

@@ -42,9 +42,10 @@ typedef struct builder {
   int *link_number; /* [link_count] among those of particles, or those of bonds */
   int link_count;
   program_links links; /* how many of either */
+  program_sharing sharing;
   ir_node *shared;     /* [shared_count] values that the ends share, numbered from first_shared */
   int shared_count, first_shared, round;
-  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted;
+  node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted, users;
 } builder;
 
 static inline bool is_leaf(const ir *g, ir_node n) {
@@ -64,8 +65,11 @@ int program_cost(const ir *g, ir_node n);
 /* What the neighbour has for a resolved value. */
 ir_node program_mirror(builder *b, ir_node n);
 
-/* Chooses b->shared: of what is dear and the same from either end of a bond, operands first, what is still dear given those
-   before. */
+/* What the other end of a bond computes for a plain value (of motion and fields): 1: the same; -1: the opposite; 0: something
+   else, as far as can be seen. */
+int program_parity(builder *b, ir_node n);
+/* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands first, what is still dear
+   given those before. */
 void program_choose_shared(builder *b, const segment_root *roots, int root_count);
 
 #endif

@@ -1,4 +1,4 @@
-/* What both ends of a bond share: values whose mirror image is the value itself. */
+/* What both ends of a bond share: values whose mirror image is the value itself, or its opposite. */
 #include "generator/program_parts.h"
 
 /* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
@@ -39,7 +39,7 @@ static bool add_terms(const ir *g, ir_node n, bool of_sum, int sign, term_list *
   return true;
 }
 
-static int parity(builder *b, ir_node n);
+
 
 /* Takes the mirror image of term k, with that sign, out of the list. */
 static bool take_partner(builder *b, term_list *t, int k, int sign) {
@@ -60,7 +60,7 @@ static int parity_of_sum(builder *b, ir_node n) {
     if (!add_terms(b->g, n, true, 1, &t)) return 0;
     bool all = true;
     for (int k = 0; k < t.count && all; k++)
-      all = parity(b, t.term[k]) == wanted || take_partner(b, &t, k, wanted * t.sign[k]);
+      all = program_parity(b, t.term[k]) == wanted || take_partner(b, &t, k, wanted * t.sign[k]);
     if (all) return wanted;
   }
   return 0;
@@ -71,7 +71,7 @@ static int parity_of_product(builder *b, ir_node n) {
   int all = 1;
   if (!add_terms(b->g, n, false, 1, &t)) return 0;
   for (int k = 0; k < t.count && all; k++) {
-    const int one = parity(b, t.term[k]);
+    const int one = program_parity(b, t.term[k]);
     if (one)
       all *= one;
     else
@@ -91,7 +91,7 @@ static int parity_of_others(builder *b, ir_node n) {
   const ir_op op = ir_operation(b->g, n);
   int operand[3] = {1, 1, 1};
   for (int k = 0; k < ir_arity(op); k++)
-    operand[k] = parity(b, ir_operand(b->g, n, k));
+    operand[k] = program_parity(b, ir_operand(b->g, n, k));
   if (op == IR_NEG) return operand[0];
   if (op == IR_ABS && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
@@ -99,9 +99,8 @@ static int parity_of_others(builder *b, ir_node n) {
   return program_mirror(b, n) == n ? 1 : 0;
 }
 
-/* 1: the value is the same from either end of the bond; -1: it changes its sign; 0: neither can be seen. For plain values;
-   rounding is left aside, since only one end will compute it. */
-static int parity(builder *b, ir_node n) {
+/* Rounding is left aside, since only one end will compute the value. */
+int program_parity(builder *b, ir_node n) {
   int known = map_get(&b->parity, n);
   if (known >= 0) return known - 1;
   const ir_op op = ir_operation(b->g, n);
@@ -137,27 +136,34 @@ static int cost_beyond(builder *b, ir_node n, int most) {
   return cost_in_round(b, n, most);
 }
 
-/* A store and two loads for each bond against what one end need not compute. */
+/* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
+static int dear(const builder *b) {
+  return b->sharing == SHARE_MOST ? 5 : 25;
+}
+
 static bool is_worth_sharing(builder *b, ir_node n) {
-  enum { DEAR = 25 };
-  return !is_leaf(b->g, n) && !is_uniform(b->g, n) && !is_of_particle(b->g, n) && is_plain(b, n) &&
-         !ir_is_logical(b->g, n) && cost_beyond(b, n, DEAR) >= DEAR && parity(b, n) == 1;
+  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n) || !is_plain(b, n) ||
+      ir_is_logical(b->g, n) || cost_beyond(b, n, dear(b)) < dear(b))
+    return false;
+  const int parity = program_parity(b, n);
+  return parity == 1 || (parity == -1 && b->sharing == SHARE_MOST);
 }
 
 /* Whether little is left to do for a value when the part is shared. */
 static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
-  enum { CHEAP = 6 };
+  const int cheap = b->sharing == SHARE_MOST ? 1 : 6;
   b->shared[b->shared_count++] = part;
-  const bool does = cost_beyond(b, n, CHEAP + 1) <= CHEAP;
+  const bool does = cost_beyond(b, n, cheap + 1) <= cheap;
   b->shared_count--;
   return does;
 }
 
-/* The part of a value that costs nearly all: shared in its place, it serves others, too. */
+/* The part of a value that costs nearly all and serves others, too: it is shared in its place. */
 static ir_node dear_part(builder *b, ir_node n) {
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
     const ir_node part = ir_operand(b->g, n, k);
-    if (is_worth_sharing(b, part) && costs_nearly_all(b, part, n)) return dear_part(b, part);
+    if (map_get(&b->users, part) > 1 && is_worth_sharing(b, part) && costs_nearly_all(b, part, n))
+      return dear_part(b, part);
   }
   return n;
 }
@@ -184,9 +190,22 @@ static int by_number(const void *a, const void *b) {
   return (x > y) - (x < y);
 }
 
+/* How many nodes and roots read each node. */
+static void count_users(builder *b, ir_node n) {
+  const int before = map_get(&b->users, n);
+  map_set(&b->users, n, before < 0 ? 1 : before + 1);
+  if (before > 0) return;
+  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++)
+    count_users(b, ir_operand(b->g, n, k));
+}
+
 void program_choose_shared(builder *b, const segment_root *roots, int root_count) {
   node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
   node_map seen = {0};
+  for (int k = 0; k < root_count; k++)
+    count_users(b, roots[k].node);
+  for (int k = 0; k < b->link_count; k++)
+    count_users(b, b->link[k]);
   for (int k = 0; k < root_count; k++)
     find_shareable(b, roots[k].node, &seen, &found);
   for (int k = 0; k < b->link_count; k++)

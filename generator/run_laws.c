@@ -7,6 +7,7 @@
 
 #include "generator/physics.h"
 #include "generator/run_parts.h"
+#include "runtime/bravais.h"
 
 /* --- options of a law ------------------------------------------------------------------------- */
 
@@ -126,6 +127,14 @@ static law_setting setting_of(const deck_lattice *l) {
   return SETTING_PLANE_STRESS;
 }
 
+/* Of a full family; 0 where particles stand on no lattice. */
+static int neighbours_of(const deck_lattice *l) {
+  bravais_neighbour list[PL_MAX_DIRECTIONS];
+  bravais b;
+  if (!l || deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  return 2 * bravais_family(&b, l->horizon, l->shells, list);
+}
+
 /* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
@@ -134,6 +143,7 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   out->law->setting = setting_of(l);
   const char *name = law_setting_name(out->law->setting);
   out->law->irregular = l && deck_lattice_is_irregular(l);
+  out->law->neighbours = neighbours_of(l);
   if (out->law->irregular && !model_suits_irregular(out)) {
     diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
                 "the law `%s` is meant for lattices, but these particles are irregular",

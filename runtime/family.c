@@ -389,6 +389,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
   assert(law->dof == law->dimensions);
+  assert(law->neighbours == 0 || law->neighbours == 2 * w->lattice->directions);
   f->neighbours = 2 * w->lattice->directions;
   f->reach = reach_of(w->lattice);
   assert(law->step.pass_count <= FAMILY_MOST_PASSES);

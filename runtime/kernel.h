@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 6
+#define PL_KERNEL_ABI 7
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -175,6 +175,7 @@ typedef struct pl_law {
                   const double *const *in, double *const *out);
 
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
+  int neighbours; /* of the full families that the passes are written for; 0: of any */
   int link_count, bond_link_count;
   int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */

@@ -154,6 +154,7 @@ static const pl_law *compile(contest *c, model *m, bool irregular) {
   bool good = model_open(m, path, NULL, 0);
   if (good) m->law->setting = c->setting;
   if (good) m->law->irregular = irregular;
+  if (good) m->law->neighbours = irregular ? 0 : 2 * c->rows->directions;
   good = good && model_plan(m);
   diag_print(&m->said, stderr);
   const pl_law *kernel = good ? model_kernel(m, false, &note, error, sizeof error) : NULL;
