@@ -54,9 +54,11 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
     ir_node y = kinematics_input(g, chord[second_axis[which]]);
     ir_node term = ir_mul(g, ir_mul(g, x, y), moment);
     ir_node sum = ir_make(g, IR_FAMILY_SUM, term, IR_NONE, IR_NONE);
-    roots[k] = (segment_root){ir_div(g, sum, twice), TO_PARTICLE_OBSERVED, own + k};
+    roots[k] = (segment_root){
+        .node = ir_div(g, sum, twice), .target = TO_PARTICLE_OBSERVED, .index = own + k};
   }
-  roots[count] = (segment_root){step.F, TO_NEIGHBOUR_OBSERVED, own + count};
+  roots[count] =
+      (segment_root){.node = step.F, .target = TO_NEIGHBOUR_OBSERVED, .index = own + count};
   program_motion motion = plan_motion(p, step.along_reference);
   program_build(&p->observe, "stress", g, p->memory, roots, count + 1, &motion, SHARE_NOTHING,
                 &p->links);

@@ -131,7 +131,7 @@ void emit_family_array(emitter *e, ir_node n) {
   if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + %s", w->to);
 }
 
-static void write_inputs(emitter *e) {
+void emit_family_inputs(emitter *e) {
   const char *indent = e->scope == IN_NEIGHBOURS ? "      " : "    ";
   for (ir_node n = 0; n < e->node_count; n++) {
     if (!e->needed[n] || ir_operation(e->graph, n) == IR_CONSTANT) continue;
@@ -142,6 +142,7 @@ static void write_inputs(emitter *e) {
     } else if (emit_is_input(e, n) && !emit_is_time_step(e, n)) {
       c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
                  emit_is_held(e, n) ? "uint64_t" : "double", e->name[n]);
+      emit_pairs_choice(e, n);
       emit_family_array(e, n);
       c_text_add(e->out, ";\n");
     }
@@ -245,15 +246,15 @@ void emit_open_segment(emitter *e, const segment *a) {
   free(nodes);
 }
 
-static void write_loop(emitter *e, const char *indent) {
+void emit_family_loop(emitter *e, const char *indent) {
   c_text_add(e->out, "%sPL_INDEPENDENT\n%sfor (long q = 0; q < lanes; q++) {\n", indent, indent);
 }
 
 static void write_particles(emitter *e, const segment *a) {
   c_text_add(e->out, "    { /* particle by particle */\n");
-  write_inputs(e);
+  emit_family_inputs(e);
   write_outputs(e, a);
-  write_loop(e, "    ");
+  emit_family_loop(e, "    ");
   emit_lines(e);
   write_stores(e, a);
   c_text_add(e->out, "    }\n    }\n");
@@ -269,7 +270,7 @@ const char *emit_reduction_start(const segment_root *r) {
   return starts[r->target];
 }
 
-static void write_starts(emitter *e, const segment *a) {
+void emit_family_starts(emitter *e, const segment *a) {
   bool any = false;
   for (int k = 0; k < a->root_count; k++)
     any = any || emit_is_reduction(&a->roots[k]);
@@ -306,7 +307,7 @@ static bool reads(const emitter *e, ir_source from) {
 }
 
 static void write_neighbours(emitter *e, const segment *a) {
-  write_starts(e, a);
+  emit_family_starts(e, a);
   c_text_add(
       e->out,
       a->kind == OVER_BONDS
@@ -326,9 +327,9 @@ static void write_neighbours(emitter *e, const segment *a) {
   if (reads(e, IR_FROM_SHARED) || reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out,
                "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
-  write_inputs(e);
+  emit_family_inputs(e);
   write_outputs(e, a);
-  write_loop(e, "      ");
+  emit_family_loop(e, "      ");
   emit_lines(e);
   if (emit_asks_for_presence(a))
     c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
@@ -343,7 +344,7 @@ static void write_neighbours(emitter *e, const segment *a) {
 static int chunk_of(const family_pass *p) {
   enum { LONGEST = 512, KEPT = 16384 }; /* B */
   int chunk = LONGEST;
-  if (p->plane_count > 0) return FAMILY_CHUNK;
+  if (p->plane_count > 0 || emit_is_paired(p)) return FAMILY_CHUNK;
   while (chunk > FAMILY_CHUNK && p->slot_count * chunk * (int)sizeof(double) > KEPT)
     chunk /= 2;
   return chunk;
@@ -366,6 +367,8 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
     emit_open_segment(e, a);
     if (a->kind == OVER_PARTICLES)
       write_particles(e, a);
+    else if (a->kind == OVER_PAIRS)
+      emit_pairs(e, a);
     else
       write_neighbours(e, a);
     emit_close(e);
@@ -398,18 +401,21 @@ static void write_program(emitter *e, const family_program *q) {
 
 void emit_programs(emitter *e) {
   c_text_add(e->out, "enum { UNIFORMS = %d };\n\n", e->plan->uniform_count);
+  emit_pairs_functions(e);
   write_program(e, &e->plan->step);
   write_program(e, &e->plan->observe);
 }
 
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
-             "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    .bond_link_count = %d,\n    "
-             ".reads_shape = %d,\n    .step "
+             "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
+             ".bond_link_count = %d,\n    "
+             ".sum_count = %d,\n    .reads_shape = %d,\n    .step "
              "= {%d, step_passes},\n"
              "    .observe = {%d, observe_passes},\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
-             plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0, e->plan->links.of_particles,
-             e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count,
+             plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
+             e->plan->links.of_particles, e->plan->links.of_bonds,
+             program_sum_count(&e->plan->step), e->plan->reads_shape, e->plan->step.pass_count,
              e->plan->observe.pass_count);
 }

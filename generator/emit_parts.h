@@ -43,6 +43,7 @@ typedef struct emitter {
   const char **name;     /* [node_count] NULL: written in place */
   const family_words *words;  /* of segments */
   struct unrolled *unrolled;  /* of a pass that is one loop (emit_unrolled.c); else NULL */
+  bool pairs;                 /* the segment goes over pairs (emit_pairs.c) */
 } emitter;
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
@@ -95,6 +96,21 @@ const char *emit_reduction_start(const segment_root *r);
 void emit_open_segment(emitter *e, const segment *a);
 /* `to = value;`, or what becomes of `to` where it is a reduction. */
 void emit_family_store(emitter *e, const segment_root *r, const char *to);
+
+/* What a segment reads, before its loop; the beginning of that loop; slots as reductions begin. */
+void emit_family_inputs(emitter *e);
+void emit_family_loop(emitter *e, const char *indent);
+void emit_family_starts(emitter *e, const segment *a);
+
+/* --- emit_pairs.c --- */
+
+/* Whether bonds of the pass add to both ends. */
+bool emit_is_paired(const family_pass *p);
+/* What the passes call. */
+void emit_pairs_functions(emitter *e);
+void emit_pairs(emitter *e, const segment *a);
+/* `condition ? zeros : ` before the array of an input that is 0 nearly everywhere. */
+void emit_pairs_choice(emitter *e, ir_node n);
 
 /* --- emit_unrolled.c --- */
 

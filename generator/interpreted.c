@@ -372,6 +372,7 @@ static void describe(interpreted *p, const char *key) {
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
+  p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step = (pl_program){plan->step.pass_count, step_passes};

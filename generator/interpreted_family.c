@@ -327,6 +327,37 @@ static void store(family_runner *r, const segment_root *root, const double *valu
   }
 }
 
+/* A value of a bond at both of its ends. */
+static void store_at_ends(family_runner *r, const segment_root *root, const double *value,
+                          const pl_family *f, long first, long k, long lanes) {
+  const long there = first + f->offset[k];
+  double *far = root->target == TO_SUM
+                    ? f->sum[root->sum] + there
+                    : f->new_field[root->index] + there + (k + f->neighbours / 2) * f->plane;
+  for (long q = 0; q < lanes; q++) {
+    const double here = is_present(f, first, k, q) ? value[q] : 0;
+    if (root->target == TO_SUM)
+      far[q] += root->parity * here;
+    else if (!f->ahead_only)
+      far[q] = here;
+  }
+  if (root->target == TO_SUM || !f->ahead_only) store(r, root, value, f, first, k, lanes);
+}
+
+/* What the particles have got from the far sides of their bonds. */
+static void take_sums(family_runner *r, const segment *a, const pl_family *f, long first,
+                      long lanes) {
+  for (int n = 0; n < a->root_count; n++) {
+    if (a->roots[n].target != TO_SUM) continue;
+    double *slot = r->slot + (size_t)a->roots[n].index * LANES,
+           *got = f->sum[a->roots[n].sum] + first;
+    for (long q = 0; q < lanes; q++) {
+      slot[q] += got[q];
+      got[q] = 0;
+    }
+  }
+}
+
 static void start_reductions(family_runner *r, const segment *a) {
   for (int k = 0; k < a->root_count; k++) {
     const segment_target t = a->roots[k].target;
@@ -346,7 +377,7 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
   const long loops = a->kind == OVER_PARTICLES    ? 1
                      : a->kind == OVER_NEIGHBOURS ? f->neighbours
                                                   : f->neighbours / 2;
-  if (a->kind == OVER_NEIGHBOURS) start_reductions(r, a);
+  if (a->kind != OVER_PARTICLES) start_reductions(r, a);
   point_at_particles(r, f, first);
   for (int u = 0; u < r->plan->uniform_count; u++)
     r->parameters[r->plan->law->parameters.count + u] = uniforms + u;
@@ -358,8 +389,12 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
     interpreter_inputs in = inputs_of(r);
     interpreter_run(run, &in, (int)lanes, r->result);
     for (int n = 0; n < a->root_count; n++)
-      store(r, &a->roots[n], r->result[n], f, first, k, lanes);
+      if (a->kind == OVER_PAIRS)
+        store_at_ends(r, &a->roots[n], r->result[n], f, first, k, lanes);
+      else
+        store(r, &a->roots[n], r->result[n], f, first, k, lanes);
   }
+  if (a->kind == OVER_PAIRS) take_sums(r, a, f, first, lanes);
 }
 
 void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
@@ -367,7 +402,9 @@ void family_runner_run(family_runner *r, bool observe, int number, const double 
   const family_pass *now = &program_of(r->plan, observe)->passes[number];
   for (long first = 0; first < f->count; first += LANES) {
     const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
-    for (int s = 0; s < now->segment_count; s++)
+    for (int s = 0; s < now->segment_count; s++) {
       run_segment(r, r->run[observe][number][s], now, &now->segments[s], f, first, lanes, uniforms);
+      if (f->ahead_only && now->segments[s].kind == OVER_PAIRS) break;
+    }
   }
 }

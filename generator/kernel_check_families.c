@@ -9,7 +9,7 @@
 #include "generator/random_values.h"
 
 /* Sites lie in one array; neighbours are up to MARGIN away. */
-enum { SITES = 200, CUT = 104, MARGIN = 96, SIZE = MARGIN + SITES + MARGIN };
+enum { SITES = 200, CUT = 128, MARGIN = 96, SIZE = MARGIN + SITES + MARGIN };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
 
@@ -20,7 +20,8 @@ typedef struct body {
   double **motion; /* [2 * dimensions][SIZE] displacements, velocities */
   double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
   double **before; /* [fields] */
-  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2];
+  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
+  uint64_t **filled[2]; /* [fields][SIZE] before, after: where fields toward neighbours are not 0 */
   uint64_t *bonds, *incoming, *held;  /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS]; /* rows */
   int32_t *neighbour;                 /* [neighbours][SIZE] lists; NULL on rows */
@@ -58,6 +59,13 @@ static double **observed_new(const body *b) {
   return v;
 }
 
+static uint64_t **filled_new(const pl_law *law) {
+  uint64_t **filled = must_calloc((size_t)law->field_count + 1, sizeof *filled);
+  for (int f = 0; f < law->field_count; f++)
+    filled[f] = must_calloc(SIZE, sizeof **filled);
+  return filled;
+}
+
 static body body_new(const pl_law *law, int neighbours) {
   body b = {.law = law, .neighbours = neighbours};
   b.motion = planes_new(2 * law->dimensions, SIZE);
@@ -69,6 +77,8 @@ static body body_new(const pl_law *law, int neighbours) {
     b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
     b.force[side] = planes_new(law->dimensions, SIZE);
     b.observed[side] = observed_new(&b);
+    b.sum[side] = planes_new(law->sum_count, SIZE);
+    b.filled[side] = filled_new(law);
   }
   b.bonds = must_calloc(SIZE, sizeof *b.bonds);
   b.incoming = must_calloc(SIZE, sizeof *b.incoming);
@@ -90,6 +100,10 @@ static void body_free(body *b) {
     planes_free(b->bond_link[side], b->law->bond_link_count);
     planes_free(b->force[side], b->law->dimensions);
     planes_free(b->observed[side], 1 + b->law->output_count);
+    planes_free(b->sum[side], b->law->sum_count);
+    for (int f = 0; f < b->law->field_count; f++)
+      free(b->filled[side][f]);
+    free(b->filled[side]);
   }
   free(b->bonds);
   free(b->incoming);
@@ -192,6 +206,23 @@ static void match_ends(const body *b, double *field) {
     }
 }
 
+static void mark_filled(uint64_t *filled, const double *values, long k) {
+  for (long q = 0; q < SIZE; q++)
+    if (values[k * SIZE + q] != 0) filled[q / PL_LANES] |= UINT64_C(1) << k;
+}
+
+/* Half of the bonds of laws that look where fields are 0 begin at 0 along the whole array. */
+static void clear_pieces(const body *b, uint64_t *seed) {
+  for (int f = 0; f < b->law->field_count && b->law->sum_count; f++) {
+    memset(b->filled[0][f], 0, SIZE * sizeof **b->filled[0]);
+    for (int k = 0; k < b->neighbours / 2 && b->law->fields[f].place != PL_ON_PARTICLE; k++) {
+      if (draw_bits(seed) % 2) memset(b->before[f] + (long)k * SIZE, 0, SIZE * sizeof **b->before);
+      mark_filled(b->filled[0][f], b->before[f], k);
+    }
+    if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
+  }
+}
+
 static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
   const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
   draw_motion(b, bonds->s, seed);
@@ -208,6 +239,7 @@ static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
       b->before[f][q] = draw_field(seed, &b->law->fields[f]);
   for (int f = 0; f < b->law->field_count; f++)
     if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
+  clear_pieces(b, seed);
   for (int k = 0; k < b->law->link_count; k++)
     for (int q = 0; q < SIZE; q++)
       b->link[0][k][q] = b->link[1][k][q] = draw_size(seed, -6, 0);
@@ -231,16 +263,18 @@ static void poison_values(double *const *v, const body *b, const pl_field *field
 
 static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
+  for (int f = 0; f < b->law->field_count; f++)
+    memset(b->filled[1][f], 0xff, SIZE * sizeof **b->filled[1]);
   planes_poison(b->force[side], b->law->dimensions, SIZE);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
 
-enum { MOST_ARRAYS = 8 };
+enum { MOST_ARRAYS = 11 };
 
 /* Arrays that begin at a site. */
 typedef struct site_arrays {
-  double **lists[MOST_ARRAYS];
+  void *lists[MOST_ARRAYS];
   int count;
 } site_arrays;
 
@@ -248,6 +282,15 @@ static double *const *from_site(site_arrays *s, double *const *arrays, int count
   double **list = must_calloc((size_t)count + 1, sizeof *list);
   for (int k = 0; k < count; k++)
     list[k] = arrays[k] + site;
+  s->lists[s->count++] = list;
+  return list;
+}
+
+/* After poison stands in the new fields, none of their values is known to be 0. */
+static uint64_t **filled_from_site(site_arrays *s, const body *b, uint64_t **filled, long site) {
+  uint64_t **list = must_calloc((size_t)b->law->field_count + 1, sizeof *list);
+  for (int f = 0; f < b->law->field_count; f++)
+    list[f] = filled[f] + site / PL_LANES;
   s->lists[s->count++] = list;
   return list;
 }
@@ -264,7 +307,7 @@ static void point_at_list(const body *b, long site, pl_family *f) {
 }
 
 static void run_part(const law_readers *l, const body *b, int side, pl_family_function pass,
-                     long first, long count) {
+                     long first, long count, bool ahead_only) {
   const pl_law *law = b->law;
   const long site = MARGIN + first;
   site_arrays s = {.count = 0};
@@ -279,9 +322,13 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .bond_link = from_site(&s, b->bond_link[side], law->bond_link_count, site),
                  .force = from_site(&s, b->force[side], law->dimensions, site),
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
+                 .sum = from_site(&s, b->sum[side], law->sum_count, site),
+                 .ahead_only = ahead_only,
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
+  f.old_filled = (const uint64_t *const *)filled_from_site(&s, b, b->filled[0], site);
+  f.new_filled = filled_from_site(&s, b, b->filled[1], site);
   if (is_list(b)) point_at_list(b, site, &f);
   for (int d = 0; d < law->dimensions; d++) {
     f.displacement[d] = b->motion[d] + site;
@@ -292,16 +339,32 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
     free(s.lists[k]);
 }
 
+static void clear_sums(const body *b, int side) {
+  for (int s = 0; s < b->law->sum_count; s++)
+    memset(b->sum[side][s], 0, SIZE * sizeof(double));
+}
+
+/* Bonds of the sites before reach the others: their fields are written as another thread would, then their sums are found
+   as by the thread at hand. */
+static void run_before(const law_readers *l, const body *b, int side, pl_family_function pass) {
+  run_part(l, b, side, pass, -MARGIN, MARGIN, false);
+  clear_sums(b, side);
+  run_part(l, b, side, pass, -MARGIN, MARGIN, true);
+}
+
 static void run_program(const law_readers *l, const body *b, int side, bool observe) {
   const pl_program *p = observe ? &l->law[side]->observe : &l->law[side]->step;
   poison(b, side);
-  for (int k = 0; k < p->pass_count; k++)
+  for (int k = 0; k < p->pass_count; k++) {
+    if (b->law->sum_count && !observe) run_before(l, b, side, p->pass[k]);
     if (side == 0) {
-      run_part(l, b, side, p->pass[k], 0, CUT);
-      run_part(l, b, side, p->pass[k], CUT, SITES - CUT);
+      run_part(l, b, side, p->pass[k], 0, CUT, false);
+      run_part(l, b, side, p->pass[k], CUT, SITES - CUT, false);
     } else {
-      run_part(l, b, side, p->pass[k], 0, SITES);
+      run_part(l, b, side, p->pass[k], 0, SITES, false);
     }
+    clear_sums(b, side); /* what was for sites beyond the run */
+  }
 }
 
 /* --- what they wrote -------------------------------------------------------------------------- */

@@ -96,6 +96,12 @@ static inline bool plan_is_of_small_family(const kernel_plan *p) {
   return !p->law->irregular && p->law->neighbours > 0 && p->law->neighbours <= SMALL;
 }
 
+/* Families in which evaluating a bond twice costs more than adding to a far end (SHARE_PAIRS). */
+static inline bool plan_is_of_large_family(const kernel_plan *p) {
+  enum { LARGE = 40 };
+  return !p->law->irregular && p->law->neighbours >= LARGE;
+}
+
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
    when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);

@@ -22,7 +22,7 @@ static roots roots_new(kernel_plan *p, int most) {
 }
 
 static void want(roots *r, ir_node n, segment_target target, int index) {
-  r->items[r->count++] = (segment_root){n, target, index};
+  r->items[r->count++] = (segment_root){.node = n, .target = target, .index = index};
 }
 
 static bool is_of_particle(const ir *g, ir_node n) {

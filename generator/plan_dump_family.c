@@ -8,7 +8,8 @@
 
 static const char *const segment_names[] = {[OVER_PARTICLES] = "particle by particle",
                                             [OVER_NEIGHBOURS] = "neighbour by neighbour",
-                                            [OVER_BONDS] = "bond by bond"};
+                                            [OVER_BONDS] = "bond by bond",
+                                            [OVER_PAIRS] = "bond by bond, adding to both ends"};
 static const char *const axes[] = {"x", "y", "z"};
 
 /* --- roots ------------------------------------------------------------------------------------ */

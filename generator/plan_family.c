@@ -40,8 +40,9 @@ void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *r
   ir *g = plan->graph;
   ir_node f = bond_force(plan, of);
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] =
-        (segment_root){family_sum(g, ir_mul(g, f, present_direction(g, d))), TO_PARTICLE_FORCE, d};
+    roots[d] = (segment_root){.node = family_sum(g, ir_mul(g, f, present_direction(g, d))),
+                              .target = TO_PARTICLE_FORCE,
+                              .index = d};
 }
 
 /* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are
@@ -78,7 +79,7 @@ static root_list new_roots(kernel_plan *plan, int most) {
 }
 
 static void want(root_list *r, ir_node node, segment_target target, int index) {
-  r->items[r->count++] = (segment_root){node, target, index};
+  r->items[r->count++] = (segment_root){.node = node, .target = target, .index = index};
 }
 
 static bool is_of_particle(const symbol *s) {
@@ -216,7 +217,7 @@ static void count_cost(kernel_plan *plan) {
       for (int r = 0; r < a->root_count; r++)
         nodes[r] = a->roots[r].node;
       ir_cost cost = ir_count_cost(plan->graph, nodes, a->root_count, ON_BOND);
-      const double part = a->kind == OVER_BONDS ? 0.5 : 1;
+      const double part = a->kind == OVER_NEIGHBOURS ? 1 : 0.5;
       plan->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
       plan->divisions_per_bond += part * cost.divisions;
       free(nodes);
@@ -232,6 +233,7 @@ static program_sharing sharing(const family_planner *p) {
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
   if (plan_is_of_small_family(p->plan)) return SHARE_MOST;
+  if (plan_is_of_large_family(p->plan)) return SHARE_PAIRS;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
 

@@ -237,7 +237,7 @@ static int level_of(builder *b, ir_node n) {
 typedef struct pass_view {
   builder *b;
   int now;
-  node_map seen;
+  node_map seen, parity; /* parity + 1 of what a sum adds up; of sums as the pass sees them */
 } pass_view;
 
 static ir_node seen_in_pass(pass_view *v, ir_node n) {
@@ -254,6 +254,8 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
       for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
         operand[k] = seen_in_pass(v, ir_operand(g, n, k));
       image = made_again(g, n, operand);
+      if (ir_is_reduction(ir_operation(g, n)) && b->sharing == SHARE_PAIRS)
+        map_set(&v->parity, image, program_parity_of_root(b, ir_operand(g, n, 0)) + 1);
     }
   }
   map_set(&v->seen, n, image);
@@ -267,6 +269,7 @@ typedef struct scheduler {
   arena *memory;
   family_pass *pass;
   node_map phase, slot, plane;
+  const node_map *parity; /* of sums, as pass_view has it */
   int loop_count;
 } scheduler;
 
@@ -295,7 +298,7 @@ static segment *neighbours_in(scheduler *s, int loop) {
   return &s->pass->segments[2 * loop + 1];
 }
 
-static void add_root(scheduler *s, segment *to, ir_node node, segment_target target, int index) {
+static void add_root(scheduler *s, segment *to, segment_root root) {
   if (to->root_count == to->root_capacity) {
     int capacity = to->root_capacity ? 2 * to->root_capacity : 8;
     segment_root *roots = arena_alloc(s->memory, (size_t)capacity * sizeof *roots);
@@ -303,7 +306,7 @@ static void add_root(scheduler *s, segment *to, ir_node node, segment_target tar
     to->roots = roots;
     to->root_capacity = capacity;
   }
-  to->roots[to->root_count++] = (segment_root){node, target, index};
+  to->roots[to->root_count++] = root;
 }
 
 static segment_target target_of_reduction(ir_op op) {
@@ -323,10 +326,15 @@ static ir_node slot_of(scheduler *s, ir_node n) {
     map_set(&s->slot, n, slot);
     ir_op op = ir_operation(s->g, n);
     if (ir_is_reduction(op))
-      add_root(s, neighbours_in(s, phase_of(s, n) - 1), ir_operand(s->g, n, 0),
-               target_of_reduction(op), slot);
+      add_root(
+          s, neighbours_in(s, phase_of(s, n) - 1),
+          (segment_root){.node = ir_operand(s->g, n, 0),
+                         .target = target_of_reduction(op),
+                         .index = slot,
+                         .parity = map_get(s->parity, n) >= 0 ? map_get(s->parity, n) - 1 : 0});
     else
-      add_root(s, particles_after(s, phase_of(s, n)), n, TO_SLOT, slot);
+      add_root(s, particles_after(s, phase_of(s, n)),
+               (segment_root){.node = n, .target = TO_SLOT, .index = slot});
   }
   return ir_input(s->g, IR_FROM_SLOT, slot, name_of(s, n, "slot", slot), ON_PARTICLE);
 }
@@ -336,7 +344,8 @@ static ir_node plane_of(scheduler *s, ir_node n) {
   if (plane < 0) {
     plane = s->pass->plane_count++;
     map_set(&s->plane, n, plane);
-    add_root(s, neighbours_in(s, phase_of(s, n)), n, TO_PLANE, plane);
+    add_root(s, neighbours_in(s, phase_of(s, n)),
+             (segment_root){.node = n, .target = TO_PLANE, .index = plane});
   }
   return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
 }
@@ -408,9 +417,51 @@ static void drop_empty_segments(family_pass *p) {
   p->segment_count = kept;
 }
 
+/* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond: what the far end
+   gets is complete when its turn comes. */
+static void pair_ends(family_pass *p) {
+  segment *loop = NULL;
+  int sums = 0;
+  for (int k = 0; k < p->segment_count; k++) {
+    if (p->segments[k].kind == OVER_PARTICLES) continue;
+    if (loop || p->segments[k].kind == OVER_BONDS) return;
+    loop = &p->segments[k];
+  }
+  for (int k = 0; loop && k < loop->root_count; k++) {
+    const segment_root *r = &loop->roots[k];
+    if (!(r->target == TO_SUM && r->parity) && !(r->target == TO_NEIGHBOUR_FIELD && r->parity == 1))
+      return;
+  }
+  if (!loop) return;
+  loop->kind = OVER_PAIRS;
+  for (int k = 0; k < loop->root_count; k++)
+    if (loop->roots[k].target == TO_SUM) loop->roots[k].sum = sums++;
+}
+
+bool program_pairs_field(const family_program *p, int field) {
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      for (int r = 0; r < a->root_count && a->kind == OVER_PAIRS; r++)
+        if (a->roots[r].target == TO_NEIGHBOUR_FIELD && a->roots[r].index == field) return true;
+    }
+  return false;
+}
+
+int program_sum_count(const family_program *p) {
+  int most = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      for (int r = 0; r < a->root_count && a->kind == OVER_PAIRS; r++)
+        if (a->roots[r].target == TO_SUM && a->roots[r].sum >= most) most = a->roots[r].sum + 1;
+    }
+  return most;
+}
+
 static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
-                     int root_count) {
-  scheduler s = {.g = g, .memory = memory, .pass = pass};
+                     int root_count, const node_map *parity) {
+  scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity};
   for (int k = 0; k < root_count; k++) {
     int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
     s.loop_count = loops > s.loop_count ? loops : s.loop_count;
@@ -427,7 +478,7 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
     segment *in = roots[k].target == TO_SHARED          ? bonds
                   : is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
                                                         : particles_after(&s, phase);
-    add_root(&s, in, roots[k].node, roots[k].target, roots[k].index);
+    add_root(&s, in, roots[k]);
   }
   view_segment(&s, bonds, 0);
   for (int k = pass->segment_count - 2; k >= 0; k--)
@@ -488,19 +539,29 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
       must_alloc(((size_t)root_count + MOST_LINKS + (size_t)b->shared_count) * sizeof *wanted);
   int count = 0, links = b->link_count;
   for (int k = 0; k < root_count; k++)
-    if (level_of(b, roots[k].node) == now) wanted[count++] = roots[k];
+    if (level_of(b, roots[k].node) == now) {
+      wanted[count] = roots[k];
+      if (b->sharing == SHARE_PAIRS)
+        wanted[count].parity = program_parity_of_root(b, roots[k].node);
+      count++;
+    }
   for (int k = 0; k < links; k++)
     if (level_of(b, b->link[k]) == now)
-      wanted[count++] = (segment_root){
-          b->link[k], is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK, b->link_number[k]};
+      wanted[count++] =
+          (segment_root){.node = b->link[k],
+                         .target = is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK,
+                         .index = b->link_number[k]};
   for (int k = 0; k < b->shared_count && now == 0; k++)
-    wanted[count++] = (segment_root){b->shared[k], TO_SHARED, b->first_shared + k};
+    wanted[count++] =
+        (segment_root){.node = b->shared[k], .target = TO_SHARED, .index = b->first_shared + k};
   for (int k = 0; k < count; k++) {
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
   }
+  schedule(b->g, b->memory, pass, wanted, count, &v.parity);
+  if (b->sharing == SHARE_PAIRS) pair_ends(pass);
   map_clear(&v.seen);
-  schedule(b->g, b->memory, pass, wanted, count);
+  map_clear(&v.parity);
   free(wanted);
 }
 
@@ -517,7 +578,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
     own[k].node = resolve(&b, roots[k].node);
   }
   substitute(&b, own, root_count, motion->from, motion->to, motion->count);
-  if (sharing != SHARE_NOTHING) share(&b, own, root_count);
+  if (sharing == SHARE_DEAR || sharing == SHARE_MOST) share(&b, own, root_count);
   for (int k = 0; k < root_count; k++) {
     int level = level_of(&b, own[k].node);
     last = level > last ? level : last;

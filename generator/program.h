@@ -1,7 +1,7 @@
 /* A law of families as programs. A program is a row of passes over all particles: what a pass needs of a neighbour's
    present step, an earlier pass has left as a link, a value of the particle. A pass is a row of segments over a chunk
    of particles: particle by particle, neighbour by neighbour with sums into slots, or bond by bond, which is over the
-   neighbours whose bonds the particle owns. Values of particles that later segments need stand in slots; values toward
+   neighbours whose bonds the particle owns; in large families such a loop also adds to sums of both ends. Values of particles that later segments need stand in slots; values toward
    neighbours that are too dear to be computed twice stand in planes. What is dear and the same from either end of a bond
    is computed once, by the owner in the first pass, and shared by both ends from then on. The emitter writes segments as
    loops, the interpreter runs them. */
@@ -14,7 +14,12 @@
 /* Particles that the segments of a pass take at a time on the interpreter; in C it may be more (emit_family.c). */
 enum { FAMILY_CHUNK = 64 };
 
-typedef enum segment_kind { OVER_PARTICLES, OVER_NEIGHBOURS, OVER_BONDS } segment_kind;
+typedef enum segment_kind {
+  OVER_PARTICLES,
+  OVER_NEIGHBOURS,
+  OVER_BONDS,
+  OVER_PAIRS /* bond by bond: sums of both ends, and fields at both ends */
+} segment_kind;
 
 /* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction and
    gives 0 to a field and to what is observed. */
@@ -38,6 +43,8 @@ typedef struct segment_root {
   ir_node node;
   segment_target target;
   int index;
+  int parity; /* what the other end of the bond computes: 1: the same; -1: the opposite; 0: something else */
+  int sum; /* of OVER_PAIRS: which pl_family.sum TO_SUM adds to at the far end */
 } segment_root;
 
 typedef struct segment {
@@ -70,7 +77,8 @@ typedef struct program_motion {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MOST  /* also what costs a little more: of small families, whose values stay in caches */
+  SHARE_MOST, /* also what costs a little more: of small families, whose values stay in caches */
+  SHARE_PAIRS /* all: of large families, where a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
 
 typedef struct program_links {
@@ -95,5 +103,10 @@ static inline shared_place program_shared_place(int index) {
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
                    program_sharing sharing, program_links *links);
+
+/* Whether the program writes the field, which stands toward neighbours, bond by bond at both ends. */
+bool program_pairs_field(const family_program *p, int field);
+/* Sums that one pass adds to far ends, the most. */
+int program_sum_count(const family_program *p);
 
 #endif

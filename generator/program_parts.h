@@ -65,9 +65,11 @@ int program_cost(const ir *g, ir_node n);
 /* What the neighbour has for a resolved value. */
 ir_node program_mirror(builder *b, ir_node n);
 
-/* What the other end of a bond computes for a plain value (of motion and fields): 1: the same; -1: the opposite; 0: something
+/* What the other end of a bond computes for a value: 1: the same; -1: the opposite; 0: something
    else, as far as can be seen. */
 int program_parity(builder *b, ir_node n);
+/* The same, and 0 where the other end would need links that nothing else asks for. */
+int program_parity_of_root(builder *b, ir_node n);
 /* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands first, what is still dear
    given those before. */
 void program_choose_shared(builder *b, const segment_root *roots, int root_count);

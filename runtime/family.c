@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "runtime/pair_sums.h"
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
@@ -17,6 +18,9 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
   const double *shape[SHAPE_PLANES];
+  const uint64_t **old_filled;
+  uint64_t **new_filled;
+  pair_sums sums;
 } family_block;
 
 typedef struct family {
@@ -27,6 +31,7 @@ typedef struct family {
   double **bond_link;          /* [bond_links][neighbours * size] */
   double **observed;           /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
+  uint64_t **old_filled, **new_filled; /* pl_family; NULL unless bonds add to both ends */
   family_block *blocks;        /* [block_count] */
 } family;
 
@@ -50,6 +55,19 @@ static void point_at_run(const sweep *w, family_block *b, long start) {
     b->observed[k] = f->observed[k] + start;
   for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
+}
+
+/* What bonds that add to both ends need. */
+static void point_at_sums(const sweep *w, family_block *b, long start, pl_family *run) {
+  const family *f = own(w);
+  for (int k = 0; k < w->law->field_count; k++) {
+    if (!f->old_filled[k]) continue;
+    b->old_filled[k] = f->old_filled[k] + start / PL_LANES;
+    b->new_filled[k] = f->new_filled[k] + start / PL_LANES;
+  }
+  run->old_filled = b->old_filled;
+  run->new_filled = b->new_filled;
+  run->sum = pair_sums_at(w, &b->sums, start);
 }
 
 /* Where the neighbours of the run's particles are. */
@@ -85,6 +103,7 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
                    .observed = b->observed,
                    .time_step = w->time_step};
   point_at_neighbours(w->lattice, row, start, &run);
+  if (w->law->sum_count) point_at_sums(w, b, start, &run);
   for (int d = 0; d < w->dof; d++) {
     run.displacement[d] = w->displacement[d] + start;
     run.velocity[d] = w->velocity[d] + start;
@@ -102,19 +121,26 @@ static int end_of_alike(const sweep *w, int row, int last) {
   return end;
 }
 
+/* Rows row .. end-1, which go on in memory. */
+static void run_together(const sweep *w, pl_family_function pass, int block, int row, int end,
+                         bool ahead_only) {
+  double *force[3];
+  if (w->count[row] == 0) return;
+  const long start = sweep_start(w, row);
+  pl_family run = run_of(w, &own(w)->blocks[block], row);
+  run.count = sweep_start(w, end - 1) + w->count[end - 1] - start;
+  for (int d = 0; d < w->dof; d++)
+    force[d] = w->force[d] + start;
+  run.force = force;
+  run.ahead_only = ahead_only;
+  pass(w->law, own(w)->uniforms, &run);
+}
+
 /* Rows first .. last-1. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
-  double *force[3];
   for (int row = first, end; row < last; row = end) {
     end = end_of_alike(w, row, last);
-    if (w->count[row] == 0) continue;
-    const long start = sweep_start(w, row);
-    pl_family run = run_of(w, &own(w)->blocks[block], row);
-    run.count = sweep_start(w, end - 1) + w->count[end - 1] - start;
-    for (int d = 0; d < w->dof; d++)
-      force[d] = w->force[d] + start;
-    run.force = force;
-    pass(w->law, own(w)->uniforms, &run);
+    run_together(w, pass, block, row, end, false);
   }
 }
 
@@ -166,9 +192,21 @@ static void run_outer(const sweep *w, const pl_program *program, int pass, int b
   run_rows(w, program->pass[pass], block, last, b->last);
 }
 
+/* A pass whose bonds add to both ends, row by row. Bonds of the rows before reach the block's own: they are done once
+   more here, for these ends only, so that sums have the same terms in the same order whatever the blocks. */
+static void run_pairs(const sweep *w, const pl_program *program, int pass, int block) {
+  const sweep_block *b = &w->blocks[block];
+  pair_sums *s = &own(w)->blocks[block].sums;
+  for (int row = s->before; row < b->last; row++)
+    run_together(w, program->pass[pass], block, row, row + 1, row < b->first);
+  pair_sums_clear_ahead(w, s);
+}
+
 /* Stages of a program: the inner rows, then what is left for each pass after the first. */
 static void run_stage(const sweep *w, const pl_program *program, int stage, int block) {
-  if (stage == 0)
+  if (w->law->sum_count)
+    run_pairs(w, program, stage, block);
+  else if (stage == 0)
     run_inner(w, program, block);
   else
     run_outer(w, program, stage, block);
@@ -253,6 +291,16 @@ static void turn(sweep *w) {
   double **old = w->field;
   w->field = own(w)->new_field;
   own(w)->new_field = old;
+  uint64_t **filled = own(w)->old_filled;
+  own(w)->old_filled = own(w)->new_filled;
+  own(w)->new_filled = filled;
+}
+
+static void fields_set(sweep *w) {
+  family *f = own(w);
+  if (w->law->sum_count == 0) return;
+  pair_marks_find(w, w->field, f->old_filled);
+  pair_marks_find(w, f->new_field, f->new_filled);
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -338,6 +386,18 @@ static void new_planes(sweep *w, family *f) {
     f->observed[1 + k] = sweep_doubles(w, sweep_planes(w, law->outputs[k].place) * size);
 }
 
+static void new_sums(sweep *w, family *f) {
+  const pl_law *law = w->law;
+  f->old_filled = pair_marks_new(w);
+  f->new_filled = pair_marks_new(w);
+  for (int k = 0; k < w->block_count; k++) {
+    family_block *b = &f->blocks[k];
+    b->old_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->old_filled);
+    b->new_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->new_filled);
+    b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
+  }
+}
+
 static void new_blocks(const sweep *w, family *f) {
   const pl_law *law = w->law;
   f->blocks = must_calloc((size_t)w->block_count, sizeof *f->blocks);
@@ -365,7 +425,12 @@ static void free_own(sweep *w) {
     free(f->blocks[k].link);
     free(f->blocks[k].bond_link);
     free(f->blocks[k].observed);
+    free(f->blocks[k].old_filled);
+    free(f->blocks[k].new_filled);
+    pair_sums_free(w, &f->blocks[k].sums);
   }
+  pair_marks_free(w, f->old_filled);
+  pair_marks_free(w, f->new_filled);
   free_arrays(f->new_field, w->law->field_count);
   free_arrays(f->link, w->law->link_count);
   free_arrays(f->bond_link, w->law->bond_link_count);
@@ -397,10 +462,14 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
+  if (law->sum_count) new_sums(w, f);
+  w->engine.own = f;
+  fields_set(w);
   return (sweep_engine){.step_stages = law->step.pass_count + 1,
                         .observe_stages = law->step.pass_count + law->observe.pass_count + 1,
                         .step = step,
                         .turn = turn,
+                        .fields_set = fields_set,
                         .observe = observe,
                         .output = output_values,
                         .free = free_own,

@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 7
+#define PL_KERNEL_ABI 8
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -122,6 +122,17 @@ typedef struct pl_family {
   double *const *force;           /* [dimensions] N: sum over the bonds, written by the last pass of the step */
   double *const *observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
   double time_step;        /* s */
+  /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a part of it that begins at
+     its start or where the last run ended, and runs go from lower to higher sites; neighbours k < neighbours/2 stand at
+     higher sites. sum[s] is what earlier runs have added to these particles; a run adds to particles ahead, and what it has
+     used is 0 again. With `ahead_only` it writes nothing else: whoever begins in the middle of a body begins with the
+     rows from which bonds reach its own. */
+  int ahead_only;
+  double *const *sum; /* [sum_count] */
+  /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
+     may be other than 0. Only for fields that such a bond writes; else NULL. */
+  const uint64_t *const *old_filled; /* [fields] of old_field */
+  uint64_t *const *new_filled;       /* [fields] of new_field, read and written */
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour; lists:
@@ -177,6 +188,7 @@ typedef struct pl_law {
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
   int neighbours; /* of the full families that the passes are written for; 0: of any */
   int link_count, bond_link_count;
+  int sum_count;      /* bonds add to both ends: so many sums; 0: either end computes its bonds */
   int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */

@@ -27,13 +27,15 @@ typedef struct patch {
   double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_PLANES(3)];
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
+  double **sum;        /* of laws whose bonds add to both ends (pl_family) */
+  uint64_t *filled[2]; /* [size] of all fields: everywhere */
   double **observed; /* [observed_count] */
   int observed_count;
   double time_step;
 } patch;
 
-/* Margins that a patch of the lattice has: how far its chords reach. */
-void patch_margins(const rows *w, long margin[3]);
+/* Margins that the law's patch of the lattice has: how far its chords reach. */
+void patch_margins(const pl_law *law, const rows *w, long margin[3]);
 
 /* All bonds there, nothing held, fields as they begin, nothing displaced. `more` planes of particles and `wide` of
    neighbours are kept for values observed beyond the law's own outputs. */

@@ -154,6 +154,7 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   free(l.items);
   if (good) s->at = head;
   if (good) put_places_back(s, &own);
+  if (good) sweep_fields_set(s->state);
   if (good && frames) *frames = (long)head.result_frames;
   free(own.constraints);
   free(own.forces);

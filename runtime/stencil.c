@@ -22,7 +22,7 @@ typedef struct neighbourhood {
 static neighbourhood neighbourhood_new(const pl_law *law, const double *parameters, const rows *w) {
   neighbourhood n;
   long margin[3], period[3];
-  patch_margins(w, margin);
+  patch_margins(law, w, margin);
   for (int c = 0; c < 3; c++) {
     n.reach[c] = law->step.pass_count * margin[c];
     period[c] = 2 * n.reach[c] + 1;

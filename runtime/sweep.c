@@ -300,6 +300,10 @@ int sweep_bad(const sweep *w) {
   return -1;
 }
 
+void sweep_fields_set(sweep *w) {
+  if (w->engine.fields_set) w->engine.fields_set(w);
+}
+
 void sweep_turn(sweep *w) {
   if (w->engine.turn) w->engine.turn(w);
 }

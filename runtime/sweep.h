@@ -38,6 +38,8 @@ typedef struct sweep sweep;
 typedef struct sweep_engine {
   int step_stages, observe_stages;
   void (*step)(sweep *w, int stage, int block);
+  void (*fields_set)(
+      sweep *w);          /* after values of fields were set from outside; NULL: nothing to do */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
@@ -103,6 +105,9 @@ int sweep_planes(const sweep *w, int where);
  * sweep_leave. */
 unsigned sweep_enter(void);
 void sweep_leave(unsigned before);
+
+/* To be called when values of `field` have been set otherwise than by a step. */
+void sweep_fields_set(sweep *w);
 
 /* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved. */
 int sweep_bad(const sweep *w);

@@ -226,6 +226,7 @@ static void set_sweep(sweep *w, const rows *lattice, const motions *from) {
   for (int f = 0; f < w->law->field_count; f++)
     for (long k = 0; k < sweep_planes(w, w->law->fields[f].place) * w->lattice->size; k++)
       w->field[f][k] = w->law->fields[f].initial;
+  sweep_fields_set(w);
 }
 
 static void get_sweep(const sweep *w, const rows *lattice, motions *to) {

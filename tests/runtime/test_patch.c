@@ -136,7 +136,7 @@ static void lattices_in_space_repeat_too(void **state) {
   (void)state;
   rows *w = lattice_of("fcc", 2);
   long margin[3];
-  patch_margins(w, margin);
+  patch_margins(&family_hexagon, w, margin);
   for (int n = 0; n < 3; n++)
     assert_true(margin[n] >= 1);
   assert_int_equal(2 * w->directions, 18);
