@@ -98,6 +98,9 @@ void emit_family_array(emitter *e, ir_node n) {
     c_text_add(e->out, "family->old_field[%d]%s", index, w->first);
     if (!is_of_particle(e, index)) c_text_add(e->out, " + %s*family->plane", w->k);
     break;
+  case IR_FROM_NEW_FIELD:
+    c_text_add(e->out, "family->new_field[%d]%s + %s*family->plane", index, w->first, w->k);
+    break;
   case IR_FROM_NEIGHBOUR_FIELD:
     c_text_add(e->out, "family->old_field[%d]%s", index, w->first);
     if (own) c_text_add(e->out, " + %s*family->plane", w->back);

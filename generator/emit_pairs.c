@@ -2,9 +2,9 @@
    it, so that what a particle gets comes in one order. A value for the far end is added to family->sum there, and what the
    chunk's own particles have got from behind is theirs after the loop.
 
-   Values of fields toward neighbours are 0 for nearly all bonds, and to read and write them would take longer than to
-   compute them: eight at a time bear a mark where one is not (family->old_filled), the others are read from a few zeros
-   in the first cache, and are stored only where they or what they replace is not 0. */
+   Values of fields toward neighbours are 0 for nearly all bonds and seldom change, and to read and write them would take
+   longer than to compute them: eight at a time bear marks of where one is not 0 (family->old_filled), the others are read
+   from a few zeros in the first cache; and new values are stored only where they differ from what stands there. */
 #include "generator/emit_parts.h"
 
 bool emit_is_paired(const family_pass *p) {
@@ -15,26 +15,39 @@ bool emit_is_paired(const family_pass *p) {
 
 static const char field_functions[] =
     "static const _Alignas(PL_ALIGNMENT) double zeros[%d];\n\n"
-    "/* Of all particles of a chunk together. */\n"
-    "static uint64_t all_filled(const uint64_t *filled, long lanes) {\n"
+    "/* Bits of neighbours toward which some of the particles of a chunk have the mark, or do not "
+    "have it. */\n"
+    "static uint64_t some_marked(const uint64_t *mark, long lanes, uint64_t turned) {\n"
     "  uint64_t all = 0;\n"
     "  for (long q = 0; q < lanes; q += PL_LANES)\n"
-    "    all |= filled[q / PL_LANES];\n"
+    "    all |= mark[q / PL_LANES] ^ turned;\n"
     "  return all;\n"
     "}\n\n"
+    "static int are_equal(const double *a, const double *b, long lanes) {\n"
+    "  uint64_t differ = 0;\n"
+    "  for (long q = 0; q < lanes; q++)\n"
+    "    differ |= pl_to_bits(a[q]) ^ pl_to_bits(b[q]);\n"
+    "  return differ == 0;\n"
+    "}\n\n"
     "/* New values toward neighbour k, at both ends. */\n"
-    "static void store_at_ends(const pl_family *family, int field, long first, long lanes, long "
-    "k,\n"
-    "                          const double *values, int filled) {\n"
+    "static __attribute__((noinline, cold)) void store_at_ends(\n"
+    "    const pl_family *family, int field, long first, long lanes, long k, const double "
+    "*values,\n"
+    "    int settled) {\n"
     "  const long to = family->offset[k], half = family->neighbours / 2;\n"
     "  double *restrict here = family->new_field[field] + first + k*family->plane;\n"
     "  double *restrict there = family->new_field[field] + first + to + (k + half)*family->plane;\n"
-    "  uint64_t *mark = family->new_filled[field] + first / PL_LANES;\n"
     "  const uint64_t bit = UINT64_C(1) << k;\n"
-    "  for (long q = 0; q < lanes; q++)\n"
-    "    here[q] = there[q] = values[q];\n"
-    "  for (long q = 0; q < lanes / PL_LANES; q++)\n"
-    "    mark[q] = filled ? mark[q] | bit : mark[q] & ~bit;\n"
+    "  for (long at = 0; at < lanes; at += PL_LANES) {\n"
+    "    uint64_t *filled = family->new_filled[field] + (first + at) / PL_LANES;\n"
+    "    uint64_t *same = family->settled[field] + (first + at) / PL_LANES, bits = 0;\n"
+    "    for (long q = at; q < at + PL_LANES; q++) {\n"
+    "      here[q] = there[q] = values[q];\n"
+    "      bits |= pl_to_bits(values[q]);\n"
+    "    }\n"
+    "    *filled = bits != 0 ? *filled | bit : *filled & ~bit;\n"
+    "    *same = settled ? *same | bit : *same & ~bit;\n"
+    "  }\n"
     "}\n\n";
 
 static bool is_field(const segment_root *r) {
@@ -49,33 +62,52 @@ void emit_pairs_functions(emitter *e) {
     }
 }
 
-/* Whether a field's marks tell where it is 0. */
-static bool is_marked(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_INPUT && ir_input_source(e->graph, n) == IR_FROM_FIELD &&
-         program_pairs_field(&e->plan->step, ir_input_index(e->graph, n));
+/* "old" or "new" where marks tell where the field is 0; else NULL. */
+static const char *marked_field(const emitter *e, ir_node n) {
+  if (ir_operation(e->graph, n) != IR_INPUT) return NULL;
+  const ir_source from = ir_input_source(e->graph, n);
+  if (from != IR_FROM_FIELD && from != IR_FROM_NEW_FIELD) return NULL;
+  if (!program_pairs_field(&e->plan->step, ir_input_index(e->graph, n))) return NULL;
+  return from == IR_FROM_FIELD ? "old" : "new";
 }
 
 void emit_pairs_choice(emitter *e, ir_node n) {
-  if (e->pairs && is_marked(e, n))
-    c_text_add(e->out, "(old_filled_%d >> k & 1) == 0 ? zeros : ", ir_input_index(e->graph, n));
+  const char *which = e->pairs ? marked_field(e, n) : NULL;
+  if (which)
+    c_text_add(e->out, "(%s_filled_%d >> k & 1) == 0 ? zeros : ", which,
+               ir_input_index(e->graph, n));
+}
+
+static void write_filled(emitter *e, const char *which, int field) {
+  c_text_add(e->out,
+             "    const uint64_t %s_filled_%d = some_marked(family->%s_filled[%d] + first / "
+             "PL_LANES, lanes, 0);\n",
+             which, field, which, field);
+}
+
+static bool writes_field(const segment *a, int field) {
+  for (int k = 0; k < a->root_count; k++)
+    if (is_field(&a->roots[k]) && a->roots[k].index == field) return true;
+  return false;
 }
 
 static void write_marks(emitter *e, const segment *a) {
   for (int f = 0; f < e->plan->law->fields.count; f++) {
-    bool needed = false;
-    for (ir_node n = 0; n < e->node_count && !needed; n++)
-      needed = e->needed[n] && is_marked(e, n) && ir_input_index(e->graph, n) == f;
-    if (needed)
-      c_text_add(e->out,
-                 "    const uint64_t old_filled_%d = all_filled(family->old_filled[%d] + first / "
-                 "PL_LANES, lanes);\n",
-                 f, f);
+    bool old = writes_field(a, f), new = false;
+    for (ir_node n = 0; n < e->node_count; n++) {
+      const char *which = e->needed[n] ? marked_field(e, n) : NULL;
+      if (!which || ir_input_index(e->graph, n) != f) continue;
+      old = old || *which == 'o';
+      new = new || *which == 'n';
+    }
+    if (old) write_filled(e, "old", f);
+    if (new) write_filled(e, "new", f);
   }
   for (int k = 0; k < a->root_count; k++)
     if (is_field(&a->roots[k]))
       c_text_add(e->out,
-                 "    const uint64_t new_filled_%d = all_filled(family->new_filled[%d] + first / "
-                 "PL_LANES, lanes);\n"
+                 "    const uint64_t unsettled_%d = some_marked(family->settled[%d] + first / "
+                 "PL_LANES, lanes, UINT64_MAX);\n"
                  "    _Alignas(PL_ALIGNMENT) double values_%d[CHUNK];\n",
                  k, a->roots[k].index, k);
 }
@@ -83,7 +115,10 @@ static void write_marks(emitter *e, const segment *a) {
 static void write_outputs(emitter *e, const segment *a) {
   for (int k = 0; k < a->root_count; k++)
     if (is_field(&a->roots[k]))
-      c_text_add(e->out, "      uint64_t bits_%d = 0;\n", k);
+      c_text_add(e->out,
+                 "      const double *restrict before_%d = (old_filled_%d >> k & 1) == 0 ? zeros : "
+                 "family->old_field[%d] + first + k*family->plane;\n",
+                 k, a->roots[k].index, a->roots[k].index);
     else
       c_text_add(e->out,
                  "      double *restrict to_%d = slot_%d, *restrict far_%d = family->sum[%d] + "
@@ -98,9 +133,7 @@ static void write_stores(emitter *e, const segment *a) {
     emit_value(e, r->node);
     c_text_add(e->out, " : 0.0;\n");
     if (is_field(r))
-      c_text_add(e->out,
-                 "        values_%d[q] = value_%d;\n        bits_%d |= pl_to_bits(value_%d);\n", k,
-                 k, k, k);
+      c_text_add(e->out, "        values_%d[q] = value_%d;\n", k, k);
     else
       c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, k,
                  k, r->parity > 0 ? '+' : '-', k);
@@ -111,9 +144,10 @@ static void write_field_stores(emitter *e, const segment *a) {
   for (int k = 0; k < a->root_count; k++)
     if (is_field(&a->roots[k]))
       c_text_add(e->out,
-                 "      if (!family->ahead_only && (bits_%d != 0 || (new_filled_%d >> k & 1)))\n"
-                 "        store_at_ends(family, %d, first, lanes, k, values_%d, bits_%d != 0);\n",
-                 k, k, a->roots[k].index, k, k);
+                 "      const int settled_%d = are_equal(values_%d, before_%d, lanes);\n"
+                 "      if (!family->ahead_only && (!settled_%d || (unsettled_%d >> k & 1)))\n"
+                 "        store_at_ends(family, %d, first, lanes, k, values_%d, settled_%d);\n",
+                 k, k, k, k, k, a->roots[k].index, k, k);
 }
 
 /* What the particles have got from behind; from then on the sums are 0 for the next pass. */

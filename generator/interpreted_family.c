@@ -15,9 +15,9 @@ struct family_runner {
   const kernel_plan *plan;
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
-  const double **parameters, **fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
-      **neighbour_bond_links, **shared, **shared_odd, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
-      *ends[ENDS_COUNT];
+  const double **parameters, **fields, **new_fields, **neighbour_fields, **links, **neighbour_links,
+      **bond_links, **neighbour_bond_links, **shared, **shared_odd, **slots, **planes,
+      *shape[PL_SHAPE_PLANES(3)], *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
@@ -80,6 +80,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   make_interpreters(r, inputs, &slots, &planes, &roots);
   r->parameters = pointers(r, p->law->parameters.count + p->uniform_count);
   r->fields = pointers(r, fields);
+  r->new_fields = pointers(r, fields);
   r->neighbour_fields = pointers(r, fields);
   r->links = pointers(r, p->links.of_particles);
   r->neighbour_links = pointers(r, p->links.of_particles);
@@ -229,6 +230,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;
     r->fields[n] = f->old_field[n] + first + k * plane;
+    if (f->new_field) r->new_fields[n] = f->new_field[n] + first + k * plane;
     r->neighbour_fields[n] = at_neighbours(r, f, f->old_field[n] + back * plane, first, k);
   }
   point_at_shared(r, f, first, k);
@@ -253,6 +255,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->neighbour_bond_links,
                                          [IR_FROM_SHARED] = r->shared,
                                          [IR_FROM_SHARED_ODD] = r->shared_odd,
+                                         [IR_FROM_NEW_FIELD] = r->new_fields,
                                          [IR_FROM_SLOT] = r->slots,
                                          [IR_FROM_PLANE] = r->planes},
                               .stride = {[IR_FROM_FIELD] = r->ones,
@@ -265,6 +268,7 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEIGHBOUR_BOND_LINK] = r->ones,
                                          [IR_FROM_SHARED] = r->ones,
                                          [IR_FROM_SHARED_ODD] = r->ones,
+                                         [IR_FROM_NEW_FIELD] = r->ones,
                                          [IR_FROM_SLOT] = r->ones,
                                          [IR_FROM_PLANE] = r->ones}};
 }

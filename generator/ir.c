@@ -536,14 +536,20 @@ ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placeme
 /* --- printing --------------------------------------------------------------------------------- */
 
 static const char *const source_names[IR_SOURCE_COUNT] = {
-    [IR_FROM_PARAMETER] = "parameter", [IR_FROM_QUANTITY] = "quantity",
-    [IR_FROM_FIELD] = "field",         [IR_FROM_BOND_PARAMETER] = "bond parameter",
-    [IR_FROM_ENDS] = "ends",           [IR_FROM_SHAPE] = "shape",
+    [IR_FROM_PARAMETER] = "parameter",
+    [IR_FROM_QUANTITY] = "quantity",
+    [IR_FROM_FIELD] = "field",
+    [IR_FROM_BOND_PARAMETER] = "bond parameter",
+    [IR_FROM_ENDS] = "ends",
+    [IR_FROM_SHAPE] = "shape",
     [IR_FROM_NEIGHBOUR_FIELD] = "neighbour's field",
-    [IR_FROM_LINK] = "link",           [IR_FROM_NEIGHBOUR_LINK] = "neighbour's link",
+    [IR_FROM_LINK] = "link",
+    [IR_FROM_NEIGHBOUR_LINK] = "neighbour's link",
     [IR_FROM_BOND_LINK] = "link of bonds",
     [IR_FROM_NEIGHBOUR_BOND_LINK] = "neighbour's link of bonds",
-    [IR_FROM_SHARED] = "shared",       [IR_FROM_SHARED_ODD] = "shared_odd",
+    [IR_FROM_SHARED] = "shared",
+    [IR_FROM_SHARED_ODD] = "shared_odd",
+    [IR_FROM_NEW_FIELD] = "new field",
     [IR_FROM_SLOT] = "slot",
     [IR_FROM_PLANE] = "plane",
 };

@@ -43,11 +43,11 @@ typedef enum ir_op {
 
 /* Where an input's value comes from; with `index` it identifies the input. */
 typedef enum ir_source {
-  IR_FROM_PARAMETER, /* index: law->parameters */
-  IR_FROM_QUANTITY,  /* index: builtin_quantity */
-  IR_FROM_FIELD,     /* index: law->fields; the value at hand: old one when a step begins */
+  IR_FROM_PARAMETER,      /* index: law->parameters */
+  IR_FROM_QUANTITY,       /* index: builtin_quantity */
+  IR_FROM_FIELD,          /* index: law->fields; the value at hand: old one when a step begins */
   IR_FROM_BOND_PARAMETER, /* index: of the parameters that differ from bond to bond (kernel_plan) */
-  IR_FROM_ENDS,      /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
+  IR_FROM_ENDS, /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
   /* in programs of families (program.h) */
   IR_FROM_SHAPE,           /* index: entry of the particle's inverse shape matrix */
   IR_FROM_NEIGHBOUR_FIELD, /* index: law->fields; of the neighbour, toward me where it is directed */
@@ -55,10 +55,11 @@ typedef enum ir_source {
   IR_FROM_NEIGHBOUR_LINK,  /* the same of the neighbour */
   IR_FROM_BOND_LINK,       /* index: value toward each neighbour that an earlier pass left */
   IR_FROM_NEIGHBOUR_BOND_LINK, /* the same of the neighbour toward me */
-  IR_FROM_SHARED,          /* index: value that the owner of the bond has left for both ends */
-  IR_FROM_SHARED_ODD,      /* the same of a value that has the opposite sign at the other end */
-  IR_FROM_SLOT,            /* index: value of the particle within a pass */
-  IR_FROM_PLANE,           /* index: value toward each neighbour within a pass */
+  IR_FROM_SHARED,              /* index: value that the owner of the bond has left for both ends */
+  IR_FROM_SHARED_ODD,          /* the same of a value that has the opposite sign at the other end */
+  IR_FROM_NEW_FIELD, /* toward the neighbour, from an earlier pass of the step; index: field */
+  IR_FROM_SLOT,      /* index: value of the particle within a pass */
+  IR_FROM_PLANE,     /* index: value toward each neighbour within a pass */
   IR_SOURCE_COUNT
 } ir_source;
 

@@ -13,6 +13,8 @@ enum { SITES = 200, CUT = 128, MARGIN = 96, SIZE = MARGIN + SITES + MARGIN };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
 
+enum { OLD_FILLED, NEW_FILLED, SETTLED, MARKS };
+
 /* What the passes read, and twice, for either reader, what they write. Planes toward neighbours stand in one piece. */
 typedef struct body {
   const pl_law *law;
@@ -21,7 +23,7 @@ typedef struct body {
   double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
   double **before; /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
-  uint64_t **filled[2]; /* [fields][SIZE] before, after: where fields toward neighbours are not 0 */
+  uint64_t **marks[MARKS];            /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held;  /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS]; /* rows */
   int32_t *neighbour;                 /* [neighbours][SIZE] lists; NULL on rows */
@@ -59,11 +61,11 @@ static double **observed_new(const body *b) {
   return v;
 }
 
-static uint64_t **filled_new(const pl_law *law) {
-  uint64_t **filled = must_calloc((size_t)law->field_count + 1, sizeof *filled);
+static uint64_t **marks_new(const pl_law *law) {
+  uint64_t **marks = must_calloc((size_t)law->field_count + 1, sizeof *marks);
   for (int f = 0; f < law->field_count; f++)
-    filled[f] = must_calloc(SIZE, sizeof **filled);
-  return filled;
+    marks[f] = must_calloc(SIZE, sizeof **marks);
+  return marks;
 }
 
 static body body_new(const pl_law *law, int neighbours) {
@@ -78,8 +80,9 @@ static body body_new(const pl_law *law, int neighbours) {
     b.force[side] = planes_new(law->dimensions, SIZE);
     b.observed[side] = observed_new(&b);
     b.sum[side] = planes_new(law->sum_count, SIZE);
-    b.filled[side] = filled_new(law);
   }
+  for (int k = 0; k < MARKS; k++)
+    b.marks[k] = marks_new(law);
   b.bonds = must_calloc(SIZE, sizeof *b.bonds);
   b.incoming = must_calloc(SIZE, sizeof *b.incoming);
   b.held = must_calloc(SIZE, sizeof *b.held);
@@ -101,9 +104,11 @@ static void body_free(body *b) {
     planes_free(b->force[side], b->law->dimensions);
     planes_free(b->observed[side], 1 + b->law->output_count);
     planes_free(b->sum[side], b->law->sum_count);
+  }
+  for (int k = 0; k < MARKS; k++) {
     for (int f = 0; f < b->law->field_count; f++)
-      free(b->filled[side][f]);
-    free(b->filled[side]);
+      free(b->marks[k][f]);
+    free(b->marks[k]);
   }
   free(b->bonds);
   free(b->incoming);
@@ -214,12 +219,12 @@ static void mark_filled(uint64_t *filled, const double *values, long k) {
 /* Half of the bonds of laws that look where fields are 0 begin at 0 along the whole array. */
 static void clear_pieces(const body *b, uint64_t *seed) {
   for (int f = 0; f < b->law->field_count && b->law->sum_count; f++) {
-    memset(b->filled[0][f], 0, SIZE * sizeof **b->filled[0]);
+    memset(b->marks[OLD_FILLED][f], 0, SIZE * sizeof **b->marks[0]);
     for (int k = 0; k < b->neighbours / 2 && b->law->fields[f].place != PL_ON_PARTICLE; k++) {
       if (draw_bits(seed) % 2) memset(b->before[f] + (long)k * SIZE, 0, SIZE * sizeof **b->before);
-      mark_filled(b->filled[0][f], b->before[f], k);
+      mark_filled(b->marks[OLD_FILLED][f], b->before[f], k);
     }
-    if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
+    if (b->law->fields[f].place != PL_ON_PARTICLE) match_ends(b, b->before[f]);
   }
 }
 
@@ -261,16 +266,28 @@ static void poison_values(double *const *v, const body *b, const pl_field *field
     planes_poison(&v[k], 1, planes_of(b, &fields[k]) * SIZE);
 }
 
+/* Of every other bond of laws with marks the new value stands there already, unless it changes. */
+static void settle_pieces(const body *b, int side) {
+  const long half = b->neighbours / 2;
+  for (int f = 0; f < b->law->field_count && b->law->sum_count; f++) {
+    memset(b->marks[NEW_FILLED][f], 0xff, SIZE * sizeof **b->marks[0]);
+    memset(b->marks[SETTLED][f], 0x55, SIZE * sizeof **b->marks[0]);
+    for (long k = 0; k < half && b->law->fields[f].place != PL_ON_PARTICLE; k += 2)
+      for (long end = 0; end < 2; end++)
+        memcpy(b->after[side][f] + (k + end * half) * SIZE, b->before[f] + (k + end * half) * SIZE,
+               SIZE * sizeof **b->after[side]);
+  }
+}
+
 static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
-  for (int f = 0; f < b->law->field_count; f++)
-    memset(b->filled[1][f], 0xff, SIZE * sizeof **b->filled[1]);
+  settle_pieces(b, side);
   planes_poison(b->force[side], b->law->dimensions, SIZE);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
 
-enum { MOST_ARRAYS = 11 };
+enum { MOST_ARRAYS = 12 };
 
 /* Arrays that begin at a site. */
 typedef struct site_arrays {
@@ -286,11 +303,10 @@ static double *const *from_site(site_arrays *s, double *const *arrays, int count
   return list;
 }
 
-/* After poison stands in the new fields, none of their values is known to be 0. */
-static uint64_t **filled_from_site(site_arrays *s, const body *b, uint64_t **filled, long site) {
+static uint64_t **marks_from_site(site_arrays *s, const body *b, uint64_t **marks, long site) {
   uint64_t **list = must_calloc((size_t)b->law->field_count + 1, sizeof *list);
   for (int f = 0; f < b->law->field_count; f++)
-    list[f] = filled[f] + site / PL_LANES;
+    list[f] = marks[f] + site / PL_LANES;
   s->lists[s->count++] = list;
   return list;
 }
@@ -327,8 +343,9 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
-  f.old_filled = (const uint64_t *const *)filled_from_site(&s, b, b->filled[0], site);
-  f.new_filled = filled_from_site(&s, b, b->filled[1], site);
+  f.old_filled = (const uint64_t *const *)marks_from_site(&s, b, b->marks[OLD_FILLED], site);
+  f.new_filled = marks_from_site(&s, b, b->marks[NEW_FILLED], site);
+  f.settled = marks_from_site(&s, b, b->marks[SETTLED], site);
   if (is_list(b)) point_at_list(b, site, &f);
   for (int d = 0; d < law->dimensions; d++) {
     f.displacement[d] = b->motion[d] + site;

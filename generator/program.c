@@ -5,6 +5,7 @@
 
 #include "dsl/builtins.h"
 #include "generator/kinematics.h"
+#include "generator/rewrite.h"
 
 /* The same operation of other operands, with the name of the first. */
 static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {
@@ -237,8 +238,19 @@ static int level_of(builder *b, ir_node n) {
 typedef struct pass_view {
   builder *b;
   int now;
+  const segment_root *roots; /* [root_count] of the program */
+  int root_count;
   node_map seen, parity; /* parity + 1 of what a sum adds up; of sums as the pass sees them */
 } pass_view;
+
+/* The field toward neighbours that an earlier pass has computed the value for, which later ones read; or NULL. */
+static const segment_root *field_before(const pass_view *v, ir_node n) {
+  if (v->b->sharing != SHARE_PAIRS) return NULL;
+  for (int k = 0; k < v->root_count; k++)
+    if (v->roots[k].node == n && v->roots[k].target == TO_NEIGHBOUR_FIELD)
+      return level_of(v->b, n) < v->now ? &v->roots[k] : NULL;
+  return NULL;
+}
 
 static ir_node seen_in_pass(pass_view *v, ir_node n) {
   builder *b = v->b;
@@ -248,7 +260,11 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
   ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   if (!is_leaf(g, n)) {
     const bool kept = is_of_particle(g, n) ? goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
-    if (kept && level_of(b, n) < v->now) {
+    const segment_root *field = field_before(v, n);
+    if (field)
+      image = ir_input(g, IR_FROM_NEW_FIELD, field->index, ir_name(g, n) ? ir_name(g, n) : "new",
+                       ON_NEIGHBOUR);
+    else if (kept && level_of(b, n) < v->now) {
       image = own_link(b, n);
     } else {
       for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
@@ -417,9 +433,20 @@ static void drop_empty_segments(family_pass *p) {
   p->segment_count = kept;
 }
 
+/* Where one end computes a value, products and sums may round once. */
+static void fuse_segment(ir *g, segment *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  rewrite_fused(g, nodes, a->root_count, nodes);
+  for (int k = 0; k < a->root_count; k++)
+    a->roots[k].node = nodes[k];
+  free(nodes);
+}
+
 /* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond: what the far end
    gets is complete when its turn comes. */
-static void pair_ends(family_pass *p) {
+static void pair_ends(ir *g, family_pass *p) {
   segment *loop = NULL;
   int sums = 0;
   for (int k = 0; k < p->segment_count; k++) {
@@ -436,6 +463,7 @@ static void pair_ends(family_pass *p) {
   loop->kind = OVER_PAIRS;
   for (int k = 0; k < loop->root_count; k++)
     if (loop->roots[k].target == TO_SUM) loop->roots[k].sum = sums++;
+  fuse_segment(g, loop);
 }
 
 bool program_pairs_field(const family_program *p, int field) {
@@ -534,7 +562,7 @@ static void share(builder *b, segment_root *roots, int root_count) {
 
 static void build_pass(builder *b, family_pass *pass, int now, const segment_root *roots,
                        int root_count) {
-  pass_view v = {.b = b, .now = now};
+  pass_view v = {.b = b, .now = now, .roots = roots, .root_count = root_count};
   segment_root *wanted =
       must_alloc(((size_t)root_count + MOST_LINKS + (size_t)b->shared_count) * sizeof *wanted);
   int count = 0, links = b->link_count;
@@ -559,7 +587,7 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
   }
   schedule(b->g, b->memory, pass, wanted, count, &v.parity);
-  if (b->sharing == SHARE_PAIRS) pair_ends(pass);
+  if (b->sharing == SHARE_PAIRS) pair_ends(b->g, pass);
   map_clear(&v.seen);
   map_clear(&v.parity);
   free(wanted);

@@ -19,7 +19,7 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
   double **new_field, **link, **bond_link, **observed;
   const double *shape[SHAPE_PLANES];
   const uint64_t **old_filled;
-  uint64_t **new_filled;
+  uint64_t **new_filled, **settled;
   pair_sums sums;
 } family_block;
 
@@ -31,7 +31,8 @@ typedef struct family {
   double **bond_link;          /* [bond_links][neighbours * size] */
   double **observed;           /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
-  uint64_t **old_filled, **new_filled; /* pl_family; NULL unless bonds add to both ends */
+  uint64_t **old_filled, **new_filled,
+      **settled;               /* pl_family; NULL unless bonds add to both ends */
   family_block *blocks;        /* [block_count] */
 } family;
 
@@ -64,9 +65,11 @@ static void point_at_sums(const sweep *w, family_block *b, long start, pl_family
     if (!f->old_filled[k]) continue;
     b->old_filled[k] = f->old_filled[k] + start / PL_LANES;
     b->new_filled[k] = f->new_filled[k] + start / PL_LANES;
+    b->settled[k] = f->settled[k] + start / PL_LANES;
   }
   run->old_filled = b->old_filled;
   run->new_filled = b->new_filled;
+  run->settled = b->settled;
   run->sum = pair_sums_at(w, &b->sums, start);
 }
 
@@ -299,8 +302,9 @@ static void turn(sweep *w) {
 static void fields_set(sweep *w) {
   family *f = own(w);
   if (w->law->sum_count == 0) return;
-  pair_marks_find(w, w->field, f->old_filled);
-  pair_marks_find(w, f->new_field, f->new_filled);
+  pair_marks_filled(w, w->field, f->old_filled);
+  pair_marks_filled(w, f->new_field, f->new_filled);
+  pair_marks_settled(w, w->field, f->new_field, f->settled);
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -390,10 +394,12 @@ static void new_sums(sweep *w, family *f) {
   const pl_law *law = w->law;
   f->old_filled = pair_marks_new(w);
   f->new_filled = pair_marks_new(w);
+  f->settled = pair_marks_new(w);
   for (int k = 0; k < w->block_count; k++) {
     family_block *b = &f->blocks[k];
     b->old_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->old_filled);
     b->new_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->new_filled);
+    b->settled = must_calloc((size_t)law->field_count + 1, sizeof *b->settled);
     b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
   }
 }
@@ -427,10 +433,12 @@ static void free_own(sweep *w) {
     free(f->blocks[k].observed);
     free(f->blocks[k].old_filled);
     free(f->blocks[k].new_filled);
+    free(f->blocks[k].settled);
     pair_sums_free(w, &f->blocks[k].sums);
   }
   pair_marks_free(w, f->old_filled);
   pair_marks_free(w, f->new_filled);
+  pair_marks_free(w, f->settled);
   free_arrays(f->new_field, w->law->field_count);
   free_arrays(f->link, w->law->link_count);
   free_arrays(f->bond_link, w->law->bond_link_count);

@@ -130,9 +130,11 @@ typedef struct pl_family {
   int ahead_only;
   double *const *sum; /* [sum_count] */
   /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
-     may be other than 0. Only for fields that such a bond writes; else NULL. */
+     may be other than 0 (filled), and old and new ones are the same (settled). Only for fields that such a bond writes;
+     else NULL. */
   const uint64_t *const *old_filled; /* [fields] of old_field */
-  uint64_t *const *new_filled;       /* [fields] of new_field, read and written */
+  uint64_t *const *new_filled;       /* [fields] of new_field; written with it */
+  uint64_t *const *settled;          /* [fields] read, and written with new_field */
 } pl_family;
 
 /* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour; lists:

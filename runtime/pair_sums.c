@@ -59,17 +59,35 @@ void pair_marks_free(const sweep *w, uint64_t **marks) {
   free(marks);
 }
 
-void pair_marks_find(const sweep *w, double *const *field, uint64_t **marks) {
+typedef bool (*marker)(const double *values, const double *others); /* of PL_LANES values */
+
+static bool is_filled(const double *values, const double *others) {
+  static const double zeros[PL_LANES];
+  (void)others;
+  return memcmp(values, zeros, sizeof zeros) != 0;
+}
+
+static bool is_settled(const double *values, const double *others) {
+  return memcmp(values, others, PL_LANES * sizeof *values) == 0;
+}
+
+static void find_marks(const sweep *w, double *const *field, double *const *other, marker has,
+                       uint64_t **marks) {
   const rows *g = w->lattice;
   for (int f = 0; f < w->law->field_count; f++)
     for (long q = 0; marks[f] && q + PL_LANES <= g->size; q += PL_LANES) {
       uint64_t word = 0;
       for (int k = 0; k < g->directions; k++)
-        for (int l = 0; l < PL_LANES; l++) {
-          uint64_t bits;
-          memcpy(&bits, &field[f][k * g->size + q + l], sizeof bits);
-          if (bits != 0) word |= UINT64_C(1) << k;
-        }
+        if (has(field[f] + k * g->size + q, other[f] + k * g->size + q)) word |= UINT64_C(1) << k;
       marks[f][q / PL_LANES] = word;
     }
+}
+
+void pair_marks_filled(const sweep *w, double *const *field, uint64_t **marks) {
+  find_marks(w, field, field, is_filled, marks);
+}
+
+void pair_marks_settled(const sweep *w, double *const *field, double *const *other,
+                        uint64_t **marks) {
+  find_marks(w, field, other, is_settled, marks);
 }

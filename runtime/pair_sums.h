@@ -23,7 +23,9 @@ void pair_sums_clear_ahead(const sweep *w, pair_sums *s);
 /* [fields][size/PL_LANES] words of zeros for fields toward neighbours (pl_family.old_filled); NULL for the others. */
 uint64_t **pair_marks_new(sweep *w);
 void pair_marks_free(const sweep *w, uint64_t **marks);
-/* Marks where the field's values are not 0. */
-void pair_marks_find(const sweep *w, double *const *field, uint64_t **marks);
+/* Marks where the field's values are not 0; and where two fields have the same. */
+void pair_marks_filled(const sweep *w, double *const *field, uint64_t **marks);
+void pair_marks_settled(const sweep *w, double *const *field, double *const *other,
+                        uint64_t **marks);
 
 #endif

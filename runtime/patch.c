@@ -228,8 +228,8 @@ static void new_values(patch *p, int more, int wide) {
   p->sum = must_calloc((size_t)law->sum_count + 1, sizeof *p->sum);
   for (int k = 0; k < law->sum_count; k++)
     p->sum[k] = site_array(p, 1, sizeof(double));
-  for (int k = 0; k < 2 && law->sum_count; k++)
-    p->filled[k] = site_array(p, 1, sizeof **p->filled);
+  for (int k = 0; k < 3 && law->sum_count; k++)
+    p->marks[k] = site_array(p, 1, sizeof **p->marks);
   const int own = 1 + law->output_count;
   p->observed_count = own + more + wide;
   p->observed = must_calloc((size_t)p->observed_count, sizeof *p->observed);
@@ -265,8 +265,8 @@ void patch_free(patch *p) {
   free_arrays(p, p->bond_link, p->law->bond_link_count);
   free_arrays(p, p->observed, p->observed_count);
   free_arrays(p, p->sum, p->law->sum_count);
-  for (int k = 0; k < 2; k++)
-    free_array(p, p->filled[k], sizeof **p->filled);
+  for (int k = 0; k < 3; k++)
+    free_array(p, p->marks[k], sizeof **p->marks);
   free(p->image);
   free(p->inside);
   free(p->uniforms);
@@ -320,7 +320,7 @@ void patch_deform(const patch *p, const double gradient[3][3], double *const *pa
 
 /* --- passes ----------------------------------------------------------------------------------- */
 
-enum { MOST_ARRAYS = 10 };
+enum { MOST_ARRAYS = 12 };
 
 /* Arrays that begin where a pass does. */
 typedef struct site_arrays {
@@ -337,19 +337,20 @@ static double *const *from_first(site_arrays *s, double *const *arrays, int coun
   return list;
 }
 
-/* Every value of a field may be other than 0. */
-static uint64_t **filled_fields(site_arrays *s, const patch *p, uint64_t *filled) {
+static uint64_t **marked_fields(site_arrays *s, const patch *p, uint64_t *marks, bool marked) {
   uint64_t **list = must_calloc((size_t)p->law->field_count + 1, sizeof *list);
-  memset(filled - p->lead, 0xff, (size_t)p->size * sizeof *filled);
+  memset(marks - p->lead, marked ? 0xff : 0, (size_t)p->size * sizeof *marks);
   for (int k = 0; k < p->law->field_count; k++)
-    list[k] = filled;
+    list[k] = marks;
   s->lists[s->count++] = list;
   return list;
 }
 
+/* Every value of a field may be other than 0 and change. */
 static void point_at_marks(site_arrays *s, const patch *p, pl_family *run) {
-  run->old_filled = (const uint64_t *const *)filled_fields(s, p, p->filled[0]);
-  run->new_filled = filled_fields(s, p, p->filled[1]);
+  run->old_filled = (const uint64_t *const *)marked_fields(s, p, p->marks[0], true);
+  run->new_filled = marked_fields(s, p, p->marks[1], true);
+  run->settled = marked_fields(s, p, p->marks[2], false);
 }
 
 /* Over `count` sites from `first` on. */
@@ -390,6 +391,11 @@ static void run_sums(patch *p, pl_family_function pass) {
     memset(p->sum[k] - p->lead, 0, (size_t)p->size * sizeof(double));
 }
 
+static void repeat_planes(const patch *p, const pl_field *f, double *values) {
+  for (long k = 0; k < patch_planes(p, f); k++)
+    patch_repeat(p, values + k * p->size);
+}
+
 static void run_program(patch *p, const pl_program *program) {
   const pl_law *law = p->law;
   for (int k = 0; k < program->pass_count; k++) {
@@ -402,6 +408,8 @@ static void run_program(patch *p, const pl_program *program) {
     for (int l = 0; l < law->bond_link_count; l++)
       for (int n = 0; n < 2 * p->lattice->directions; n++)
         patch_repeat(p, p->bond_link[l] + n * p->size);
+    for (int f = 0; f < law->field_count && law->sum_count; f++)
+      repeat_planes(p, &law->fields[f], p->new_field[f]);
   }
 }
 
@@ -418,6 +426,5 @@ void patch_accept(patch *p) {
   p->field = p->new_field;
   p->new_field = old;
   for (int f = 0; f < p->law->field_count; f++)
-    for (long k = 0; k < patch_planes(p, &p->law->fields[f]); k++)
-      patch_repeat(p, p->field[f] + k * p->size);
+    repeat_planes(p, &p->law->fields[f], p->field[f]);
 }

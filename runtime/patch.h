@@ -28,7 +28,7 @@ typedef struct patch {
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **sum;        /* of laws whose bonds add to both ends (pl_family) */
-  uint64_t *filled[2]; /* [size] of all fields: everywhere */
+  uint64_t *marks[3];  /* [size] of all fields: filled everywhere, settled nowhere */
   double **observed; /* [observed_count] */
   int observed_count;
   double time_step;
