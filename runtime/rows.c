@@ -171,6 +171,12 @@ static rows *allocate(rows *w, const builder *b) {
   return NULL;
 }
 
+/* Absent sites before the first column, and with those of the next row behind the last one: as many as neighbours reach, and
+   whole lanes, so that rows begin with one. */
+static long before_columns(const builder *b) {
+  return whole_lanes(b->reach[COLUMN]);
+}
+
 static rows *rows_new(const builder *b) {
   const deck_lattice *l = b->lattice;
   const long *first = b->marks.left.first, *last = b->marks.left.last;
@@ -178,8 +184,7 @@ static rows *rows_new(const builder *b) {
   const long layer_rows = per_layer + b->reach[ROW];
   const long row_count = (last[LAYER] - first[LAYER]) * layer_rows + per_layer;
   const long margin = b->reach[LAYER] * layer_rows + b->reach[ROW];
-  const long pitch = pitch_for(columns + 2 * b->reach[COLUMN]);
-  const long ends = whole_lanes(b->reach[COLUMN]);
+  const long pitch = pitch_for(before_columns(b) + columns), ends = before_columns(b);
   const double size = ((double)row_count + 2 * (double)margin) * (double)pitch + 2 * (double)ends;
   if (site_too_many(l, size, b->d)) return NULL;
   rows *w = must_calloc(1, sizeof *w);
@@ -206,7 +211,7 @@ static void place_row(rows *w, const builder *b, int row) {
   w->row_class[row + w->margin] = (unsigned char)bravais_shift(&b->infinite, number, layer);
   const bool stored = row >= 0 && number >= left->first[ROW] && number <= left->last[ROW];
   for (long k = 0; k < w->pitch; k++) {
-    const long column = left->first[COLUMN] + k - b->reach[COLUMN], site = rows_start(w, row) + k;
+    const long column = left->first[COLUMN] + k - before_columns(b), site = rows_start(w, row) + k;
     double at[3];
     bravais_place(&b->infinite, column, number, layer, at);
     w->x[site] = at[0];
@@ -307,7 +312,7 @@ static long cut_bonds(rows *w, const builder *b, const deck_shape *shape) {
   for (long layer = near.first[LAYER]; layer <= near.last[LAYER]; layer++)
     for (long row = near.first[ROW]; row <= near.last[ROW]; row++) {
       const long stored = (layer - left->first[LAYER]) * w->layer_rows + row - left->first[ROW];
-      const long start = rows_start(w, (int)stored) + b->reach[COLUMN] - left->first[COLUMN];
+      const long start = rows_start(w, (int)stored) + before_columns(b) - left->first[COLUMN];
       for (long column = near.first[COLUMN]; column <= near.last[COLUMN]; column++)
         count += rows_cut(w, start + column, shape);
     }
