@@ -48,7 +48,9 @@ void emit_segment_input(emitter *e, ir_node n) {
   }
   const bool odd = ir_input_source(e->graph, n) == IR_FROM_SHARED_ODD;
   const char *at = is_list(e) && is_of_neighbour(e, n) ? "q + to[q]" : "q";
-  if (emit_is_time_step(e, n))
+  if (emit_pairs_is_zero(e, n))
+    c_text_add(e->out, "0.0");
+  else if (emit_is_time_step(e, n))
     c_text_add(e->out, "family->time_step");
   else
     c_text_add(e->out, "%sat_%s[%s]%s", odd ? "sign*" : "", e->name[n], at,
@@ -145,7 +147,6 @@ void emit_family_inputs(emitter *e) {
     } else if (emit_is_input(e, n) && !emit_is_time_step(e, n)) {
       c_text_add(e->out, "%sconst %s *restrict at_%s = ", indent,
                  emit_is_held(e, n) ? "uint64_t" : "double", e->name[n]);
-      emit_pairs_choice(e, n);
       emit_family_array(e, n);
       c_text_add(e->out, ";\n");
     }

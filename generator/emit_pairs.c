@@ -3,8 +3,8 @@
    chunk's own particles have got from behind is theirs after the loop.
 
    Values of fields toward neighbours are 0 for nearly all bonds and seldom change, and to read and write them would take
-   longer than to compute them: eight at a time bear marks of where one is not 0 (family->old_filled), the others are read
-   from a few zeros in the first cache; and new values are stored only where they differ from what stands there. */
+   longer than to compute them: eight at a time bear marks of where one is not 0 (family->old_filled), elsewhere the loop has 0 as a
+   constant; and new values are stored only where they differ from what stands there. */
 #include "generator/emit_parts.h"
 
 bool emit_is_paired(const family_pass *p) {
@@ -71,11 +71,8 @@ static const char *marked_field(const emitter *e, ir_node n) {
   return from == IR_FROM_FIELD ? "old" : "new";
 }
 
-void emit_pairs_choice(emitter *e, ir_node n) {
-  const char *which = e->pairs ? marked_field(e, n) : NULL;
-  if (which)
-    c_text_add(e->out, "(%s_filled_%d >> k & 1) == 0 ? zeros : ", which,
-               ir_input_index(e->graph, n));
+bool emit_pairs_is_zero(const emitter *e, ir_node n) {
+  return e->quiet && marked_field(e, n) != NULL;
 }
 
 static void write_filled(emitter *e, const char *which, int field) {
@@ -91,17 +88,19 @@ static bool writes_field(const segment *a, int field) {
   return false;
 }
 
+/* Whether the segment reads the old, or the new, values of the field. */
+static bool reads_marked(const emitter *e, int field, bool new) {
+  for (ir_node n = 0; n < e->node_count; n++) {
+    const char *which = e->needed[n] ? marked_field(e, n) : NULL;
+    if (which && ir_input_index(e->graph, n) == field && (*which == 'n') == new) return true;
+  }
+  return false;
+}
+
 static void write_marks(emitter *e, const segment *a) {
   for (int f = 0; f < e->plan->law->fields.count; f++) {
-    bool old = writes_field(a, f), new = false;
-    for (ir_node n = 0; n < e->node_count; n++) {
-      const char *which = e->needed[n] ? marked_field(e, n) : NULL;
-      if (!which || ir_input_index(e->graph, n) != f) continue;
-      old = old || *which == 'o';
-      new = new || *which == 'n';
-    }
-    if (old) write_filled(e, "old", f);
-    if (new) write_filled(e, "new", f);
+    if (writes_field(a, f) || reads_marked(e, f, false)) write_filled(e, "old", f);
+    if (reads_marked(e, f, true)) write_filled(e, "new", f);
   }
   for (int k = 0; k < a->root_count; k++)
     if (is_field(&a->roots[k]))
@@ -166,8 +165,35 @@ static void write_ends(emitter *e, const segment *a) {
   c_text_add(e->out, "    if (family->ahead_only) continue;\n");
 }
 
+static void write_loop(emitter *e, const segment *a) {
+  emit_family_loop(e, "      ");
+  emit_lines(e);
+  c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
+  write_stores(e, a);
+  c_text_add(e->out, "      }\n");
+}
+
+/* One loop for where all fields that it reads are 0, with these as constants, and one for elsewhere. */
+static void write_loops(emitter *e, const segment *a) {
+  const char *join = "      if (((";
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    for (int new = 0; new < 2; new ++)
+      if (reads_marked(e, f, new)) {
+        c_text_add(e->out, "%s%s_filled_%d", join, new ? "new" : "old", f);
+        join = " | ";
+      }
+  const bool marks = *join == ' ' && join[1] == '|';
+  if (marks) c_text_add(e->out, ") >> k & 1) != 0) {\n");
+  write_loop(e, a);
+  if (!marks) return;
+  c_text_add(e->out, "      } else {\n");
+  e->quiet = true;
+  write_loop(e, a);
+  e->quiet = false;
+  c_text_add(e->out, "      }\n");
+}
+
 void emit_pairs(emitter *e, const segment *a) {
-  e->pairs = true;
   emit_family_starts(e, a);
   write_marks(e, a);
   c_text_add(e->out,
@@ -178,13 +204,8 @@ void emit_pairs(emitter *e, const segment *a) {
              "      const uint64_t present_bit = UINT64_C(1) << k;\n");
   emit_family_inputs(e);
   write_outputs(e, a);
-  emit_family_loop(e, "      ");
-  emit_lines(e);
-  c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
-  write_stores(e, a);
-  c_text_add(e->out, "      }\n");
+  write_loops(e, a);
   write_field_stores(e, a);
   c_text_add(e->out, "    }\n");
   write_ends(e, a);
-  e->pairs = false;
 }

@@ -43,7 +43,7 @@ typedef struct emitter {
   const char **name;     /* [node_count] NULL: written in place */
   const family_words *words;  /* of segments */
   struct unrolled *unrolled;  /* of a pass that is one loop (emit_unrolled.c); else NULL */
-  bool pairs;                 /* the segment goes over pairs (emit_pairs.c) */
+  bool quiet;                 /* the loop is for where marked fields are 0 (emit_pairs.c) */
 } emitter;
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
@@ -109,8 +109,8 @@ bool emit_is_paired(const family_pass *p);
 /* What the passes call. */
 void emit_pairs_functions(emitter *e);
 void emit_pairs(emitter *e, const segment *a);
-/* `condition ? zeros : ` before the array of an input that is 0 nearly everywhere. */
-void emit_pairs_choice(emitter *e, ir_node n);
+/* The input is 0 where the loop at hand is for. */
+bool emit_pairs_is_zero(const emitter *e, ir_node n);
 
 /* --- emit_unrolled.c --- */
 
