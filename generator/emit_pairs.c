@@ -72,7 +72,7 @@ static const char *marked_field(const emitter *e, ir_node n) {
 }
 
 bool emit_pairs_is_zero(const emitter *e, ir_node n) {
-  return e->quiet && marked_field(e, n) != NULL;
+  return e->quiet && (marked_field(e, n) || emit_is_held(e, n));
 }
 
 static void write_filled(emitter *e, const char *which, int field) {
@@ -173,9 +173,16 @@ static void write_loop(emitter *e, const segment *a) {
   c_text_add(e->out, "      }\n");
 }
 
-/* One loop for where all fields that it reads are 0, with these as constants, and one for elsewhere. */
+static bool reads_held(const emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && emit_is_input(e, n) && emit_is_held(e, n)) return true;
+  return false;
+}
+
+/* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere. */
 static void write_loops(emitter *e, const segment *a) {
   const char *join = "      if (((";
+  const bool held = reads_held(e);
   for (int f = 0; f < e->plan->law->fields.count; f++)
     for (int new = 0; new < 2; new ++)
       if (reads_marked(e, f, new)) {
@@ -183,7 +190,7 @@ static void write_loops(emitter *e, const segment *a) {
         join = " | ";
       }
   const bool marks = *join == ' ' && join[1] == '|';
-  if (marks) c_text_add(e->out, ") >> k & 1) != 0) {\n");
+  if (marks) c_text_add(e->out, ") >> k & 1) != 0%s) {\n", held ? " || family->held_near" : "");
   write_loop(e, a);
   if (!marks) return;
   c_text_add(e->out, "      } else {\n");

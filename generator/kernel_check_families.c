@@ -131,12 +131,13 @@ static void draw_motion(body *b, double s, uint64_t *seed) {
     }
 }
 
-/* Some particles are whole, some have lost bonds, some all; some are held. */
+/* Some particles are whole, some have lost bonds, some all; in half of the bodies some are held. */
 static void draw_bonds(body *b, uint64_t *seed) {
+  const bool holds = draw_bits(seed) % 2;
   for (int q = 0; q < SIZE; q++) {
     const uint64_t kind = draw_bits(seed) % 4;
     b->bonds[q] = kind == 0 ? 0 : kind == 1 ? draw_bits(seed) : UINT64_MAX;
-    b->held[q] = draw_bits(seed) % 8 == 0;
+    b->held[q] = holds && draw_bits(seed) % 8 == 0;
   }
 }
 
@@ -322,6 +323,13 @@ static void point_at_list(const body *b, long site, pl_family *f) {
   f->mass = b->particle[1] + site;
 }
 
+static bool any_held(const body *b) {
+  bool any = false;
+  for (int q = 0; q < SIZE; q++)
+    any = any || b->held[q];
+  return any;
+}
+
 static void run_part(const law_readers *l, const body *b, int side, pl_family_function pass,
                      long first, long count, bool ahead_only) {
   const pl_law *law = b->law;
@@ -340,6 +348,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
                  .sum = from_site(&s, b->sum[side], law->sum_count, site),
                  .ahead_only = ahead_only,
+                 .held_near = any_held(b),
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);

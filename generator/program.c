@@ -286,6 +286,7 @@ typedef struct scheduler {
   family_pass *pass;
   node_map phase, slot, plane;
   const node_map *parity; /* of sums, as pass_view has it */
+  bool pairs;
   int loop_count;
 } scheduler;
 
@@ -390,6 +391,15 @@ static bool is_worth_a_plane(scheduler *s, ir_node n, int loop) {
   return map_get(&s->plane, n) >= 0 || s->pass->plane_count < MOST_PLANES;
 }
 
+/* Of pairs, so that what is held can be told to be 0 where nothing is. */
+static bool is_worth_a_slot(const scheduler *s, ir_node n) {
+  if (!s->pairs || !ir_is_logical(s->g, n)) return true;
+  bool deep = false;
+  for (int k = 0; k < ir_arity(ir_operation(s->g, n)); k++)
+    deep = deep || !is_leaf(s->g, ir_operand(s->g, n, k));
+  return deep;
+}
+
 static ir_node seen_in_segment(segment_view *v, ir_node n) {
   scheduler *s = v->s;
   const ir *g = s->g;
@@ -401,8 +411,9 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   else if (ir_is_reduction(ir_operation(g, n)))
     image = slot_of(s, n);
   else if (is_of_particle(g, n))
-    image =
-        v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop ? slot_of(s, n) : computed_here(v, n);
+    image = (v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop) && is_worth_a_slot(s, n)
+                ? slot_of(s, n)
+                : computed_here(v, n);
   else
     image = is_worth_a_plane(s, n, v->loop) ? plane_of(s, n) : computed_here(v, n);
   map_set(&v->seen, n, image);
@@ -488,8 +499,8 @@ int program_sum_count(const family_program *p) {
 }
 
 static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
-                     int root_count, const node_map *parity) {
-  scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity};
+                     int root_count, const node_map *parity, bool pairs) {
+  scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};
   for (int k = 0; k < root_count; k++) {
     int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
     s.loop_count = loops > s.loop_count ? loops : s.loop_count;
@@ -586,7 +597,7 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
   }
-  schedule(b->g, b->memory, pass, wanted, count, &v.parity);
+  schedule(b->g, b->memory, pass, wanted, count, &v.parity, b->sharing == SHARE_PAIRS);
   if (b->sharing == SHARE_PAIRS) pair_ends(b->g, pass);
   map_clear(&v.seen);
   map_clear(&v.parity);

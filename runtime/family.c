@@ -31,6 +31,7 @@ typedef struct family {
   double **bond_link;          /* [bond_links][neighbours * size] */
   double **observed;           /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
+  unsigned char *held_near;    /* [row_count] pl_family */
   uint64_t **old_filled, **new_filled,
       **settled;               /* pl_family; NULL unless bonds add to both ends */
   family_block *blocks;        /* [block_count] */
@@ -136,6 +137,7 @@ static void run_together(const sweep *w, pl_family_function pass, int block, int
     force[d] = w->force[d] + start;
   run.force = force;
   run.ahead_only = ahead_only;
+  run.held_near = own(w)->held_near && own(w)->held_near[row];
   pass(w->law, own(w)->uniforms, &run);
 }
 
@@ -390,8 +392,23 @@ static void new_planes(sweep *w, family *f) {
     f->observed[1 + k] = sweep_doubles(w, sweep_planes(w, law->outputs[k].place) * size);
 }
 
+/* Rows from which bonds reach a held particle, or that have one. */
+static unsigned char *rows_near_held(const sweep *w, int reach) {
+  const rows *g = w->lattice;
+  unsigned char *near = must_calloc((size_t)g->row_count + 1, sizeof *near);
+  for (int row = 0; row < g->row_count; row++) {
+    const int first = row > reach ? row - reach : 0;
+    bool held = false;
+    for (long q = sweep_start(w, row); q < sweep_start(w, row) + w->count[row]; q++)
+      held = held || g->held[q];
+    if (held) memset(near + first, 1, (size_t)(row - first) + 1);
+  }
+  return near;
+}
+
 static void new_sums(sweep *w, family *f) {
   const pl_law *law = w->law;
+  f->held_near = rows_near_held(w, f->reach);
   f->old_filled = pair_marks_new(w);
   f->new_filled = pair_marks_new(w);
   f->settled = pair_marks_new(w);
@@ -436,6 +453,7 @@ static void free_own(sweep *w) {
     free(f->blocks[k].settled);
     pair_sums_free(w, &f->blocks[k].sums);
   }
+  free(f->held_near);
   pair_marks_free(w, f->old_filled);
   pair_marks_free(w, f->new_filled);
   pair_marks_free(w, f->settled);

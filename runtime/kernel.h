@@ -128,6 +128,7 @@ typedef struct pl_family {
      used is 0 again. With `ahead_only` it writes nothing else: whoever begins in the middle of a body begins with the
      rows from which bonds reach its own. */
   int ahead_only;
+  int held_near; /* of the same laws: one of these particles, or one that their bonds reach, is held */
   double *const *sum; /* [sum_count] */
   /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
      may be other than 0 (filled), and old and new ones are the same (settled). Only for fields that such a bond writes;

@@ -370,6 +370,7 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
                    .observed = from_first(&s, p->observed, p->observed_count),
                    .sum = from_first(&s, p->sum, law->sum_count),
                    .ahead_only = ahead_only,
+                   .held_near = 1,
                    .time_step = p->time_step};
   run.shape = (const double *const *)from_first(&s, p->shape, PL_SHAPE_PLANES(law->dimensions));
   run.old_field = (const double *const *)from_first(&s, p->field, law->field_count);
