@@ -50,24 +50,34 @@ static bool add_terms(builder *b, ir_node n, bool of_sum, int sign, term_list *t
   return add_term(t, n, sign);
 }
 
-/* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be looked at. */
-static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
+static int image_sign(builder *b, ir_node x, ir_node y, int *left);
+
+/* The same for results of one operation, operand by operand; with `crossed` the first of one is the second of the other. */
+static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int *left) {
   const ir_op op = ir_operation(b->g, x);
   int sign[3] = {1, 1, 1};
-  const ir_node image = program_mirror(b, x);
-  if (image == y) return 1;
-  if (b->sharing != SHARE_PAIRS) return 0;
-  if (x == y) return program_parity(b, x);
-  if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
-  if (op != ir_operation(b->g, y) || --*left < 0) return 0;
   for (int k = 0; k < ir_arity(op); k++) {
-    sign[k] = image_sign(b, ir_operand(b->g, x, k), ir_operand(b->g, y, k), left);
+    sign[k] = image_sign(b, ir_operand(b->g, x, k), ir_operand(b->g, y, crossed ? 1 - k : k), left);
     if (sign[k] == 0) return 0;
   }
   if (op == IR_ADD || op == IR_SUB) return sign[0] == sign[1] ? sign[0] : 0;
   if (op == IR_MUL || op == IR_DIV || op == IR_NEG) return sign[0] * sign[1];
   if (op == IR_ABS) return 1;
   return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
+}
+
+/* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be looked at. */
+static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
+  const ir_op op = ir_operation(b->g, x);
+  const ir_node image = program_mirror(b, x);
+  if (image == y) return 1;
+  if (b->sharing != SHARE_PAIRS) return 0;
+  if (x == y) return program_parity(b, x);
+  if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
+  if (op != ir_operation(b->g, y) || --*left < 0) return 0;
+  const int sign = image_of_operands(b, x, y, false, left);
+  const bool commutes = op == IR_ADD || op == IR_MUL; /* the graph orders operands by number */
+  return sign != 0 || !commutes ? sign : image_of_operands(b, x, y, true, left);
 }
 
 /* Takes the mirror image of term k, with that sign, out of the list; in products no sign may change. */

@@ -118,6 +118,61 @@ static void long_horizons_share_nothing(void **state) {
   close_law(t);
 }
 
+/* The law planned again for families of so many neighbours. */
+static tested_law *open_large(const char *lines) {
+  tested_law *t = open_program("  for space\n", lines);
+  plan_interpreted_free(t->kernel);
+  plan_free(t->plan);
+  t->law->neighbours = 122;
+  t->plan = plan_kernel(t->law, &t->said);
+  assert_non_null(t->plan);
+  t->kernel = plan_interpreted(t->plan, "test");
+  return t;
+}
+
+static const segment *pairs_of(const family_pass *p) {
+  for (int k = 0; k < p->segment_count; k++)
+    if (p->segments[k].kind == OVER_PAIRS) return &p->segments[k];
+  return NULL;
+}
+
+/* Forces of the ends are opposite, sums of stretches the same; a later pass reads the damage that the first one found. */
+static void bonds_of_large_families_add_to_both_ends(void **state) {
+  (void)state;
+  tested_law *t = open_large("  damage w on bond\n  w[j] = | 1 when stretch[j] >= 1 jump\n"
+                             "         | 0 otherwise\n"
+                             "  d = sum((1 - w[j])*stretch[j])\n"
+                             "  force state F[j] = (1 - w[j])*(a*stretch[j] + b*d)\n");
+  const family_program *step = &t->plan->step;
+  assert_int_equal(step->pass_count, 2);
+  assert_int_equal(program_sum_count(step), 3);
+  assert_true(program_pairs_field(step, 0));
+  assert_int_equal(t->plan->links.of_particles, 1);
+  assert_int_equal(t->plan->links.of_bonds, 0);
+  for (int at = 0; at < 2; at++) {
+    const segment *a = pairs_of(&step->passes[at]);
+    assert_non_null(a);
+    assert_int_equal(a->root_count, at ? 3 : 2);
+    for (int k = 0; k < a->root_count; k++)
+      assert_int_equal(a->roots[k].parity, at ? -1 : 1);
+  }
+  close_law(t);
+}
+
+/* What either end sees in its own way is computed by both. */
+static void ends_that_differ_are_no_pair(void **state) {
+  (void)state;
+  tested_law *t = open_large("  state p on neighbour = 0\n  damage w on particle\n"
+                             "  p[j] = max(previous(p[j]), abs(stretch[j])*(1 - previous(w)))\n"
+                             "  w = mean(p[j])\n"
+                             "  force state F[j] = (1 - w)*a*stretch[j]\n");
+  const family_program *step = &t->plan->step;
+  assert_null(pairs_of(&step->passes[0]));
+  assert_false(program_pairs_field(step, 0));
+  assert_non_null(pairs_of(&step->passes[step->pass_count - 1])); /* the mean of both forces */
+  close_law(t);
+}
+
 static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **state) {
   (void)state;
   tested_law *t = open_program("", "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
@@ -762,6 +817,8 @@ int main(void) {
       cmocka_unit_test(one_sum_needs_one_pass_and_one_loop),
       cmocka_unit_test(ends_share_what_is_the_same_for_both),
       cmocka_unit_test(long_horizons_share_nothing),
+      cmocka_unit_test(bonds_of_large_families_add_to_both_ends),
+      cmocka_unit_test(ends_that_differ_are_no_pair),
       cmocka_unit_test(a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass),
       cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
       cmocka_unit_test(neighbours_of_neighbours_need_a_pass_more),

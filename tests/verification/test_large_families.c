@@ -1,0 +1,140 @@
+/* Bonds of large families are evaluated once and add to both ends: the same bits for any number of threads, after a
+   checkpoint and from the interpreter, while bonds break everywhere but where they are protected. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include <unistd.h>
+
+#include "generator/interpret.h"
+#include "tests/verification/case.h"
+
+/* 122 neighbours; some rows are longer than a chunk. */
+static const char text[] =
+    "&simulation end_time = '6e-5 s' /\n"
+    "&lattice name = 'l' spacing = '10 mm' kind = 'cubic' horizon = 3.015 /\n"
+    "&body lattice = 'l' shape = 'box' corner = 0, 0, 0 size = '750 mm', '80 mm', '130 mm' /\n"
+    "&material lattice = 'l' model = 'lps' s_0 = 1e-3 /\n"
+    "&region name = 'top' shape = 'box' corner = 0, 0, '105 mm' size = '750 mm', '80 mm', '30 mm' "
+    "/\n"
+    "&region name = 'foot' shape = 'box' corner = 0, 0, '-5 mm' size = '750 mm', '80 mm', '30 mm' "
+    "/\n"
+    "&drive region = 'top' component = 'z' velocity = '40 m/s' /\n"
+    "&support region = 'foot' fix = 'xyz' /\n"
+    "&protect region = 'foot' /\n"
+    "&output frames = 0 /\n";
+
+static void open_threads(deck_case *c, const char *threads, bool interpreted) {
+  assert_true(deck_case_read(c, "case.nml", text, &threads, 1));
+  assert_true(deck_case_start(c, SOURCE_DIR "/models/case.nml"));
+  assert_true(c->law.law->sum_count > 0);
+  if (!interpreted) return;
+  simulation_free(c->simulation);
+  c->law.law = plan_interpreted(c->model.plan, c->model.key);
+  c->simulation = simulation_new(c->deck, &c->law, &c->said);
+  assert_non_null(c->simulation);
+}
+
+static void assert_same(const deck_case *a, const deck_case *b) {
+  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const rows *g = x->lattice;
+  const size_t site = (size_t)g->size * sizeof(double);
+  for (long p = 0; p < g->particle_count; p++)
+    for (int d = 0; d < 3; d++) {
+      const long q = g->particle_site[p];
+      assert_memory_equal(&x->displacement[d][q], &y->displacement[d][q], sizeof(double));
+      assert_memory_equal(&x->velocity[d][q], &y->velocity[d][q], sizeof(double));
+    }
+  assert_memory_equal(x->field[0], y->field[0], 2 * (size_t)g->directions * site);
+}
+
+/* Share of the bonds' values that are not 0; both ends have the same. */
+static double broken_share(const sweep *w) {
+  const rows *g = w->lattice;
+  long broken = 0, values = 0;
+  for (long p = 0; p < g->particle_count; p++)
+    for (int k = 0; k < g->directions; k++) {
+      const long q = g->particle_site[p], far = rows_partner(g, q, k);
+      if (!rows_has_bond(g, q, k)) continue;
+      const double here = w->field[0][k * g->size + q];
+      assert_true(here == w->field[0][(k + g->directions) * g->size + far]);
+      assert_true(here == 0 || !(g->held[q] || g->held[far]));
+      broken += here != 0;
+      values++;
+    }
+  return (double)broken / (double)values;
+}
+
+static void any_number_of_threads_gives_the_same_bits(void **state) {
+  (void)state;
+  static const char *const threads[] = {"simulation.threads=2", "simulation.threads=3",
+                                        "simulation.threads=7"};
+  deck_case one, more;
+  open_threads(&one, "simulation.threads=1", false);
+  assert_int_equal(deck_case_go(&one), STEP_END);
+  const double broken = broken_share(simulation_state(one.simulation));
+  print_message("%.1f %% of the bonds are broken\n", 100 * broken);
+  assert_true(broken > 0.01 && broken < 0.5);
+  for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
+    open_threads(&more, threads[k], false);
+    assert_int_equal(deck_case_go(&more), STEP_END);
+    assert_same(&one, &more);
+    deck_case_close(&more);
+  }
+  deck_case_close(&one);
+}
+
+/* After an odd and an even number of steps: old and new fields have changed places or not. */
+static void a_resumed_run_gives_the_same_bits(void **state) {
+  (void)state;
+  char path[] = "/tmp/perilat-large-XXXXXX", error[256];
+  const int file = mkstemp(path);
+  assert_true(file >= 0);
+  close(file);
+  deck_case straight;
+  open_threads(&straight, "simulation.threads=1", false);
+  assert_int_equal(deck_case_go(&straight), STEP_END);
+  const long steps = simulation_step_done(straight.simulation);
+  for (long stop = steps / 2; stop <= steps / 2 + 1; stop++) {
+    deck_case first, second;
+    long frames;
+    open_threads(&first, "simulation.threads=1", false);
+    assert_int_equal(simulation_advance(first.simulation, stop, NULL), STEP_OK);
+    assert_true(broken_share(simulation_state(first.simulation)) > 0);
+    assert_true(simulation_save(first.simulation, path, "large", 0, error, sizeof error));
+    deck_case_close(&first);
+    open_threads(&second, "simulation.threads=2", false);
+    assert_true(simulation_restore(second.simulation, path, "large", &frames, error, sizeof error));
+    assert_int_equal(deck_case_go(&second), STEP_END);
+    assert_same(&straight, &second);
+    deck_case_close(&second);
+  }
+  deck_case_close(&straight);
+  unlink(path);
+}
+
+static void the_interpreter_gives_the_same_bits(void **state) {
+  (void)state;
+  deck_case compiled, interpreted;
+  open_threads(&compiled, "simulation.threads=1", false);
+  open_threads(&interpreted, "simulation.threads=2", true);
+  assert_int_equal(deck_case_go(&compiled), STEP_END);
+  assert_int_equal(deck_case_go(&interpreted), STEP_END);
+  assert_same(&compiled, &interpreted);
+  pl_law *reader = (pl_law *)(uintptr_t)interpreted.law.law;
+  deck_case_close(&interpreted);
+  plan_interpreted_free(reader);
+  deck_case_close(&compiled);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(any_number_of_threads_gives_the_same_bits),
+      cmocka_unit_test(a_resumed_run_gives_the_same_bits),
+      cmocka_unit_test(the_interpreter_gives_the_same_bits),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
