@@ -348,7 +348,7 @@ static void write_neighbours(emitter *e, const segment *a) {
 static int chunk_of(const family_pass *p) {
   enum { LONGEST = 512, KEPT = 16384 }; /* B */
   int chunk = LONGEST;
-  if (p->plane_count > 0 || emit_is_paired(p)) return FAMILY_CHUNK;
+  if (p->plane_count > 0 || program_is_paired(p)) return FAMILY_CHUNK;
   while (chunk > FAMILY_CHUNK && p->slot_count * chunk * (int)sizeof(double) > KEPT)
     chunk /= 2;
   return chunk;
@@ -358,6 +358,8 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
   static const family_words rolled = {" + first", "k", "back", "to", "owned", "owner", false};
   e->words = &rolled;
   c_text_add(e->out, "  enum { CHUNK = %d };\n", chunk_of(p));
+  if (program_sum_count(&e->plan->step) > 0 && !program_is_paired(p))
+    c_text_add(e->out, "  if (family->ahead_only) return;\n");
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double slot_%d[CHUNK];\n", k);
   for (int k = 0; k < p->plane_count; k++)

@@ -7,12 +7,6 @@
    constant; and new values are stored only where they differ from what stands there. */
 #include "generator/emit_parts.h"
 
-bool emit_is_paired(const family_pass *p) {
-  for (int k = 0; k < p->segment_count; k++)
-    if (p->segments[k].kind == OVER_PAIRS) return true;
-  return false;
-}
-
 static const char field_functions[] =
     "static const _Alignas(PL_ALIGNMENT) double zeros[%d];\n\n"
     "/* Bits of neighbours toward which some of the particles of a chunk have the mark, or do not "

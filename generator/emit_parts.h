@@ -104,8 +104,6 @@ void emit_family_starts(emitter *e, const segment *a);
 
 /* --- emit_pairs.c --- */
 
-/* Whether bonds of the pass add to both ends. */
-bool emit_is_paired(const family_pass *p);
 /* What the passes call. */
 void emit_pairs_functions(emitter *e);
 void emit_pairs(emitter *e, const segment *a);

@@ -404,6 +404,7 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
 void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
                        const pl_family *f) {
   const family_pass *now = &program_of(r->plan, observe)->passes[number];
+  if (f->ahead_only && !program_is_paired(now)) return;
   for (long first = 0; first < f->count; first += LANES) {
     const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
     for (int s = 0; s < now->segment_count; s++) {

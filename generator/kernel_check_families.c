@@ -8,8 +8,8 @@
 #include "dsl/arena.h"
 #include "generator/random_values.h"
 
-/* Sites lie in one array; neighbours are up to MARGIN away. */
-enum { SITES = 200, CUT = 128, MARGIN = 96, SIZE = MARGIN + SITES + MARGIN };
+/* Sites lie in one array; neighbours are up to REACH away, and so are those of the sites from which bonds reach them. */
+enum { SITES = 200, CUT = 128, REACH = 96, MARGIN = 2 * REACH, SIZE = MARGIN + SITES + MARGIN };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
 
@@ -144,7 +144,7 @@ static void draw_bonds(body *b, uint64_t *seed) {
 static void draw_offsets(body *b, uint64_t *seed) {
   const int half = b->neighbours / 2;
   for (int k = 0; k < half; k++) {
-    b->offset[k] = 1 + (long)(draw_bits(seed) % MARGIN);
+    b->offset[k] = 1 + (long)(draw_bits(seed) % REACH);
     b->offset[k + half] = -b->offset[k];
   }
 }
@@ -373,9 +373,9 @@ static void clear_sums(const body *b, int side) {
 /* Bonds of the sites before reach the others: their fields are written as another thread would, then their sums are found
    as by the thread at hand. */
 static void run_before(const law_readers *l, const body *b, int side, pl_family_function pass) {
-  run_part(l, b, side, pass, -MARGIN, MARGIN, false);
+  run_part(l, b, side, pass, -REACH, REACH, false);
   clear_sums(b, side);
-  run_part(l, b, side, pass, -MARGIN, MARGIN, true);
+  run_part(l, b, side, pass, -REACH, REACH, true);
 }
 
 static void run_program(const law_readers *l, const body *b, int side, bool observe) {

@@ -477,6 +477,12 @@ static void pair_ends(ir *g, family_pass *p) {
   fuse_segment(g, loop);
 }
 
+bool program_is_paired(const family_pass *p) {
+  for (int k = 0; k < p->segment_count; k++)
+    if (p->segments[k].kind == OVER_PAIRS) return true;
+  return false;
+}
+
 bool program_pairs_field(const family_program *p, int field) {
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++) {

@@ -104,6 +104,8 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
                    program_sharing sharing, program_links *links);
 
+/* Whether bonds of the pass add to both ends. */
+bool program_is_paired(const family_pass *p);
 /* Whether the program writes the field, which stands toward neighbours, bond by bond at both ends. */
 bool program_pairs_field(const family_program *p, int field);
 /* Sums that one pass adds to far ends, the most. */

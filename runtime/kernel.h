@@ -125,7 +125,7 @@ typedef struct pl_family {
   /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a part of it that begins at
      its start or where the last run ended, and runs go from lower to higher sites; neighbours k < neighbours/2 stand at
      higher sites. sum[s] is what earlier runs have added to these particles; a run adds to particles ahead, and what it has
-     used is 0 again. With `ahead_only` it writes nothing else: whoever begins in the middle of a body begins with the
+     used is 0 again. With `ahead_only` it writes nothing else, and passes without such bonds nothing at all: whoever begins in the middle of a body begins with the
      rows from which bonds reach its own. */
   int ahead_only;
   int held_near; /* of the same laws: one of these particles, or one that their bonds reach, is held */

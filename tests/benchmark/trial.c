@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/run.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
@@ -64,7 +65,12 @@ trial *trial_open(const char *deck_text) {
   const int file = source_add(&t->sources, "deck", deck_text, strlen(deck_text));
   t->deck = deck_read(t->memory, &t->sources, file, NULL, 0, &t->said);
   if (t->deck) {
-    trial_open_model(&t->model, t->deck->materials[0].model);
+    const char *beside = SOURCE_DIR "/models/trial.nml"; /* where laws are looked for */
+    if (!run_open_material(&t->deck->materials[0], &t->deck->lattices[0], beside, &t->model,
+                           &t->said)) {
+      diag_print(&t->said, stderr);
+      give_up("the law of a deck cannot be used");
+    }
     t->law.law = model_kernel(&t->model, false, &note, error, sizeof error);
     if (!t->law.law || note) give_up("%s", note ? note : error);
     t->law.parameters = trial_parameters(t, t->law.law);
