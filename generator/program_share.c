@@ -138,7 +138,7 @@ static int cost_beyond(builder *b, ir_node n, int most) {
 
 /* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
 static int dear(const builder *b) {
-  return b->sharing == SHARE_MOST ? 5 : 25;
+  return b->sharing == SHARE_MOST ? 12 : 25;
 }
 
 static bool is_worth_sharing(builder *b, ir_node n) {
@@ -151,7 +151,7 @@ static bool is_worth_sharing(builder *b, ir_node n) {
 
 /* Whether little is left to do for a value when the part is shared. */
 static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
-  const int cheap = b->sharing == SHARE_MOST ? 1 : 6;
+  const int cheap = b->sharing == SHARE_MOST ? 3 : 6;
   b->shared[b->shared_count++] = part;
   const bool does = cost_beyond(b, n, cheap + 1) <= cheap;
   b->shared_count--;

@@ -141,7 +141,7 @@ static int least(int a, int b) {
    leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {
   enum { ROWS_AT_A_TIME = 16 };
-  enum { FARTHEST = 100 }; /* rows between passes that a cache may still hold */
+  enum { FARTHEST = 400 }; /* rows between passes that a cache may still hold */
   const int at_a_time = own(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
   const int passes = program->pass_count;
