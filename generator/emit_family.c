@@ -84,8 +84,13 @@ static void write_ends_array(emitter *e, ir_node n) {
 /* A value that both ends of a bond share, in the plane of the bond's number at its owner. */
 static void write_shared(emitter *e, int index, const char *number, const char *at) {
   const shared_place stands = program_shared_place(index);
-  c_text_add(e->out, "family->bond_link[%d]%s + %s + (%s%s)*family->plane", stands.link,
+  c_text_add(e->out, "family->bond_link[%d]%s + %s + (%s%s)*family->link_plane", stands.link,
              e->words->first, at, stands.upper ? "half + " : "", number);
+}
+
+static bool is_link(const emitter *e, ir_node n) {
+  const ir_source from = ir_input_source(e->graph, n);
+  return from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK;
 }
 
 /* Of the particle at hand, or at lane 0 of the chunk's neighbours; on lists the loop adds the way to the neighbour. */
@@ -107,10 +112,11 @@ void emit_family_array(emitter *e, ir_node n) {
     c_text_add(e->out, "family->link[%d]%s", index, w->first);
     break;
   case IR_FROM_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->k);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first, w->k);
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->back);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first,
+               w->back);
     break;
   case IR_FROM_SHARED:
   case IR_FROM_SHARED_ODD:
@@ -128,7 +134,8 @@ void emit_family_array(emitter *e, ir_node n) {
   default:
     write_ends_array(e, n);
   }
-  if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + %s", w->to);
+  if (is_of_neighbour(e, n) && !is_list(e))
+    c_text_add(e->out, " + %s", is_link(e, n) ? w->link_to : w->to);
 }
 
 static void write_inputs(emitter *e) {
@@ -167,16 +174,16 @@ void emit_family_target(emitter *e, const segment_root *r) {
     c_text_add(e->out, "family->observed[%d]%s", r->index, w->first);
     break;
   case TO_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "family->new_field[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->new_field[%d]%s + %s*family->new_plane", r->index, w->first, w->k);
     break;
   case TO_NEIGHBOUR_OBSERVED:
-    c_text_add(e->out, "family->observed[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->observed[%d]%s + %s*family->new_plane", r->index, w->first, w->k);
     break;
   case TO_PLANE:
     c_text_add(e->out, "plane_%d[k]", r->index);
     break;
   case TO_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", r->index, w->first, w->k);
     break;
   case TO_SHARED:
     write_shared(e, r->index, w->k, "0");
@@ -318,14 +325,15 @@ static void write_neighbours(emitter *e, const segment *a) {
       e->out,
       is_list(e)
           ? "      const int32_t *restrict to = family->neighbour + first + k*family->plane;\n"
-          : "      const long to = family->offset[k];\n");
+          : "      const long to = family->offset[k], link_to = family->link_offset[k];\n"
+            "      (void)link_to;\n");
   c_text_add(e->out, "      (void)to, (void)back;\n");
   if (emit_asks_for_presence(a)) write_presence(e);
   if (reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out, "      const double sign = k < half ? 1.0 : -1.0;\n");
   if (reads(e, IR_FROM_SHARED) || reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out,
-               "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
+               "      const long owned = k < half ? k : back, owner = k < half ? 0 : link_to;\n");
   write_inputs(e);
   write_outputs(e, a);
   write_loop(e, "      ");
@@ -350,7 +358,13 @@ static int chunk_of(const family_pass *p) {
 }
 
 static void write_rolled_pass(emitter *e, const family_pass *p) {
-  static const family_words rolled = {" + first", "k", "back", "to", "owned", "owner", false};
+  static const family_words rolled = {.first = " + first",
+                                      .k = "k",
+                                      .back = "back",
+                                      .to = "to",
+                                      .link_to = "link_to",
+                                      .owned = "owned",
+                                      .owner = "owner"};
   e->words = &rolled;
   c_text_add(e->out, "  enum { CHUNK = %d };\n", chunk_of(p));
   for (int k = 0; k < p->slot_count; k++)

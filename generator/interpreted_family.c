@@ -159,14 +159,25 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
 
 /* Where the values of neighbour k of the chunk's particles stand, given where those of the run's particles begin: on rows
    further along the same array, on lists gathered into the next buffer. */
-static const double *at_neighbours(family_runner *r, const pl_family *f, const double *values,
-                                   long first, long k) {
-  if (!f->neighbour) return values + first + f->offset[k];
+static const double *at_offset(family_runner *r, const pl_family *f, const double *values,
+                               long first, long k, const long *offset) {
+  if (!f->neighbour) return values + first + offset[k];
   const int32_t *to = f->neighbour + k * f->plane + first;
   double *buffer = r->gathered + (size_t)r->gathered_count++ * LANES;
   for (long q = 0; q < LANES && first + q < f->count; q++)
     buffer[q] = values[first + q + to[q]];
   return buffer;
+}
+
+static const double *at_neighbours(family_runner *r, const pl_family *f, const double *values,
+                                   long first, long k) {
+  return at_offset(r, f, values, first, k, f->offset);
+}
+
+/* The same of links. */
+static const double *at_links(family_runner *r, const pl_family *f, const double *values,
+                              long first, long k) {
+  return at_offset(r, f, values, first, k, f->link_offset);
 }
 
 static void point_at_motion(family_runner *r, const pl_family *f, long first, long k) {
@@ -187,7 +198,7 @@ static void point_at_motion(family_runner *r, const pl_family *f, long first, lo
 
 static double *shared_plane(const pl_family *f, int index, long owned) {
   const shared_place at = program_shared_place(index);
-  return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->plane;
+  return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->link_plane;
 }
 
 /* What the owner of the bond has left. */
@@ -196,7 +207,7 @@ static void point_at_shared(family_runner *r, const pl_family *f, long first, lo
   for (int n = 0; n < 2 * r->plan->links.of_bonds; n++) {
     double *opposite = r->opposite + (size_t)n * LANES;
     r->shared[n] = k < half ? shared_plane(f, n, k) + first
-                            : at_neighbours(r, f, shared_plane(f, n, k - half), first, k);
+                            : at_links(r, f, shared_plane(f, n, k - half), first, k);
     for (long q = 0; k >= half && q < LANES && first + q < f->count; q++)
       opposite[q] = -r->shared[n][q];
     r->shared_odd[n] = k < half ? r->shared[n] : opposite;
@@ -221,10 +232,11 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   for (int u = 0; u < p->uniform_count && !f->neighbour; u++)
     r->parameters[parameters + u] = uniforms + k * p->uniform_count + u;
   for (int n = 0; n < p->links.of_particles; n++)
-    r->neighbour_links[n] = at_neighbours(r, f, f->link[n], first, k);
+    r->neighbour_links[n] = at_links(r, f, f->link[n], first, k);
   for (int n = 0; n < p->links.of_bonds; n++) {
-    r->bond_links[n] = f->bond_link[n] + first + k * f->plane;
-    r->neighbour_bond_links[n] = at_neighbours(r, f, f->bond_link[n] + back * f->plane, first, k);
+    r->bond_links[n] = f->bond_link[n] + first + k * f->link_plane;
+    r->neighbour_bond_links[n] =
+        at_links(r, f, f->bond_link[n] + back * f->link_plane, first, k);
   }
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;
@@ -277,7 +289,7 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
   case TO_LINK:
     return f->link[root->index] + first;
   case TO_BOND_LINK:
-    return f->bond_link[root->index] + first + k * f->plane;
+    return f->bond_link[root->index] + first + k * f->link_plane;
   case TO_SHARED:
     return shared_plane(f, root->index, k) + first;
   case TO_PARTICLE_FIELD:
@@ -287,9 +299,9 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
   case TO_PARTICLE_OBSERVED:
     return f->observed[root->index] + first;
   case TO_NEIGHBOUR_FIELD:
-    return f->new_field[root->index] + first + k * f->plane;
+    return f->new_field[root->index] + first + k * f->new_plane;
   case TO_NEIGHBOUR_OBSERVED:
-    return f->observed[root->index] + first + k * f->plane;
+    return f->observed[root->index] + first + k * f->new_plane;
   case TO_PLANE:
     return r->plane + ((size_t)root->index * MOST_NEIGHBOURS + (size_t)k) * LANES;
   default:

@@ -1,4 +1,4 @@
-#include "runtime/family.h"
+#include "runtime/family_parts.h"
 
 #include <assert.h>
 #include <math.h>
@@ -6,50 +6,23 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "runtime/clock.h"
 #include "runtime/shape_matrix.h"
-#include "runtime/sweep_parts.h"
 
-enum { SHAPE_PLANES = PL_SHAPE_PLANES(3) }; /* the most */
+/* --- runs of particles -------------------------------------------------------------------------- */
 
-enum { FAMILY_MOST_PASSES = 16 };
-
-typedef struct family_block { /* pointers to the run at hand, for the law */
-  const double **old_field;
-  double **new_field, **link, **bond_link, **observed;
-  const double *shape[SHAPE_PLANES];
-} family_block;
-
-typedef struct family {
-  int neighbours, reach;       /* rows between a particle and its farthest neighbour */
-  double *uniforms;            /* [neighbours][uniform_count]; lists: [uniform_count] */
-  double **new_field;          /* [fields][planes * size] */
-  double **link;               /* [links][size] */
-  double **bond_link;          /* [bond_links][neighbours * size] */
-  double **observed;           /* [1 + outputs][planes * size] */
-  double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
-  family_block *blocks;        /* [block_count] */
-} family;
-
-static family *own(const sweep *w) {
-  return w->engine.own;
-}
-
-/* --- passes ----------------------------------------------------------------------------------- */
-
-static void point_at_run(const sweep *w, family_block *b, long start) {
-  const family *f = own(w);
+static void point_at_fields(const sweep *w, family_block *b, long start) {
+  const family *f = family_of(w);
   for (int k = 0; k < w->law->field_count; k++) {
     b->old_field[k] = w->field[k] + start;
     b->new_field[k] = f->new_field[k] + start;
   }
-  for (int k = 0; k < w->law->link_count; k++)
-    b->link[k] = f->link[k] + start;
-  for (int k = 0; k < w->law->bond_link_count; k++)
-    b->bond_link[k] = f->bond_link[k] + start;
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
   for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
+  for (int d = 0; d < w->dof; d++)
+    b->force[d] = w->force[d] + start;
 }
 
 /* Where the neighbours of the run's particles are. */
@@ -68,13 +41,15 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->mass = g->site_mass + start;
 }
 
-static pl_family run_of(const sweep *w, family_block *b, int row) {
-  const family *f = own(w);
+pl_family family_run_of(const sweep *w, int block, int row) {
+  const family *f = family_of(w);
+  family_block *b = &f->blocks[block];
   const long start = sweep_start(w, row);
-  point_at_run(w, b, start);
+  point_at_fields(w, b, start);
   pl_family run = {.count = w->count[row],
                    .neighbours = f->neighbours,
                    .plane = w->lattice->size,
+                   .new_plane = w->lattice->size,
                    .bonds = w->lattice->bonds + start,
                    .held = w->lattice->held + start,
                    .shape = b->shape,
@@ -82,6 +57,7 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
                    .new_field = b->new_field,
                    .link = b->link,
                    .bond_link = b->bond_link,
+                   .force = b->force,
                    .observed = b->observed,
                    .time_step = w->time_step};
   point_at_neighbours(w->lattice, row, start, &run);
@@ -90,88 +66,6 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
     run.velocity[d] = w->velocity[d] + start;
   }
   return run;
-}
-
-/* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
-   long row, with absent sites in between. */
-static int end_of_alike(const sweep *w, int row, int last) {
-  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
-  int end = row + 1;
-  while (end < last && w->count[row] > 0 && w->count[end] > 0 && kind[end] == kind[row])
-    end++;
-  return end;
-}
-
-/* Rows first .. last-1. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
-  double *force[3];
-  for (int row = first, end; row < last; row = end) {
-    end = end_of_alike(w, row, last);
-    if (w->count[row] == 0) continue;
-    const long start = sweep_start(w, row);
-    pl_family run = run_of(w, &own(w)->blocks[block], row);
-    run.count = sweep_start(w, end - 1) + w->count[end - 1] - start;
-    for (int d = 0; d < w->dof; d++)
-      force[d] = w->force[d] + start;
-    run.force = force;
-    pass(w->law, own(w)->uniforms, &run);
-  }
-}
-
-static void run_pass(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
-  run_rows(w, program->pass[pass], block, b->first, b->last);
-}
-
-/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs the pass before on all
-   rows in reach, so each loses as many at either end, but at the ends of the body. */
-static void inner_rows(const sweep *w, int block, int pass, int *first, int *last) {
-  const sweep_block *b = &w->blocks[block];
-  const int lost = pass * own(w)->reach;
-  *first = b->first == 0 ? 0 : b->first + lost;
-  *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
-  if (*last < *first) *last = *first = b->last;
-}
-
-static int least(int a, int b) {
-  return a < b ? a : b;
-}
-
-/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
-   leaves the next finds in a cache. */
-static void run_inner(const sweep *w, const pl_program *program, int block) {
-  enum { ROWS_AT_A_TIME = 16 };
-  enum { FARTHEST = 400 }; /* rows between passes that a cache may still hold */
-  const int at_a_time = own(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
-  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
-  const int passes = program->pass_count;
-  for (int p = 0; p < passes; p++)
-    inner_rows(w, block, p, &next[p], &last[p]);
-  while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + at_a_time, last[0]);
-    for (int p = 0; p < passes; p++) {
-      run_rows(w, program->pass[p], block, next[p], end);
-      next[p] = end > next[p] ? end : next[p];
-      if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - own(w)->reach;
-    }
-  }
-}
-
-/* A pass on the rows that the inner rows leave. */
-static void run_outer(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
-  int first, last;
-  inner_rows(w, block, pass, &first, &last);
-  run_rows(w, program->pass[pass], block, b->first, first);
-  run_rows(w, program->pass[pass], block, last, b->last);
-}
-
-/* Stages of a program: the inner rows, then what is left for each pass after the first. */
-static void run_stage(const sweep *w, const pl_program *program, int stage, int block) {
-  if (stage == 0)
-    run_inner(w, program, block);
-  else
-    run_outer(w, program, stage, block);
 }
 
 /* --- particles -------------------------------------------------------------------------------- */
@@ -226,10 +120,10 @@ static double work_over(const sweep *w, int row, int component, const double *v)
 }
 
 /* A row with a bad velocity stays where it is. */
-static void move_rows(sweep *w, int block) {
+static void move_rows(sweep *w, int block, int first, int last) {
   sweep_block *b = &w->blocks[block];
-  b->bad_site = -1;
-  for (int row = b->first; row < b->last; row++) {
+  const double begun = w->timed ? monotonic_seconds() : 0;
+  for (int row = first; row < last; row++) {
     if (kick_row(w, b, row)) {
       sweep_note_bad(w, b, row);
       continue;
@@ -239,20 +133,52 @@ static void move_rows(sweep *w, int block) {
                               work_over(w, row, d, b->next + d * w->lattice->pitch);
     sweep_drift(w, b, row);
   }
+  if (w->timed) b->moving += monotonic_seconds() - begun;
+}
+
+static int program_stages(const family *f, const pl_program *program) {
+  return f->windows ? 1 : program->pass_count;
+}
+
+static void run_program(sweep *w, const pl_program *program, int stage, int block) {
+  if (family_of(w)->windows)
+    family_window_run(w, program, block, NULL);
+  else
+    family_stage(w, program, stage, block);
+}
+
+static void step_in_windows(sweep *w, int stage, int block) {
+  const sweep_block *b = &w->blocks[block];
+  int first, last;
+  if (stage == 0) {
+    family_window_run(w, &w->law->step, block, move_rows);
+    return;
+  }
+  family_window_inner(w, block, &first, &last);
+  move_rows(w, block, b->first, first);
+  move_rows(w, block, last, b->last);
 }
 
 static void step(sweep *w, int stage, int block) {
-  if (stage < w->law->step.pass_count)
-    run_stage(w, &w->law->step, stage, block);
+  const sweep_block *b = &w->blocks[block];
+  if (stage == 0) w->blocks[block].bad_site = -1;
+  if (family_of(w)->windows)
+    step_in_windows(w, stage, block);
+  else if (stage < w->law->step.pass_count)
+    family_stage(w, &w->law->step, stage, block);
   else
-    move_rows(w, block);
+    move_rows(w, block, b->first, b->last);
+}
+
+static void find_forces(sweep *w, int stage, int block) {
+  run_program(w, &w->law->step, stage, block);
 }
 
 /* What was new is now at hand. */
 static void turn(sweep *w) {
   double **old = w->field;
-  w->field = own(w)->new_field;
-  own(w)->new_field = old;
+  w->field = family_of(w)->new_field;
+  family_of(w)->new_field = old;
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -263,7 +189,7 @@ static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0) sum += own(w)->observed[0][q];
+    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0) sum += family_of(w)->observed[0][q];
   return sum;
 }
 
@@ -282,21 +208,24 @@ static void observe_rows(sweep *w, int block) {
 /* Forces of the present state: the passes of a step, whose new fields are written again by the next
    one. */
 static void observe(sweep *w, int stage, int block) {
-  const int forces = w->law->step.pass_count, all = forces + w->law->observe.pass_count;
+  const family *f = family_of(w);
+  const int forces = program_stages(f, &w->law->step),
+            all = forces + program_stages(f, &w->law->observe);
   if (stage < forces)
-    run_stage(w, &w->law->step, stage, block);
+    run_program(w, &w->law->step, stage, block);
   else if (stage < all)
-    run_pass(w, &w->law->observe, stage - forces, block);
+    run_program(w, &w->law->observe, stage - forces, block);
   else
     observe_rows(w, block);
 }
 
 static void output_values(sweep *w, int output, double *values) {
+  const family *f = family_of(w);
   const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
-  for (int stage = 0; stage < w->law->observe.pass_count; stage++)
+  for (int stage = 0; stage < program_stages(f, &w->law->observe); stage++)
     for (int b = 0; b < w->block_count; b++)
-      run_pass(w, &w->law->observe, stage, b);
-  memcpy(values, own(w)->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
+      run_program(w, &w->law->observe, stage, b);
+  memcpy(values, f->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -326,16 +255,21 @@ static void new_planes(sweep *w, family *f) {
     f->new_field[k] = sweep_doubles(w, count);
     memcpy(f->new_field[k], w->field[k], (size_t)count * sizeof(double));
   }
+  f->observed = must_calloc((size_t)law->output_count + 1, sizeof *f->observed);
+  f->observed[0] = sweep_doubles(w, size);
+  for (int k = 0; k < law->output_count; k++)
+    f->observed[1 + k] = sweep_doubles(w, sweep_planes(w, law->outputs[k].place) * size);
+}
+
+static void new_links(sweep *w, family *f) {
+  const pl_law *law = w->law;
+  const long size = w->lattice->size;
   f->link = must_calloc((size_t)law->link_count + 1, sizeof *f->link);
   for (int k = 0; k < law->link_count; k++)
     f->link[k] = sweep_doubles(w, size);
   f->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *f->bond_link);
   for (int k = 0; k < law->bond_link_count; k++)
     f->bond_link[k] = sweep_doubles(w, sweep_planes(w, PL_ON_NEIGHBOUR) * size);
-  f->observed = must_calloc((size_t)law->output_count + 1, sizeof *f->observed);
-  f->observed[0] = sweep_doubles(w, size);
-  for (int k = 0; k < law->output_count; k++)
-    f->observed[1 + k] = sweep_doubles(w, sweep_planes(w, law->outputs[k].place) * size);
 }
 
 static void new_blocks(const sweep *w, family *f) {
@@ -358,7 +292,7 @@ static void free_arrays(double **arrays, int count) {
 }
 
 static void free_own(sweep *w) {
-  family *f = own(w);
+  family *f = family_of(w);
   for (int k = 0; k < w->block_count; k++) {
     free(f->blocks[k].old_field);
     free(f->blocks[k].new_field);
@@ -367,8 +301,9 @@ static void free_own(sweep *w) {
     free(f->blocks[k].observed);
   }
   free_arrays(f->new_field, w->law->field_count);
-  free_arrays(f->link, w->law->link_count);
-  free_arrays(f->bond_link, w->law->bond_link_count);
+  if (f->link) free_arrays(f->link, w->law->link_count);
+  if (f->bond_link) free_arrays(f->bond_link, w->law->bond_link_count);
+  family_windows_free(w, f->windows);
   free_arrays(f->observed, 1 + w->law->output_count);
   for (int v = 0; v < SHAPE_PLANES; v++)
     free(f->shape[v]);
@@ -397,9 +332,14 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
-  return (sweep_engine){.step_stages = law->step.pass_count + 1,
-                        .observe_stages = law->step.pass_count + law->observe.pass_count + 1,
+  f->windows = family_windows(w, f);
+  if (!f->windows) new_links(w, f);
+  const int forces = program_stages(f, &law->step), looks = program_stages(f, &law->observe);
+  return (sweep_engine){.step_stages = forces + 1,
+                        .force_stages = forces,
+                        .observe_stages = forces + looks + 1,
                         .step = step,
+                        .forces = find_forces,
                         .turn = turn,
                         .observe = observe,
                         .output = output_values,

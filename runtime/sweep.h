@@ -36,8 +36,9 @@ typedef struct sweep_totals { /* sums over all particles and bonds, J */
 typedef struct sweep sweep;
 
 typedef struct sweep_engine {
-  int step_stages, observe_stages;
+  int step_stages, force_stages, observe_stages;
   void (*step)(sweep *w, int stage, int block);
+  void (*forces)(sweep *w, int stage, int block); /* of the present state; laws of families only */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
