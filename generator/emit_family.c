@@ -212,6 +212,14 @@ void emit_family_store(emitter *e, const segment_root *r, const char *to) {
   c_text_add(e->out, "        %s ", to);
   switch (r->target) {
   case TO_SUM:
+    if (segment_fuses(e->graph, r)) {
+      c_text_add(e->out, "= present ? pl_fma(");
+      emit_value(e, ir_operand(e->graph, r->node, 0));
+      c_text_add(e->out, ", ");
+      emit_value(e, ir_operand(e->graph, r->node, 1));
+      c_text_add(e->out, ", %s) : %s;\n", to, to);
+      break;
+    }
     c_text_add(e->out, "+= ");
     write_value_or(e, r->node, "0.0");
     break;
@@ -244,11 +252,9 @@ static void write_stores(emitter *e, const segment *a) {
 /* --- segments --------------------------------------------------------------------------------- */
 
 void emit_open_segment(emitter *e, const segment *a) {
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  emit_open_nodes(e, a->kind == OVER_PARTICLES ? IN_PARTICLES : IN_NEIGHBOURS, nodes,
-                  a->root_count);
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  const int count = segment_nodes(e->graph, a, nodes);
+  emit_open_nodes(e, a->kind == OVER_PARTICLES ? IN_PARTICLES : IN_NEIGHBOURS, nodes, count);
   free(nodes);
 }
 

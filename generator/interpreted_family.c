@@ -40,11 +40,10 @@ static int larger(int a, int b) {
 
 static interpreter *segment_interpreter(family_runner *r, const segment *a, const ir_node *inputs) {
   const kernel_plan *p = r->plan;
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  ir_substitute(p->graph, nodes, a->root_count, p->uniforms, inputs, p->uniform_count, nodes);
-  interpreter *made = interpreter_new(p->graph, nodes, a->root_count);
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  const int count = segment_nodes(p->graph, a, nodes);
+  ir_substitute(p->graph, nodes, count, p->uniforms, inputs, p->uniform_count, nodes);
+  interpreter *made = interpreter_new(p->graph, nodes, count);
   free(nodes);
   return made;
 }
@@ -62,7 +61,7 @@ static void make_interpreters(family_runner *r, const ir_node *inputs, int *slot
           arena_alloc(r->memory, ((size_t)now->segment_count + 1) * sizeof(interpreter *));
       for (int s = 0; s < now->segment_count; s++) {
         r->run[which][k][s] = segment_interpreter(r, &now->segments[s], inputs);
-        *roots = larger(*roots, now->segments[s].root_count);
+        *roots = larger(*roots, 2 * now->segments[s].root_count);
       }
     }
   }
@@ -316,8 +315,9 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
   return f->bonds[first + to + q] >> (k < half ? k : k - half) & 1;
 }
 
+/* `factor` NULL unless the root fuses. */
 static void store(family_runner *r, const segment_root *root, const double *value,
-                  const pl_family *f, long first, long k, long lanes) {
+                  const double *factor, const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
   const bool plain = root->target < TO_SUM || root->target == TO_PLANE ||
                      root->target == TO_BOND_LINK || root->target == TO_SHARED;
@@ -325,7 +325,10 @@ static void store(family_runner *r, const segment_root *root, const double *valu
     const bool present = plain || is_present(f, first, k, q);
     switch (root->target) {
     case TO_SUM:
-      to[q] += present ? value[q] : 0;
+      if (factor)
+        to[q] = present ? pl_fma(value[q], factor[q], to[q]) : to[q];
+      else
+        to[q] += present ? value[q] : 0;
       break;
     case TO_LARGEST:
       to[q] = present ? pl_max(to[q], value[q]) : to[q];
@@ -369,8 +372,11 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
     }
     interpreter_inputs in = inputs_of(r);
     interpreter_run(run, &in, (int)lanes, r->result);
-    for (int n = 0; n < a->root_count; n++)
-      store(r, &a->roots[n], r->result[n], f, first, k, lanes);
+    for (int n = 0, factors = a->root_count; n < a->root_count; n++) {
+      const bool fuses = segment_fuses(r->plan->graph, &a->roots[n]);
+      const double *factor = fuses ? r->result[factors++] : NULL;
+      store(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
+    }
   }
 }
 

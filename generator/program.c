@@ -29,7 +29,7 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
 int program_cost(const ir *g, ir_node n) {
   ir_op op = ir_operation(g, n);
   bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
   return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
 }
 
@@ -436,6 +436,18 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
   map_clear(&s.phase);
   map_clear(&s.slot);
   map_clear(&s.plane);
+}
+
+int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
+  int count = a->root_count;
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    nodes[k] = r->node;
+    if (!segment_fuses(g, r)) continue;
+    nodes[k] = ir_operand(g, r->node, 0);
+    nodes[count++] = ir_operand(g, r->node, 1);
+  }
+  return count;
 }
 
 /* --- the whole -------------------------------------------------------------------------------- */

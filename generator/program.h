@@ -46,6 +46,15 @@ typedef struct segment {
   int root_count, root_capacity;
 } segment;
 
+/* A sum of products, which differ from bond to bond, adds each with one rounding. */
+static inline bool segment_fuses(const ir *g, const segment_root *r) {
+  return r->target == TO_SUM && ir_operation(g, r->node) == IR_MUL && ir_place(g, r->node) > ON_BODY;
+}
+
+/* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first factors, then the second
+   factors of those that fuse. Returns how many. */
+int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
+
 typedef struct family_pass {
   segment *segments;
   int segment_count;
@@ -70,7 +79,8 @@ typedef struct program_motion {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MOST  /* also what costs a little more: of small families, whose values stay in caches */
+  SHARE_MORE, /* also what costs less: of small families, whose values stay in caches */
+  SHARE_MOST  /* the same, and less is left to be computed from it: in the plane, where a few rows of values are enough */
 } program_sharing;
 
 typedef struct program_links {

@@ -93,6 +93,7 @@ static int parity_of_others(builder *b, ir_node n) {
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = program_parity(b, ir_operand(b->g, n, k));
   if (op == IR_NEG) return operand[0];
+  if (op == IR_FMA) return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
   if (op == IR_ABS && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
   if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
@@ -138,7 +139,7 @@ static int cost_beyond(builder *b, ir_node n, int most) {
 
 /* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
 static int dear(const builder *b) {
-  return b->sharing == SHARE_MOST ? 12 : 25;
+  return b->sharing >= SHARE_MORE ? 12 : 25;
 }
 
 static bool is_worth_sharing(builder *b, ir_node n) {
@@ -146,12 +147,12 @@ static bool is_worth_sharing(builder *b, ir_node n) {
       ir_is_logical(b->g, n) || cost_beyond(b, n, dear(b)) < dear(b))
     return false;
   const int parity = program_parity(b, n);
-  return parity == 1 || (parity == -1 && b->sharing == SHARE_MOST);
+  return parity == 1 || (parity == -1 && b->sharing >= SHARE_MORE);
 }
 
 /* Whether little is left to do for a value when the part is shared. */
 static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
-  const int cheap = b->sharing == SHARE_MOST ? 3 : 6;
+  const int cheap = b->sharing == SHARE_MOST ? 2 : b->sharing == SHARE_MORE ? 3 : 6;
   b->shared[b->shared_count++] = part;
   const bool does = cost_beyond(b, n, cheap + 1) <= cheap;
   b->shared_count--;

@@ -97,12 +97,20 @@ static int64_t kick_each(long count, double factor, double decay, double limit,
   return bad;
 }
 
-static int64_t kick_row(const sweep *w, sweep_block *b, int row) {
+static const double *force_of_row(const sweep *w, const sweep_block *b, int row, int component,
+                                  bool moving) {
+  if (moving && family_of(w)->windows)
+    return family_window_force(w, (int)(b - w->blocks), row, component);
+  return w->force[component] + sweep_start(w, row);
+}
+
+/* `moving`: the forces are those of a step, and not of looking at the present state. */
+static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
   const long start = sweep_start(w, row), count = w->count[row];
   int64_t bad = 0;
   for (int d = 0; d < w->dof; d++) {
     double *next = b->next + d * w->lattice->pitch;
-    const double factor = w->time_step / w->mass[d], *f = w->force[d] + start;
+    const double factor = w->time_step / w->mass[d], *f = force_of_row(w, b, row, d, moving);
     const double *v = w->velocity[d] + start;
     bad |= w->mobility
                ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
@@ -124,7 +132,7 @@ static void move_rows(sweep *w, int block, int first, int last) {
   sweep_block *b = &w->blocks[block];
   const double begun = w->timed ? monotonic_seconds() : 0;
   for (int row = first; row < last; row++) {
-    if (kick_row(w, b, row)) {
+    if (kick_row(w, b, row, true)) {
       sweep_note_bad(w, b, row);
       continue;
     }
@@ -196,7 +204,7 @@ static double stored_in_row(const sweep *w, int row) {
 static void observe_rows(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   for (int row = b->first; row < b->last; row++) {
-    kick_row(w, b, row);
+    kick_row(w, b, row, false);
     sweep_observe_motion(w, b, row);
     w->row_stored[row] = stored_in_row(w, row);
     w->row_internal_pending[row] = 0;

@@ -50,6 +50,8 @@ void family_windows_free(const sweep *w, family_window *v);
 /* All passes. With `move` the inner rows of the block move as soon as nothing needs their present state. */
 void family_window_run(sweep *w, const pl_program *program, int block,
                        void (*move)(sweep *, int block, int first, int last));
+/* Force on the particles of a row that is to move, from its first site on. */
+const double *family_window_force(const sweep *w, int block, int row, int component);
 /* Rows of a block whose present state no other block needs. */
 void family_window_inner(const sweep *w, int block, int *first, int *last);
 

@@ -14,7 +14,8 @@ struct family_window { /* row r stands in place r mod rows */
   int rows;
   long plane;                /* doubles between planes of links of bonds */
   double **link, **bond_link; /* [links] begin of place 0 */
-  double **memory;           /* [links + links of bonds] */
+  double *force[3];          /* begin of place 0: of rows that move at once; NULL where all forces are kept */
+  double **memory;           /* [links + links of bonds + forces] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;              /* [neighbours] of links, from the row at hand */
   int *row_offset;           /* [neighbours] rows to the neighbour */
@@ -23,8 +24,7 @@ struct family_window { /* row r stands in place r mod rows */
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 /* Rows that a block does at either end for its passes in addition to its own, and of which it reads the state. */
-static int halo(const sweep *w, const family *f, int passes) {
-  (void)w;
+static int halo(const family *f, int passes) {
   return f->reach * passes;
 }
 
@@ -36,7 +36,7 @@ static int most_passes(const pl_law *law) {
 static bool suits(const sweep *w, const family *f) {
   enum { ROWS_TO_HALO = 8 }; /* fewer rows of a block: too much would be done twice */
   const int least = w->lattice->row_count / w->block_count;
-  return !w->lattice->list && least >= ROWS_TO_HALO * halo(w, f, most_passes(w->law));
+  return !w->lattice->list && least >= ROWS_TO_HALO * halo(f, most_passes(w->law));
 }
 
 static double *padded(sweep *w, long count, double **memory) {
@@ -60,11 +60,14 @@ static void open_window(sweep *w, const family *f, family_window *v) {
   v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
   v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
   v->memory =
-      must_calloc((size_t)(law->link_count + law->bond_link_count) + 1, sizeof *v->memory);
+      must_calloc((size_t)(law->link_count + law->bond_link_count + w->dof) + 1, sizeof *v->memory);
   for (int k = 0; k < law->link_count; k++)
     v->link[k] = padded(w, v->rows * g->pitch, &v->memory[k]);
   for (int k = 0; k < law->bond_link_count; k++)
     v->bond_link[k] = padded(w, f->neighbours * v->plane, &v->memory[law->link_count + k]);
+  for (int d = 0; d < w->dof && !w->forces; d++)
+    v->force[d] = padded(w, v->rows * g->pitch,
+                         &v->memory[law->link_count + law->bond_link_count + d]);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);
@@ -90,7 +93,7 @@ static void free_rows(double **rows_of, int count) {
 void family_windows_free(const sweep *w, family_window *v) {
   const pl_law *law = w->law;
   for (int k = 0; v && k < w->block_count; k++) {
-    free_rows(v[k].memory, law->link_count + law->bond_link_count);
+    free_rows(v[k].memory, law->link_count + law->bond_link_count + w->dof);
     free_rows(v[k].field, law->field_count);
     free_rows(v[k].observed, 1 + law->output_count);
     free(v[k].link);
@@ -132,14 +135,33 @@ static void write_nowhere(const sweep *w, int block, int row, pl_family *run) {
   run->new_plane = w->lattice->pitch;
 }
 
-/* Rows first .. last-1. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
+static bool moves_at_once(const sweep *w, int block, int row) {
+  int first, last;
+  family_window_inner(w, block, &first, &last);
+  return row >= first && row < last;
+}
+
+static double *force_place(const sweep *w, int block, int row, int component) {
+  const family_window *v = &family_of(w)->windows[block];
+  return v->force[component] + (row % v->rows) * w->lattice->pitch + w->begin[row];
+}
+
+const double *family_window_force(const sweep *w, int block, int row, int component) {
+  return w->forces || !moves_at_once(w, block, row) ? w->force[component] + sweep_start(w, row)
+                                                    : force_place(w, block, row, component);
+}
+
+/* Rows first .. last-1. With `passing` forces are needed until the particles have moved. */
+static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
+                     bool passing) {
   const sweep_block *b = &w->blocks[block];
   for (int row = first; row < last; row++) {
     if (w->count[row] == 0) continue;
     pl_family run = family_run_of(w, block, row);
     point_at_links(w, block, row, &run);
     if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
+    for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
+      family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
     pass(w->law, family_of(w)->uniforms, &run);
   }
 }
@@ -154,7 +176,7 @@ static int most(int a, int b) {
 
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
   const sweep_block *b = &w->blocks[block];
-  const int lost = halo(w, family_of(w), w->law->step.pass_count);
+  const int lost = halo(family_of(w), w->law->step.pass_count);
   *first = b->first == 0 ? 0 : b->first + lost;
   *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
@@ -173,7 +195,7 @@ void family_window_run(sweep *w, const pl_program *program, int block,
   while (next[0] < last[0]) { /* when the first is done, all follow */
     int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
     for (int p = 0; p < passes; p++) {
-      run_rows(w, program->pass[p], block, next[p], end);
+      run_rows(w, program->pass[p], block, next[p], end, move != NULL);
       next[p] = most(end, next[p]);
       end = next[p] == last[p] ? w->lattice->row_count : next[p] - reach;
       if (p + 1 < passes) end = least(end, last[p + 1]);

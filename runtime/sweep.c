@@ -102,6 +102,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   w->time_step = time_step;
   w->decay = 1;
   w->ledger = ledger;
+  w->forces = ledger || forces;
   w->dimensions = law->dimensions;
   w->dof = law->dof;
   for (int d = 0; d < w->dof; d++) {

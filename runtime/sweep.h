@@ -56,6 +56,7 @@ struct sweep {
   double push_work[3];
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
+  bool forces;    /* somebody looks at the forces of every step */
   bool timed;     /* blocks keep the time that moving particles takes */
   int dimensions, dof;
   double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
