@@ -426,10 +426,11 @@ void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    .bond_link_count = %d,\n    "
              ".reads_shape = %d,\n    .step "
-             "= {%d, step_passes},\n"
-             "    .observe = {%d, observe_passes},\n",
+             "= {%d, step_passes, %u},\n"
+             "    .observe = {%d, observe_passes, %u},\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0, e->plan->links.of_particles,
              e->plan->links.of_bonds, e->plan->reads_shape, e->plan->step.pass_count,
-             e->plan->observe.pass_count);
+             program_at_hand(e->graph, &e->plan->step), e->plan->observe.pass_count,
+             program_at_hand(e->graph, &e->plan->observe));
 }

@@ -450,6 +450,27 @@ int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
   return count;
 }
 
+static bool reads_neighbours_links(const ir *g, const family_pass *p) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool does = false;
+  for (int s = 0; s < p->segment_count; s++)
+    for (int k = 0; k < p->segments[s].root_count; k++)
+      ir_mark(g, &p->segments[s].roots[k].node, 1, needed);
+  for (ir_node n = 0; n < ir_count(g) && !does; n++)
+    does = needed[n] && ir_operation(g, n) == IR_INPUT &&
+           (ir_input_source(g, n) == IR_FROM_NEIGHBOUR_LINK ||
+            ir_input_source(g, n) == IR_FROM_NEIGHBOUR_BOND_LINK);
+  free(needed);
+  return does;
+}
+
+unsigned program_at_hand(const ir *g, const family_program *p) {
+  unsigned bits = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    if (!reads_neighbours_links(g, &p->passes[k])) bits |= 1u << k;
+  return bits;
+}
+
 /* --- the whole -------------------------------------------------------------------------------- */
 
 static void substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,

@@ -96,6 +96,9 @@ static inline shared_place program_shared_place(int index) {
   return (shared_place){index / 2, index % 2 != 0};
 }
 
+/* pl_program.at_hand */
+unsigned program_at_hand(const ir *g, const family_program *p);
+
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for
    x, to the bit: values of particles that go over a family are links, and so are values toward a neighbour that are dear;

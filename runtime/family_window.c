@@ -33,6 +33,21 @@ static int most_passes(const pl_law *law) {
   return step > observe ? step : observe;
 }
 
+/* Rows by which a pass is behind the first one. */
+static int rows_behind(const family *f, const pl_program *program, int pass) {
+  int behind = 0;
+  for (int p = 1; p <= pass; p++)
+    if (!(program->at_hand >> p & 1)) behind += f->reach;
+  return behind;
+}
+
+/* Rows between the first and the last that a link is kept of. */
+static int rows_kept(const family *f, const pl_law *law) {
+  const int step = rows_behind(f, &law->step, law->step.pass_count - 1),
+            observe = rows_behind(f, &law->observe, law->observe.pass_count - 1);
+  return (step > observe ? step : observe) + f->reach;
+}
+
 static bool suits(const sweep *w, const family *f) {
   enum { ROWS_TO_HALO = 8 }; /* fewer rows of a block: too much would be done twice */
   const int least = w->lattice->row_count / w->block_count;
@@ -55,7 +70,7 @@ static double **scratch_rows(sweep *w, const pl_field *fields, int count, int mo
 static void open_window(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
-  v->rows = ROWS_AT_A_TIME + f->reach * most_passes(law);
+  v->rows = ROWS_AT_A_TIME + rows_kept(f, law);
   v->plane = (v->rows + 2) * g->pitch;
   v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
   v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
@@ -184,20 +199,22 @@ void family_window_inner(const sweep *w, int block, int *first, int *last) {
 void family_window_run(sweep *w, const pl_program *program, int block,
                        void (*move)(sweep *, int block, int first, int last)) {
   const sweep_block *b = &w->blocks[block];
-  const int passes = program->pass_count, reach = family_of(w)->reach;
+  const family *f = family_of(w);
+  const int passes = program->pass_count, reach = f->reach;
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved;
   family_window_inner(w, block, &moved, &last_moved);
   for (int p = 0; p < passes; p++) {
-    const int more = reach * (passes - 1 - p);
-    next[p] = most(b->first - more, 0);
-    last[p] = least(b->last + more, w->lattice->row_count);
+    next[p] = most(b->first - reach * (passes - 1 - p), 0);
+    last[p] = least(b->last + rows_behind(f, program, passes - 1) - rows_behind(f, program, p),
+                    w->lattice->row_count);
   }
   while (next[0] < last[0]) { /* when the first is done, all follow */
     int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
     for (int p = 0; p < passes; p++) {
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
       next[p] = most(end, next[p]);
-      end = next[p] == last[p] ? w->lattice->row_count : next[p] - reach;
+      const bool ahead = p + 1 == passes || !(program->at_hand >> (p + 1) & 1);
+      end = next[p] == last[p] ? w->lattice->row_count : next[p] - (ahead ? reach : 0);
       if (p + 1 < passes) end = least(end, last[p + 1]);
     }
     end = least(end, last_moved);

@@ -134,6 +134,9 @@ typedef void (*pl_family_function)(const struct pl_law *law, const double *unifo
 typedef struct pl_program {
   int pass_count;
   const pl_family_function *pass; /* [pass_count] */
+  /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's owner shares; so
+     they must have done its row and those below, not those above. */
+  unsigned at_hand;
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, moment on i, moment on j. */
