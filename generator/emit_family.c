@@ -86,8 +86,13 @@ static void write_ends_array(emitter *e, ir_node n) {
 /* A value that both ends of a bond share, in the plane of the bond's number at its owner. */
 static void write_shared(emitter *e, int index, const char *number, const char *at) {
   const shared_place stands = program_shared_place(index);
-  c_text_add(e->out, "family->bond_link[%d]%s + %s + (%s%s)*family->plane", stands.link,
+  c_text_add(e->out, "family->bond_link[%d]%s + %s + (%s%s)*family->link_plane", stands.link,
              e->words->first, at, stands.upper ? "half + " : "", number);
+}
+
+static bool is_link(const emitter *e, ir_node n) {
+  const ir_source from = ir_input_source(e->graph, n);
+  return from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK;
 }
 
 /* Of the particle at hand, or at lane 0 of the chunk's neighbours; on lists the loop adds the way to the neighbour. */
@@ -101,7 +106,7 @@ void emit_family_array(emitter *e, ir_node n) {
     if (!is_of_particle(e, index)) c_text_add(e->out, " + %s*family->plane", w->k);
     break;
   case IR_FROM_NEW_FIELD:
-    c_text_add(e->out, "family->new_field[%d]%s + %s*family->plane", index, w->first, w->k);
+    c_text_add(e->out, "family->new_field[%d]%s + %s*family->new_plane", index, w->first, w->k);
     break;
   case IR_FROM_NEIGHBOUR_FIELD:
     c_text_add(e->out, "family->old_field[%d]%s", index, w->first);
@@ -112,10 +117,11 @@ void emit_family_array(emitter *e, ir_node n) {
     c_text_add(e->out, "family->link[%d]%s", index, w->first);
     break;
   case IR_FROM_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->k);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first, w->k);
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", index, w->first, w->back);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first,
+               w->back);
     break;
   case IR_FROM_SHARED:
   case IR_FROM_SHARED_ODD:
@@ -133,7 +139,8 @@ void emit_family_array(emitter *e, ir_node n) {
   default:
     write_ends_array(e, n);
   }
-  if (is_of_neighbour(e, n) && !is_list(e)) c_text_add(e->out, " + %s", w->to);
+  if (is_of_neighbour(e, n) && !is_list(e))
+    c_text_add(e->out, " + %s", is_link(e, n) ? w->link_to : w->to);
 }
 
 void emit_family_inputs(emitter *e) {
@@ -172,16 +179,16 @@ void emit_family_target(emitter *e, const segment_root *r) {
     c_text_add(e->out, "family->observed[%d]%s", r->index, w->first);
     break;
   case TO_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "family->new_field[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->new_field[%d]%s + %s*family->new_plane", r->index, w->first, w->k);
     break;
   case TO_NEIGHBOUR_OBSERVED:
-    c_text_add(e->out, "family->observed[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->observed[%d]%s + %s*family->new_plane", r->index, w->first, w->k);
     break;
   case TO_PLANE:
     c_text_add(e->out, "plane_%d[k]", r->index);
     break;
   case TO_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->plane", r->index, w->first, w->k);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", r->index, w->first, w->k);
     break;
   case TO_SHARED:
     write_shared(e, r->index, w->k, "0");
@@ -210,6 +217,14 @@ void emit_family_store(emitter *e, const segment_root *r, const char *to) {
   c_text_add(e->out, "        %s ", to);
   switch (r->target) {
   case TO_SUM:
+    if (segment_fuses(e->graph, r)) {
+      c_text_add(e->out, "= present ? pl_fma(");
+      emit_value(e, ir_operand(e->graph, r->node, 0));
+      c_text_add(e->out, ", ");
+      emit_value(e, ir_operand(e->graph, r->node, 1));
+      c_text_add(e->out, ", %s) : %s;\n", to, to);
+      break;
+    }
     c_text_add(e->out, "+= ");
     write_value_or(e, r->node, "0.0");
     break;
@@ -242,11 +257,9 @@ static void write_stores(emitter *e, const segment *a) {
 /* --- segments --------------------------------------------------------------------------------- */
 
 void emit_open_segment(emitter *e, const segment *a) {
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  emit_open_nodes(e, a->kind == OVER_PARTICLES ? IN_PARTICLES : IN_NEIGHBOURS, nodes,
-                  a->root_count);
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  const int count = segment_nodes(e->graph, a, nodes);
+  emit_open_nodes(e, a->kind == OVER_PARTICLES ? IN_PARTICLES : IN_NEIGHBOURS, nodes, count);
   free(nodes);
 }
 
@@ -323,14 +336,15 @@ static void write_neighbours(emitter *e, const segment *a) {
       e->out,
       is_list(e)
           ? "      const int32_t *restrict to = family->neighbour + first + k*family->plane;\n"
-          : "      const long to = family->offset[k];\n");
+          : "      const long to = family->offset[k], link_to = family->link_offset[k];\n"
+            "      (void)link_to;\n");
   c_text_add(e->out, "      (void)to, (void)back;\n");
   if (emit_asks_for_presence(a)) write_presence(e);
   if (reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out, "      const double sign = k < half ? 1.0 : -1.0;\n");
   if (reads(e, IR_FROM_SHARED) || reads(e, IR_FROM_SHARED_ODD))
     c_text_add(e->out,
-               "      const long owned = k < half ? k : back, owner = k < half ? 0 : to;\n");
+               "      const long owned = k < half ? k : back, owner = k < half ? 0 : link_to;\n");
   emit_family_inputs(e);
   write_outputs(e, a);
   emit_family_loop(e, "      ");
@@ -355,7 +369,13 @@ static int chunk_of(const family_pass *p) {
 }
 
 static void write_rolled_pass(emitter *e, const family_pass *p) {
-  static const family_words rolled = {" + first", "k", "back", "to", "owned", "owner", false};
+  static const family_words rolled = {.first = " + first",
+                                      .k = "k",
+                                      .back = "back",
+                                      .to = "to",
+                                      .link_to = "link_to",
+                                      .owned = "owned",
+                                      .owner = "owner"};
   e->words = &rolled;
   c_text_add(e->out, "  enum { CHUNK = %d };\n", chunk_of(p));
   if (program_sum_count(&e->plan->step) > 0 && !program_is_paired(p))
@@ -415,13 +435,12 @@ void emit_programs(emitter *e) {
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
-             ".bond_link_count = %d,\n    "
-             ".sum_count = %d,\n    .reads_shape = %d,\n    .step "
-             "= {%d, step_passes},\n"
-             "    .observe = {%d, observe_passes},\n",
+             ".bond_link_count = %d,\n    .sum_count = %d,\n    .reads_shape = %d,\n"
+             "    .step = {%d, step_passes, %u},\n    .observe = {%d, observe_passes, %u},\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
              program_sum_count(&e->plan->step), e->plan->reads_shape, e->plan->step.pass_count,
-             e->plan->observe.pass_count);
+             program_at_hand(e->graph, &e->plan->step), e->plan->observe.pass_count,
+             program_at_hand(e->graph, &e->plan->observe));
 }

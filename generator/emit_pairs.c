@@ -29,8 +29,9 @@ static const char field_functions[] =
     "*values,\n"
     "    int settled) {\n"
     "  const long to = family->offset[k], half = family->neighbours / 2;\n"
-    "  double *restrict here = family->new_field[field] + first + k*family->plane;\n"
-    "  double *restrict there = family->new_field[field] + first + to + (k + half)*family->plane;\n"
+    "  double *restrict here = family->new_field[field] + first + k*family->new_plane;\n"
+    "  double *restrict there = family->new_field[field] + first + to + (k + "
+    "half)*family->new_plane;\n"
     "  const uint64_t bit = UINT64_C(1) << k;\n"
     "  for (long at = 0; at < lanes; at += PL_LANES) {\n"
     "    uint64_t *filled = family->new_filled[field] + (first + at) / PL_LANES;\n"
@@ -199,8 +200,9 @@ void emit_pairs(emitter *e, const segment *a) {
   write_marks(e, a);
   c_text_add(e->out,
              "    for (long k = 0; k < half; k++) { /* bond by bond, adding to both ends */\n"
-             "      const long to = family->offset[k], back = k + half;\n"
-             "      (void)back;\n"
+             "      const long to = family->offset[k], link_to = family->link_offset[k], back = k "
+             "+ half;\n"
+             "      (void)back, (void)link_to;\n"
              "      const uint64_t *restrict bonds = family->bonds + first;\n"
              "      const uint64_t present_bit = UINT64_C(1) << k;\n");
   emit_family_inputs(e);

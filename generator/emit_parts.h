@@ -17,9 +17,9 @@ typedef enum scope_kind {
 } scope_kind;
 
 /* How the loops of a segment are written: what stands for the first particle of a chunk, for the number of the neighbour
-   here and there, for the way to it, and for number and place of the bond at its owner. */
+   here and there, for the way to it and to its links, and for number and place of the bond at its owner. */
 typedef struct family_words {
-  const char *first, *k, *back, *to, *owned, *owner;
+  const char *first, *k, *back, *to, *link_to, *owned, *owner;
   bool far; /* the bond is the neighbour's, which is known only where families are unrolled */
 } family_words;
 

@@ -122,13 +122,14 @@ static void write_block(emitter *e, const segment *a, int neighbour, const famil
 
 static family_words words_of(unrolled *u, int k, int half) {
   const bool far = k >= half;
-  const char *to = arena_printf(u->memory, "family->offset[%d]", k);
+  const char *link_to = arena_printf(u->memory, "family->link_offset[%d]", k);
   return (family_words){.first = "",
                         .k = arena_printf(u->memory, "%d", k),
                         .back = arena_printf(u->memory, "%d", far ? k - half : k + half),
-                        .to = to,
+                        .to = arena_printf(u->memory, "family->offset[%d]", k),
+                        .link_to = link_to,
                         .owned = arena_printf(u->memory, "%d", far ? k - half : k),
-                        .owner = far ? to : "0",
+                        .owner = far ? link_to : "0",
                         .far = far};
 }
 

@@ -40,11 +40,10 @@ static int larger(int a, int b) {
 
 static interpreter *segment_interpreter(family_runner *r, const segment *a, const ir_node *inputs) {
   const kernel_plan *p = r->plan;
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  ir_substitute(p->graph, nodes, a->root_count, p->uniforms, inputs, p->uniform_count, nodes);
-  interpreter *made = interpreter_new(p->graph, nodes, a->root_count);
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  const int count = segment_nodes(p->graph, a, nodes);
+  ir_substitute(p->graph, nodes, count, p->uniforms, inputs, p->uniform_count, nodes);
+  interpreter *made = interpreter_new(p->graph, nodes, count);
   free(nodes);
   return made;
 }
@@ -62,7 +61,7 @@ static void make_interpreters(family_runner *r, const ir_node *inputs, int *slot
           arena_alloc(r->memory, ((size_t)now->segment_count + 1) * sizeof(interpreter *));
       for (int s = 0; s < now->segment_count; s++) {
         r->run[which][k][s] = segment_interpreter(r, &now->segments[s], inputs);
-        *roots = larger(*roots, now->segments[s].root_count);
+        *roots = larger(*roots, 2 * now->segments[s].root_count);
       }
     }
   }
@@ -160,14 +159,25 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
 
 /* Where the values of neighbour k of the chunk's particles stand, given where those of the run's particles begin: on rows
    further along the same array, on lists gathered into the next buffer. */
-static const double *at_neighbours(family_runner *r, const pl_family *f, const double *values,
-                                   long first, long k) {
-  if (!f->neighbour) return values + first + f->offset[k];
+static const double *at_offset(family_runner *r, const pl_family *f, const double *values,
+                               long first, long k, const long *offset) {
+  if (!f->neighbour) return values + first + offset[k];
   const int32_t *to = f->neighbour + k * f->plane + first;
   double *buffer = r->gathered + (size_t)r->gathered_count++ * LANES;
   for (long q = 0; q < LANES && first + q < f->count; q++)
     buffer[q] = values[first + q + to[q]];
   return buffer;
+}
+
+static const double *at_neighbours(family_runner *r, const pl_family *f, const double *values,
+                                   long first, long k) {
+  return at_offset(r, f, values, first, k, f->offset);
+}
+
+/* The same of links. */
+static const double *at_links(family_runner *r, const pl_family *f, const double *values,
+                              long first, long k) {
+  return at_offset(r, f, values, first, k, f->link_offset);
 }
 
 static void point_at_motion(family_runner *r, const pl_family *f, long first, long k) {
@@ -188,7 +198,7 @@ static void point_at_motion(family_runner *r, const pl_family *f, long first, lo
 
 static double *shared_plane(const pl_family *f, int index, long owned) {
   const shared_place at = program_shared_place(index);
-  return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->plane;
+  return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->link_plane;
 }
 
 /* What the owner of the bond has left. */
@@ -197,7 +207,7 @@ static void point_at_shared(family_runner *r, const pl_family *f, long first, lo
   for (int n = 0; n < 2 * r->plan->links.of_bonds; n++) {
     double *opposite = r->opposite + (size_t)n * LANES;
     r->shared[n] = k < half ? shared_plane(f, n, k) + first
-                            : at_neighbours(r, f, shared_plane(f, n, k - half), first, k);
+                            : at_links(r, f, shared_plane(f, n, k - half), first, k);
     for (long q = 0; k >= half && q < LANES && first + q < f->count; q++)
       opposite[q] = -r->shared[n][q];
     r->shared_odd[n] = k < half ? r->shared[n] : opposite;
@@ -222,10 +232,11 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   for (int u = 0; u < p->uniform_count && !f->neighbour; u++)
     r->parameters[parameters + u] = uniforms + k * p->uniform_count + u;
   for (int n = 0; n < p->links.of_particles; n++)
-    r->neighbour_links[n] = at_neighbours(r, f, f->link[n], first, k);
+    r->neighbour_links[n] = at_links(r, f, f->link[n], first, k);
   for (int n = 0; n < p->links.of_bonds; n++) {
-    r->bond_links[n] = f->bond_link[n] + first + k * f->plane;
-    r->neighbour_bond_links[n] = at_neighbours(r, f, f->bond_link[n] + back * f->plane, first, k);
+    r->bond_links[n] = f->bond_link[n] + first + k * f->link_plane;
+    r->neighbour_bond_links[n] =
+        at_links(r, f, f->bond_link[n] + back * f->link_plane, first, k);
   }
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;
@@ -281,7 +292,7 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
   case TO_LINK:
     return f->link[root->index] + first;
   case TO_BOND_LINK:
-    return f->bond_link[root->index] + first + k * f->plane;
+    return f->bond_link[root->index] + first + k * f->link_plane;
   case TO_SHARED:
     return shared_plane(f, root->index, k) + first;
   case TO_PARTICLE_FIELD:
@@ -291,9 +302,9 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
   case TO_PARTICLE_OBSERVED:
     return f->observed[root->index] + first;
   case TO_NEIGHBOUR_FIELD:
-    return f->new_field[root->index] + first + k * f->plane;
+    return f->new_field[root->index] + first + k * f->new_plane;
   case TO_NEIGHBOUR_OBSERVED:
-    return f->observed[root->index] + first + k * f->plane;
+    return f->observed[root->index] + first + k * f->new_plane;
   case TO_PLANE:
     return r->plane + ((size_t)root->index * MOST_NEIGHBOURS + (size_t)k) * LANES;
   default:
@@ -308,8 +319,9 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
   return f->bonds[first + to + q] >> (k < half ? k : k - half) & 1;
 }
 
+/* `factor` NULL unless the root fuses. */
 static void store(family_runner *r, const segment_root *root, const double *value,
-                  const pl_family *f, long first, long k, long lanes) {
+                  const double *factor, const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
   const bool plain = root->target < TO_SUM || root->target == TO_PLANE ||
                      root->target == TO_BOND_LINK || root->target == TO_SHARED;
@@ -317,7 +329,10 @@ static void store(family_runner *r, const segment_root *root, const double *valu
     const bool present = plain || is_present(f, first, k, q);
     switch (root->target) {
     case TO_SUM:
-      to[q] += present ? value[q] : 0;
+      if (factor)
+        to[q] = present ? pl_fma(value[q], factor[q], to[q]) : to[q];
+      else
+        to[q] += present ? value[q] : 0;
       break;
     case TO_LARGEST:
       to[q] = present ? pl_max(to[q], value[q]) : to[q];
@@ -337,7 +352,7 @@ static void store_at_ends(family_runner *r, const segment_root *root, const doub
   const long there = first + f->offset[k];
   double *far = root->target == TO_SUM
                     ? f->sum[root->sum] + there
-                    : f->new_field[root->index] + there + (k + f->neighbours / 2) * f->plane;
+                    : f->new_field[root->index] + there + (k + f->neighbours / 2) * f->new_plane;
   for (long q = 0; q < lanes; q++) {
     const double here = is_present(f, first, k, q) ? value[q] : 0;
     if (root->target == TO_SUM)
@@ -345,7 +360,7 @@ static void store_at_ends(family_runner *r, const segment_root *root, const doub
     else if (!f->ahead_only)
       far[q] = here;
   }
-  if (root->target == TO_SUM || !f->ahead_only) store(r, root, value, f, first, k, lanes);
+  if (root->target == TO_SUM || !f->ahead_only) store(r, root, value, NULL, f, first, k, lanes);
 }
 
 /* What the particles have got from the far sides of their bonds. */
@@ -392,11 +407,14 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
     }
     interpreter_inputs in = inputs_of(r);
     interpreter_run(run, &in, (int)lanes, r->result);
-    for (int n = 0; n < a->root_count; n++)
+    for (int n = 0, factors = a->root_count; n < a->root_count; n++) {
+      const bool fuses = segment_fuses(r->plan->graph, &a->roots[n]);
+      const double *factor = fuses ? r->result[factors++] : NULL;
       if (a->kind == OVER_PAIRS)
         store_at_ends(r, &a->roots[n], r->result[n], f, first, k, lanes);
       else
-        store(r, &a->roots[n], r->result[n], f, first, k, lanes);
+        store(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
+    }
   }
   if (a->kind == OVER_PAIRS) take_sums(r, a, f, first, lanes);
 }

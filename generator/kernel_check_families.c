@@ -137,7 +137,7 @@ static void draw_bonds(body *b, uint64_t *seed) {
   for (int q = 0; q < SIZE; q++) {
     const uint64_t kind = draw_bits(seed) % 4;
     b->bonds[q] = kind == 0 ? 0 : kind == 1 ? draw_bits(seed) : UINT64_MAX;
-    b->held[q] = holds && draw_bits(seed) % 8 == 0;
+    b->held[q] = holds && draw_bits(seed) % 4 == 0;
   }
 }
 
@@ -338,7 +338,10 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
   pl_family f = {.count = count,
                  .neighbours = b->neighbours,
                  .plane = SIZE,
+                 .new_plane = SIZE,
+                 .link_plane = SIZE,
                  .offset = is_list(b) ? NULL : b->offset,
+                 .link_offset = is_list(b) ? NULL : b->offset,
                  .bonds = b->bonds + site,
                  .held = b->held + site,
                  .new_field = from_site(&s, b->after[side], law->field_count, site),

@@ -191,6 +191,24 @@ static void share_reciprocals_of_roots(ir *g, root_list *r) {
   free(all);
 }
 
+/* All at once: what several passes compute they compute in the same way. */
+static void fuse(ir *g, root_list *step, root_list *observe) {
+  const int count = step->count + observe->count;
+  ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
+  for (int k = 0; k < count; k++)
+    all[k] = k < step->count ? step->items[k].node : observe->items[k - step->count].node;
+  rewrite_fused(g, all, count, all);
+  for (int k = 0; k < count; k++)
+    *(k < step->count ? &step->items[k].node : &observe->items[k - step->count].node) = all[k];
+  free(all);
+}
+
+static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
+  ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
+  rewrite_fused(plan->graph, motion->to, motion->count, to);
+  motion->to = to;
+}
+
 typedef struct shape_search {
   const kernel_plan *plan;
   bool reads_shape;
@@ -232,7 +250,8 @@ static program_sharing sharing(const family_planner *p) {
   bool on_bonds = false;
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
-  if (plan_is_of_small_family(p->plan)) return SHARE_MOST;
+  if (plan_is_of_small_family(p->plan))
+    return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
   if (plan_is_of_large_family(p->plan)) return SHARE_PAIRS;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
@@ -267,7 +286,9 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
   share_reciprocals_of_roots(p.g, &observe);
+  fuse(p.g, &step, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);
+  fuse_motion(plan, &motion);
   if (l->irregular) {
     const program_motion list = list_inputs(plan);
     read_from_lists(plan, &list, &step);

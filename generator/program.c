@@ -30,7 +30,7 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
 int program_cost(const ir *g, ir_node n) {
   ir_op op = ir_operation(g, n);
   bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
   return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
 }
 
@@ -472,8 +472,10 @@ static void pair_ends(ir *g, family_pass *p) {
   }
   if (!loop) return;
   loop->kind = OVER_PAIRS;
-  for (int k = 0; k < loop->root_count; k++)
+  for (int k = 0; k < loop->root_count; k++) {
+    loop->roots[k].paired = true;
     if (loop->roots[k].target == TO_SUM) loop->roots[k].sum = sums++;
+  }
   fuse_segment(g, loop);
 }
 
@@ -532,6 +534,39 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
   map_clear(&s.phase);
   map_clear(&s.slot);
   map_clear(&s.plane);
+}
+
+int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
+  int count = a->root_count;
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    nodes[k] = r->node;
+    if (!segment_fuses(g, r)) continue;
+    nodes[k] = ir_operand(g, r->node, 0);
+    nodes[count++] = ir_operand(g, r->node, 1);
+  }
+  return count;
+}
+
+static bool reads_neighbours_links(const ir *g, const family_pass *p) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool does = false;
+  for (int s = 0; s < p->segment_count; s++)
+    for (int k = 0; k < p->segments[s].root_count; k++)
+      ir_mark(g, &p->segments[s].roots[k].node, 1, needed);
+  for (ir_node n = 0; n < ir_count(g) && !does; n++)
+    does = needed[n] && ir_operation(g, n) == IR_INPUT &&
+           (ir_input_source(g, n) == IR_FROM_NEIGHBOUR_LINK ||
+            ir_input_source(g, n) == IR_FROM_NEIGHBOUR_BOND_LINK);
+  free(needed);
+  return does;
+}
+
+unsigned program_at_hand(const ir *g, const family_program *p) {
+  unsigned bits = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    if (!reads_neighbours_links(g, &p->passes[k])) bits |= 1u << k;
+  return bits;
 }
 
 /* --- the whole -------------------------------------------------------------------------------- */
@@ -623,7 +658,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
     own[k].node = resolve(&b, roots[k].node);
   }
   substitute(&b, own, root_count, motion->from, motion->to, motion->count);
-  if (sharing == SHARE_DEAR || sharing == SHARE_MOST) share(&b, own, root_count);
+  if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) share(&b, own, root_count);
   for (int k = 0; k < root_count; k++) {
     int level = level_of(&b, own[k].node);
     last = level > last ? level : last;

@@ -44,7 +44,8 @@ typedef struct segment_root {
   segment_target target;
   int index;
   int parity; /* what the other end of the bond computes: 1: the same; -1: the opposite; 0: something else */
-  int sum; /* of OVER_PAIRS: which pl_family.sum TO_SUM adds to at the far end */
+  bool paired; /* of OVER_PAIRS */
+  int sum;     /* of those: which pl_family.sum TO_SUM adds to at the far end */
 } segment_root;
 
 typedef struct segment {
@@ -52,6 +53,16 @@ typedef struct segment {
   segment_root *roots;
   int root_count, root_capacity;
 } segment;
+
+/* A sum of products, which differ from bond to bond, adds each with one rounding. */
+static inline bool segment_fuses(const ir *g, const segment_root *r) {
+  return r->target == TO_SUM && !r->paired && ir_operation(g, r->node) == IR_MUL &&
+         ir_place(g, r->node) > ON_BODY;
+}
+
+/* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first factors, then the second
+   factors of those that fuse. Returns how many. */
+int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
 
 typedef struct family_pass {
   segment *segments;
@@ -77,7 +88,8 @@ typedef struct program_motion {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MOST, /* also what costs a little more: of small families, whose values stay in caches */
+  SHARE_MORE, /* also what costs less: of small families, whose values stay in caches */
+  SHARE_MOST, /* the same, and less is left to be computed from it: in the plane, where a few rows of values are enough */
   SHARE_PAIRS /* all: of large families, where a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
 
@@ -93,6 +105,9 @@ typedef struct shared_place {
 static inline shared_place program_shared_place(int index) {
   return (shared_place){index / 2, index % 2 != 0};
 }
+
+/* pl_program.at_hand */
+unsigned program_at_hand(const ir *g, const family_program *p);
 
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for

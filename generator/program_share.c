@@ -57,10 +57,12 @@ static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int
   const ir_op op = ir_operation(b->g, x);
   int sign[3] = {1, 1, 1};
   for (int k = 0; k < ir_arity(op); k++) {
-    sign[k] = image_sign(b, ir_operand(b->g, x, k), ir_operand(b->g, y, crossed ? 1 - k : k), left);
+    sign[k] = image_sign(b, ir_operand(b->g, x, k),
+                         ir_operand(b->g, y, crossed && k < 2 ? 1 - k : k), left);
     if (sign[k] == 0) return 0;
   }
   if (op == IR_ADD || op == IR_SUB) return sign[0] == sign[1] ? sign[0] : 0;
+  if (op == IR_FMA) return sign[0] * sign[1] == sign[2] ? sign[2] : 0;
   if (op == IR_MUL || op == IR_DIV || op == IR_NEG) return sign[0] * sign[1];
   if (op == IR_ABS) return 1;
   return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
@@ -76,7 +78,8 @@ static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
   if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
   if (op != ir_operation(b->g, y) || --*left < 0) return 0;
   const int sign = image_of_operands(b, x, y, false, left);
-  const bool commutes = op == IR_ADD || op == IR_MUL; /* the graph orders operands by number */
+  const bool commutes =
+      op == IR_ADD || op == IR_MUL || op == IR_FMA; /* the graph orders operands by number */
   return sign != 0 || !commutes ? sign : image_of_operands(b, x, y, true, left);
 }
 
@@ -135,6 +138,7 @@ static int parity_of_others(builder *b, ir_node n) {
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = program_parity(b, ir_operand(b->g, n, k));
   if (op == IR_NEG) return operand[0];
+  if (op == IR_FMA) return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
   if (op == IR_ABS && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
   if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
@@ -200,7 +204,7 @@ static int cost_beyond(builder *b, ir_node n, int most) {
 
 /* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
 static int dear(const builder *b) {
-  return b->sharing == SHARE_MOST ? 5 : 25;
+  return b->sharing >= SHARE_MORE ? 12 : 25;
 }
 
 static bool is_worth_sharing(builder *b, ir_node n) {
@@ -208,12 +212,12 @@ static bool is_worth_sharing(builder *b, ir_node n) {
       ir_is_logical(b->g, n) || cost_beyond(b, n, dear(b)) < dear(b))
     return false;
   const int parity = program_parity(b, n);
-  return parity == 1 || (parity == -1 && b->sharing == SHARE_MOST);
+  return parity == 1 || (parity == -1 && b->sharing >= SHARE_MORE);
 }
 
 /* Whether little is left to do for a value when the part is shared. */
 static bool costs_nearly_all(builder *b, ir_node part, ir_node n) {
-  const int cheap = b->sharing == SHARE_MOST ? 1 : 6;
+  const int cheap = b->sharing == SHARE_MOST ? 2 : b->sharing == SHARE_MORE ? 3 : 6;
   b->shared[b->shared_count++] = part;
   const bool does = cost_beyond(b, n, cheap + 1) <= cheap;
   b->shared_count--;

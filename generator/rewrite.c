@@ -20,6 +20,7 @@ struct rebuilding {
   const unsigned char *
       shared; /* rewrite_reciprocals: denominators of several divisions; rewrite_fused: nodes that are
                                   used several times */
+  const unsigned char *sided; /* rewrite_fused: nodes that need what a neighbour has */
 };
 
 static unsigned char *marks_of(const ir *g, const ir_node *roots, int root_count) {
@@ -130,10 +131,14 @@ static bool is_local_product(const ir *g, ir_node n) {
   return ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && !ir_name(g, n);
 }
 
-/* Of two products the one that nothing else needs, else the second. */
+/* Of two products the one that nothing else needs, else the second. None where the neighbour may have the one that the
+   particle has not: both ends of a bond would round another one. */
 static int product_to_fuse(const rebuilding *r, ir_node old, const ir_node *operand) {
   const bool first = is_local_product(r->graph, operand[0]),
              second = is_local_product(r->graph, operand[1]);
+  if (r->sided[old] && ir_operation(r->graph, operand[0]) == IR_MUL &&
+      ir_operation(r->graph, operand[1]) == IR_MUL)
+    return -1;
   if (first && second)
     return r->shared[ir_operand(r->graph, old, 1)] && !r->shared[ir_operand(r->graph, old, 0)] ? 0
                                                                                                : 1;
@@ -164,12 +169,23 @@ static unsigned char *shared_nodes(const ir *g, const unsigned char *marks) {
   return uses;
 }
 
+static unsigned char *sided_nodes(const ir *g) {
+  unsigned char *sided = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    sided[n] = ir_operation(g, n) == IR_NEIGHBOUR;
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      sided[n] |= sided[ir_operand(g, n, k)];
+  }
+  return sided;
+}
+
 void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out) {
   unsigned char *marks = marks_of(g, roots, root_count);
-  unsigned char *shared = shared_nodes(g, marks);
-  rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared};
+  unsigned char *shared = shared_nodes(g, marks), *sided = sided_nodes(g);
+  rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared, .sided = sided};
   rebuild(&r, roots, root_count, out);
   free(shared);
+  free(sided);
   free(marks);
 }
 

@@ -1,4 +1,4 @@
-#include "runtime/family.h"
+#include "runtime/family_parts.h"
 
 #include <assert.h>
 #include <math.h>
@@ -6,72 +6,23 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "runtime/pair_sums.h"
+#include "runtime/clock.h"
 #include "runtime/shape_matrix.h"
-#include "runtime/sweep_parts.h"
 
-enum { SHAPE_PLANES = PL_SHAPE_PLANES(3) }; /* the most */
+/* --- runs of particles -------------------------------------------------------------------------- */
 
-enum { FAMILY_MOST_PASSES = 16 };
-
-typedef struct family_block { /* pointers to the run at hand, for the law */
-  const double **old_field;
-  double **new_field, **link, **bond_link, **observed;
-  const double *shape[SHAPE_PLANES];
-  const uint64_t **old_filled;
-  uint64_t **new_filled, **settled;
-  pair_sums sums;
-} family_block;
-
-typedef struct family {
-  int neighbours, reach;       /* rows between a particle and its farthest neighbour */
-  double *uniforms;            /* [neighbours][uniform_count]; lists: [uniform_count] */
-  double **new_field;          /* [fields][planes * size] */
-  double **link;               /* [links][size] */
-  double **bond_link;          /* [bond_links][neighbours * size] */
-  double **observed;           /* [1 + outputs][planes * size] */
-  double *shape[SHAPE_PLANES]; /* [size]; NULL unless the law reads them */
-  unsigned char *held_near;    /* [row_count] pl_family */
-  uint64_t **old_filled, **new_filled,
-      **settled;               /* pl_family; NULL unless bonds add to both ends */
-  family_block *blocks;        /* [block_count] */
-} family;
-
-static family *own(const sweep *w) {
-  return w->engine.own;
-}
-
-/* --- passes ----------------------------------------------------------------------------------- */
-
-static void point_at_run(const sweep *w, family_block *b, long start) {
-  const family *f = own(w);
+static void point_at_fields(const sweep *w, family_block *b, long start) {
+  const family *f = family_of(w);
   for (int k = 0; k < w->law->field_count; k++) {
     b->old_field[k] = w->field[k] + start;
     b->new_field[k] = f->new_field[k] + start;
   }
-  for (int k = 0; k < w->law->link_count; k++)
-    b->link[k] = f->link[k] + start;
-  for (int k = 0; k < w->law->bond_link_count; k++)
-    b->bond_link[k] = f->bond_link[k] + start;
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
   for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
-}
-
-/* What bonds that add to both ends need. */
-static void point_at_sums(const sweep *w, family_block *b, long start, pl_family *run) {
-  const family *f = own(w);
-  for (int k = 0; k < w->law->field_count; k++) {
-    if (!f->old_filled[k]) continue;
-    b->old_filled[k] = f->old_filled[k] + start / PL_LANES;
-    b->new_filled[k] = f->new_filled[k] + start / PL_LANES;
-    b->settled[k] = f->settled[k] + start / PL_LANES;
-  }
-  run->old_filled = b->old_filled;
-  run->new_filled = b->new_filled;
-  run->settled = b->settled;
-  run->sum = pair_sums_at(w, &b->sums, start);
+  for (int d = 0; d < w->dof; d++)
+    b->force[d] = w->force[d] + start;
 }
 
 /* Where the neighbours of the run's particles are. */
@@ -90,13 +41,15 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->mass = g->site_mass + start;
 }
 
-static pl_family run_of(const sweep *w, family_block *b, int row) {
-  const family *f = own(w);
+pl_family family_run_of(const sweep *w, int block, int row) {
+  const family *f = family_of(w);
+  family_block *b = &f->blocks[block];
   const long start = sweep_start(w, row);
-  point_at_run(w, b, start);
+  point_at_fields(w, b, start);
   pl_family run = {.count = w->count[row],
                    .neighbours = f->neighbours,
                    .plane = w->lattice->size,
+                   .new_plane = w->lattice->size,
                    .bonds = w->lattice->bonds + start,
                    .held = w->lattice->held + start,
                    .shape = b->shape,
@@ -104,117 +57,15 @@ static pl_family run_of(const sweep *w, family_block *b, int row) {
                    .new_field = b->new_field,
                    .link = b->link,
                    .bond_link = b->bond_link,
+                   .force = b->force,
                    .observed = b->observed,
                    .time_step = w->time_step};
   point_at_neighbours(w->lattice, row, start, &run);
-  if (w->law->sum_count) point_at_sums(w, b, start, &run);
   for (int d = 0; d < w->dof; d++) {
     run.displacement[d] = w->displacement[d] + start;
     run.velocity[d] = w->velocity[d] + start;
   }
   return run;
-}
-
-/* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
-   long row, with absent sites in between. */
-static int end_of_alike(const sweep *w, int row, int last) {
-  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
-  int end = row + 1;
-  while (end < last && w->count[row] > 0 && w->count[end] > 0 && kind[end] == kind[row])
-    end++;
-  return end;
-}
-
-/* Rows row .. end-1, which go on in memory. */
-static void run_together(const sweep *w, pl_family_function pass, int block, int row, int end,
-                         bool ahead_only) {
-  double *force[3];
-  if (w->count[row] == 0) return;
-  const long start = sweep_start(w, row);
-  pl_family run = run_of(w, &own(w)->blocks[block], row);
-  run.count = sweep_start(w, end - 1) + w->count[end - 1] - start;
-  for (int d = 0; d < w->dof; d++)
-    force[d] = w->force[d] + start;
-  run.force = force;
-  run.ahead_only = ahead_only;
-  run.held_near = own(w)->held_near && own(w)->held_near[row];
-  pass(w->law, own(w)->uniforms, &run);
-}
-
-/* Rows first .. last-1. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
-  for (int row = first, end; row < last; row = end) {
-    end = end_of_alike(w, row, last);
-    run_together(w, pass, block, row, end, false);
-  }
-}
-
-static void run_pass(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
-  run_rows(w, program->pass[pass], block, b->first, b->last);
-}
-
-/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs the pass before on all
-   rows in reach, so each loses as many at either end, but at the ends of the body. */
-static void inner_rows(const sweep *w, int block, int pass, int *first, int *last) {
-  const sweep_block *b = &w->blocks[block];
-  const int lost = pass * own(w)->reach;
-  *first = b->first == 0 ? 0 : b->first + lost;
-  *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
-  if (*last < *first) *last = *first = b->last;
-}
-
-static int least(int a, int b) {
-  return a < b ? a : b;
-}
-
-/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
-   leaves the next finds in a cache. */
-static void run_inner(const sweep *w, const pl_program *program, int block) {
-  enum { ROWS_AT_A_TIME = 16 };
-  enum { FARTHEST = 100 }; /* rows between passes that a cache may still hold */
-  const int at_a_time = own(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
-  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
-  const int passes = program->pass_count;
-  for (int p = 0; p < passes; p++)
-    inner_rows(w, block, p, &next[p], &last[p]);
-  while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + at_a_time, last[0]);
-    for (int p = 0; p < passes; p++) {
-      run_rows(w, program->pass[p], block, next[p], end);
-      next[p] = end > next[p] ? end : next[p];
-      if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - own(w)->reach;
-    }
-  }
-}
-
-/* A pass on the rows that the inner rows leave. */
-static void run_outer(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
-  int first, last;
-  inner_rows(w, block, pass, &first, &last);
-  run_rows(w, program->pass[pass], block, b->first, first);
-  run_rows(w, program->pass[pass], block, last, b->last);
-}
-
-/* A pass whose bonds add to both ends, row by row. Bonds of the rows before reach the block's own: they are done once
-   more here, for these ends only, so that sums have the same terms in the same order whatever the blocks. */
-static void run_pairs(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
-  pair_sums *s = &own(w)->blocks[block].sums;
-  for (int row = s->before; row < b->last; row++)
-    run_together(w, program->pass[pass], block, row, row + 1, row < b->first);
-  pair_sums_clear_ahead(w, s);
-}
-
-/* Stages of a program: the inner rows, then what is left for each pass after the first. */
-static void run_stage(const sweep *w, const pl_program *program, int stage, int block) {
-  if (w->law->sum_count)
-    run_pairs(w, program, stage, block);
-  else if (stage == 0)
-    run_inner(w, program, block);
-  else
-    run_outer(w, program, stage, block);
 }
 
 /* --- particles -------------------------------------------------------------------------------- */
@@ -246,12 +97,20 @@ static int64_t kick_each(long count, double factor, double decay, double limit,
   return bad;
 }
 
-static int64_t kick_row(const sweep *w, sweep_block *b, int row) {
+static const double *force_of_row(const sweep *w, const sweep_block *b, int row, int component,
+                                  bool moving) {
+  if (moving && family_of(w)->windows)
+    return family_window_force(w, (int)(b - w->blocks), row, component);
+  return w->force[component] + sweep_start(w, row);
+}
+
+/* `moving`: the forces are those of a step, and not of looking at the present state. */
+static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
   const long start = sweep_start(w, row), count = w->count[row];
   int64_t bad = 0;
   for (int d = 0; d < w->dof; d++) {
     double *next = b->next + d * w->lattice->pitch;
-    const double factor = w->time_step / w->mass[d], *f = w->force[d] + start;
+    const double factor = w->time_step / w->mass[d], *f = force_of_row(w, b, row, d, moving);
     const double *v = w->velocity[d] + start;
     bad |= w->mobility
                ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
@@ -269,11 +128,11 @@ static double work_over(const sweep *w, int row, int component, const double *v)
 }
 
 /* A row with a bad velocity stays where it is. */
-static void move_rows(sweep *w, int block) {
+static void move_rows(sweep *w, int block, int first, int last) {
   sweep_block *b = &w->blocks[block];
-  b->bad_site = -1;
-  for (int row = b->first; row < b->last; row++) {
-    if (kick_row(w, b, row)) {
+  const double begun = w->timed ? monotonic_seconds() : 0;
+  for (int row = first; row < last; row++) {
+    if (kick_row(w, b, row, true)) {
       sweep_note_bad(w, b, row);
       continue;
     }
@@ -282,31 +141,60 @@ static void move_rows(sweep *w, int block) {
                               work_over(w, row, d, b->next + d * w->lattice->pitch);
     sweep_drift(w, b, row);
   }
+  if (w->timed) b->moving += monotonic_seconds() - begun;
+}
+
+static int program_stages(const family *f, const pl_program *program) {
+  return f->windows ? 1 : program->pass_count;
+}
+
+static void run_program(sweep *w, const pl_program *program, int stage, int block) {
+  const bool pairs = family_of(w)->pairs && program == &w->law->step;
+  if (family_of(w)->windows)
+    family_window_run(w, program, block, NULL);
+  else if (pairs)
+    family_pairs_stage(w, stage, block);
+  else
+    family_stage(w, program, stage, block);
+}
+
+static void step_in_windows(sweep *w, int stage, int block) {
+  const sweep_block *b = &w->blocks[block];
+  int first, last;
+  if (stage == 0) {
+    family_window_run(w, &w->law->step, block, move_rows);
+    return;
+  }
+  family_window_inner(w, block, &first, &last);
+  move_rows(w, block, b->first, first);
+  move_rows(w, block, last, b->last);
 }
 
 static void step(sweep *w, int stage, int block) {
-  if (stage < w->law->step.pass_count)
-    run_stage(w, &w->law->step, stage, block);
+  const sweep_block *b = &w->blocks[block];
+  if (stage == 0) w->blocks[block].bad_site = -1;
+  if (family_of(w)->windows)
+    step_in_windows(w, stage, block);
+  else if (stage < w->law->step.pass_count)
+    run_program(w, &w->law->step, stage, block);
   else
-    move_rows(w, block);
+    move_rows(w, block, b->first, b->last);
+}
+
+static void find_forces(sweep *w, int stage, int block) {
+  run_program(w, &w->law->step, stage, block);
 }
 
 /* What was new is now at hand. */
 static void turn(sweep *w) {
   double **old = w->field;
-  w->field = own(w)->new_field;
-  own(w)->new_field = old;
-  uint64_t **filled = own(w)->old_filled;
-  own(w)->old_filled = own(w)->new_filled;
-  own(w)->new_filled = filled;
+  w->field = family_of(w)->new_field;
+  family_of(w)->new_field = old;
+  if (family_of(w)->pairs) family_pairs_turn(family_of(w)->pairs);
 }
 
 static void fields_set(sweep *w) {
-  family *f = own(w);
-  if (w->law->sum_count == 0) return;
-  pair_marks_filled(w, w->field, f->old_filled);
-  pair_marks_filled(w, f->new_field, f->new_filled);
-  pair_marks_settled(w, w->field, f->new_field, f->settled);
+  if (family_of(w)->pairs) family_pairs_fields_set(w);
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -317,14 +205,14 @@ static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0) sum += own(w)->observed[0][q];
+    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0) sum += family_of(w)->observed[0][q];
   return sum;
 }
 
 static void observe_rows(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   for (int row = b->first; row < b->last; row++) {
-    kick_row(w, b, row);
+    kick_row(w, b, row, false);
     sweep_observe_motion(w, b, row);
     w->row_stored[row] = stored_in_row(w, row);
     w->row_internal_pending[row] = 0;
@@ -336,21 +224,24 @@ static void observe_rows(sweep *w, int block) {
 /* Forces of the present state: the passes of a step, whose new fields are written again by the next
    one. */
 static void observe(sweep *w, int stage, int block) {
-  const int forces = w->law->step.pass_count, all = forces + w->law->observe.pass_count;
+  const family *f = family_of(w);
+  const int forces = program_stages(f, &w->law->step),
+            all = forces + program_stages(f, &w->law->observe);
   if (stage < forces)
-    run_stage(w, &w->law->step, stage, block);
+    run_program(w, &w->law->step, stage, block);
   else if (stage < all)
-    run_pass(w, &w->law->observe, stage - forces, block);
+    run_program(w, &w->law->observe, stage - forces, block);
   else
     observe_rows(w, block);
 }
 
 static void output_values(sweep *w, int output, double *values) {
+  const family *f = family_of(w);
   const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
-  for (int stage = 0; stage < w->law->observe.pass_count; stage++)
+  for (int stage = 0; stage < program_stages(f, &w->law->observe); stage++)
     for (int b = 0; b < w->block_count; b++)
-      run_pass(w, &w->law->observe, stage, b);
-  memcpy(values, own(w)->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
+      run_program(w, &w->law->observe, stage, b);
+  memcpy(values, f->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -380,45 +271,21 @@ static void new_planes(sweep *w, family *f) {
     f->new_field[k] = sweep_doubles(w, count);
     memcpy(f->new_field[k], w->field[k], (size_t)count * sizeof(double));
   }
-  f->link = must_calloc((size_t)law->link_count + 1, sizeof *f->link);
-  for (int k = 0; k < law->link_count; k++)
-    f->link[k] = sweep_doubles(w, size);
-  f->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *f->bond_link);
-  for (int k = 0; k < law->bond_link_count; k++)
-    f->bond_link[k] = sweep_doubles(w, sweep_planes(w, PL_ON_NEIGHBOUR) * size);
   f->observed = must_calloc((size_t)law->output_count + 1, sizeof *f->observed);
   f->observed[0] = sweep_doubles(w, size);
   for (int k = 0; k < law->output_count; k++)
     f->observed[1 + k] = sweep_doubles(w, sweep_planes(w, law->outputs[k].place) * size);
 }
 
-/* Rows from which bonds reach a held particle, or that have one. */
-static unsigned char *rows_near_held(const sweep *w, int reach) {
-  const rows *g = w->lattice;
-  unsigned char *near = must_calloc((size_t)g->row_count + 1, sizeof *near);
-  for (int row = 0; row < g->row_count; row++) {
-    const int first = row > reach ? row - reach : 0;
-    bool held = false;
-    for (long q = sweep_start(w, row); q < sweep_start(w, row) + w->count[row]; q++)
-      held = held || g->held[q];
-    if (held) memset(near + first, 1, (size_t)(row - first) + 1);
-  }
-  return near;
-}
-
-static void new_sums(sweep *w, family *f) {
+static void new_links(sweep *w, family *f) {
   const pl_law *law = w->law;
-  f->held_near = rows_near_held(w, f->reach);
-  f->old_filled = pair_marks_new(w);
-  f->new_filled = pair_marks_new(w);
-  f->settled = pair_marks_new(w);
-  for (int k = 0; k < w->block_count; k++) {
-    family_block *b = &f->blocks[k];
-    b->old_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->old_filled);
-    b->new_filled = must_calloc((size_t)law->field_count + 1, sizeof *b->new_filled);
-    b->settled = must_calloc((size_t)law->field_count + 1, sizeof *b->settled);
-    b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
-  }
+  const long size = w->lattice->size;
+  f->link = must_calloc((size_t)law->link_count + 1, sizeof *f->link);
+  for (int k = 0; k < law->link_count; k++)
+    f->link[k] = sweep_doubles(w, size);
+  f->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *f->bond_link);
+  for (int k = 0; k < law->bond_link_count; k++)
+    f->bond_link[k] = sweep_doubles(w, sweep_planes(w, PL_ON_NEIGHBOUR) * size);
 }
 
 static void new_blocks(const sweep *w, family *f) {
@@ -441,25 +308,19 @@ static void free_arrays(double **arrays, int count) {
 }
 
 static void free_own(sweep *w) {
-  family *f = own(w);
+  family *f = family_of(w);
   for (int k = 0; k < w->block_count; k++) {
     free(f->blocks[k].old_field);
     free(f->blocks[k].new_field);
     free(f->blocks[k].link);
     free(f->blocks[k].bond_link);
     free(f->blocks[k].observed);
-    free(f->blocks[k].old_filled);
-    free(f->blocks[k].new_filled);
-    free(f->blocks[k].settled);
-    pair_sums_free(w, &f->blocks[k].sums);
   }
-  free(f->held_near);
-  pair_marks_free(w, f->old_filled);
-  pair_marks_free(w, f->new_filled);
-  pair_marks_free(w, f->settled);
   free_arrays(f->new_field, w->law->field_count);
-  free_arrays(f->link, w->law->link_count);
-  free_arrays(f->bond_link, w->law->bond_link_count);
+  if (f->link) free_arrays(f->link, w->law->link_count);
+  if (f->bond_link) free_arrays(f->bond_link, w->law->bond_link_count);
+  family_windows_free(w, f->windows);
+  family_pairs_free(w, f->pairs);
   free_arrays(f->observed, 1 + w->law->output_count);
   for (int v = 0; v < SHAPE_PLANES; v++)
     free(f->shape[v]);
@@ -488,12 +349,15 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
-  if (law->sum_count) new_sums(w, f);
-  w->engine.own = f;
-  fields_set(w);
-  return (sweep_engine){.step_stages = law->step.pass_count + 1,
-                        .observe_stages = law->step.pass_count + law->observe.pass_count + 1,
+  f->pairs = family_pairs_new(w, f);
+  f->windows = f->pairs ? NULL : family_windows(w, f);
+  if (!f->windows) new_links(w, f);
+  const int forces = program_stages(f, &law->step), looks = program_stages(f, &law->observe);
+  return (sweep_engine){.step_stages = forces + 1,
+                        .force_stages = forces,
+                        .observe_stages = forces + looks + 1,
                         .step = step,
+                        .forces = find_forces,
                         .turn = turn,
                         .fields_set = fields_set,
                         .observe = observe,

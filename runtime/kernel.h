@@ -94,12 +94,15 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
    q + offset[k], on lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
    neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. In a law of families a bond's field, too,
    has a value on either side. Fields on particles have one plane, all others one for each neighbour, `plane` doubles
-   apart: that of particle q toward neighbour k is field[f][k * plane + q]. */
+   apart: that of particle q toward neighbour k is old_field[f][k * plane + q]; what is written stands `new_plane` apart.
+   Links may stand in a window of rows: on rows the neighbour's are at q + link_offset[k], and their planes `link_plane`
+   apart. */
 typedef struct pl_family {
   long count;            /* sites, a multiple of PL_LANES */
   long neighbours;       /* of a full family; even */
-  long plane;            /* doubles between planes of a field */
-  const long *offset;    /* [neighbours] rows */
+  long plane;            /* doubles between planes of a field, or of what lists know of bonds */
+  long new_plane, link_plane;        /* the same of new fields and what is observed; of links of bonds */
+  const long *offset, *link_offset;  /* [neighbours] rows */
   const uint64_t *bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
   const uint64_t *held;  /* not 0: the damage of this particle, and of its bonds, stays as it is */
   const double *displacement[3], *velocity[3]; /* [dimensions] */
@@ -145,6 +148,9 @@ typedef void (*pl_family_function)(const struct pl_law *law, const double *unifo
 typedef struct pl_program {
   int pass_count;
   const pl_family_function *pass; /* [pass_count] */
+  /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's owner shares; so
+     they must have done its row and those below, not those above. */
+  unsigned at_hand;
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, moment on i, moment on j. */

@@ -102,6 +102,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   w->time_step = time_step;
   w->decay = 1;
   w->ledger = ledger;
+  w->forces = ledger || forces;
   w->dimensions = law->dimensions;
   w->dof = law->dof;
   for (int d = 0; d < w->dof; d++) {
@@ -321,10 +322,10 @@ void sweep_find_forces(sweep *w) {
 #pragma omp parallel num_threads(w->block_count) if (w->block_count > 1)
   {
     const unsigned environment = sweep_enter();
-    for (int stage = 0; stage < w->law->step.pass_count; stage++) {
+    for (int stage = 0; stage < w->engine.force_stages; stage++) {
 #pragma omp for schedule(static)
       for (int block = 0; block < w->block_count; block++)
-        w->engine.step(w, stage, block);
+        w->engine.forces(w, stage, block);
     }
     sweep_leave(environment);
   }

@@ -36,8 +36,9 @@ typedef struct sweep_totals { /* sums over all particles and bonds, J */
 typedef struct sweep sweep;
 
 typedef struct sweep_engine {
-  int step_stages, observe_stages;
+  int step_stages, force_stages, observe_stages;
   void (*step)(sweep *w, int stage, int block);
+  void (*forces)(sweep *w, int stage, int block); /* of the present state; laws of families only */
   void (*fields_set)(
       sweep *w);          /* after values of fields were set from outside; NULL: nothing to do */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
@@ -57,6 +58,7 @@ struct sweep {
   double push_work[3];
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
+  bool forces;    /* somebody looks at the forces of every step */
   bool timed;     /* blocks keep the time that moving particles takes */
   int dimensions, dof;
   double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */

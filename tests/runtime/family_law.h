@@ -77,6 +77,10 @@ static long family_neighbour(const pl_family *f, long k, long q) {
   return q + (f->neighbour ? f->neighbour[k * f->plane + q] : f->offset[k]);
 }
 
+static long family_neighbours_link(const pl_family *f, long k, long q) {
+  return q + (f->neighbour ? f->neighbour[k * f->plane + q] : f->link_offset[k]);
+}
+
 static int family_has_bond(const pl_family *f, long k, long q) {
   const long half = f->neighbours / 2;
   if (k < half) return (int)(f->bonds[q] >> k & 1);
@@ -124,7 +128,7 @@ static void family_fields_pass(const pl_law *law, const double *uniforms, const 
       const double most = f->old_field[1][k * f->plane + q];
       sum += b.stretch;
       largest = fmax(largest, b.stretch);
-      f->new_field[1][k * f->plane + q] = b.exists ? fmax(most, b.stretch) : most;
+      f->new_field[1][k * f->new_plane + q] = b.exists ? fmax(most, b.stretch) : most;
     }
     const double onset = uniforms[FAMILY_ONSET], old = f->old_field[0][q];
     const double grown = fmin(1, fmax(0, (largest - onset) / onset));
@@ -148,7 +152,7 @@ static void family_force_pass(const pl_law *law, const double *uniforms, const p
       const double *u = family_uniforms_of(uniforms, f, k);
       const family_bond b = family_look(uniforms, f, k, q);
       if (!b.exists) continue;
-      const long j = family_neighbour(f, k, q);
+      const long j = family_neighbours_link(f, k, q);
       const double N = (family_state(u, f, q, &b) + family_state(u, f, j, &b)) / 2;
       for (int a = 0; a < 2; a++)
         force[a] += b.arm * N * b.e[a];
@@ -171,7 +175,7 @@ static void family_observe_pass(const pl_law *law, const double *uniforms, const
       squares += b.stretch * b.stretch;
       for (int a = 0; a < 3; a++)
         products[a] += weight * n[a] * b.stretch;
-      f->observed[2][k * f->plane + q] = b.stretch;
+      f->observed[2][k * f->new_plane + q] = b.stretch;
     }
     f->observed[0][q] = (1 - f->old_field[0][q]) * uniforms[FAMILY_S] / 4 *
                         (uniforms[FAMILY_A] * squares + uniforms[FAMILY_B] * sum * sum);
