@@ -12,7 +12,6 @@
 #include "generator/run.h"
 
 #define ERROR_LENGTH 8192
-#define DECK_LIMIT   ((size_t)16 << 20)
 
 enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
 

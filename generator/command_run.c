@@ -88,7 +88,7 @@ int command_run(int argc, char **argv) {
   return status;
 }
 
-/* --dump=STAGE of a law that has been checked. */
+/* --dump=STAGE of a law that has been checked, and may have been planned. */
 static int dump_stage(model *m, const char *stage) {
   if (!strcmp(stage, "tree")) {
     tree_dump(m->tree, stdout);
@@ -98,7 +98,7 @@ static int dump_stage(model *m, const char *stage) {
     fprintf(stderr, "perilat: error: --dump takes tree, ir, passes or c, not `%s`\n", stage);
     return 1;
   }
-  if (!model_plan(m)) return 1;
+  if (!m->plan && !model_plan(m)) return 1;
   if (!strcmp(stage, "passes"))
     plan_dump(m->plan, stdout);
   else if (!strcmp(stage, "c"))
@@ -197,6 +197,32 @@ static int check_path(const run_options *o) {
   return status;
 }
 
+/* The law of a deck's first lattice, as it is written for that lattice. */
+static int dump_deck(const run_options *o, const char *stage) {
+  char error[4096];
+  size_t length;
+  char *text = read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    return 1;
+  }
+  checking c = {.memory = arena_new()};
+  diag_begin(&c.said, &c.sources);
+  const int file = source_add(&c.sources, o->deck_path, text, length);
+  deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
+  const bool good = k && run_open_material(&k->materials[0], &k->lattices[0], o->deck_path,
+                                           &c.model, &c.said);
+  diag_print(&c.said, stderr);
+  if (c.model.memory) diag_print(&c.model.said, stderr);
+  const int status = good ? dump_stage(&c.model, stage) : 1;
+  if (c.model.memory) model_close(&c.model);
+  diag_clear(&c.said);
+  source_clear(&c.sources);
+  arena_free(c.memory);
+  free(text);
+  return status;
+}
+
 static int check_file(const run_options *o, const char *dump) {
   char *found = NULL;
   file_kind kind = kind_of_file(o->deck_path);
@@ -206,8 +232,10 @@ static int check_file(const run_options *o, const char *dump) {
     return 1;
   if (kind == FILE_LAW)
     status = check_law(o, found ? found : o->deck_path, dump);
+  else if (dump && drive_is_path(o->deck_path))
+    fputs("perilat: error: --dump shows a law; give the law's file, or a deck\n", stderr);
   else if (dump)
-    fputs("perilat: error: --dump shows a law; give the law's file\n", stderr);
+    status = dump_deck(o, dump);
   else if (drive_is_path(o->deck_path))
     status = check_path(o);
   else if (!(status = run_deck(o)) && !o->report)

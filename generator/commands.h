@@ -36,7 +36,7 @@
   X(command, "--set", "group.key=value", "set a value of the deck, `group.key=` its default; may be given several times")
 #define COMMAND_OPTIONS(X)                                                                                             \
   X(new, "--kind", "central|micropolar", "whether ends of bonds can turn (micropolar) or not (central, the default)")  \
-  X(check, "--dump", "tree|ir|passes|c", "show what becomes of a law at this stage")                                   \
+  X(check, "--dump", "tree|ir|passes|c", "show what becomes of a law, or of a deck's on its lattice, at this stage")                                   \
   X(check, "--diagnostics", "text|json", "the form of messages; json is one document on the standard output")          \
   X(check, "--no-physics", "", "leave out the checks of mechanics")                                                    \
   X(check, "--set", "key=value", "set group.key of a deck or a path, or a parameter or an option of a law; may be given several times") \

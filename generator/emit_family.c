@@ -403,13 +403,16 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
 }
 
 static void write_pass(emitter *e, const family_program *q, int number) {
+  const bool unrolled = q == &e->plan->step && plan_is_of_small_family(e->plan);
+  if (unrolled)
+    c_text_add(e->out, "/* one loop, %d neighbours written out */\n", e->plan->law->neighbours);
   c_text_add(
       e->out,
       "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
       "  const long half = family->neighbours / 2;\n"
       "  (void)law, (void)uniforms, (void)half;\n",
       q->name, number);
-  if (q == &e->plan->step && plan_is_of_small_family(e->plan))
+  if (unrolled)
     emit_unrolled_pass(e, &q->passes[number]);
   else
     write_rolled_pass(e, &q->passes[number]);

@@ -244,7 +244,7 @@ static void count_cost(kernel_plan *plan) {
 
 /* Whether ends of bonds share what is the same for both: on lattices, where reading what the other end has left is cheap.
    Laws that keep fields on bonds in space have families of a long horizon (lps: 122): what their bonds share would fill
-   no cache, and they compute it on either side (a sixth faster; with 18 neighbours sharing is 1.4 times as fast). */
+   no cache, and where nothing is known of the lattice they compute it on either side (a sixth faster; with 18 neighbours sharing is 1.4 times as fast). */
 static program_sharing sharing(const family_planner *p) {
   const law *l = p->plan->law;
   bool on_bonds = false;

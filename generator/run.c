@@ -15,7 +15,6 @@
 #include "runtime/clock.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
-#define DECK_LIMIT ((size_t)16 << 20)
 
 /* --- signals ---------------------------------------------------------------------------------- */
 

@@ -363,5 +363,6 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
                         .observe = observe,
                         .output = output_values,
                         .free = free_own,
+                        .keeps_links = f->windows == NULL,
                         .own = f};
 }

@@ -1,10 +1,13 @@
 /* The sweep for laws of families: the passes of the law's step over all rows, then the particles move.
-   A pass on a row needs the pass before on all rows in reach. Inside of a block of rows the passes
-   therefore follow each other at that distance, some rows at a time, so that what one leaves the next
-   finds in a cache; what is left of a block at its ends, where it needs rows of other blocks, is
-   done pass by pass when all blocks have come so far. Passes read the fields of the beginning of the step and write new ones,
-   which take their place when the step is done; values of particles that later passes read from
-   neighbours stand in links.
+   Passes read the fields of the beginning of the step and write new ones, which take their place when the step is done;
+   values of particles that later passes read from neighbours stand in links.
+
+   A pass on a row needs the pass before on all rows in reach, at most. Inside of a block of rows the passes therefore follow
+   each other at that distance, some rows at a time, so that what one leaves the next finds in a cache. Where rows reach
+   little far, links stand in a window of rows (family_window.c): a block does what it needs of its neighbours' rows itself,
+   and its rows move as soon as nothing needs where they are. Otherwise (family_stages.c) links of the whole body are kept, and
+   what is left of a block at its ends is done pass by pass when all blocks have come so far. Results are the same to
+   the bit.
 
    Fields on particles have one plane of [size], all others one for each neighbour, neighbour
    k + directions opposite to k. */

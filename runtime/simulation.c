@@ -162,7 +162,15 @@ static void new_history(simulation *s) {
 static bool topology_serves(const simulation *s, diagnostics *d) {
   const deck_lattice *l = &s->deck->lattices[0];
   const bool list = s->lattice->list != NULL;
-  if (s->law->kind == PL_STATE && (s->law->topology == PL_LIST) == list) return true;
+  const int neighbours = 2 * s->lattice->directions;
+  const bool same = (s->law->topology == PL_LIST) == list;
+  if (s->law->kind == PL_STATE && same && s->law->neighbours && s->law->neighbours != neighbours) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, l->horizon > 0 ? "horizon" : "shells"),
+                "this solver was built for %d neighbours, not %d", s->law->neighbours, neighbours);
+    diag_hint(d, "build another one with `perilat build`, or use `perilat run`");
+    return false;
+  }
+  if (s->law->kind == PL_STATE && same) return true;
   if (s->law->kind == PL_STATE) {
     diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "this solver was built for particles that stand on %s",

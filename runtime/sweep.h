@@ -45,6 +45,7 @@ typedef struct sweep_engine {
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
+  bool keeps_links; /* laws of families: what passes leave for each other is kept of the whole body */
   void *own;
 } sweep_engine;
 

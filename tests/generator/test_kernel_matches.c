@@ -34,12 +34,13 @@ static const pl_bond_class bonds = {.s = 6.35e-3,
                                     .chord = {6.35e-3 * 0.5, 6.35e-3 * 0.8660254037844386, 0}};
 
 static const pl_law *open_kernel_for(model *m, const char *path, const law_choice *choice,
-                                     const law_setting *setting, bool irregular) {
+                                     const law_setting *setting, bool irregular, int neighbours) {
   char error[2000] = "";
   const char *note;
   bool good = model_open(m, path, choice, choice ? 1 : 0);
   if (good && setting) m->law->setting = *setting;
   if (good) m->law->irregular = irregular;
+  if (good) m->law->neighbours = neighbours;
   if (!good || !model_plan(m)) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
@@ -51,7 +52,7 @@ static const pl_law *open_kernel_for(model *m, const char *path, const law_choic
 }
 
 static const pl_law *open_kernel(model *m, const char *path, const law_choice *choice) {
-  return open_kernel_for(m, path, choice, NULL, false);
+  return open_kernel_for(m, path, choice, NULL, false, 0);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -175,6 +176,7 @@ static void assert_same_families(const kernel_plan *p, const pl_law *kernel, lon
   static const int neighbours[] = {6, 18, 122};
   const size_t sizes = kernel->topology == PL_LIST ? 2 : 3; /* a list has no other code for more */
   for (size_t k = 0; k < sizes; k++) {
+    if (kernel->neighbours && kernel->neighbours != neighbours[k]) continue;
     kernel_check c = check_family(p, kernel, neighbours[k], states);
     printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);
     kernel_check_report(&c, kernel->name, stdout);
@@ -190,10 +192,12 @@ static void assert_text_is_clean(const model *m) {
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }
 
+/* `neighbours`: what the kernel is written for; 0: any. */
 static void check_family_law_in(const char *path, const law_choice *choice, law_setting setting,
-                                bool irregular, long states) {
+                                bool irregular, int neighbours, long states) {
   model m;
-  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, irregular);
+  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, irregular, neighbours);
+  assert_int_equal(kernel->neighbours, neighbours);
   assert_int_equal(kernel->topology, irregular ? PL_LIST : PL_ROWS);
   if (choice) printf("%s = %s, ", choice->option, choice->choice);
   if (irregular) printf("irregular, ");
@@ -233,9 +237,10 @@ static void check_family_law(const char *path, const law_choice *choice, long st
     const bool on_lists = !choice || model_suits_irregular(&m);
     model_close(&m);
     if (!allowed) continue;
-    check_family_law_in(path, choice, (law_setting)k, false, states);
+    check_family_law_in(path, choice, (law_setting)k, false, 0, states);
+    check_family_law_in(path, choice, (law_setting)k, false, k == SETTING_SPACE ? 18 : 6, states / 4);
     if (!choice) check_large_family(path, (law_setting)k, states);
-    if (on_lists) check_family_law_in(path, choice, (law_setting)k, true, states / 3);
+    if (on_lists) check_family_law_in(path, choice, (law_setting)k, true, 0, states / 3);
   }
 }
 

@@ -1,0 +1,115 @@
+/* Passes over a body in windows of rows, which follow each other closely, against passes over the whole body: the same
+   bits, however many blocks there are and whatever else is kept. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/family_parts.h"
+#include "tests/runtime/family_law.h"
+#include "tests/runtime/small_run.h"
+
+enum { STEPS = 60 };
+
+static const char plate[] =
+    "&simulation end_time = 1 /\n"
+    "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 rotation = 7 /\n"
+    "&material lattice = 'c' model = 'm' S_t = 1e-4 tau = 1e-7 /\n"
+    "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.2, 0.5 /\n"
+    "&notch lattice = 'c' shape = 'segment' from = 0.05, 0.2 to = 0.11, 0.24 /\n";
+
+/* Particles in a motion that stretches and breaks. */
+static sweep *moving_plate(const small_run *r, const rows *g, int blocks, bool ledger, bool forces) {
+  sweep *w = sweep_new(g, &family_hexagon, r->parameters, 2e-7, blocks, ledger, forces);
+  for (long q = 0; q < g->size; q++) {
+    if (!g->present[q]) continue;
+    w->velocity[0][q] = 3 * sin(40 * g->y[q]) + 20 * g->x[q];
+    w->velocity[1][q] = 2 * cos(31 * g->x[q] + 11 * g->y[q]);
+  }
+  for (int k = 0; k < STEPS; k++)
+    assert_true(sweep_step(w));
+  return w;
+}
+
+static void assert_same_values(const rows *g, const double *a, const double *b) {
+  for (long q = 0; q < g->size; q++)
+    if (g->present[q]) assert_memory_equal(&a[q], &b[q], sizeof *a);
+}
+
+static void assert_same_state(const sweep *a, const sweep *b) {
+  const rows *g = a->lattice;
+  for (int d = 0; d < a->dof; d++) {
+    assert_same_values(g, a->displacement[d], b->displacement[d]);
+    assert_same_values(g, a->velocity[d], b->velocity[d]);
+  }
+  for (int f = 0; f < a->law->field_count; f++)
+    for (int k = 0; k < sweep_planes(a, a->law->fields[f].place); k++)
+      assert_same_values(g, a->field[f] + k * g->size, b->field[f] + k * g->size);
+}
+
+static long count_broken(const sweep *w) {
+  long count = 0;
+  for (long q = 0; q < w->lattice->size; q++)
+    count += w->lattice->present[q] && w->field[0][q] > 0;
+  return count;
+}
+
+static void windows_and_whole_bodies_give_the_same_bits(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &family_hexagon, plate);
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  rows *g = rows_build(r.deck, 0, &r.said);
+  assert_non_null(g);
+  g->mass = simulation_rows(r.simulation, 0)->mass;
+  const int many = g->row_count / 2; /* of two rows: too few for windows */
+  sweep *whole = moving_plate(&r, g, many, false, false);
+  assert_null(family_of(whole)->windows);
+  assert_true(count_broken(whole) > 20);
+  for (int blocks = 1; blocks <= 3; blocks++)
+    for (int kept = 0; kept < 3; kept++) {
+      sweep *w = moving_plate(&r, g, blocks, kept == 2, kept == 1);
+      assert_non_null(family_of(w)->windows);
+      assert_same_state(whole, w);
+      sweep_observe(w);
+      sweep_observe(whole);
+      assert_same_state(whole, w);
+      for (int d = 0; d < w->dof; d++)
+        assert_same_values(g, whole->force[d], w->force[d]);
+      const sweep_totals a = sweep_sum(whole), b = sweep_sum(w);
+      assert_memory_equal(&a.stored, &b.stored, sizeof a.stored);
+      sweep_free(w);
+    }
+  sweep_free(whole);
+  rows_free(g);
+  small_close(&r);
+}
+
+/* Where a law says that its second pass needs no rows ahead, fewer rows are kept. */
+static void a_window_keeps_the_rows_that_passes_need(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &family_hexagon, plate);
+  assert_non_null(r.simulation);
+  rows *g = rows_build(r.deck, 0, &r.said);
+  pl_law near = family_hexagon;
+  near.step.at_hand = 1u << 1;
+  sweep *far = sweep_new(g, &family_hexagon, r.parameters, 2e-7, 1, false, false),
+        *here = sweep_new(g, &near, r.parameters, 2e-7, 1, false, false);
+  assert_true(here->bytes < far->bytes);
+  sweep_free(far);
+  sweep_free(here);
+  rows_free(g);
+  small_close(&r);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(windows_and_whole_bodies_give_the_same_bits),
+      cmocka_unit_test(a_window_keeps_the_rows_that_passes_need),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
