@@ -381,6 +381,8 @@ ir_node ir_make(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
     return a == b ? ir_constant(g, 0.0) : make_node(g, op, a, b, c);
   case IR_EQ:
     return make_commuting(g, op, a, b);
+  case IR_FMA:
+    return a < b ? make_node(g, op, a, b, c) : make_node(g, op, b, a, c);
   default:
     return make_node(g, op, a, b, c);
   }

@@ -138,7 +138,8 @@ static int parity_of_others(builder *b, ir_node n) {
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = program_parity(b, ir_operand(b->g, n, k));
   if (op == IR_NEG) return operand[0];
-  if (op == IR_FMA) return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
+  if (op == IR_FMA && operand[0] * operand[1] != 0)
+    return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
   if (op == IR_ABS && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
   if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
