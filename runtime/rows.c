@@ -171,10 +171,12 @@ static rows *allocate(rows *w, const builder *b) {
   return NULL;
 }
 
-/* Absent sites before the first column, and with those of the next row behind the last one: as many as neighbours reach, and
-   whole lanes, so that rows begin with one. */
+/* Absent sites before the first column, and with those of the next row behind the last one: as many as neighbours reach; and
+   whole lanes, so that rows begin with one, unless that makes rows longer. */
 static long before_columns(const builder *b) {
-  return whole_lanes(b->reach[COLUMN]);
+  const long columns = b->marks.left.last[COLUMN] - b->marks.left.first[COLUMN] + 1,
+             reach = b->reach[COLUMN], lanes = whole_lanes(reach);
+  return pitch_for(lanes + columns) > pitch_for(reach + columns) ? reach : lanes;
 }
 
 static rows *rows_new(const builder *b) {
@@ -184,7 +186,7 @@ static rows *rows_new(const builder *b) {
   const long layer_rows = per_layer + b->reach[ROW];
   const long row_count = (last[LAYER] - first[LAYER]) * layer_rows + per_layer;
   const long margin = b->reach[LAYER] * layer_rows + b->reach[ROW];
-  const long pitch = pitch_for(before_columns(b) + columns), ends = before_columns(b);
+  const long pitch = pitch_for(before_columns(b) + columns), ends = whole_lanes(b->reach[COLUMN]);
   const double size = ((double)row_count + 2 * (double)margin) * (double)pitch + 2 * (double)ends;
   if (site_too_many(l, size, b->d)) return NULL;
   rows *w = must_calloc(1, sizeof *w);
