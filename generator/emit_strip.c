@@ -121,16 +121,26 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
       c_text_add(e->out, "    kept[%d][k] = %s;\n", s->buffer[n], e->name[n]);
 }
 
-/* Bonds that exist and are not as expected leave a mark. One line for all conditions: gcc does not vectorise two. */
+/* Whether a choice that the stage makes, before node n, asks the same. */
+static bool is_asked_before(const emitter *e, const stages *s, ir_node n) {
+  for (ir_node k = 0; k < n; k++)
+    if (s->of[k] == s->of[n] && stages_is_expected_choice(e, k) &&
+        ir_operand(e->graph, k, 0) == ir_operand(e->graph, n, 0))
+      return true;
+  return false;
+}
+
+/* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
+   does not vectorise two. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
   const char *joined = "    unusual |= ((";
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (s->of[n] != stage || !stages_is_expected_choice(e, n)) continue;
+    if (s->of[n] != stage || !stages_is_expected_choice(e, n) || is_asked_before(e, s, n)) continue;
     c_text_add(e->out, "%s", joined);
     emit_condition(e, ir_operand(e->graph, n, 0));
     joined = ") && (";
   }
-  c_text_add(e->out, ")) ? 0 : flags[q] & present_bit;\n");
+  c_text_add(e->out, ")) ? 0 : flags[q];\n");
 }
 
 /* The last stage stores what the pass gives. */
@@ -180,9 +190,10 @@ static void write_stages(emitter *e, const stages *s) {
   for (int stage = 0; stage < s->count; stage++) {
     write_stage(e, s, stage, true);
     if (!stages_has_conditions(e, s, stage)) continue;
-    c_text_add(e->out, "  if (unusual != 0) { /* both sides of what was expected */\n");
+    c_text_add(e->out,
+               "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
     write_stage(e, s, stage, false);
-    c_text_add(e->out, "  unusual = 0;\n  }\n");
+    c_text_add(e->out, "  }\n  unusual = 0;\n");
   }
   c_text_add(e->out, "  }\n");
 }
