@@ -18,7 +18,7 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters);
 /* What the law's `prepare` gave for the bonds of a direction: [uniform_count]. */
 const double *pairwise_uniforms(const sweep *w, int direction);
 
-/* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns. */
-const int64_t *pairwise_flags(const sweep *w);
+/* [count of the row] PL_PRESENT, PL_PROTECTED of the bonds that the sites of a row's span own. */
+const int64_t *pairwise_flags(const sweep *w, int row);
 
 #endif
