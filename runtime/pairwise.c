@@ -152,19 +152,18 @@ typedef struct gathered { /* bond forces that add up to the force on the particl
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
  */
-static gathered gather(const sweep *w, int row, int component, const row_forces *here,
-                       const row_forces *below) {
+static void gather(const sweep *w, int row, int component, const row_forces *here,
+                   const row_forces *below, gathered *from) {
   const rows *g = w->lattice;
   const int far_plane = component < 2 ? component : 3;
   const long begin = w->begin[row];
-  gathered s = {{0}, {0}};
-  for (int k = 0; k < g->directions; k++) {
+  for (int k = 0; k < DIRECTIONS; k++) {
     const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
-    s.own[k] = plane(w, here, component, k) + begin;
-    s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
-                                         : plane(w, below, far_plane, k) + begin - (up - g->pitch);
+    from->own[k] = plane(w, here, component, k) + begin;
+    from->incoming[k] = along < g->pitch / 2
+                            ? plane(w, here, far_plane, k) + begin - along
+                            : plane(w, below, far_plane, k) + begin - (up - g->pitch);
   }
-  return s;
 }
 
 static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int directions,
@@ -274,7 +273,7 @@ static void move_rows(sweep *w, int block) {
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (!m.known) take_buffer_for_row(w, here, r);
     for (int d = 0; d < w->dof; d++)
-      m.from[d] = gather(w, r, d, here, below);
+      gather(w, r, d, here, below, &m.from[d]);
     advance_row(w, block, &m, here);
     below = here;
   }
@@ -329,7 +328,8 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
   for (int d = 0; d < w->dof; d++) {
-    const gathered s = gather(w, row, d, here, below);
+    gathered s;
+    gather(w, row, d, here, below, &s);
     kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
     sweep_push(w, row, d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
