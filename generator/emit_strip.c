@@ -143,6 +143,56 @@ static void write_expectations(emitter *e, const stages *s, int stage) {
   c_text_add(e->out, ")) ? 0 : flags[q];\n");
 }
 
+/* Damage, which most steps leave as it is in most parts of a body: there it is not written. */
+static bool is_rarely_new(const emitter *e, const pass_root *r) {
+  return r->target == TO_FIELD && e->plan->law->fields.items[r->index]->kind == SYMBOL_DAMAGE;
+}
+
+static int rarely_new_count(const emitter *e) {
+  int count = 0;
+  for (int k = 0; k < e->root_count; k++)
+    count += is_rarely_new(e, &e->roots[k]);
+  return count;
+}
+
+/* Such values wait in buffers behind the stages' until it is known whether a bond that exists has a new one. One line for
+   all, as above. */
+static void write_changes(emitter *e, const stages *s) {
+  const char *joined = "    changed |= (";
+  int buffer = s->buffers;
+  for (int k = 0; k < e->root_count; k++) {
+    const pass_root *r = &e->roots[k];
+    if (!is_rarely_new(e, r)) continue;
+    c_text_add(e->out, "    kept[%d][k] = ", buffer++);
+    emit_value(e, r->node);
+    c_text_add(e->out, ";\n");
+  }
+  buffer = s->buffers;
+  for (int k = 0; k < e->root_count; k++) {
+    if (!is_rarely_new(e, &e->roots[k])) continue;
+    c_text_add(e->out, "%s(pl_to_bits(kept[%d][k]) ^ pl_to_bits(at_field_%d[q]))", joined, buffer++,
+               e->roots[k].index);
+    joined = " | ";
+  }
+  if (buffer > s->buffers) c_text_add(e->out, ") != 0 ? flags[q] : 0;\n");
+}
+
+static void write_changed_fields(emitter *e, const stages *s) {
+  int buffer = s->buffers;
+  if (!rarely_new_count(e)) return;
+  c_text_add(e->out, "  if ((changed & present_bit) != 0) {\n"
+                     "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n"
+                     "    const long q = first + k;\n"
+                     "    const int64_t present = flags[q] & present_bit;\n");
+  for (int k = 0; k < e->root_count; k++)
+    if (is_rarely_new(e, &e->roots[k])) {
+      const int f = e->roots[k].index;
+      c_text_add(e->out, "    at_field_%d[q] = present != 0 ? kept[%d][k] : at_field_%d[q];\n", f,
+                 buffer++, f);
+    }
+  c_text_add(e->out, "  }\n  }\n");
+}
+
 /* The last stage stores what the pass gives. */
 static bool is_last(const stages *s, int stage) {
   return stage == s->count - 1;
@@ -173,9 +223,11 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   if (is_last(s, stage)) {
     c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
     for (int k = 0; k < e->root_count; k++)
-      write_store(e, &e->roots[k]);
+      if (!is_rarely_new(e, &e->roots[k])) write_store(e, &e->roots[k]);
+    write_changes(e, s);
   }
   c_text_add(e->out, "  }\n");
+  if (is_last(s, stage)) write_changed_fields(e, s);
   free(mask);
   free(kept_loads);
 }
@@ -185,8 +237,9 @@ static void write_stages(emitter *e, const stages *s) {
              "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n"
              "  for (long first = 0; first < count; first += %d) {\n"
              "  const long last = count - first < %d ? count - first : %d;\n",
-             s->buffers, STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
+             s->buffers + rarely_new_count(e), STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
+  if (rarely_new_count(e)) c_text_add(e->out, "  int64_t changed = 0;\n");
   for (int stage = 0; stage < s->count; stage++) {
     write_stage(e, s, stage, true);
     if (!stages_has_conditions(e, s, stage)) continue;

@@ -269,11 +269,15 @@ static void move_rows(sweep *w, int block) {
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
   for (int r = b->first; r < b->last; r++) {
-    moved_row m = {.row = r, .known = r == b->last - 1};
+    moved_row m;
+    m.row = r;
+    m.known = r == b->last - 1;
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (!m.known) take_buffer_for_row(w, here, r);
-    for (int d = 0; d < w->dof; d++)
+    for (int d = 0; d < w->dof; d++) {
       gather(w, r, d, here, below, &m.from[d]);
+      m.bad[d] = 0;
+    }
     advance_row(w, block, &m, here);
     below = here;
   }
