@@ -143,64 +143,34 @@ static void write_expectations(emitter *e, const stages *s, int stage) {
   c_text_add(e->out, ")) ? 0 : flags[q];\n");
 }
 
-/* Damage, which most steps leave as it is in most parts of a body: there it is not written. */
-static bool is_rarely_new(const emitter *e, const pass_root *r) {
-  return r->target == TO_FIELD && e->plan->law->fields.items[r->index]->kind == SYMBOL_DAMAGE;
-}
-
-static int rarely_new_count(const emitter *e) {
-  int count = 0;
-  for (int k = 0; k < e->root_count; k++)
-    count += is_rarely_new(e, &e->roots[k]);
-  return count;
-}
-
-/* Such values wait in buffers behind the stages' until it is known whether a bond that exists has a new one. One line for
-   all, as above. */
-static void write_changes(emitter *e, const stages *s) {
+/* Whether a bond that exists has new damage. One line for all, as above. */
+static void write_changes(emitter *e) {
   const char *joined = "    changed |= (";
-  int buffer = s->buffers;
   for (int k = 0; k < e->root_count; k++) {
     const pass_root *r = &e->roots[k];
-    if (!is_rarely_new(e, r)) continue;
-    c_text_add(e->out, "    kept[%d][k] = ", buffer++);
+    if (r->target != TO_FIELD || !stages_is_of_change(e, r)) continue;
+    c_text_add(e->out, "%s(pl_to_bits(", joined);
     emit_value(e, r->node);
-    c_text_add(e->out, ";\n");
-  }
-  buffer = s->buffers;
-  for (int k = 0; k < e->root_count; k++) {
-    if (!is_rarely_new(e, &e->roots[k])) continue;
-    c_text_add(e->out, "%s(pl_to_bits(kept[%d][k]) ^ pl_to_bits(at_field_%d[q]))", joined, buffer++,
-               e->roots[k].index);
+    c_text_add(e->out, ") != pl_to_bits(at_field_%d[q]))", r->index);
     joined = " | ";
   }
-  if (buffer > s->buffers) c_text_add(e->out, ") != 0 ? flags[q] : 0;\n");
+  c_text_add(e->out, ") ? flags[q] : 0;\n");
 }
 
-static void write_changed_fields(emitter *e, const stages *s) {
-  int buffer = s->buffers;
-  if (!rarely_new_count(e)) return;
-  c_text_add(e->out, "  if ((changed & present_bit) != 0) {\n"
-                     "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n"
-                     "    const long q = first + k;\n"
-                     "    const int64_t present = flags[q] & present_bit;\n");
+/* What the pass gives in this stage: in the last one, and in that behind it. */
+static void write_results(emitter *e, const stages *s, int stage) {
+  const bool of_change = stage > stages_last(s);
+  if (stage < stages_last(s)) return;
+  c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
   for (int k = 0; k < e->root_count; k++)
-    if (is_rarely_new(e, &e->roots[k])) {
-      const int f = e->roots[k].index;
-      c_text_add(e->out, "    at_field_%d[q] = present != 0 ? kept[%d][k] : at_field_%d[q];\n", f,
-                 buffer++, f);
-    }
-  c_text_add(e->out, "  }\n  }\n");
-}
-
-/* The last stage stores what the pass gives. */
-static bool is_last(const stages *s, int stage) {
-  return stage == s->count - 1;
+    if (!s->changes || stages_is_of_change(e, &e->roots[k]) == of_change)
+      write_store(e, &e->roots[k]);
+  if (s->changes && !of_change) write_changes(e);
 }
 
 static void write_stage_begin(emitter *e, const stages *s, int stage, bool usual,
                               const unsigned char *mask) {
-  bool reads_bonds = is_last(s, stage) || (usual && stages_has_conditions(e, s, stage));
+  bool reads_bonds = stage >= stages_last(s) || (usual && stages_has_conditions(e, s, stage));
   for (ir_node n = 0; n < e->node_count && !reads_bonds; n++)
     reads_bonds = mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n);
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
@@ -220,14 +190,8 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   e->usual = false;
   e->needed = whole;
   write_kept_stores(e, s, stage);
-  if (is_last(s, stage)) {
-    c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
-    for (int k = 0; k < e->root_count; k++)
-      if (!is_rarely_new(e, &e->roots[k])) write_store(e, &e->roots[k]);
-    write_changes(e, s);
-  }
+  write_results(e, s, stage);
   c_text_add(e->out, "  }\n");
-  if (is_last(s, stage)) write_changed_fields(e, s);
   free(mask);
   free(kept_loads);
 }
@@ -237,16 +201,21 @@ static void write_stages(emitter *e, const stages *s) {
              "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n"
              "  for (long first = 0; first < count; first += %d) {\n"
              "  const long last = count - first < %d ? count - first : %d;\n",
-             s->buffers + rarely_new_count(e), STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
+             s->buffers, STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
-  if (rarely_new_count(e)) c_text_add(e->out, "  int64_t changed = 0;\n");
-  for (int stage = 0; stage < s->count; stage++) {
+  if (s->changes) c_text_add(e->out, "  int64_t changed = 0;\n");
+  for (int stage = 0; stage <= stages_last(s); stage++) {
     write_stage(e, s, stage, true);
     if (!stages_has_conditions(e, s, stage)) continue;
     c_text_add(e->out,
                "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
     write_stage(e, s, stage, false);
     c_text_add(e->out, "  }\n  unusual = 0;\n");
+  }
+  if (s->changes) {
+    c_text_add(e->out, "  if ((changed & present_bit) != 0) {\n");
+    write_stage(e, s, s->count - 1, false);
+    c_text_add(e->out, "  }\n");
   }
   c_text_add(e->out, "  }\n");
 }
@@ -259,11 +228,12 @@ static void describe(const stages *s, c_text *out) {
     c_text_add(out, "one loop, a chain of %d cycles", s->cost[0].chain);
     return;
   }
-  c_text_add(out, "%d loops over parts of %d bonds, chains of", s->count, STAGES_PART);
-  for (int k = 0; k < s->count; k++)
+  c_text_add(out, "%d loops over parts of %d bonds, chains of", stages_last(s) + 1, STAGES_PART);
+  for (int k = 0; k <= stages_last(s); k++)
     c_text_add(out, "%s%d", k ? ", " : " ", s->cost[k].chain);
   c_text_add(out, " cycles instead of %d, %d buffers between", s->whole_chain, s->buffers);
   if (s->conditions) c_text_add(out, ", %d choices expected", s->conditions);
+  if (s->changes) c_text_add(out, ", one more loop where damage changed");
 }
 
 void emit_strip_pass(emitter *e, const pass *p, const char *name) {
@@ -291,7 +261,9 @@ static void describe_stages(const emitter *e, const stages *s, FILE *out) {
             "    loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
             "%.0f cycles for eight bonds%s\n",
             k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
-            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected" : "");
+            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected"
+            : k > stages_last(s)           ? "; only where damage changed"
+                                           : "");
   }
 }
 
