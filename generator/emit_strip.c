@@ -152,7 +152,7 @@ static void write_changes(emitter *e) {
     c_text_add(e->out, "%s(pl_to_bits(", joined);
     emit_value(e, r->node);
     c_text_add(e->out, ") != pl_to_bits(at_field_%d[q]))", r->index);
-    joined = " | ";
+    joined = " || ";
   }
   c_text_add(e->out, ") ? flags[q] : 0;\n");
 }

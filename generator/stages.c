@@ -207,7 +207,7 @@ static void drop_empty(planner *p) {
   int *number = must_calloc((size_t)stage_count + 1, sizeof *number);
   for (ir_node n = 0; n < p->e->node_count; n++)
     if (s->of[n] >= 0) number[s->of[n]] = 1;
-  number[stage_count - 1] = 1;
+  number[stages_last(s)] = number[stage_count - 1] = 1;
   s->count = 0;
   for (int k = 0; k < stage_count; k++)
     number[k] = number[k] ? s->count++ : -1;
@@ -310,10 +310,10 @@ static stages *plan_with(planner *p, int longest) {
     s->conditions += stages_is_expected_choice(p->e, n);
   }
   s->count = last_stage(p) + 1;
-  if (s->count > 1) place_late(p);
-  drop_empty(p);
   s->changes = s->count > 1 && has_changes(p->e);
   s->count += s->changes;
+  if (s->count > 1) place_late(p);
+  drop_empty(p);
   give_buffers(p);
   find_costs(p);
   return s;
