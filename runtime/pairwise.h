@@ -1,5 +1,6 @@
 /* The sweep for laws of bonds: bonds of a row into a row buffer, its forces at once into velocities
-   and displacements, so that bond forces never go to memory.
+   and displacements, so that bond forces never go to memory. Long rows go part by part, so that what one direction of bonds
+   loads is in the first cache for the next.
 
    A row's forces need the bonds of the row below, so that the last row of a block (its seam) is
    evaluated before anything moves: the first stage of a step does the seams, the second one the
