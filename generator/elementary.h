@@ -83,6 +83,15 @@ PL_ELEMENTARY double pl_max(double a, double b) {
   return a != a ? a : most;
 }
 
+/* The same, but b where either is NaN. */
+PL_ELEMENTARY double pl_smaller(double a, double b) {
+  return a < b ? a : b;
+}
+
+PL_ELEMENTARY double pl_larger(double a, double b) {
+  return a > b ? a : b;
+}
+
 /* -1, 0 or 1; NaN of NaN. */
 PL_ELEMENTARY double pl_sign(double x) {
   return x > 0.0 ? 1.0 : (x < 0.0 ? -1.0 : x);

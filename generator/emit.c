@@ -77,12 +77,24 @@ static bool is_inline_condition(const emitter *e, ir_node n, ir_node user) {
   return asking == IR_AND || asking == IR_OR || asking == IR_NOT || (asking == IR_SELECT && asked);
 }
 
+/* x < y ? x : y, or the larger: the function that this is; NULL for other nodes. */
+static const char *extreme_function(const emitter *e, ir_node n) {
+  if (ir_operation(e->graph, n) != IR_SELECT) return NULL;
+  const ir_node asked = ir_operand(e->graph, n, 0), yes = ir_operand(e->graph, n, 1),
+                no = ir_operand(e->graph, n, 2);
+  if (ir_operation(e->graph, asked) != IR_LT) return NULL;
+  const ir_node x = ir_operand(e->graph, asked, 0), y = ir_operand(e->graph, asked, 1);
+  return yes == x && no == y ? "smaller" : yes == y && no == x ? "larger" : NULL;
+}
+
 /* May be part of a longer expression. A select goes into the last place of another one, as a chain
    of cases. Values that a select chooses from are computed on lines of their own when they divide,
    so that no compiler thinks of branching. */
 static bool is_inline(const emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
-  if (op == IR_CONSTANT) return true;
+  if (op == IR_CONSTANT || (in_loop(e) && is_ends_input(e, n, ENDS_PROTECTED)) ||
+      ir_is_expected(e->graph, n))
+    return true;
   if (e->uses[n] > 1 || ir_name(e->graph, n) || e->size[n] > LONGEST_INLINE ||
       emit_is_uniform(e, n))
     return false;
@@ -99,7 +111,8 @@ static bool is_inline(const emitter *e, ir_node n) {
   case IR_DIV:
     return !chosen;
   case IR_SELECT:
-    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n;
+    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n &&
+           !extreme_function(e, n);
   default:
     return ir_is_logical(e->graph, n) && is_inline_condition(e, n, user);
   }
@@ -139,7 +152,7 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
       "out",        "bonds",       "present",       "lower",  "upper", "low_open", "high_open",
       "parameters", "present_bit", "protected_bit", "family", "first", "lanes",    "k",
       "to",         "half",        "back",          "last",   "kept",  "unusual",  "owned",
-      "owner",      "sign",        "zeros",         "got",    "link_to"};
+      "owner",      "sign",        "zeros",         "got",    "link_to", "changed"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -235,12 +248,22 @@ static void write_comparison(emitter *e, ir_node n) {
   write_infix(e, n, op == IR_LT ? " < " : op == IR_LE ? " <= " : " == ", LEVEL_SUM, LEVEL_SUM);
 }
 
+static const char protected_text[] = "(flags[q] & protected_bit) != 0";
+
+static bool asks_whether_protected(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_LT && is_constant(e, ir_operand(e->graph, n, 0)) &&
+         ir_value(e->graph, ir_operand(e->graph, n, 0)) == 0 &&
+         is_ends_input(e, ir_operand(e->graph, n, 1), ENDS_PROTECTED);
+}
+
 /* Logical nodes are doubles, 0 or 1, made by choices: gcc turns integers made of several
    comparisons into branches, and then the loop does not vectorise. This writes node n as C's
    condition. */
 void emit_condition(emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
-  if (!e->name[n] && (op == IR_LT || op == IR_LE || op == IR_EQ)) {
+  if (!e->name[n] && asks_whether_protected(e, n)) {
+    c_text_add(e->out, "%s", protected_text);
+  } else if (!e->name[n] && (op == IR_LT || op == IR_LE || op == IR_EQ)) {
     write_comparison(e, n);
   } else if (!e->name[n] && op == IR_NOT) {
     c_text_add(e->out, "!(");
@@ -275,7 +298,20 @@ static void write_logical(emitter *e, ir_node n) {
   }
 }
 
+/* gcc takes a chain of cases apart into more questions than there are; of this it makes one operation. */
+static void write_extreme(emitter *e, ir_node n) {
+  c_text_add(e->out, "pl_%s(", extreme_function(e, n));
+  write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
+  c_text_add(e->out, ", ");
+  write_operand(e, ir_operand(e->graph, n, 2), LEVEL_CHOICE);
+  c_text_add(e->out, ")");
+}
+
 static void write_select(emitter *e, ir_node n) {
+  if (extreme_function(e, n)) {
+    write_extreme(e, n);
+    return;
+  }
   if (e->usual && ir_is_expected(e->graph, ir_operand(e->graph, n, 0))) {
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
     return;
@@ -327,6 +363,9 @@ static void write_expression(emitter *e, ir_node n) {
     break;
   case IR_SELECT:
     write_select(e, n);
+    break;
+  case IR_INPUT:
+    c_text_add(e->out, "(%s ? 1.0 : 0.0)", protected_text); /* no other is written in place */
     break;
   default:
     write_call(e, n);
@@ -393,9 +432,7 @@ void emit_inputs_before_loop(emitter *e) {
 }
 
 static void write_loop_input(emitter *e, ir_node n) {
-  if (is_ends_input(e, n, ENDS_PROTECTED))
-    c_text_add(e->out, "(flags[q] & protected_bit) != 0 ? 1.0 : 0.0");
-  else if (e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD)
+  if (e->scope != IN_STATES && ir_input_source(e->graph, n) == IR_FROM_FIELD)
     c_text_add(e->out, "at_field_%d[q]", ir_input_index(e->graph, n));
   else
     c_text_add(e->out, "at_%s[q]", e->name[n]);
@@ -639,8 +676,12 @@ static const char own_macros[] =
     "#endif\n"
     "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n\n";
 
+/* gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step). */
 static void write_prelude(emitter *e) {
   c_text_add(e->out, "/* Written by perilat. */\n"
+                     "#if !defined(__clang__)\n"
+                     "#pragma GCC optimize(\"no-thread-jumps\", \"no-gcse\")\n"
+                     "#endif\n"
                      "#pragma GCC diagnostic push\n"
                      "#pragma GCC diagnostic ignored \"-Wunused-function\"\n");
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);

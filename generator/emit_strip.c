@@ -121,26 +121,56 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
       c_text_add(e->out, "    kept[%d][k] = %s;\n", s->buffer[n], e->name[n]);
 }
 
-/* Bonds that exist and are not as expected leave a mark. One line for all conditions: gcc does not vectorise two. */
+/* Whether a choice that the stage makes, before node n, asks the same. */
+static bool is_asked_before(const emitter *e, const stages *s, ir_node n) {
+  for (ir_node k = 0; k < n; k++)
+    if (s->of[k] == s->of[n] && stages_is_expected_choice(e, k) &&
+        ir_operand(e->graph, k, 0) == ir_operand(e->graph, n, 0))
+      return true;
+  return false;
+}
+
+/* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
+   does not vectorise two. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
   const char *joined = "    unusual |= ((";
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (s->of[n] != stage || !stages_is_expected_choice(e, n)) continue;
+    if (s->of[n] != stage || !stages_is_expected_choice(e, n) || is_asked_before(e, s, n)) continue;
     c_text_add(e->out, "%s", joined);
     emit_condition(e, ir_operand(e->graph, n, 0));
     joined = ") && (";
   }
-  c_text_add(e->out, ")) ? 0 : flags[q] & present_bit;\n");
+  c_text_add(e->out, ")) ? 0 : flags[q];\n");
 }
 
-/* The last stage stores what the pass gives. */
-static bool is_last(const stages *s, int stage) {
-  return stage == s->count - 1;
+/* Whether a bond that exists has new damage. One line for all, as above. */
+static void write_changes(emitter *e) {
+  const char *joined = "    changed |= (";
+  for (int k = 0; k < e->root_count; k++) {
+    const pass_root *r = &e->roots[k];
+    if (r->target != TO_FIELD || !stages_is_of_change(e, r)) continue;
+    c_text_add(e->out, "%s(pl_to_bits(", joined);
+    emit_value(e, r->node);
+    c_text_add(e->out, ") != pl_to_bits(at_field_%d[q]))", r->index);
+    joined = " || ";
+  }
+  c_text_add(e->out, ") ? flags[q] : 0;\n");
+}
+
+/* What the pass gives in this stage: in the last one, and in that behind it. */
+static void write_results(emitter *e, const stages *s, int stage) {
+  const bool of_change = stage > stages_last(s);
+  if (stage < stages_last(s)) return;
+  c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
+  for (int k = 0; k < e->root_count; k++)
+    if (!s->changes || stages_is_of_change(e, &e->roots[k]) == of_change)
+      write_store(e, &e->roots[k]);
+  if (s->changes && !of_change) write_changes(e);
 }
 
 static void write_stage_begin(emitter *e, const stages *s, int stage, bool usual,
                               const unsigned char *mask) {
-  bool reads_bonds = is_last(s, stage) || (usual && stages_has_conditions(e, s, stage));
+  bool reads_bonds = stage >= stages_last(s) || (usual && stages_has_conditions(e, s, stage));
   for (ir_node n = 0; n < e->node_count && !reads_bonds; n++)
     reads_bonds = mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n);
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
@@ -160,11 +190,7 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   e->usual = false;
   e->needed = whole;
   write_kept_stores(e, s, stage);
-  if (is_last(s, stage)) {
-    c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
-    for (int k = 0; k < e->root_count; k++)
-      write_store(e, &e->roots[k]);
-  }
+  write_results(e, s, stage);
   c_text_add(e->out, "  }\n");
   free(mask);
   free(kept_loads);
@@ -177,12 +203,19 @@ static void write_stages(emitter *e, const stages *s) {
              "  const long last = count - first < %d ? count - first : %d;\n",
              s->buffers, STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
-  for (int stage = 0; stage < s->count; stage++) {
+  if (s->changes) c_text_add(e->out, "  int64_t changed = 0;\n");
+  for (int stage = 0; stage <= stages_last(s); stage++) {
     write_stage(e, s, stage, true);
     if (!stages_has_conditions(e, s, stage)) continue;
-    c_text_add(e->out, "  if (unusual != 0) { /* both sides of what was expected */\n");
+    c_text_add(e->out,
+               "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
     write_stage(e, s, stage, false);
-    c_text_add(e->out, "  unusual = 0;\n  }\n");
+    c_text_add(e->out, "  }\n  unusual = 0;\n");
+  }
+  if (s->changes) {
+    c_text_add(e->out, "  if ((changed & present_bit) != 0) {\n");
+    write_stage(e, s, s->count - 1, false);
+    c_text_add(e->out, "  }\n");
   }
   c_text_add(e->out, "  }\n");
 }
@@ -195,11 +228,12 @@ static void describe(const stages *s, c_text *out) {
     c_text_add(out, "one loop, a chain of %d cycles", s->cost[0].chain);
     return;
   }
-  c_text_add(out, "%d loops over parts of %d bonds, chains of", s->count, STAGES_PART);
-  for (int k = 0; k < s->count; k++)
+  c_text_add(out, "%d loops over parts of %d bonds, chains of", stages_last(s) + 1, STAGES_PART);
+  for (int k = 0; k <= stages_last(s); k++)
     c_text_add(out, "%s%d", k ? ", " : " ", s->cost[k].chain);
   c_text_add(out, " cycles instead of %d, %d buffers between", s->whole_chain, s->buffers);
   if (s->conditions) c_text_add(out, ", %d choices expected", s->conditions);
+  if (s->changes) c_text_add(out, ", one more loop where damage changed");
 }
 
 void emit_strip_pass(emitter *e, const pass *p, const char *name) {
@@ -227,7 +261,9 @@ static void describe_stages(const emitter *e, const stages *s, FILE *out) {
             "    loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
             "%.0f cycles for eight bonds%s\n",
             k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
-            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected" : "");
+            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected"
+            : k > stages_last(s)           ? "; only where damage changed"
+                                           : "");
   }
 }
 

@@ -71,35 +71,39 @@ static ir_node arc_sine_near_zero(ir *g, ir_node x) {
   return ir_add(g, x, ir_mul(g, ir_mul(g, x, z), series));
 }
 
-static ir_node size_of(ir *g, ir_node n) {
-  return ir_make(g, IR_ABS, n, IR_NONE, IR_NONE);
-}
+/* How a bond's chord moves. */
+typedef struct chord_motion {
+  vector chord, d, now; /* reference chord, relative displacement, their sum */
+  ir_node
+      near; /* expected: |d| < s/16, so that |L/s - 1| and the sine of the chord's rotation are below 1/16 */
+  ir_node growth; /* L^2 - s^2 */
+} chord_motion;
 
-/* Nearly all chords turn by less than atan(1/16): then the arc sine's series does. C x d (d:
-   relative displacement) equals C x c, but does not cancel when d is small. */
-static ir_node chord_rotation(ir *g, const bond_kinematics *k, vector chord, vector d, vector now) {
-  ir_node across = cross(g, chord, d), along = dot(g, chord, now);
-  ir_node per_s = ir_div(g, ir_constant(g, 1), k->s);
-  ir_node sine = named(g, ir_mul(g, across, ir_mul(g, k->per_length, per_s)), "sine");
-  ir_node part = ir_mul(g, along, ir_constant(g, 1.0 / 16));
-  ir_node small = ir_expect(g, ir_make(g, IR_LT, size_of(g, across), part, IR_NONE));
+/* The angle of which C x d/(s L) is the sine; d: relative displacement. C x d equals C x c, but does not cancel when d is
+   small. */
+static ir_node chord_rotation(ir *g, const bond_kinematics *k, const chord_motion *m) {
+  const ir_node per_s = ir_div(g, ir_constant(g, 1), k->s);
+  const vector reference = {ir_mul(g, m->chord.x, per_s), ir_mul(g, m->chord.y, per_s)};
+  ir_node across = cross(g, reference, m->d), along = dot(g, reference, m->now);
+  ir_node sine = named(g, ir_mul(g, across, k->per_length), "sine");
   ir_node near = arc_sine_near_zero(g, sine), far = ir_make(g, IR_ATAN2, across, along, IR_NONE);
-  return named(g, ir_select(g, small, near, far), "chord_rotation");
+  return named(g, ir_select(g, m->near, near, far), "chord_rotation");
 }
 
-/* Rotation of an end less the chord's. Up to half a turn wrapping changes nothing. */
-static ir_node end_rotation(ir *g, ends_input end, ir_node of_chord, const char *name) {
-  ir_node angle = ir_sub(g, kinematics_input(g, end), of_chord);
-  ir_node half_turn = ir_constant(g, acos(-1));
-  ir_node inside = ir_expect(g, ir_make(g, IR_LE, size_of(g, angle), half_turn, IR_NONE));
-  ir_node wrapped = ir_make(g, IR_WRAP_ANGLE, angle, IR_NONE, IR_NONE);
-  return named(g, ir_select(g, inside, angle, wrapped), name);
-}
-
-static void end_rotations(ir *g, bond_kinematics *k, vector chord, vector d, vector now) {
-  ir_node of_chord = chord_rotation(g, k, chord, d, now);
-  k->theta_i = end_rotation(g, ENDS_PHI_I, of_chord, "theta_i");
-  k->theta_j = end_rotation(g, ENDS_PHI_J, of_chord, "theta_j");
+/* Rotations of the ends less the chord's. Up to half a turn wrapping changes nothing, so that one question serves both:
+   whether the squares of the two add up to less than that of half a turn. */
+static void end_rotations(ir *g, bond_kinematics *k, const chord_motion *m) {
+  const double square_of_half_turn = 9.8;
+  const ir_node of_chord = chord_rotation(g, k, m);
+  const ir_node i = ir_sub(g, kinematics_input(g, ENDS_PHI_I), of_chord);
+  const ir_node j = ir_sub(g, kinematics_input(g, ENDS_PHI_J), of_chord);
+  const ir_node both = dot(g, (vector){i, j}, (vector){i, j});
+  const ir_node limit = ir_constant(g, square_of_half_turn);
+  const ir_node inside = ir_expect(g, ir_make(g, IR_LE, both, limit, IR_NONE));
+  const ir_node wrapped_i = ir_make(g, IR_WRAP_ANGLE, i, IR_NONE, IR_NONE);
+  const ir_node wrapped_j = ir_make(g, IR_WRAP_ANGLE, j, IR_NONE, IR_NONE);
+  k->theta_i = named(g, ir_select(g, inside, i, wrapped_i), "theta_i");
+  k->theta_j = named(g, ir_select(g, inside, j, wrapped_j), "theta_j");
 }
 
 static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
@@ -117,32 +121,72 @@ static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
   return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
+static chord_motion motion_of_chord(ir *g, ir_node s) {
+  const ir_node two = ir_constant(g, 2);
+  chord_motion m = {.chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)};
+  m.d =
+      difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
+  m.now = sum(g, m.chord, m.d);
+  named(g, m.now.x, "c_x");
+  named(g, m.now.y, "c_y");
+  const ir_node square = dot(g, m.d, m.d);
+  const ir_node limit = ir_mul(g, ir_mul(g, s, s), ir_constant(g, 1.0 / 256));
+  m.near = ir_expect(g, ir_make(g, IR_LT, square, limit, IR_NONE));
+  const vector twice = {ir_mul(g, two, m.chord.x), ir_mul(g, two, m.chord.y)};
+  m.growth = named(g, ir_add(g, dot(g, twice, m.d), square), "growth");
+  return m;
+}
+
+/* 1/L near s: (1 + h)^(-1/2) with h = growth/s^2 through Chebyshev's points of |d| < s/16 (off by 2^-16.8 at most), and a
+   step of fourth order in e = 1 - (L guess)^2. */
+static ir_node inverse_length_near(ir *g, ir_node s, ir_node growth, ir_node square) {
+  static const double fit[] = {0x1.fffeea82e2b64p-1, -0x1.000362b9619cdp-1, 0x1.845e31a3a4243p-2,
+                               -0x1.3f8feaf7101d7p-2};
+  const ir_node one = ir_constant(g, 1), per_square = ir_div(g, one, ir_mul(g, s, s));
+  ir_node c[4], scale = ir_div(g, one, s);
+  for (int k = 0; k < 4; k++, scale = ir_mul(g, scale, per_square))
+    c[k] = ir_mul(g, ir_constant(g, fit[k]), scale);
+  const ir_node low = ir_add(g, c[0], ir_mul(g, growth, c[1]));
+  const ir_node high = ir_add(g, c[2], ir_mul(g, growth, c[3]));
+  const ir_node guess = ir_add(g, low, ir_mul(g, ir_mul(g, growth, growth), high));
+  const ir_node e = ir_sub(g, one, ir_mul(g, ir_mul(g, square, guess), guess));
+  ir_node series = ir_add(g, ir_constant(g, 0.375), ir_mul(g, e, ir_constant(g, 0.3125)));
+  series = ir_add(g, ir_constant(g, 0.5), ir_mul(g, e, series));
+  return ir_add(g, guess, ir_mul(g, ir_mul(g, guess, e), series));
+}
+
+/* Bonds of central laws may stretch as they like; of those with rotations nearly all stay near their reference. */
+static void find_length(ir *g, bond_kinematics *k, const chord_motion *m, bool near) {
+  ir_node square = dot(g, m->now, m->now);
+  if (near) square = ir_select(g, m->near, ir_add(g, ir_mul(g, k->s, k->s), m->growth), square);
+  named(g, square, "square");
+  k->per_length = ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE);
+  if (near) {
+    const ir_node quick = inverse_length_near(g, k->s, m->growth, square);
+    k->per_length = ir_select(g, m->near, quick, k->per_length);
+  }
+  named(g, k->per_length, "per_length");
+  k->length = named(g, ir_mul(g, square, k->per_length), "length");
+}
+
 /* Divisions are what such loops spend their time on: here there is none. */
 bond_kinematics kinematics_bond(ir *g, bool rotations) {
   bond_kinematics k = {0};
-  vector chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y);
   k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
-  vector d =
-      difference(g, inputs(g, ENDS_U_JX, ENDS_U_JY), inputs(g, ENDS_U_IX, ENDS_U_IY), "d_x", "d_y");
-  vector now = sum(g, chord, d);
-  named(g, now.x, "c_x");
-  named(g, now.y, "c_y");
-  ir_node square = named(g, dot(g, now, now), "square");
-  k.per_length = named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
-  k.length = named(g, ir_mul(g, square, k.per_length), "length");
-  ir_node growth = dot(g, d, sum(g, chord, now)); /* L^2 - s^2 */
-  ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
-  k.stretch = named(g, stretch_of(g, k.s, k.length, growth), "stretch");
-  vector e = {ir_mul(g, now.x, k.per_length), ir_mul(g, now.y, k.per_length)};
+  const chord_motion m = motion_of_chord(g, k.s);
+  find_length(g, &k, &m, rotations);
+  k.stretch = named(g, stretch_of(g, k.s, k.length, m.growth), "stretch");
+  vector e = {ir_mul(g, m.now.x, k.per_length), ir_mul(g, m.now.y, k.per_length)};
   k.e_x = named(g, e.x, "e_x");
   k.e_y = named(g, e.y, "e_y");
 
   vector dv = difference(g, inputs(g, ENDS_V_JX, ENDS_V_JY), inputs(g, ENDS_V_IX, ENDS_V_IY),
                          "dv_x", "dv_y");
+  const ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
   k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), per_s), "stretch_rate");
   k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
   if (rotations) {
-    end_rotations(g, &k, chord, d, now);
+    end_rotations(g, &k, &m);
     rotation_rates(g, &k, e, dv);
   }
   return k;

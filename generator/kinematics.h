@@ -93,7 +93,8 @@ typedef struct bond_kinematics {
 /* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without rotations
    the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
    rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
-   (-pi, pi]; that chords turn little and angles stay below half a turn is expected (ir_expect). */
+   (-pi, pi]; with rotations it is expected (ir_expect) that chords move by less than a sixteenth of their length, and that
+   angles stay below half a turn. */
 bond_kinematics kinematics_bond(ir *g, bool rotations);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. */

@@ -114,6 +114,7 @@ static void fuse(planner *p, seen_law *t) {
     all[count++] = t->step.fields[k];
   for (int k = 0; k < l->outputs.count; k++)
     all[count++] = t->outputs[k];
+  rewrite_factors(p->plan->graph, all, count, all);
   rewrite_fused(p->plan->graph, all, count, all);
   for (int k = 0; k < singles; k++)
     *single[k] = all[k];

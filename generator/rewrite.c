@@ -18,8 +18,7 @@ struct rebuilding {
   const ir_node *inputs; /* rewrite_zero */
   int input_count;
   const unsigned char *
-      shared; /* rewrite_reciprocals: denominators of several divisions; rewrite_fused: nodes that are
-                                  used several times */
+      shared; /* rewrite_reciprocals: denominators of several divisions; others: nodes that are used several times */
   const unsigned char *sided; /* rewrite_fused: nodes that need what a neighbour has */
 };
 
@@ -123,6 +122,117 @@ void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *o
   free(marks);
 }
 
+/* --- factors that are the same for all bonds --------------------------------------------------- */
+
+/* 1 for each node that two or more of the needed ones use, those with one operation left aside. */
+static unsigned char *shared_nodes(const ir *g, const unsigned char *marks, ir_op aside) {
+  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++)
+    for (int k = 0; marks[n] && ir_operation(g, n) != aside && k < ir_arity(ir_operation(g, n));
+         k++) {
+      unsigned char *use = &uses[ir_operand(g, n, k)];
+      *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
+    }
+  for (ir_node n = 0; n < ir_count(g); n++)
+    uses[n] = uses[n] >= 2;
+  return uses;
+}
+
+/* Takes node n apart: n = factor * rest, to the order of multiplication. IR_NONE where no factor is uniform. */
+typedef struct factored {
+  ir_node factor, rest;
+} factored;
+
+static factored take_factor(const ir *g, ir_node n) {
+  if (ir_operation(g, n) == IR_MUL && !is_uniform(g, n))
+    for (int k = 0; k < 2; k++)
+      if (is_uniform(g, ir_operand(g, n, k)))
+        return (factored){ir_operand(g, n, k), ir_operand(g, n, 1 - k)};
+  return (factored){IR_NONE, n};
+}
+
+static ir_node join_factors(ir *g, ir_node a, ir_node b) {
+  return a == IR_NONE ? b : b == IR_NONE ? a : ir_mul(g, a, b);
+}
+
+/* Both factors move out of a product where that costs nothing: one operand is uniform, or nothing else needs it as it was. */
+static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  factored part[2];
+  bool moves = false;
+  for (int k = 0; k < 2; k++) {
+    const bool uniform = is_uniform(g, operand[k]);
+    part[k] = uniform ? (factored){operand[k], IR_NONE} : take_factor(g, operand[k]);
+    const bool alone = uniform || !r->shared[ir_operand(g, old, k)];
+    moves = moves || (alone && part[k].factor != IR_NONE);
+  }
+  if (!moves) return again(g, old, operand);
+  return ir_mul(g, join_factors(g, part[0].factor, part[1].factor),
+                join_factors(g, part[0].rest, part[1].rest));
+}
+
+/* (u*x)/y = u*(x/y) */
+static ir_node factored_quotient(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  const factored above = take_factor(g, operand[0]);
+  if (above.factor == IR_NONE || r->shared[ir_operand(g, old, 0)]) return again(g, old, operand);
+  return ir_mul(g, above.factor, ir_div(g, above.rest, operand[1]));
+}
+
+/* A factor of which the graph shows that it is not below 0. */
+static bool is_size(const ir *g, ir_node n) {
+  const ir_op op = ir_operation(g, n);
+  return op == IR_ABS || op == IR_SQRT || op == IR_EXP ||
+         (op == IR_CONSTANT && ir_value(g, n) >= 0);
+}
+
+/* The larger or smaller of two is one operation of the processor, if the second is NaN wherever the first is. */
+static ir_node quick_extreme(ir *g, ir_op op, ir_node a, ir_node b) {
+  if (!rewrite_nan_follows(g, a, b)) return ir_make(g, op, a, b, IR_NONE);
+  const bool smaller = op == IR_MIN;
+  return ir_select(g, ir_make(g, IR_LT, smaller ? a : b, smaller ? b : a, IR_NONE), a, b);
+}
+
+static ir_node factored_extreme(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  const ir_op op = ir_operation(g, old);
+  const factored a = take_factor(g, operand[0]), b = take_factor(g, operand[1]);
+  if (a.factor == IR_NONE || a.factor != b.factor || !is_size(g, a.factor))
+    return quick_extreme(g, op, operand[0], operand[1]);
+  return ir_mul(g, a.factor, quick_extreme(g, op, a.rest, b.rest));
+}
+
+static ir_node factor_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  if (is_uniform(g, old)) return again(g, old, operand);
+  switch (ir_operation(g, old)) {
+  case IR_MUL:
+    return factored_product(r, old, operand);
+  case IR_DIV:
+    return factored_quotient(r, old, operand);
+  case IR_ABS: {
+    const factored a = take_factor(g, operand[0]);
+    if (a.factor == IR_NONE) return again(g, old, operand);
+    const ir_node size = ir_make(g, IR_ABS, a.factor, IR_NONE, IR_NONE);
+    return ir_mul(g, size, ir_make(g, IR_ABS, a.rest, IR_NONE, IR_NONE));
+  }
+  case IR_MIN:
+  case IR_MAX:
+    return factored_extreme(r, old, operand);
+  default:
+    return again(g, old, operand);
+  }
+}
+
+void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out) {
+  unsigned char *marks = marks_of(g, roots, root_count);
+  unsigned char *shared = shared_nodes(g, marks, IR_ABS); /* factors leave it in any case */
+  rebuilding r = {.graph = g, .rule = factor_rule, .shared = shared};
+  rebuild(&r, roots, root_count, out);
+  free(shared);
+  free(marks);
+}
+
 /* --- fused sums of products ------------------------------------------------------------------- */
 
 /* What has a name stays a value of its own: bodies at rest count on a length that is rounded before its reference is taken
@@ -156,19 +266,6 @@ static ir_node fused_rule(const rebuilding *r, ir_node old, const ir_node *opera
   return ir_make(g, IR_FMA, a, b, rest);
 }
 
-/* 1 for each node that two or more of the needed ones use. */
-static unsigned char *shared_nodes(const ir *g, const unsigned char *marks) {
-  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
-  for (ir_node n = 0; n < ir_count(g); n++)
-    for (int k = 0; marks[n] && k < ir_arity(ir_operation(g, n)); k++) {
-      unsigned char *use = &uses[ir_operand(g, n, k)];
-      *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
-    }
-  for (ir_node n = 0; n < ir_count(g); n++)
-    uses[n] = uses[n] >= 2;
-  return uses;
-}
-
 static unsigned char *sided_nodes(const ir *g) {
   unsigned char *sided = must_calloc((size_t)ir_count(g) + 1, 1);
   for (ir_node n = 0; n < ir_count(g); n++) {
@@ -181,7 +278,7 @@ static unsigned char *sided_nodes(const ir *g) {
 
 void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out) {
   unsigned char *marks = marks_of(g, roots, root_count);
-  unsigned char *shared = shared_nodes(g, marks), *sided = sided_nodes(g);
+  unsigned char *shared = shared_nodes(g, marks, IR_OP_COUNT), *sided = sided_nodes(g);
   rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared, .sided = sided};
   rebuild(&r, roots, root_count, out);
   free(shared);
@@ -320,6 +417,37 @@ static bool makes_nan(ir_op op) {
   default:
     return false;
   }
+}
+
+/* Marks what, being NaN, surely makes n NaN: n itself, and what arithmetic alone leads from. */
+static void mark_nan_reaching(const ir *g, ir_node n, unsigned char *marks) {
+  marks[n] = 1;
+  for (ir_node k = n; k >= 0; k--) {
+    const ir_op op = ir_operation(g, k);
+    const bool passes = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_DIV ||
+                        op == IR_FMA || op == IR_NEG || op == IR_ABS || op == IR_MIN ||
+                        op == IR_MAX;
+    for (int o = 0; marks[k] && passes && o < ir_arity(op); o++)
+      marks[ir_operand(g, k, o)] = 1;
+  }
+}
+
+bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
+  const size_t count = (size_t)ir_count(g);
+  unsigned char *reaching = must_calloc(count, 1), *open = must_calloc(count, 1);
+  mark_nan_reaching(g, b, reaching);
+  open[a] = 1;
+  bool follows = true;
+  for (ir_node k = a; k >= 0 && follows; k--) {
+    const ir_op op = ir_operation(g, k);
+    if (!open[k] || reaching[k] || is_uniform(g, k)) continue;
+    follows = op != IR_INPUT && !makes_nan(op);
+    for (int o = 0; o < ir_arity(op); o++)
+      open[ir_operand(g, k, o)] = 1;
+  }
+  free(reaching);
+  free(open);
+  return follows;
 }
 
 bool rewrite_may_be_nan(const ir *g, ir_node n) {

@@ -16,6 +16,11 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
    instead of 0.5. Assumes that 1/u does not overflow. */
 void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
+/* Factors that are the same for all bonds become one, which is hoisted: u*(v*x) = (u*v)*x; to that end they move out of
+   products that nothing else needs, out of sizes, and out of the larger or smaller of two, which becomes a choice where a
+   choice keeps its NaN. Assumes that products of such factors neither overflow nor underflow. */
+void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out);
+
 /* a*b + c, where it differs from bond to bond and a*b has no name, becomes one operation that rounds once: faster, and
    closer to the exact sum. What is a difference of equal products in the roots need not be exactly 0 afterwards. */
 void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out);
@@ -34,5 +39,8 @@ double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count);
 /* Whether finite inputs could make the node NaN: it depends on a root, logarithm, power, division or trigonometric function
    of something that varies over the lattice. Overflow is left aside. */
 bool rewrite_may_be_nan(const ir *g, ir_node n);
+
+/* Whether b is NaN wherever a is, for reasons visible in the graph. Overflow is left aside. */
+bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b);
 
 #endif

@@ -34,20 +34,22 @@ static double triad(int threads) {
 /* --- a particle's step ------------------------------------------------------------------------ */
 
 /* What a step must move for a particle: displacements, velocities and fields are read and written once, and so is what one
-   pass leaves to another, unless it stays in windows of rows; marks of bonds and what is known of the reference are read. */
+   pass leaves to another, unless it stays in windows of rows; marks of bonds and what is known of the reference are read.
+   Rows of bonds share marks; where bonds of large families add to both ends, their fields are hardly touched. */
 static double bytes_of_step(const run *r) {
   const pl_law *kernel = r->laws[0].law;
   const sweep *w = simulation_state(r->simulation);
   const rows *g = w->lattice;
   const double one = sizeof(double);
-  double both = 2.0 * kernel->dof, read = 1;
+  double both = 2.0 * kernel->dof, read = 0;
   for (int k = 0; k < kernel->field_count; k++)
-    both += sweep_planes(w, kernel->fields[k].place);
+    if (kernel->sum_count == 0 || kernel->fields[k].place == PL_ON_PARTICLE)
+      both += sweep_planes(w, kernel->fields[k].place);
   if (kernel->kind == PL_STATE) {
     both += 0.5 * kernel->dof; /* forces are written */
     if (w->engine.keeps_links)
       both += kernel->link_count + kernel->bond_link_count * sweep_planes(w, PL_ON_NEIGHBOUR);
-    read += 1 + (kernel->reads_shape ? PL_SHAPE_PLANES(kernel->dimensions) : 0);
+    read += 2 + (kernel->reads_shape ? PL_SHAPE_PLANES(kernel->dimensions) : 0);
   }
   if (g->list) read += 2.0 * g->directions * (1.5 + kernel->dimensions) + 3;
   return one * (2 * both + read);

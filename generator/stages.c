@@ -60,6 +60,28 @@ static bool is_line(const emitter *e, ir_node n) {
   return e->name[n] && !emit_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
 }
 
+static bool is_damage(const emitter *e, int field) {
+  return e->plan->law->fields.items[field]->kind == SYMBOL_DAMAGE;
+}
+
+bool stages_is_of_change(const emitter *e, const pass_root *r) {
+  if (r->target == TO_FIELD) return is_damage(e, r->index);
+  if (r->target != TO_DISSIPATED_STATE || !e->plan->law->fields.count) return false;
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    if (!is_damage(e, f)) return false;
+  return true;
+}
+
+static bool is_always_computed(const emitter *e, const pass_root *r) {
+  return r->target == TO_FIELD || !stages_is_of_change(e, r);
+}
+
+static bool has_changes(const emitter *e) {
+  for (int k = 0; k < e->root_count; k++)
+    if (stages_is_of_change(e, &e->roots[k])) return true;
+  return false;
+}
+
 /* --- a plan in the making --------------------------------------------------------------------- */
 
 typedef struct planner {
@@ -93,9 +115,10 @@ static int finish_in(const planner *p, ir_node n, int stage) {
   const int count = stages_operands(p->e, n, true, operand);
   for (int k = 0; k < count; k++) {
     const ir_node o = operand[k];
-    const int ready = !is_line(p->e, o)      ? finish_in(p, o, stage)
-                      : p->s->of[o] == stage ? p->finish[o]
-                                             : LOAD_LATENCY;
+    const bool here = p->s->of[o] == stage || p->s->of[o] < 0;
+    const int ready = !is_line(p->e, o) ? finish_in(p, o, stage)
+                      : here            ? p->finish[o]
+                                        : LOAD_LATENCY;
     start = larger(start, ready);
   }
   return count ? start + prices[ir_operation(p->e->graph, n)].latency : 0;
@@ -184,7 +207,7 @@ static void drop_empty(planner *p) {
   int *number = must_calloc((size_t)stage_count + 1, sizeof *number);
   for (ir_node n = 0; n < p->e->node_count; n++)
     if (s->of[n] >= 0) number[s->of[n]] = 1;
-  number[stage_count - 1] = 1;
+  number[stages_last(s)] = number[stage_count - 1] = 1;
   s->count = 0;
   for (int k = 0; k < stage_count; k++)
     number[k] = number[k] ? s->count++ : -1;
@@ -239,7 +262,7 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
     c.chain = larger(c.chain, finish_in(p, n, stage));
     if (is_line(e, n)) p->finish[n] = finish_in(p, n, stage);
   }
-  if (stage == p->s->count - 1) c.stores += e->root_count;
+  if (stage == stages_last(p->s)) c.stores += e->root_count;
   const double busy = most(most(0.5 * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
   c.cycles = hypot(busy, waiting) +
@@ -253,7 +276,7 @@ static void find_costs(planner *p) {
   p->s->cost = must_calloc((size_t)p->s->count, sizeof *p->s->cost);
   for (int stage = 0; stage < p->s->count; stage++) {
     p->s->cost[stage] = cost_of(p, stage, mask, taken);
-    p->s->cycles += p->s->cost[stage].cycles;
+    if (stage <= stages_last(p->s)) p->s->cycles += p->s->cost[stage].cycles;
   }
   free(mask);
   free(taken);
@@ -265,7 +288,7 @@ static void mark_usual(planner *p) {
   const emitter *e = p->e;
   p->usual = must_calloc((size_t)e->node_count + 1, 1);
   for (int k = 0; k < e->root_count; k++)
-    p->usual[e->roots[k].node] = 1;
+    if (is_always_computed(e, &e->roots[k])) p->usual[e->roots[k].node] = 1;
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     ir_node operand[3];
     const int count = p->usual[n] ? stages_operands(e, n, true, operand) : 0;
@@ -287,6 +310,8 @@ static stages *plan_with(planner *p, int longest) {
     s->conditions += stages_is_expected_choice(p->e, n);
   }
   s->count = last_stage(p) + 1;
+  s->changes = s->count > 1 && has_changes(p->e);
+  s->count += s->changes;
   if (s->count > 1) place_late(p);
   drop_empty(p);
   give_buffers(p);
@@ -336,12 +361,36 @@ bool stages_has_conditions(const emitter *e, const stages *s, int stage) {
   return false;
 }
 
+int stages_last(const stages *s) {
+  return s->count - 1 - s->changes;
+}
+
+/* Whether the pass gives a result in that stage: all in the last one but those of a change. New damage is asked for there,
+   too. */
+static bool gives(const emitter *e, const stages *s, int stage, const pass_root *r) {
+  if (stage < stages_last(s)) return false;
+  if (!s->changes) return true;
+  return stage > stages_last(s) ? stages_is_of_change(e, r) : is_always_computed(e, r);
+}
+
 /* What the stage hands on: its lines, or what the pass gives. */
 static void mark_results(const emitter *e, const stages *s, int stage, unsigned char *mask) {
   for (ir_node n = 0; n < e->node_count; n++)
     if (s->of[n] == stage) mask[n] = 1;
-  for (int k = 0; stage == s->count - 1 && k < e->root_count; k++)
-    mask[e->roots[k].node] = 1;
+  for (int k = 0; k < e->root_count; k++)
+    if (gives(e, s, stage, &e->roots[k])) mask[e->roots[k].node] = 1;
+}
+
+static bool is_result(const emitter *e, ir_node n) {
+  for (int k = 0; k < e->root_count; k++)
+    if (e->roots[k].node == n) return true;
+  return false;
+}
+
+/* The stage of changes takes results from the one before it, and computes what else that has again: it is rare. */
+static bool comes_from_before(const emitter *e, const stages *s, ir_node n, int stage) {
+  if (s->of[n] < 0 || s->of[n] >= stage) return false;
+  return s->of[n] < stages_last(s) || is_result(e, n);
 }
 
 void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
@@ -352,7 +401,7 @@ void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsig
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     if (!mask[n]) continue;
     /* what only the unexpected needs is not kept for it: it is computed again */
-    if (s->of[n] >= 0 && s->of[n] < stage && (usual || s->until[n] >= stage)) {
+    if (comes_from_before(e, s, n, stage) && (usual || s->until[n] >= stage)) {
       kept_loads[n] = 1;
       mask[n] = 0;
       continue;

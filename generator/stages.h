@@ -7,7 +7,10 @@
    once, at its end, whether all were as expected; if not, the stage is done again, with both sides. The last stage, which
    overwrites fields, is never done twice.
 
-   Neither changes any operation: results are the same to the bit, however a loop is cut. */
+   What follows from new damage alone is left to one more stage, done only where a bond has some: most steps leave nearly
+   all damage as it is, which need not be written then, and whose energy need not be computed.
+
+   None of this changes any operation: results are the same to the bit, however a loop is cut. */
 #ifndef PERILAT_GENERATOR_STAGES_H
 #define PERILAT_GENERATOR_STAGES_H
 
@@ -30,6 +33,7 @@ typedef struct stages {
   int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
   int *until;  /* [node_count] last stage that it is kept for; -1 */
   int buffers;
+  bool changes;     /* one more stage is done only where some damage changed */
   int conditions;   /* expected ones */
   stage_cost *cost; /* [count] */
   double cycles;    /* sum of the stages' */
@@ -49,6 +53,11 @@ void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsig
                  unsigned char *kept_loads);
 /* A choice by a condition that is expected to hold. */
 bool stages_is_expected_choice(const emitter *e, ir_node n);
+/* The stage that ends with what the pass gives, in every part. */
+int stages_last(const stages *s);
+/* A result of the stage behind that, which most steps leave as it is nearly everywhere: damage, and energy that nothing but
+   damage takes. */
+bool stages_is_of_change(const emitter *e, const pass_root *r);
 bool stages_has_conditions(const emitter *e, const stages *s, int stage);
 
 #endif

@@ -40,6 +40,16 @@ double damage_of_site(const sweep *w, long site) {
   return most;
 }
 
+const double *damage_of_all_bonds(const sweep *w) {
+  const double *only = NULL;
+  for (int f = 0; f < w->law->field_count; f++) {
+    if (!counts(&w->law->fields[f], false)) continue;
+    if (only || w->law->kind == PL_STATE) return NULL;
+    only = w->field[f];
+  }
+  return only;
+}
+
 static void mean_over_bonds(const sweep *w, const rows_bond *bonds, double *values) {
   const rows *g = w->lattice;
   int32_t *count = must_calloc((size_t)g->particle_count, sizeof *count);

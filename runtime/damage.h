@@ -13,6 +13,8 @@ bool damage_on_particles(const pl_law *law);
 
 /* 0 without. */
 double damage_of_bond(const sweep *w, const rows_bond *bond);
+/* [directions][size] that of every bond, where a law of bonds has one damage; NULL otherwise. */
+const double *damage_of_all_bonds(const sweep *w);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);
 /* values[particle_count]; `bonds` are all bonds of the lattice. */

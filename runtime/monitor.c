@@ -202,11 +202,24 @@ static bool is_counted(const monitor *m, double damage) {
   return m->deck->kind == MONITOR_BROKEN ? damage >= m->deck->above : damage > m->deck->above;
 }
 
+/* Place by place: several times as fast as bond by bond. */
+static long count_in_places(const rows *g, const monitor *m, const double *damage) {
+  const bool broken = m->deck->kind == MONITOR_BROKEN;
+  const double above = m->deck->above;
+  long count = 0;
+  for (int k = 0; k < g->directions; k++, damage += g->size)
+    for (long q = 0; q < g->size; q++)
+      count += (long)(g->bonds[q] >> k & 1) & (broken ? damage[q] >= above : damage[q] > above);
+  return count;
+}
+
 /* Bonds, or particles where the law's damage is on particles alone. */
 static double count_damaged(const monitors *all, const monitor *m) {
   const rows *g = all->state->lattice;
   const bool bonds = damage_on_bonds(all->state->law);
+  const double *in_places = damage_of_all_bonds(all->state);
   long count = 0;
+  if (in_places) return (double)count_in_places(g, m, in_places);
   for (long b = 0; bonds && b < g->bond_count; b++)
     count += is_counted(m, damage_of_bond(all->state, &all->bonds[b]));
   for (long p = 0; !bonds && p < g->particle_count; p++)

@@ -24,7 +24,7 @@ typedef struct pairwise_block { /* what one thread works with */
 
 typedef struct pairwise {
   double *uniforms;       /* [directions][uniform_count] */
-  int64_t *flags;         /* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns */
+  int64_t **flags;        /* [row_count] of the bonds that the sites of a row's span own */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
   pairwise_block *blocks; /* [block_count] */
@@ -63,12 +63,14 @@ static void clear_buffer(const sweep *w, row_forces *buffer) {
   take_buffer(w, buffer, buffer->end, buffer->end);
 }
 
-static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, pl_strip *s) {
+/* Bonds that a row owns in one direction, from place `first` of its span on. */
+static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, long first,
+                       long count, pl_strip *s) {
   const rows *g = w->lattice;
-  const long near = rows_start(g, row) + w->begin[row], far = near + rows_offset(g, row, direction);
-  s->count = w->count[row];
+  const long near = sweep_start(w, row) + first, far = near + rows_offset(g, row, direction);
+  s->count = count;
   s->direction = direction;
-  s->flags = own(w)->flags + near;
+  s->flags = own(w)->flags[row] + first;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -89,21 +91,28 @@ const double *pairwise_uniforms(const sweep *w, int direction) {
   return own(w)->uniforms + (long)direction * w->law->uniform_count;
 }
 
-/* Forces of the bonds that row `row` owns, into `buffer`; their fields move on by one step. */
-static void evaluate(sweep *w, pairwise_block *b, int row, row_forces *buffer) {
-  const rows *g = w->lattice;
-  take_buffer_for_row(w, buffer, row);
+/* Forces of the bonds that a row owns in one direction, from place `first` on, into `buffer`; their fields move on by one
+   step. */
+static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, long first,
+                           long count, const row_forces *buffer) {
+  double *force[PL_MAX_PLANES];
+  const long begin = w->begin[row] + first,
+             site = direction * w->lattice->size + rows_start(w->lattice, row) + begin;
+  for (int p = 0; p < w->law->force_planes; p++)
+    force[p] = plane(w, buffer, p, direction) + begin;
+  for (int f = 0; f < w->law->field_count; f++)
+    b->pointers[f] = w->field[f] + site;
+  pl_strip s = {.field = b->pointers, .force = force};
+  strip_ends(w, b, row, direction, first, count, &s);
   const pl_strip_function kernel = w->ledger ? w->law->rows_ledger : w->law->rows;
-  for (int k = 0; k < g->directions && w->count[row] > 0; k++) {
-    double *force[PL_MAX_PLANES];
-    for (int p = 0; p < w->law->force_planes; p++)
-      force[p] = plane(w, buffer, p, k) + w->begin[row];
-    for (int f = 0; f < w->law->field_count; f++)
-      b->pointers[f] = w->field[f] + k * g->size + rows_start(g, row) + w->begin[row];
-    pl_strip s = {.field = b->pointers, .force = force};
-    strip_ends(w, b, row, k, &s);
-    kernel(w->law, pairwise_uniforms(w, k), &s);
-  }
+  kernel(w->law, pairwise_uniforms(w, direction), &s);
+}
+
+/* Forces of the bonds that a row owns, from place `first` of its span on. */
+static void evaluate_part(sweep *w, pairwise_block *b, int row, long first, long count,
+                          const row_forces *buffer) {
+  for (int k = 0; k < w->lattice->directions; k++)
+    evaluate_strip(w, b, row, k, first, count, buffer);
 }
 
 /* The same on a copy of the fields: forces of the present state without a trace. */
@@ -120,18 +129,21 @@ static void evaluate_aside(sweep *w, pairwise_block *b, int row, row_forces *buf
              (size_t)w->count[row] * sizeof(double));
     }
     pl_strip s = {.field = b->pointers, .force = force};
-    strip_ends(w, b, row, k, &s);
+    strip_ends(w, b, row, k, 0, w->count[row], &s);
     w->law->rows(w->law, pairwise_uniforms(w, k), &s);
   }
 }
 
-const int64_t *pairwise_flags(const sweep *w) {
-  return own(w)->flags;
+const int64_t *pairwise_flags(const sweep *w, int row) {
+  return own(w)->flags[row];
 }
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
-enum { DIRECTIONS = 3 }; /* of a law of bonds */
+enum {
+  DIRECTIONS = 3,    /* of a law of bonds */
+  LONGEST_PART = 160 /* bonds of a direction that are looked at before those of the next */
+};
 
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
@@ -140,19 +152,18 @@ typedef struct gathered { /* bond forces that add up to the force on the particl
 
 /* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
  */
-static gathered gather(const sweep *w, int row, int component, const row_forces *here,
-                       const row_forces *below) {
+static void gather(const sweep *w, int row, int component, const row_forces *here,
+                   const row_forces *below, gathered *from) {
   const rows *g = w->lattice;
   const int far_plane = component < 2 ? component : 3;
   const long begin = w->begin[row];
-  gathered s = {{0}, {0}};
-  for (int k = 0; k < g->directions; k++) {
+  for (int k = 0; k < DIRECTIONS; k++) {
     const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
-    s.own[k] = plane(w, here, component, k) + begin;
-    s.incoming[k] = along < g->pitch / 2 ? plane(w, here, far_plane, k) + begin - along
-                                         : plane(w, below, far_plane, k) + begin - (up - g->pitch);
+    from->own[k] = plane(w, here, component, k) + begin;
+    from->incoming[k] = along < g->pitch / 2
+                            ? plane(w, here, far_plane, k) + begin - along
+                            : plane(w, below, far_plane, k) + begin - (up - g->pitch);
   }
-  return s;
 }
 
 static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int directions,
@@ -165,15 +176,15 @@ static inline __attribute__((always_inline)) double bond_sum(const gathered *s, 
   return f;
 }
 
-/* next = decay v + dt/m f. Returns nonzero when a velocity is not below the limit (NaN is not below
+/* next = decay v + dt/m f, from place `first` on. Returns nonzero when a velocity is not below the limit (NaN is not below
  * anything). */
 static inline __attribute__((always_inline)) int64_t
-kick(const gathered *from, int directions, double sign, long count, double kick_factor,
+kick(const gathered *from, int directions, double sign, long first, long end, double kick_factor,
      double decay, double limit, const double *restrict v, double *restrict next) {
   const gathered s = *from;
   int64_t bad = 0;
   INDEPENDENT
-  for (long q = 0; q < count; q++) {
+  for (long q = first; q < end; q++) {
     const double after = decay * v[q] + kick_factor * bond_sum(&s, directions, sign, q);
     next[q] = after;
     bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
@@ -183,52 +194,91 @@ kick(const gathered *from, int directions, double sign, long count, double kick_
 
 /* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
    forces on j are the opposite of those on i. */
-static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, double *next) {
+static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
+                              long end, double *next) {
   const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
-  const long count = w->count[row];
-  if (d >= 2) return kick(s, DIRECTIONS, 1, count, factor, w->decay, w->limit[d], v, next);
-  const int64_t bad = kick(s, DIRECTIONS, -1, count, factor, w->decay, w->limit[d], v, next);
-  return w->weight ? sweep_push(w, row, d, next) : bad;
+  return d < 2 ? kick(s, DIRECTIONS, -1, first, end, factor, w->decay, w->limit[d], v, next)
+               : kick(s, DIRECTIONS, 1, first, end, factor, w->decay, w->limit[d], v, next);
 }
 
-/* Moves a row. A row with a bad velocity stays where it is, so that its state before the step can
- * be reported. */
-static void move_row(sweep *w, sweep_block *b, int row, const row_forces *here,
-                     const row_forces *below) {
-  int64_t bad = 0;
+/* A row on its way. */
+typedef struct moved_row {
+  int row;
+  bool known; /* the forces of its bonds are */
+  gathered from[PL_MAX_DOF];
+  int64_t bad[PL_MAX_DOF]; /* not 0: some velocity */
+} moved_row;
+
+static void kick_part(const sweep *w, const sweep_block *b, moved_row *m, long first, long end) {
+  for (int d = 0; d < w->dof; d++)
+    m->bad[d] |=
+        kick_component(w, m->row, &m->from[d], d, first, end, b->next + d * w->lattice->pitch);
+}
+
+/* Moves a row whose particles were kicked. A row with a bad velocity stays where it is, so that its state before the step
+   can be reported. */
+static void move_row(sweep *w, sweep_block *b, moved_row *m) {
+  int64_t any = 0;
   for (int d = 0; d < w->dof; d++) {
-    const gathered s = gather(w, row, d, here, below);
-    bad |= kick_component(w, row, &s, d, b->next + d * w->lattice->pitch);
+    if (w->weight && d < w->dimensions)
+      m->bad[d] = sweep_push(w, m->row, d, b->next + d * w->lattice->pitch);
+    any |= m->bad[d];
   }
-  if (bad)
-    sweep_note_bad(w, b, row);
+  if (any)
+    sweep_note_bad(w, b, m->row);
   else
-    sweep_drift(w, b, row);
+    sweep_drift(w, b, m->row);
 }
 
-static void move_timed_row(sweep *w, sweep_block *b, int row, const row_forces *here,
-                           const row_forces *below) {
-  const double begun = w->timed ? monotonic_seconds() : 0;
-  move_row(w, b, row, here, below);
-  if (w->timed) b->moving += monotonic_seconds() - begun;
+/* Equal parts of a row of that many places, whole vectors. */
+static long part_of(long count) {
+  const long parts = (count + LONGEST_PART - 1) / LONGEST_PART;
+  return parts ? (count / parts + PL_LANES - 1) / PL_LANES * PL_LANES : 0;
+}
+
+/* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
+   for those of the next, and their forces for the particles. */
+static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
+  sweep_block *b = &w->blocks[block];
+  const long count = w->count[m->row], part = part_of(count);
+  double moving = 0;
+  for (long first = 0; first < count; first += part) {
+    const long end = first + part < count ? first + part : count;
+    if (!m->known) evaluate_part(w, &own(w)->blocks[block], m->row, first, end - first, here);
+    if (w->timed) moving -= monotonic_seconds();
+    kick_part(w, b, m, first, end);
+    if (w->timed) moving += monotonic_seconds();
+  }
+  if (w->timed) moving -= monotonic_seconds();
+  move_row(w, b, m);
+  if (w->timed) b->moving += moving + monotonic_seconds();
 }
 
 static void evaluate_seam(sweep *w, int block) {
   sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
+  const int row = b->last - 1;
   b->bad_site = -1;
-  evaluate(w, p, b->last - 1, &p->seam);
+  take_buffer_for_row(w, &p->seam, row);
+  if (w->count[row] > 0) evaluate_part(w, p, row, 0, w->count[row], &p->seam);
 }
 
 static void move_rows(sweep *w, int block) {
-  sweep_block *b = &w->blocks[block];
+  const sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
   for (int r = b->first; r < b->last; r++) {
-    row_forces *here = r == b->last - 1 ? &p->seam : &p->buffer[(r - b->first) & 1];
-    if (here != &p->seam) evaluate(w, p, r, here);
-    move_timed_row(w, b, r, here, below);
+    moved_row m;
+    m.row = r;
+    m.known = r == b->last - 1;
+    row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
+    if (!m.known) take_buffer_for_row(w, here, r);
+    for (int d = 0; d < w->dof; d++) {
+      gather(w, r, d, here, below, &m.from[d]);
+      m.bad[d] = 0;
+    }
+    advance_row(w, block, &m, here);
     below = here;
   }
 }
@@ -251,7 +301,7 @@ static pl_strip observe_strip(sweep *w, pairwise_block *b, int row, int directio
   for (int o = 0; o <= w->law->output_count; o++)
     observed[o] = b->observed + o * g->pitch;
   pl_strip s = {.field = b->pointers, .observed = observed};
-  strip_ends(w, b, row, direction, &s);
+  strip_ends(w, b, row, direction, 0, w->count[row], &s);
   w->law->rows_observe(w->law, pairwise_uniforms(w, direction), &s);
   return s;
 }
@@ -282,8 +332,10 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
   for (int d = 0; d < w->dof; d++) {
-    const gathered s = gather(w, row, d, here, below);
-    kick_component(w, row, &s, d, b->next + d * w->lattice->pitch);
+    gathered s;
+    gather(w, row, d, here, below, &s);
+    kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
+    sweep_push(w, row, d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
       w->force[d][start + q] = bond_sum(&s, w->lattice->directions, d < 2 ? -1 : 1, q);
   }
@@ -317,12 +369,33 @@ static void prepare_uniforms(sweep *w, pairwise *p, const double *parameters) {
   }
 }
 
-/* Bits of the lattice's bonds as strips have them. */
+/* Bits of the bonds that a row's sites own. */
+static void read_flags(const sweep *w, int row, int64_t *flags) {
+  const rows *g = w->lattice;
+  const long start = sweep_start(w, row);
+  for (long q = 0; q < w->count[row]; q++)
+    flags[q] = (int64_t)(g->bonds[start + q] | g->held_bonds[start + q] << 32);
+}
+
+/* Most rows of a body are as the row two below: these share what they have, so that it stays in a cache. */
 static void compose_flags(sweep *w, pairwise *p) {
   const rows *g = w->lattice;
-  p->flags = (int64_t *)sweep_doubles(w, g->size);
-  for (long q = 0; q < g->size; q++)
-    p->flags[q] = (int64_t)(g->bonds[q] | g->held_bonds[q] << 32);
+  int64_t *read = must_calloc((size_t)g->pitch, sizeof *read);
+  p->flags = must_calloc((size_t)g->row_count, sizeof *p->flags);
+  for (int r = 0; r < g->row_count; r++) {
+    const size_t bytes = (size_t)w->count[r] * sizeof *read;
+    int64_t *same = r >= 2 && w->count[r - 2] == w->count[r] ? p->flags[r - 2] : NULL;
+    read_flags(w, r, read);
+    if (same && memcmp(same, read, bytes) != 0) same = NULL;
+    p->flags[r] = same ? same : memcpy(sweep_doubles(w, w->count[r]), read, bytes);
+  }
+  free(read);
+}
+
+static void free_flags(const sweep *w, pairwise *p) {
+  for (int r = w->lattice->row_count - 1; r >= 0; r--)
+    if (r < 2 || p->flags[r] != p->flags[r - 2]) free(p->flags[r]);
+  free(p->flags);
 }
 
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
@@ -351,7 +424,7 @@ static void free_own(sweep *w) {
   }
   free(p->blocks);
   free(p->uniforms);
-  free(p->flags);
+  free_flags(w, p);
   free(p);
 }
 

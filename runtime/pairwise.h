@@ -1,5 +1,6 @@
 /* The sweep for laws of bonds: bonds of a row into a row buffer, its forces at once into velocities
-   and displacements, so that bond forces never go to memory.
+   and displacements, so that bond forces never go to memory. Long rows go part by part, so that what one direction of bonds
+   loads is in the first cache for the next.
 
    A row's forces need the bonds of the row below, so that the last row of a block (its seam) is
    evaluated before anything moves: the first stage of a step does the seams, the second one the
@@ -18,7 +19,7 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters);
 /* What the law's `prepare` gave for the bonds of a direction: [uniform_count]. */
 const double *pairwise_uniforms(const sweep *w, int direction);
 
-/* [size] PL_PRESENT, PL_PROTECTED of the bonds that a site owns. */
-const int64_t *pairwise_flags(const sweep *w);
+/* [count of the row] PL_PRESENT, PL_PROTECTED of the bonds that the sites of a row's span own. */
+const int64_t *pairwise_flags(const sweep *w, int row);
 
 #endif

@@ -68,7 +68,10 @@ static const char *const c_own_words[] = {"static",
                                           "pl_min",
                                           "pl_max",
                                           "pl_pow",
-                                          "pl_wrap_angle"};
+                                          "pl_wrap_angle",
+                                          "pl_smaller",
+                                          "pl_larger",
+                                          "pl_to_bits"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
     "asm",    "auto",   "break",  "case",    "continue", "default",  "do",       "else",

@@ -105,7 +105,8 @@ static const char *const hostile_names[] = {
     "perilat_kernel", "prepare", "rows", "rows_ledger", "rows_observe", "states", "tangent",
     "at_u_ix", "at_force_0", "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length",
     "chord_x", "class_chord_x", "v1", "v12", "v2_2", "old_x", "old_omega", "omega_2", "time_step",
-    "f_x", "moment_i", "owned", "owner", "half", "back", "int32_t", "int64_t", "uint8_t",
+    "f_x", "moment_i", "changed", "unusual", "owned", "owner", "half", "back", "int32_t", "int64_t",
+    "uint8_t",
     /* functions that compilers know by name */
     "main", "printf", "memcpy", "malloc", "system", "exit", "fabs", "fma", "pow", "floor", "round",
     "isnan", "signbit", "gamma", "y0", "j1", "abort", "_exit", "alloca", "cold", "vectorize",

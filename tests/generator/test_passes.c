@@ -528,6 +528,58 @@ static void sums_of_products_are_fused(void **state) {
   ir_free(g);
 }
 
+/* Factors that are the same for all bonds meet where that costs nothing. */
+static void uniform_factors_are_joined(void **state) {
+  (void)state;
+  ir *g = ir_new();
+  const ir_node x = input(g, 0, ON_BOND), y = input(g, 1, ON_BOND), k = input(g, 2, ON_BODY),
+                l = input(g, 3, ON_BODY), kl = ir_mul(g, k, l), xy = ir_mul(g, x, y);
+  const ir_node kx = ir_mul(g, k, x), ly = ir_mul(g, l, y);
+  const ir_node roots[] = {ir_mul(g, l, kx),
+                           ir_mul(g, ir_mul(g, k, ir_mul(g, y, y)), x),
+                           ir_div(g, ir_mul(g, l, xy), x),
+                           kx,
+                           ir_mul(g, kx, ly),
+                           ir_mul(g, kx, y)};
+  ir_node out[6];
+  rewrite_factors(g, roots, 6, out);
+  assert_int_equal(out[0], ir_mul(g, kl, x));
+  assert_int_equal(out[1], ir_mul(g, k, ir_mul(g, x, ir_mul(g, y, y))));
+  assert_int_equal(out[2], ir_mul(g, l, ir_div(g, xy, x)));
+  assert_int_equal(out[3], kx);
+  assert_int_equal(out[4],
+                   ir_mul(g, kl, xy)); /* l comes out of its product, so that k may as well */
+  assert_int_equal(out[5], roots[5]);  /* others need kx as it is */
+  ir_free(g);
+}
+
+/* Sizes give their factors away, too, and the larger of two is a choice where a choice keeps NaN. */
+static void the_larger_of_two_keeps_its_nan(void **state) {
+  (void)state;
+  ir *g = ir_new();
+  const ir_node x = input(g, 0, ON_BOND), y = input(g, 1, ON_BOND), k = input(g, 2, ON_BODY);
+  const ir_node sum = ir_add(g, x, y), root = ir_make(g, IR_SQRT, x, IR_NONE, IR_NONE);
+  const ir_node kx = ir_mul(g, k, x), k_sum = ir_mul(g, k, sum);
+  const ir_node size_x = ir_make(g, IR_ABS, x, IR_NONE, IR_NONE),
+                size_sum = ir_make(g, IR_ABS, sum, IR_NONE, IR_NONE),
+                size_k = ir_make(g, IR_ABS, k, IR_NONE, IR_NONE);
+  const ir_node larger = ir_make(g, IR_MAX, ir_make(g, IR_ABS, kx, IR_NONE, IR_NONE),
+                                 ir_make(g, IR_ABS, k_sum, IR_NONE, IR_NONE), IR_NONE);
+  const ir_node roots[] = {larger, ir_make(g, IR_MAX, sum, x, IR_NONE),
+                           ir_make(g, IR_MIN, root, sum, IR_NONE)};
+  ir_node out[3];
+  rewrite_factors(g, roots, 3, out);
+  const ir_node choice =
+      ir_select(g, ir_make(g, IR_LT, size_sum, size_x, IR_NONE), size_x, size_sum);
+  assert_int_equal(out[0], ir_mul(g, size_k, choice));
+  assert_int_equal(out[1], roots[1]); /* y may be NaN where x is not */
+  assert_int_equal(out[2], roots[2]); /* the root of x < 0 is NaN, the sum is not */
+  assert_true(rewrite_nan_follows(g, x, sum) && !rewrite_nan_follows(g, sum, x));
+  assert_false(rewrite_nan_follows(g, root, x));
+  assert_false(rewrite_nan_follows(g, x, ir_select(g, ir_make(g, IR_LT, x, y, IR_NONE), x, y)));
+  ir_free(g);
+}
+
 static void zero_and_reciprocal_rewrites(void **state) {
   (void)state;
   ir *g = ir_new();
@@ -561,6 +613,8 @@ int main(void) {
       cmocka_unit_test(the_dump_names_passes_and_hoisted_values),
       cmocka_unit_test(degrees_are_seen),
       cmocka_unit_test(sums_of_products_are_fused),
+      cmocka_unit_test(uniform_factors_are_joined),
+      cmocka_unit_test(the_larger_of_two_keeps_its_nan),
       cmocka_unit_test(zero_and_reciprocal_rewrites),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -234,9 +234,33 @@ static void a_runaway_is_caught(void **state) {
   small_close(&r);
 }
 
+/* Those of a disc differ, those along the notch do not. */
+static void rows_alike_share_their_flags(void **state) {
+  (void)state;
+  small_run r;
+  open_ragged(&r, &elastic_beam, 0, 1);
+  const sweep *w = simulation_state(r.simulation);
+  const rows *g = w->lattice;
+  int shared = 0, own = 0;
+  for (int row = 0; row < g->row_count; row++) {
+    const int64_t *flags = pairwise_flags(w, row);
+    const long start = rows_start(g, row) + w->begin[row];
+    for (long q = 0; q < w->count[row]; q++)
+      assert_int_equal(flags[q], (int64_t)(g->bonds[start + q] | g->held_bonds[start + q] << 32));
+    if (row < 2 || w->count[row] == 0) continue;
+    if (flags == pairwise_flags(w, row - 2))
+      shared++;
+    else
+      own++;
+  }
+  assert_true(shared > 0 && own > 0);
+  small_close(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sweep_gives_the_forces_of_the_bond_list),
+      cmocka_unit_test(rows_alike_share_their_flags),
       cmocka_unit_test(threads_do_not_change_a_bit),
       cmocka_unit_test(observing_changes_no_state),
       cmocka_unit_test(absent_sites_stay_at_rest),

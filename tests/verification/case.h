@@ -194,7 +194,7 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
         planes[p] = force[p] + k * g->size + near;
       pl_strip s = {.count = w->count[r],
                     .direction = k,
-                    .flags = pairwise_flags(w) + near,
+                    .flags = pairwise_flags(w, r),
                     .field = field,
                     .force = planes,
                     .time_step = w->time_step};
