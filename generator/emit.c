@@ -148,10 +148,10 @@ static void choose_names(emitter *e) {
 
 void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count) {
   static const char *const own[] = {
-      "law",        "uniforms",    "strip",         "count",  "q",     "flags",    "in",
-      "out",        "bonds",       "present",       "lower",  "upper", "low_open", "high_open",
-      "parameters", "present_bit", "protected_bit", "family", "first", "lanes",    "k",
-      "to",         "half",        "back",          "last",   "kept",  "unusual",  "owned",
+      "law",        "uniforms",    "strip",         "count",  "q",       "flags",    "in",
+      "out",        "bonds",       "present",       "lower",  "upper",   "low_open", "high_open",
+      "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
+      "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
       "owner",      "sign",        "zeros",         "got",    "link_to", "changed"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
@@ -676,13 +676,16 @@ static const char own_macros[] =
     "#endif\n"
     "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n\n";
 
-/* gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step). */
+/* In strips gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step); of families
+   it would move what is loaded for a choice into a branch. */
 static void write_prelude(emitter *e) {
-  c_text_add(e->out, "/* Written by perilat. */\n"
-                     "#if !defined(__clang__)\n"
-                     "#pragma GCC optimize(\"no-thread-jumps\", \"no-gcse\")\n"
-                     "#endif\n"
-                     "#pragma GCC diagnostic push\n"
+  c_text_add(e->out,
+             "/* Written by perilat. */\n"
+             "#if !defined(__clang__)\n"
+             "#pragma GCC optimize(%s)\n"
+             "#endif\n",
+             e->plan->kind == PL_STATE ? "\"no-tree-sink\"" : "\"no-thread-jumps\", \"no-gcse\"");
+  c_text_add(e->out, "#pragma GCC diagnostic push\n"
                      "#pragma GCC diagnostic ignored \"-Wunused-function\"\n");
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   c_text_add(e->out, "#pragma GCC diagnostic pop\n%s", own_macros);
