@@ -120,8 +120,7 @@ void emit_family_array(emitter *e, ir_node n) {
     c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first, w->k);
     break;
   case IR_FROM_NEIGHBOUR_BOND_LINK:
-    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first,
-               w->back);
+    c_text_add(e->out, "family->bond_link[%d]%s + %s*family->link_plane", index, w->first, w->back);
     break;
   case IR_FROM_SHARED:
   case IR_FROM_SHARED_ODD:

@@ -36,14 +36,14 @@ typedef struct emitter {
   int root_count;
   bool usual; /* of choices by expected conditions only what is expected is written */
   c_names names;
-  unsigned char *needed; /* [node_count] */
-  int *uses;             /* [node_count] by needed nodes and roots */
-  ir_node *user;         /* [node_count] the last of them; IR_NONE: a root */
-  int *size;             /* [node_count] operations written in place of the node */
-  const char **name;     /* [node_count] NULL: written in place */
-  const family_words *words;  /* of segments */
-  struct unrolled *unrolled;  /* of a pass that is one loop (emit_unrolled.c); else NULL */
-  bool quiet;                 /* the loop is for where marked fields are 0 (emit_pairs.c) */
+  unsigned char *needed;     /* [node_count] */
+  int *uses;                 /* [node_count] by needed nodes and roots */
+  ir_node *user;             /* [node_count] the last of them; IR_NONE: a root */
+  int *size;                 /* [node_count] operations written in place of the node */
+  const char **name;         /* [node_count] NULL: written in place */
+  const family_words *words; /* of segments */
+  struct unrolled *unrolled; /* of a pass that is one loop (emit_unrolled.c); else NULL */
+  bool quiet;                /* the loop is for where marked fields are 0 (emit_pairs.c) */
 } emitter;
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */

@@ -21,7 +21,8 @@ struct family_runner {
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
-  double *opposite; /* [2 links of bonds][LANES] shared values as the far end has them, when their sign differs */
+  double *
+      opposite; /* [2 links of bonds][LANES] shared values as the far end has them, when their sign differs */
   double *gathered; /* [most][LANES] values of neighbours, on lists */
   int gathered_count;
   double *results, **result; /* [most roots][LANES] */
@@ -235,8 +236,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
     r->neighbour_links[n] = at_links(r, f, f->link[n], first, k);
   for (int n = 0; n < p->links.of_bonds; n++) {
     r->bond_links[n] = f->bond_link[n] + first + k * f->link_plane;
-    r->neighbour_bond_links[n] =
-        at_links(r, f, f->bond_link[n] + back * f->link_plane, first, k);
+    r->neighbour_bond_links[n] = at_links(r, f, f->bond_link[n] + back * f->link_plane, first, k);
   }
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;

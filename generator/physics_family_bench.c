@@ -65,8 +65,8 @@ static kernel_plan *begin(const law *l) {
 
 static void build(kernel_plan *p, family_program *out, const roots *r, bool along_reference) {
   program_motion motion = plan_motion(p, along_reference);
-  program_build(out, "check", p->graph, p->memory, r->items, r->count, &motion,
-                SHARE_NOTHING, &p->links);
+  program_build(out, "check", p->graph, p->memory, r->items, r->count, &motion, SHARE_NOTHING,
+                &p->links);
 }
 
 static bool plan_whole(family_bench *b, int *narrow, int *all) {

@@ -250,8 +250,7 @@ static program_sharing sharing(const family_planner *p) {
   bool on_bonds = false;
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
-  if (plan_is_of_small_family(p->plan))
-    return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
+  if (plan_is_of_small_family(p->plan)) return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
   if (plan_is_of_large_family(p->plan)) return SHARE_PAIRS;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
@@ -295,8 +294,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     read_from_lists(plan, &list, &observe);
     motion_from_lists(plan, &list, &motion);
   }
-  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion, sharing(&p),
-                &plan->links);
+  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
+                sharing(&p), &plan->links);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
                 SHARE_NOTHING, &plan->links);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {

@@ -30,7 +30,8 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
 int program_cost(const ir *g, ir_node n) {
   ir_op op = ir_operation(g, n);
   bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT || ir_is_logical(g, n);
+               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT ||
+               ir_is_logical(g, n);
   return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
 }
 
@@ -594,8 +595,7 @@ static void substitute(builder *b, segment_root *roots, int root_count, const ir
 
 static ir_node shared_input(builder *b, int k) {
   const char *name = ir_name(b->g, b->shared[k]);
-  const ir_source from =
-      program_parity(b, b->shared[k]) < 0 ? IR_FROM_SHARED_ODD : IR_FROM_SHARED;
+  const ir_source from = program_parity(b, b->shared[k]) < 0 ? IR_FROM_SHARED_ODD : IR_FROM_SHARED;
   return ir_input(b->g, from, b->first_shared + k,
                   name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
 }

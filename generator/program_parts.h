@@ -43,7 +43,7 @@ typedef struct builder {
   int link_count;
   program_links links; /* how many of either */
   program_sharing sharing;
-  ir_node *shared;     /* [shared_count] values that the ends share, numbered from first_shared */
+  ir_node *shared; /* [shared_count] values that the ends share, numbered from first_shared */
   int shared_count, first_shared, round;
   node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted, users;
 } builder;

@@ -12,13 +12,14 @@ enum { ROWS_AT_A_TIME = 8 };
 
 struct family_window { /* row r stands in place r mod rows */
   int rows;
-  long plane;                /* doubles between planes of links of bonds */
+  long plane;                 /* doubles between planes of links of bonds */
   double **link, **bond_link; /* [links] begin of place 0 */
-  double *force[3];          /* begin of place 0: of rows that move at once; NULL where all forces are kept */
-  double **memory;           /* [links + links of bonds + forces] */
+  double
+      *force[3];   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
+  double **memory; /* [links + links of bonds + forces] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
-  long *offset;              /* [neighbours] of links, from the row at hand */
-  int *row_offset;           /* [neighbours] rows to the neighbour */
+  long *offset;               /* [neighbours] of links, from the row at hand */
+  int *row_offset;            /* [neighbours] rows to the neighbour */
 };
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -62,8 +63,8 @@ static double *padded(sweep *w, long count, double **memory) {
 static double **scratch_rows(sweep *w, const pl_field *fields, int count, int more) {
   double **rows_of = must_calloc((size_t)(more + count) + 1, sizeof *rows_of);
   for (int k = 0; k < more + count; k++)
-    rows_of[k] = sweep_doubles(
-        w, (k < more ? 1 : sweep_planes(w, fields[k - more].place)) * w->lattice->pitch);
+    rows_of[k] = sweep_doubles(w, (k < more ? 1 : sweep_planes(w, fields[k - more].place)) *
+                                      w->lattice->pitch);
   return rows_of;
 }
 
@@ -81,8 +82,8 @@ static void open_window(sweep *w, const family *f, family_window *v) {
   for (int k = 0; k < law->bond_link_count; k++)
     v->bond_link[k] = padded(w, f->neighbours * v->plane, &v->memory[law->link_count + k]);
   for (int d = 0; d < w->dof && !w->forces; d++)
-    v->force[d] = padded(w, v->rows * g->pitch,
-                         &v->memory[law->link_count + law->bond_link_count + d]);
+    v->force[d] =
+        padded(w, v->rows * g->pitch, &v->memory[law->link_count + law->bond_link_count + d]);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);

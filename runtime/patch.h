@@ -27,9 +27,9 @@ typedef struct patch {
   double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_PLANES(3)];
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
-  double **sum;        /* of laws whose bonds add to both ends (pl_family) */
-  uint64_t *marks[3];  /* [size] of all fields: filled everywhere, settled nowhere */
-  double **observed; /* [observed_count] */
+  double **sum;       /* of laws whose bonds add to both ends (pl_family) */
+  uint64_t *marks[3]; /* [size] of all fields: filled everywhere, settled nowhere */
+  double **observed;  /* [observed_count] */
   int observed_count;
   double time_step;
 } patch;

@@ -493,6 +493,8 @@ static void note_stage(simulation *s, int stage, bool observing, double seconds)
     p->part[PROFILE_SAMPLING] += seconds;
     return;
   }
+  if (s->law->kind == PL_STATE && stage == s->state->engine.step_stages - 1)
+    moving = seconds; /* nothing else is done there */
   p->part[PROFILE_PARTICLES] += moving;
   p->part[PROFILE_LAW] += seconds - moving;
   p->stage[stage < PROFILE_MOST_STAGES ? stage : PROFILE_MOST_STAGES - 1] += seconds - moving;

@@ -21,7 +21,8 @@ static const char plate[] =
     "&notch lattice = 'c' shape = 'segment' from = 0.05, 0.2 to = 0.11, 0.24 /\n";
 
 /* Particles in a motion that stretches and breaks. */
-static sweep *moving_plate(const small_run *r, const rows *g, int blocks, bool ledger, bool forces) {
+static sweep *moving_plate(const small_run *r, const rows *g, int blocks, bool ledger,
+                           bool forces) {
   sweep *w = sweep_new(g, &family_hexagon, r->parameters, 2e-7, blocks, ledger, forces);
   for (long q = 0; q < g->size; q++) {
     if (!g->present[q]) continue;
