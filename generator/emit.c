@@ -676,15 +676,19 @@ static const char own_macros[] =
     "#endif\n"
     "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n\n";
 
-/* In strips gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step); of families
-   it would move what is loaded for a choice into a branch. */
+/* In strips gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step); of
+   families it would move what is loaded for a choice into a branch. The others only take the compiler's time. */
+static const char for_strips[] = "\"no-thread-jumps\", \"no-gcse\"",
+                  for_families[] = "\"no-tree-sink\", \"no-tree-pre\", \"no-tree-slp-vectorize\", "
+                                   "\"no-predictive-commoning\", \"no-tree-loop-distribution\"";
+
 static void write_prelude(emitter *e) {
   c_text_add(e->out,
              "/* Written by perilat. */\n"
              "#if !defined(__clang__)\n"
              "#pragma GCC optimize(%s)\n"
              "#endif\n",
-             e->plan->kind == PL_STATE ? "\"no-tree-sink\"" : "\"no-thread-jumps\", \"no-gcse\"");
+             e->plan->kind == PL_STATE ? for_families : for_strips);
   c_text_add(e->out, "#pragma GCC diagnostic push\n"
                      "#pragma GCC diagnostic ignored \"-Wunused-function\"\n");
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
