@@ -146,6 +146,16 @@ static void choose_names(emitter *e) {
         e->name[n] = c_names_make(&e->names, wished_name(e, n, space, sizeof space));
 }
 
+/* What loops of segments call the things of a root. */
+static void reserve_numbered(c_names *names, int root) {
+  static const char *const of_root[] = {"to", "value", "values", "far"};
+  for (size_t k = 0; k < sizeof of_root / sizeof *of_root; k++) {
+    char name[32];
+    snprintf(name, sizeof name, "%s_%d", of_root[k], root);
+    c_names_reserve(names, name);
+  }
+}
+
 void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int count) {
   static const char *const own[] = {
       "law",        "uniforms",    "strip",         "count",  "q",       "flags",    "in",
@@ -160,6 +170,8 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
   e->names = (c_names){0};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(&e->names, own[k]);
+  for (int k = 0; k < count && scope >= IN_PARTICLES; k++)
+    reserve_numbered(&e->names, k);
   e->needed = must_calloc(n, 1);
   e->uses = must_calloc(n, sizeof *e->uses);
   e->user = must_calloc(n, sizeof *e->user);

@@ -21,8 +21,8 @@ struct family_runner {
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
-  double *
-      opposite; /* [2 links of bonds][LANES] shared values as the far end has them, when their sign differs */
+  /* [2 links of bonds][LANES] shared values as the far end has them, when their sign differs */
+  double *opposite;
   double *gathered; /* [most][LANES] values of neighbours, on lists */
   int gathered_count;
   double *results, **result; /* [most roots][LANES] */
@@ -241,7 +241,8 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   for (int n = 0; n < p->law->fields.count; n++) {
     const long plane = is_of_particle(r, n) ? 0 : f->plane;
     r->fields[n] = f->old_field[n] + first + k * plane;
-    if (f->new_field) r->new_fields[n] = f->new_field[n] + first + k * plane;
+    if (f->new_field)
+      r->new_fields[n] = f->new_field[n] + first + (is_of_particle(r, n) ? 0 : k * f->new_plane);
     r->neighbour_fields[n] = at_neighbours(r, f, f->old_field[n] + back * plane, first, k);
   }
   point_at_shared(r, f, first, k);

@@ -82,8 +82,6 @@ typedef struct program_motion {
   int count;
 } program_motion;
 
-/* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the
-   latter, since only owners write them. */
 /* What both ends of a bond share. */
 typedef enum program_sharing {
   SHARE_NOTHING,
@@ -93,6 +91,8 @@ typedef enum program_sharing {
   SHARE_PAIRS /* all: of large families, where a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
 
+/* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the
+   latter, since only owners write them. */
 typedef struct program_links {
   int of_particles, of_bonds;
 } program_links;

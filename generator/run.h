@@ -8,9 +8,9 @@
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
 
-/* A law that is already compiled into the program (stand-alone solvers). */
 #define DECK_LIMIT ((size_t)16 << 20) /* B: the longest deck */
 
+/* A law that is already compiled into the program (stand-alone solvers). */
 typedef struct built_in_law {
   const char *model; /* as the deck names it */
   const pl_law *law;

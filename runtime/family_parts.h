@@ -1,5 +1,5 @@
-/* Inside of the engine for laws of families: family.c sets it up, moves particles and takes samples; family_stages.c and
-   family_window.c are two ways to run the passes of a program over the rows of a body. */
+/* Inside of the engine for laws of families: family.c sets it up, moves particles and takes samples; family_stages.c,
+   family_window.c and family_pairs.c are three ways to run the passes of a program over the rows of a body. */
 #ifndef PERILAT_RUNTIME_FAMILY_PARTS_H
 #define PERILAT_RUNTIME_FAMILY_PARTS_H
 
@@ -31,6 +31,10 @@ typedef struct family {
   family_window *windows;      /* [block_count]; NULL: links of the whole body are kept */
   family_pairs *pairs;         /* NULL unless bonds add to both ends */
 } family;
+
+static inline int least(int a, int b) {
+  return a < b ? a : b;
+}
 
 static inline family *family_of(const sweep *w) {
   return w->engine.own;

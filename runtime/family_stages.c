@@ -50,10 +50,6 @@ static void inner_rows(const sweep *w, int block, int pass, int *first, int *las
   if (*last < *first) *last = *first = b->last;
 }
 
-static int least(int a, int b) {
-  return a < b ? a : b;
-}
-
 /* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
    leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {

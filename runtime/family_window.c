@@ -51,8 +51,12 @@ static int rows_kept(const family *f, const pl_law *law) {
 
 static bool suits(const sweep *w, const family *f) {
   enum { ROWS_TO_HALO = 8 }; /* fewer rows of a block: too much would be done twice */
+  enum {
+    MOST_NEIGHBOURS = 39
+  }; /* of more, links fill no cache, and later passes may read new fields */
   const int least = w->lattice->row_count / w->block_count;
-  return !w->lattice->list && least >= ROWS_TO_HALO * halo(f, most_passes(w->law));
+  return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
+         least >= ROWS_TO_HALO * halo(f, most_passes(w->law));
 }
 
 static double *padded(sweep *w, long count, double **memory) {
@@ -180,10 +184,6 @@ static void run_rows(const sweep *w, pl_family_function pass, int block, int fir
       family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
     pass(w->law, family_of(w)->uniforms, &run);
   }
-}
-
-static int least(int a, int b) {
-  return a < b ? a : b;
 }
 
 static int most(int a, int b) {

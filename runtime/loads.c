@@ -463,7 +463,7 @@ static void correct_free_way(loads *l, const sweep *w, int component, int64_t si
   if (component < w->dimensions)
     l->work += w->push_work[component] * (mass / w->mass[component]) * change;
   l->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
-  if (w->law->kind == PL_STATE)
+  if (w->law->kind == PL_STATE && w->ledger)
     l->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
 

@@ -5,7 +5,6 @@
 
 #include "runtime/sweep_parts.h"
 
-/* Rows that a bond reaches ahead, at most. */
 typedef struct pair_sums { /* of one thread */
   int before, last;        /* rows before .. last-1 are its own and those that reach them */
   long base;               /* site that the sums begin with */
@@ -13,6 +12,7 @@ typedef struct pair_sums { /* of one thread */
   double **sum, **at_run;  /* [sum_count][size]; where the sums of the run at hand begin */
 } pair_sums;
 
+/* `reach`: rows that a bond reaches ahead, at most. */
 pair_sums pair_sums_new(sweep *w, const sweep_block *b, int reach);
 void pair_sums_free(const sweep *w, pair_sums *s);
 /* Points at the sums of a run that begins at that site. */

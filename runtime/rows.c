@@ -22,6 +22,7 @@ typedef struct builder {
   bravais_neighbour family[PL_MAX_DIRECTIONS];
   int directions;
   int reach[3]; /* columns, rows, layers to the farthest neighbour in each */
+  long before;  /* absent sites before the first column of a row */
   site_marks marks;
   diagnostics *d;
 } builder;
@@ -171,22 +172,30 @@ static rows *allocate(rows *w, const builder *b) {
   return NULL;
 }
 
-/* Absent sites before the first column, and with those of the next row behind the last one: as many as neighbours reach; and
-   whole lanes, so that rows begin with one, unless that makes rows longer. */
+static long columns_of(const builder *b) {
+  return b->marks.left.last[COLUMN] - b->marks.left.first[COLUMN] + 1;
+}
+
+/* The next row's absent sites serve a row's last columns, too. One column more stays empty: where rows are shifted
+   against each other, an absent site beside one row would else be a neighbour of particles of another. */
+static long pitch_with(const builder *b, long before) {
+  return pitch_for(before + columns_of(b) + 1);
+}
+
+/* As many as neighbours reach; and whole lanes, so that rows begin with one, unless that makes rows longer. */
 static long before_columns(const builder *b) {
-  const long columns = b->marks.left.last[COLUMN] - b->marks.left.first[COLUMN] + 1,
-             reach = b->reach[COLUMN], lanes = whole_lanes(reach);
-  return pitch_for(lanes + columns) > pitch_for(reach + columns) ? reach : lanes;
+  const long reach = b->reach[COLUMN], lanes = whole_lanes(reach);
+  return pitch_with(b, lanes) > pitch_with(b, reach) ? reach : lanes;
 }
 
 static rows *rows_new(const builder *b) {
   const deck_lattice *l = b->lattice;
   const long *first = b->marks.left.first, *last = b->marks.left.last;
-  const long columns = last[COLUMN] - first[COLUMN] + 1, per_layer = last[ROW] - first[ROW] + 1;
+  const long per_layer = last[ROW] - first[ROW] + 1;
   const long layer_rows = per_layer + b->reach[ROW];
   const long row_count = (last[LAYER] - first[LAYER]) * layer_rows + per_layer;
   const long margin = b->reach[LAYER] * layer_rows + b->reach[ROW];
-  const long pitch = pitch_for(before_columns(b) + columns), ends = whole_lanes(b->reach[COLUMN]);
+  const long pitch = pitch_with(b, b->before), ends = whole_lanes(b->reach[COLUMN]);
   const double size = ((double)row_count + 2 * (double)margin) * (double)pitch + 2 * (double)ends;
   if (site_too_many(l, size, b->d)) return NULL;
   rows *w = must_calloc(1, sizeof *w);
@@ -213,7 +222,7 @@ static void place_row(rows *w, const builder *b, int row) {
   w->row_class[row + w->margin] = (unsigned char)bravais_shift(&b->infinite, number, layer);
   const bool stored = row >= 0 && number >= left->first[ROW] && number <= left->last[ROW];
   for (long k = 0; k < w->pitch; k++) {
-    const long column = left->first[COLUMN] + k - before_columns(b), site = rows_start(w, row) + k;
+    const long column = left->first[COLUMN] + k - b->before, site = rows_start(w, row) + k;
     double at[3];
     bravais_place(&b->infinite, column, number, layer, at);
     w->x[site] = at[0];
@@ -314,7 +323,7 @@ static long cut_bonds(rows *w, const builder *b, const deck_shape *shape) {
   for (long layer = near.first[LAYER]; layer <= near.last[LAYER]; layer++)
     for (long row = near.first[ROW]; row <= near.last[ROW]; row++) {
       const long stored = (layer - left->first[LAYER]) * w->layer_rows + row - left->first[ROW];
-      const long start = rows_start(w, (int)stored) + before_columns(b) - left->first[COLUMN];
+      const long start = rows_start(w, (int)stored) + b->before - left->first[COLUMN];
       for (long column = near.first[COLUMN]; column <= near.last[COLUMN]; column++)
         count += rows_cut(w, start + column, shape);
     }
@@ -356,7 +365,10 @@ rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   if (deck_lattice_is_irregular(b.lattice)) return scattered_build(k, lattice, d);
   if (!lattice_is_sound(&b)) return NULL;
   rows *w = NULL;
-  if (site_marks_make(&b.marks, &b.infinite, k, b.lattice, d)) w = rows_new(&b);
+  if (site_marks_make(&b.marks, &b.infinite, k, b.lattice, d)) {
+    b.before = before_columns(&b);
+    w = rows_new(&b);
+  }
   if (w) {
     place_sites(w, &b);
     number_particles(w);

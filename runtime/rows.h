@@ -1,8 +1,9 @@
 /* A Bravais lattice (bravais.h) as rows: row r holds consecutive sites along the first lattice vector, all rows in one
    array with one pitch. In space the rows of a layer follow those of the layer below. Neighbour k of site q is always
    q + rows_offset(row, k): the number is the same along a row, and rows fall into one or two classes by their shift.
-   Empty rows before the first, behind the last and between layers, and empty columns at either end of each, make every
-   neighbour of every site of a row a place of the array; sites cut away stay as absent sites. Rows begin on aligned
+   Empty rows before the first, behind the last and between layers, and empty columns before each, which serve the row before,
+   too, make every neighbour of every site of a row a place of the array. Nothing that an absent site's offset leads to is
+   its neighbour by a bond that exists. Sites cut away stay as absent sites. Rows begin on aligned
    addresses.
 
    Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first `directions`, in the

@@ -269,7 +269,7 @@ double sweep_total(long count, const double *restrict a) {
 
 void sweep_note_bad(const sweep *w, sweep_block *b, int row) {
   w->row_stuck[row] = 1;
-  if (b->bad_site >= 0) return;
+  if (b->bad_site >= 0 && b->bad_site < sweep_start(w, row)) return;
   for (long q = 0; q < w->count[row]; q++)
     for (int d = 0; d < w->dof; d++) {
       const double v = b->next[d * w->lattice->pitch + q];

@@ -103,7 +103,7 @@ static const char *const hostile_names[] = {
     "in_", "out", "bonds", "present", "present_bit", "protected", "protected_bit", "lower", "upper",
     "low_open", "high_open", "parameters", "law_parameters", "law_fields", "the_law",
     "perilat_kernel", "prepare", "rows", "rows_ledger", "rows_observe", "states", "tangent",
-    "at_u_ix", "at_force_0", "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length",
+    "to_0", "value_0", "values_0", "far_1", "at_u_ix", "at_force_0", "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length",
     "chord_x", "class_chord_x", "v1", "v12", "v2_2", "old_x", "old_omega", "omega_2", "time_step",
     "f_x", "moment_i", "changed", "unusual", "owned", "owner", "half", "back", "int32_t", "int64_t",
     "uint8_t",

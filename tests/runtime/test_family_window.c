@@ -89,6 +89,33 @@ static void windows_and_whole_bodies_give_the_same_bits(void **state) {
   small_close(&r);
 }
 
+/* Rows in the middle of a block move before those at its ends. */
+static void the_first_bad_site_is_told_whatever_moves_first(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &family_hexagon, plate);
+  assert_non_null(r.simulation);
+  rows *g = rows_build(r.deck, 0, &r.said);
+  assert_non_null(g);
+  g->mass = simulation_rows(r.simulation, 0)->mass;
+  for (int blocks = 1; blocks <= 2; blocks++) {
+    sweep *w = sweep_new(g, &family_hexagon, r.parameters, 2e-7, blocks, false, false);
+    const int row = g->row_count / 2 + 1; /* of two blocks the second row of the second one */
+    long first = rows_start(g, row), later = rows_start(g, row + 9);
+    while (!g->present[first])
+      first++;
+    while (!g->present[later])
+      later++;
+    w->velocity[0][first] = w->velocity[1][later] = NAN;
+    assert_false(sweep_step(w));
+    const sweep_block *b = &w->blocks[sweep_bad(w)];
+    assert_int_equal(rows_row(g, b->bad_site), row - 1); /* by the dampers of its bonds */
+    sweep_free(w);
+  }
+  rows_free(g);
+  small_close(&r);
+}
+
 /* Where a law says that its second pass needs no rows ahead, fewer rows are kept. */
 static void a_window_keeps_the_rows_that_passes_need(void **state) {
   (void)state;
@@ -110,6 +137,7 @@ static void a_window_keeps_the_rows_that_passes_need(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(windows_and_whole_bodies_give_the_same_bits),
+      cmocka_unit_test(the_first_bad_site_is_told_whatever_moves_first),
       cmocka_unit_test(a_window_keeps_the_rows_that_passes_need),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

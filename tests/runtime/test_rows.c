@@ -557,10 +557,37 @@ static void other_lattices_bodies_stay_out(void **unused) {
   end(&b, w);
 }
 
+/* Offsets lead from absent sites, too, and must not lead to a particle along one of its bonds: whatever the width. */
+static void absent_sites_have_no_neighbours(void **state) {
+  (void)state;
+  static const char *const kinds[] = {"hexagonal", "square", "fcc", "cubic"};
+  for (int kind = 0; kind < 4; kind++)
+    for (int columns = 1; columns <= 26; columns++)
+      for (int horizon = 1; horizon <= (kind == 2 ? 2 : 3); horizon++) { /* fcc: 3 are too many */
+        bench b;
+        begin(&b, 0.01);
+        b.lattice.kind = (char *)(uintptr_t)kinds[kind];
+        b.lattice.horizon = horizon;
+        const double width = 0.01 * columns - 0.004;
+        if (kind < 2)
+          body(&b, rectangle(0, 0, width, 0.06));
+        else
+          body(&b, (deck_shape){.kind = SHAPE_BOX, .size = {width, 0.03, 0.03}});
+        rows *w = build(&b);
+        for (long site = rows_start(w, 0); site < rows_start(w, w->row_count); site++)
+          for (int k = 0; k < 2 * w->directions; k++)
+            if (!w->present[site] && rows_has_neighbour(w, site, k))
+              fail_msg("%s, %d columns, horizon %d: an absent site has neighbour %d", kinds[kind],
+                       columns, horizon, k);
+        end(&b, w);
+      }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(neighbours_are_all_near_pairs),
       cmocka_unit_test(renumbering_changes_nothing),
+      cmocka_unit_test(absent_sites_have_no_neighbours),
       cmocka_unit_test(published_particle_counts),
       cmocka_unit_test(notch_separates),
       cmocka_unit_test(disc_area_converges),
