@@ -237,7 +237,7 @@ static void check_family_law(const char *path, const law_choice *choice, long st
     const bool on_lists = !choice || model_suits_irregular(&m);
     model_close(&m);
     if (!allowed) continue;
-    check_family_law_in(path, choice, (law_setting)k, false, 0, states / 3);
+    check_family_law_in(path, choice, (law_setting)k, false, 0, states);
     check_family_law_in(path, choice, (law_setting)k, false, k == SETTING_SPACE ? 18 : 6,
                         states / 4);
     if (!choice) check_large_family(path, (law_setting)k, states / 3);

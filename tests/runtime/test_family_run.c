@@ -353,8 +353,30 @@ static void the_step_limit_is_sharp(void **state) {
   assert_true(growth(1.001) > 100);
 }
 
+/* A solver keeps its kernel when its deck is given another lattice. */
+static void a_kernel_of_six_neighbours_takes_no_more(void **state) {
+  (void)state;
+  static const char plate[] =
+      "&simulation end_time = 1e-4 /\n"
+      "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 shells = %d /\n"
+      "&material lattice = 'c' model = 'm' /\n"
+      "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.06 /\n";
+  pl_law six = family_hexagon;
+  six.neighbours = 6;
+  for (int shells = 1; shells <= 2; shells++) {
+    char text[1024];
+    small_run r;
+    snprintf(text, sizeof text, plate, shells);
+    small_open(&r, &six, text);
+    assert_int_equal(r.simulation != NULL, shells == 1);
+    if (shells == 2) assert_non_null(strstr(r.said.items[0].message, "6 neighbours, not 12"));
+    small_close(&r);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_kernel_of_six_neighbours_takes_no_more),
       cmocka_unit_test(an_elastic_body_loses_nothing),
       cmocka_unit_test(a_breaking_body_takes_energy),
       cmocka_unit_test(threads_do_not_change_a_bit),

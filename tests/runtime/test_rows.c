@@ -102,7 +102,7 @@ static void check_storage(const rows *w) {
   for (long site = 0; site < w->size; site++) {
     const int row = site < w->first ? -1 : rows_row(w, site);
     const long column = site - rows_start(w, row);
-    const bool ghost = row < 0 || row >= w->row_count || column < 1;
+    const bool ghost = row < 0 || row >= w->row_count || column < 1 || column >= w->pitch - 1;
     if (ghost) assert_true(w->present[site] == 0 && w->bonds[site] == 0);
     if (!w->present[site]) {
       assert_int_equal(w->site_particle[site], -1);
