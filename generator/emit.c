@@ -493,6 +493,22 @@ const pass_root *emit_find_root(const emitter *e, pass_target target, int index)
   return NULL;
 }
 
+void emit_function_begin(emitter *e, const char *kind, const char *name, const char *over) {
+  e->part = 0;
+  for (int k = 1; k < TOOLCHAIN_PARTS; k++)
+    if (e->part_length[k] < e->part_length[e->part]) e->part = k;
+  e->part_start = e->out->length;
+  c_text_add(e->out, "%s void %s(const pl_law *, const double *, %s);\n#if PL_IN_PART(%d)\n", kind,
+             name, over, e->part);
+  c_text_add(e->out, "%s void %s(const pl_law *law, const double *uniforms, %s) {\n", kind, name,
+             over);
+}
+
+void emit_function_end(emitter *e) {
+  c_text_add(e->out, "}\n#endif\n\n");
+  e->part_length[e->part] += e->out->length - e->part_start;
+}
+
 void emit_loop_begin(emitter *e) {
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
 }
@@ -502,11 +518,9 @@ void emit_loop_begin(emitter *e) {
 /* `states` and `tangent`. Planes without a root (moments of a central law) are zero. */
 static void write_states_pass(emitter *e, const pass *p, const char *name, int planes) {
   emit_open_roots(e, IN_STATES, p->roots, p->root_count);
-  c_text_add(e->out,
-             "PL_RARE static void %s(const pl_law *law, const double *uniforms, long count,\n"
-             "    const double *const *in, double *const *out) {\n"
-             "  (void)law, (void)uniforms, (void)in;\n",
-             name);
+  emit_function_begin(e, "PL_RARE PL_PASS", name,
+                      "long count,\n    const double *const *in, double *const *out");
+  c_text_add(e->out, "  (void)law, (void)uniforms, (void)in;\n");
   emit_inputs_before_loop(e);
   for (int k = 0; k < planes; k++)
     c_text_add(e->out, "  double *restrict at_out_%d = out[%d];\n", k, k);
@@ -521,7 +535,8 @@ static void write_states_pass(emitter *e, const pass *p, const char *name, int p
       c_text_add(e->out, "0.0");
     c_text_add(e->out, ";\n");
   }
-  c_text_add(e->out, "  }\n}\n\n");
+  c_text_add(e->out, "  }\n");
+  emit_function_end(e);
   emit_close(e);
 }
 
@@ -662,19 +677,18 @@ static void write_descriptor(emitter *e, const char *key) {
 }
 
 static void write_entry(emitter *e, const char *key) {
+  c_text_add(e->out, "#if PL_IN_PART(0)\n");
   write_descriptor(e, key);
   if (e->plan->kind == PL_STATE) {
     emit_program_members(e);
-    c_text_add(e->out, "};\n\nconst pl_law *perilat_kernel(void);\n"
-                       "const pl_law *perilat_kernel(void) { return &the_law; }\n");
-    return;
-  }
+  } else {
 #define X(pass, member, task) c_text_add(e->out, "    .%s = %s,\n", #member, #member);
-  STRIP_PASSES(X)
+    STRIP_PASSES(X)
 #undef X
-  c_text_add(e->out, "    .states = states,\n    .tangent = tangent,\n};\n\n"
-                     "const pl_law *perilat_kernel(void);\n"
-                     "const pl_law *perilat_kernel(void) { return &the_law; }\n");
+    c_text_add(e->out, "    .states = states,\n    .tangent = tangent,\n");
+  }
+  c_text_add(e->out, "};\n\nconst pl_law *perilat_kernel(void);\n"
+                     "const pl_law *perilat_kernel(void) { return &the_law; }\n#endif\n");
 }
 
 /* --- the whole text --------------------------------------------------------------------------- */
@@ -686,7 +700,14 @@ static const char own_macros[] =
     "#else\n"
     "#define PL_INDEPENDENT _Pragma(\"GCC ivdep\")\n"
     "#endif\n"
-    "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n\n";
+    "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n"
+    "#if defined(PL_PART) /* one of the parts that are compiled at the same time */\n"
+    "#define PL_PASS __attribute__((visibility(\"hidden\")))\n"
+    "#define PL_IN_PART(part) (PL_PART == (part))\n"
+    "#else\n"
+    "#define PL_PASS static\n"
+    "#define PL_IN_PART(part) 1\n"
+    "#endif\n\n";
 
 /* In strips gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step); of
    families it would move what is loaded for a choice into a branch. The others only take the compiler's time. */

@@ -403,19 +403,18 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
 
 static void write_pass(emitter *e, const family_program *q, int number) {
   const bool unrolled = q == &e->plan->step && plan_is_of_small_family(e->plan);
+  char name[40];
   if (unrolled)
     c_text_add(e->out, "/* one loop, %d neighbours written out */\n", e->plan->law->neighbours);
-  c_text_add(
-      e->out,
-      "static void %s_%d(const pl_law *law, const double *uniforms, const pl_family *family) {\n"
-      "  const long half = family->neighbours / 2;\n"
-      "  (void)law, (void)uniforms, (void)half;\n",
-      q->name, number);
+  snprintf(name, sizeof name, "%s_%d", q->name, number);
+  emit_function_begin(e, "PL_PASS", name, "const pl_family *family");
+  c_text_add(e->out, "  const long half = family->neighbours / 2;\n"
+                     "  (void)law, (void)uniforms, (void)half;\n");
   if (unrolled)
     emit_unrolled_pass(e, &q->passes[number]);
   else
     write_rolled_pass(e, &q->passes[number]);
-  c_text_add(e->out, "}\n\n");
+  emit_function_end(e);
 }
 
 static void write_program(emitter *e, const family_program *q) {

@@ -5,6 +5,7 @@
 
 #include "generator/c_text.h"
 #include "generator/passes.h"
+#include "generator/toolchain.h"
 
 /* The functions differ in where inputs come from and in how the loop, if any, runs. */
 typedef enum scope_kind {
@@ -44,6 +45,10 @@ typedef struct emitter {
   const family_words *words; /* of segments */
   struct unrolled *unrolled; /* of a pass that is one loop (emit_unrolled.c); else NULL */
   bool quiet;                /* the loop is for where marked fields are 0 (emit_pairs.c) */
+
+  int part;                            /* that the function is in */
+  size_t part_start;                   /* of the function, in the text */
+  size_t part_length[TOOLCHAIN_PARTS]; /* of the functions so far */
 } emitter;
 
 /* Begins and ends a function or a segment that computes these nodes: decides which get a line and a name. */
@@ -64,6 +69,10 @@ void emit_inputs_before_loop(emitter *e);
 void emit_loop_begin(emitter *e);
 /* NULL without such a root. */
 const pass_root *emit_find_root(const emitter *e, pass_target target, int index);
+/* A function over bonds or particles, from its declaration to its end: `kind` void `name`(law, uniforms, `over`). It goes
+   into the part of the text (toolchain.h) that has the least so far. */
+void emit_function_begin(emitter *e, const char *kind, const char *name, const char *over);
+void emit_function_end(emitter *e);
 /* "; / * line 12 * /" and the end of the line. */
 void emit_line_end(emitter *e, ir_node n);
 

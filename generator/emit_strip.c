@@ -83,13 +83,13 @@ static void write_store(emitter *e, const pass_root *r) {
  */
 static void write_strip_head(emitter *e, const char *name, bool cut) {
   const int bits = cut ? 64 : 32;
+  emit_function_begin(e, "PL_PASS", name, "const pl_strip *strip");
   c_text_add(e->out,
-             "static void %s(const pl_law *law, const double *uniforms, const pl_strip *strip) {\n"
              "  (void)law, (void)uniforms;\n"
              "  const long count = strip->count / PL_LANES * PL_LANES;\n"
              "  const int64_t *restrict flags = strip->flags;\n"
              "  const int%d_t present_bit = (int%d_t)PL_PRESENT(strip->direction);\n",
-             name, bits, bits);
+             bits, bits);
   if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
     c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
   if (!e->root_count) c_text_add(e->out, "  (void)flags, (void)present_bit;\n");
@@ -247,7 +247,7 @@ void emit_strip_pass(emitter *e, const pass *p, const char *name) {
     write_stages(e, s);
   else
     write_one_loop(e);
-  c_text_add(e->out, "}\n\n");
+  emit_function_end(e);
   stages_free(s);
   emit_close(e);
 }

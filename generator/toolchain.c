@@ -102,46 +102,57 @@ const char *toolchain_flags(void) {
   char processor[8192];
   read_processor(processor, sizeof processor);
   if (!strstr(processor, " avx512f")) return COMMON_FLAGS;
-  return strstr(processor, "GenuineIntel")
-             ? COMMON_FLAGS " -mprefer-vector-width=512 -mtune=icelake-server"
-             : COMMON_FLAGS " -mprefer-vector-width=512";
+  return strstr(processor, "GenuineIntel") ? COMMON_FLAGS
+             " -mprefer-vector-width=512 -mtune=icelake-server"
+                                           : COMMON_FLAGS " -mprefer-vector-width=512";
 }
 
 /* --- running it ------------------------------------------------------------------------------- */
 
 typedef struct arguments {
-  char *text; /* the words, cut apart in place */
-  char *words[MOST_ARGUMENTS + 1];
+  char *words[MOST_ARGUMENTS + 1]; /* malloc'ed */
   int count;
 } arguments;
 
-/* Appends the words of `text`, which must outlive the arguments. */
-static void add_words(arguments *a, char *text) {
-  for (char *rest, *word = strtok_r(text, " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
-    if (a->count < MOST_ARGUMENTS) a->words[a->count++] = word;
+static char *copy_of(const char *text) {
+  return strcpy(must_alloc(strlen(text) + 1), text);
 }
 
-static void drop_word(arguments *a, const char *word) {
-  int kept = 0;
-  for (int k = 0; k < a->count; k++)
-    if (strcmp(a->words[k], word) != 0) a->words[kept++] = a->words[k];
-  a->count = kept;
+static void add_word(arguments *a, const char *word) {
+  if (a->count < MOST_ARGUMENTS) a->words[a->count++] = copy_of(word);
 }
 
-/* Runs a program without a shell, both its outputs into `log`. Its exit status; 127 when it cannot
-   be started; 128 + signal. */
-static int run(arguments *a, const char *log) {
+/* All words of `text`, but not `less`. */
+static void add_words(arguments *a, const char *text, const char *less) {
+  char *copy = copy_of(text);
+  for (char *rest, *word = strtok_r(copy, " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
+    if (strcmp(word, less) != 0) add_word(a, word);
+  free(copy);
+}
+
+static void free_arguments(arguments *a) {
+  while (a->count > 0)
+    free(a->words[--a->count]);
+}
+
+/* Starts a program without a shell; both its outputs are added to `log`. 0 when it cannot be started. */
+static pid_t start(arguments *a, const char *log) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, 1, log, O_WRONLY | O_CREAT | O_TRUNC, 0600);
+  posix_spawn_file_actions_addopen(&actions, 1, log, O_WRONLY | O_CREAT | O_APPEND, 0600);
   posix_spawn_file_actions_adddup2(&actions, 1, 2);
   a->words[a->count] = NULL;
   pid_t child;
-  int failed = posix_spawnp(&child, a->words[0], &actions, NULL, a->words, environ);
+  const int failed = posix_spawnp(&child, a->words[0], &actions, NULL, a->words, environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (failed) return 127;
+  return failed ? 0 : child;
+}
+
+/* Exit status of a child; 127 when it could not be started; 128 + signal. */
+static int finish(pid_t child) {
   int status;
+  if (child == 0) return 127;
   while (waitpid(child, &status, 0) < 0)
     if (errno != EINTR) return 127;
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
@@ -294,12 +305,11 @@ static void read_version(const char *compiler, char *version, size_t size) {
   snprintf(base, sizeof base, "%s/version", toolchain_cache());
   if (!make_temporary(base, ".log", log, sizeof log)) return;
   arguments a = {0};
-  char *words = strdup(compiler), option[] = "--version";
-  add_words(&a, words);
-  add_words(&a, option);
-  if (run(&a, log) == 0) read_head(log, version, size);
+  add_words(&a, compiler, "");
+  add_word(&a, "--version");
+  if (finish(start(&a, log)) == 0) read_head(log, version, size);
   version[strcspn(version, "\n")] = 0;
-  free(words);
+  free_arguments(&a);
   unlink(log);
 }
 
@@ -343,33 +353,74 @@ char *toolchain_key(const char *text) {
   "-lperilat_generator -lperilat_runtime -lperilat_generator -lperilat_runtime -lperilat_dsl "     \
   "-fopenmp " PERILAT_LINK_LIBRARIES
 
-/* A shared object, or with `libraries`, the option that says where they are, a program. */
-static int compile(const char *source, const char *object, const char *libraries, const char *log) {
+/* What the compiler is asked to do. */
+typedef struct compilation {
+  const char *source;
+  const char *libraries; /* the option that says where they are: a program; NULL: a shared object */
+  bool in_parts;
+  const char *log; /* what the compiler says is added to */
+} compilation;
+
+/* The compiler with flags, but not `less`, and where to write. */
+static arguments command(const char *output, const char *less) {
   arguments a = {0};
-  const char *compiler = toolchain_compiler();
-  char *words = strdup(compiler), *flags = strdup(toolchain_flags());
-  char *object_path = strdup(object), *source_path = strdup(source);
-  char output_option[] = "-o", mathematics[] = "-lm"; /* fma, where the processor has none */
-  char *linked = strdup(libraries ? SOLVER_LIBRARIES : "");
-  char *libraries_folder = strdup(libraries ? libraries : "");
-  add_words(&a, words);
-  add_words(&a, flags);
-  if (libraries) drop_word(&a, "-shared");
-  if (a.count <= MOST_ARGUMENTS / 2) {
-    a.words[a.count++] = output_option;
-    a.words[a.count++] = object_path; /* whole, blanks and all */
-    a.words[a.count++] = source_path;
-    if (libraries) a.words[a.count++] = libraries_folder;
-    add_words(&a, linked);
-    add_words(&a, mathematics);
+  add_words(&a, toolchain_compiler(), "");
+  add_words(&a, toolchain_flags(), less);
+  add_word(&a, "-o");
+  add_word(&a, output); /* whole, blanks and all */
+  return a;
+}
+
+static int run_and_free(arguments *a, const char *log) {
+  add_word(a, "-lm"); /* fma, where the processor has none */
+  const int status = finish(start(a, log));
+  free_arguments(a);
+  return status;
+}
+
+static int compile_whole(const compilation *c, const char *object) {
+  arguments a = command(object, c->libraries ? "-shared" : "");
+  add_word(&a, c->source);
+  if (c->libraries) {
+    add_word(&a, c->libraries);
+    add_words(&a, SOLVER_LIBRARIES, "");
   }
-  int status = run(&a, log);
-  free(linked);
-  free(libraries_folder);
-  free(words);
-  free(flags);
-  free(object_path);
-  free(source_path);
+  return run_and_free(&a, c->log);
+}
+
+static void name_part(char part[LONGEST_PATH], const char *object, int number) {
+  snprintf(part, LONGEST_PATH, "%.*s.%d.o", LONGEST_PATH - 16, object, number);
+}
+
+/* Parts at the same time, then linked. */
+static int compile_parts(const compilation *c, const char *object) {
+  char part[LONGEST_PATH], macro[32];
+  pid_t children[TOOLCHAIN_PARTS];
+  arguments link = command(object, "");
+  int status = 0;
+  for (int k = 0; k < TOOLCHAIN_PARTS; k++) {
+    name_part(part, object, k);
+    add_word(&link, part);
+    arguments a = command(part, "-shared");
+    snprintf(macro, sizeof macro, "-DPL_PART=%d", k);
+    add_word(&a, macro);
+    add_word(&a, "-c");
+    add_word(&a, c->source);
+    children[k] = start(&a, c->log);
+    free_arguments(&a);
+  }
+  for (int k = 0; k < TOOLCHAIN_PARTS; k++) {
+    const int of_part = finish(children[k]);
+    status = status ? status : of_part;
+  }
+  if (!status)
+    status = run_and_free(&link, c->log);
+  else
+    free_arguments(&link);
+  for (int k = 0; k < TOOLCHAIN_PARTS; k++) {
+    name_part(part, object, k);
+    unlink(part);
+  }
   return status;
 }
 
@@ -386,9 +437,8 @@ static void explain_failure(int status, const char *source, const char *log, cha
              toolchain_compiler(), status, source, *said ? "said:\n" : "said nothing", said);
 }
 
-/* Compiles `source` to `path`, whole or not at all. */
-static bool compile_to(const char *source, const char *path, const char *libraries, bool sealed,
-                       char *error, size_t size) {
+/* Compiles to `path`, whole or not at all. */
+static bool compile_to(compilation c, const char *path, bool sealed, char *error, size_t size) {
   char object[LONGEST_PATH], log[LONGEST_PATH];
   if (!toolchain_compiler()) {
     snprintf(error, size, "%s", toolchain_no_compiler());
@@ -398,19 +448,24 @@ static bool compile_to(const char *source, const char *path, const char *librari
     snprintf(error, size, "cannot write beside `%s`: %s", path, strerror(errno));
     return false;
   }
-  if (!make_temporary(source, ".log", log, sizeof log)) {
-    snprintf(error, size, "cannot write beside `%s`: %s", source, strerror(errno));
+  if (!make_temporary(c.source, ".log", log, sizeof log)) {
+    snprintf(error, size, "cannot write beside `%s`: %s", c.source, strerror(errno));
     unlink(object);
     return false;
   }
-  int status = compile(source, object, libraries, log);
-  if (status) explain_failure(status, source, log, error, size);
+  c.log = log;
+  const int status = c.in_parts ? compile_parts(&c, object) : compile_whole(&c, object);
+  if (status) explain_failure(status, c.source, log, error, size);
   unlink(log);
   bool done =
       !status && (!sealed || seal(object)) && chmod(object, 0755) == 0 && rename(object, path) == 0;
   if (!status && !done) snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
   if (!done) unlink(object);
   return done;
+}
+
+static bool has_parts(const char *c_text) {
+  return strstr(c_text, "PL_PART") != NULL;
 }
 
 static bool build(const char *c_text, const char *libraries, const char *path, char *error,
@@ -422,7 +477,9 @@ static bool build(const char *c_text, const char *libraries, const char *path, c
     snprintf(error, size, "cannot write a file in `%s`: %s", toolchain_cache(), strerror(errno));
     return false;
   }
-  bool done = compile_to(source, path, libraries, false, error, size);
+  const compilation c = {
+      .source = source, .libraries = libraries, .in_parts = !libraries && has_parts(c_text)};
+  bool done = compile_to(c, path, false, error, size);
   if (done) unlink(source);
   return done;
 }
@@ -518,8 +575,8 @@ bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, cha
     snprintf(error, size, "cannot write `%s`: %s", source, strerror(errno));
     return false;
   }
-  return compile_to(source, object, NULL, true, error, size) &&
-         toolchain_open(object, key, out, error, size);
+  const compilation c = {.source = source, .in_parts = has_parts(c_text)};
+  return compile_to(c, object, true, error, size) && toolchain_open(object, key, out, error, size);
 }
 
 void toolchain_unload(loaded_kernel *k) {

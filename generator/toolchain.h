@@ -7,6 +7,10 @@
 
 #include "runtime/kernel.h"
 
+/* A text that says PL_PART is compiled in this many parts at the same time, as PL_PART 0, 1, ... (its functions are
+   then seen by all parts), another one whole. */
+#define TOOLCHAIN_PARTS 2
+
 typedef struct loaded_kernel {
   const pl_law *law;
   void *handle; /* dlopen */

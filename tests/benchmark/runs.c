@@ -140,12 +140,12 @@ static void measure_sizes(figures *f) {
 
 /* --- compiling and starting ------------------------------------------------------------------- */
 
-static double seconds_to_kernel(const char *name) {
+static double seconds_to_kernel(const char *name, int neighbours) {
   char error[4096];
   const char *note = NULL;
   model m;
   const double begun = wall_seconds();
-  trial_open_model(&m, name);
+  trial_open_model(&m, name, neighbours);
   if (!model_kernel(&m, false, &note, error, sizeof error)) give_up("%s", error);
   const double taken = wall_seconds() - begun;
   model_close(&m);
@@ -153,7 +153,7 @@ static double seconds_to_kernel(const char *name) {
 }
 
 /* In an empty cache first, then from it; the caller's cache is put back. */
-static void measure_compiling(figures *f, const char *name) {
+static void measure_compiling(figures *f, const char *name, int neighbours) {
   double cold[FEW_ROUNDS], warm[FEW_ROUNDS];
   const char *set = getenv("PERILAT_CACHE");
   char *before = set ? strdup(set) : NULL;
@@ -161,8 +161,8 @@ static void measure_compiling(figures *f, const char *name) {
     char folder[] = "/tmp/perilat-benchmark-XXXXXX", command[100];
     if (!mkdtemp(folder)) give_up("no folder for an empty cache");
     setenv("PERILAT_CACHE", folder, 1);
-    cold[round] = seconds_to_kernel(name);
-    warm[round] = seconds_to_kernel(name);
+    cold[round] = seconds_to_kernel(name, neighbours);
+    warm[round] = seconds_to_kernel(name, neighbours);
     snprintf(command, sizeof command, "rm -r %s", folder);
     if (system(command) != 0) give_up("%s stays behind", folder);
   }
@@ -324,8 +324,8 @@ bool benchmark_runs(figures *f) {
   measure_memory(f);
   measure_arithmetic(f);
   measure_sizes(f);
-  measure_compiling(f, LAW);
-  measure_compiling(f, "splm_concrete");
+  measure_compiling(f, LAW, 0);
+  measure_compiling(f, "splm_concrete", 6);
   measure_start(f, folder);
   measure_frames(f, folder);
   measure_sampling(f);

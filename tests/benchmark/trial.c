@@ -22,13 +22,15 @@ void trial_plate_text(char *text, size_t size, double particles, const char *mod
            simulation_keys, side, side, side, side - 10, side, model_name, groups);
 }
 
-void trial_open_model(model *m, const char *name) {
+void trial_open_model(model *m, const char *name, int neighbours) {
   char path[4096];
   if (strchr(name, '/'))
     snprintf(path, sizeof path, "%s", name);
   else
     snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
-  const bool good = model_open(m, path, NULL, 0) && model_plan(m);
+  bool good = model_open(m, path, NULL, 0);
+  if (good) m->law->neighbours = neighbours;
+  good = good && model_plan(m);
   diag_print(&m->said, stderr);
   if (!good) give_up("%s cannot be used", path);
 }

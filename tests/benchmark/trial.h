@@ -23,8 +23,8 @@ void trial_plate_text(char *text, size_t size, double particles, const char *mod
    displacements that stretch bonds by about 1e-5. */
 trial *trial_open(const char *deck_text);
 void trial_close(trial *t);
-/* The deck's model, opened and planned. */
-void trial_open_model(model *m, const char *name);
+/* A model, opened and planned; on a lattice of so many neighbours, 0: not known. */
+void trial_open_model(model *m, const char *name, int neighbours);
 /* Parameters of the deck's material, with the law's defaults; malloc'ed. */
 double *trial_parameters(trial *t, const pl_law *kernel);
 

@@ -51,6 +51,7 @@ static const char *const c_own_words[] = {"static",
                                           "PL_PRESENT",
                                           "PL_PROTECTED",
                                           "PL_RARE",
+                                          "PL_PASS",
                                           "PL_INDEPENDENT",
                                           "pl_abs",
                                           "pl_fma",
@@ -163,6 +164,16 @@ static inline size_t c_comment(const char *at) {
   return digits && strncmp(at + head + digits, " */", 3) == 0 ? head + digits + 3 : 0;
 }
 
+/* Which of the parts that are compiled at the same time a function is in. */
+static inline size_t c_part(const char *at) {
+  static const char begin[] = "#if PL_IN_PART(", end[] = "#endif\n";
+  if (strncmp(at, end, sizeof end - 1) == 0) return sizeof end - 1;
+  const size_t head = sizeof begin - 1;
+  if (strncmp(at, begin, head) != 0) return 0;
+  const size_t digits = strspn(at + head, "0123456789");
+  return digits && strncmp(at + head + digits, ")\n", 2) == 0 ? head + digits + 2 : 0;
+}
+
 static inline size_t c_mark(const char *at) {
   if (at[0] == '/' && (at[1] == '/' || at[1] == '*')) return 0; /* a comment of another form */
   if (at[0] == '?' && at[1] == '?') return 0;                   /* a trigraph */
@@ -172,8 +183,7 @@ static inline size_t c_mark(const char *at) {
 /* End of the fixed text that kernels begin with: it holds nothing of the law. NULL: it is not
  * there. */
 static inline const char *c_begin(const char *text) {
-  static const char mark[] =
-      "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n";
+  static const char mark[] = "#define PL_IN_PART(part) 1\n#endif\n";
   const char *at = strstr(text, mark);
   return at ? at + sizeof mark - 1 : NULL;
 }
@@ -189,6 +199,7 @@ static inline const char *c_stray(const char *text) {
     n = n ? n : c_number(at);
     n = n ? n : c_quoted(at);
     n = n ? n : c_comment(at);
+    n = n ? n : c_part(at);
     n = n ? n : c_mark(at);
     open += strchr("({[", *at) ? 1 : strchr(")}]", *at) ? -1 : 0;
     if (!n || open < 0) return at;

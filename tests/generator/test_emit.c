@@ -410,7 +410,7 @@ static void the_loops_vectorise(void **state) {
   int loops = 0;
   char *gcc = compiler_says(text, "gcc", "-fopt-info-vec-optimized -o /dev/null");
   char *clang = compiler_says(text, "clang", "-Rpass=loop-vectorize -o /dev/null");
-  const char *at = strstr(text, "static void rows("), *end = at ? strstr(at, "\n}\n") : NULL;
+  const char *at = strstr(text, "PL_PASS void rows(const pl_law *law"), *end = at ? strstr(at, "\n}\n") : NULL;
   assert_non_null(end);
   while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
     at += strlen("  PL_INDEPENDENT\n");

@@ -104,7 +104,7 @@ static char *compiler_says(const model *m, const char *compiler, const char *mor
 }
 
 static void assert_clean_and_vectorised(const model *m) {
-  const char *text = m->c_text, *at = strstr(text, "static void rows("), *end = strstr(at, "\n}\n");
+  const char *text = m->c_text, *at = strstr(text, "PL_PASS void rows(const pl_law *law"), *end = strstr(at, "\n}\n");
   char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
   while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
     char expected[64];

@@ -337,6 +337,42 @@ static void a_compiler_that_fails_is_reported(void **state) {
   assert_int_equal(count_files(p->folder, "tmp"), 0);
 }
 
+/* A kernel whose number of operations is a constant of the other part. */
+static char *text_in_parts(const char *other) {
+  static const char form[] =
+      "%s\n"
+      "extern const double of_other;\n"
+      "#if PL_PART == 0\n"
+      "static pl_law the_law = {.abi = PL_KERNEL_ABI, .name = \"hand\", .key = \"parts\"};\n"
+      "const pl_law *perilat_kernel(void);\n"
+      "const pl_law *perilat_kernel(void) { the_law.flops_per_bond = of_other; return &the_law; }\n"
+      "#else\n"
+      "%s\n"
+      "#endif\n";
+  const size_t size = strlen(prelude_kernel_h) + sizeof form + strlen(other);
+  char *text = malloc(size);
+  assert_non_null(text);
+  snprintf(text, size, form, prelude_kernel_h, other);
+  return text;
+}
+
+static void parts_are_compiled_each_and_linked(void **state) {
+  place_of_test *p = *state;
+  loaded_kernel k;
+  char error[ERROR_SIZE] = "";
+  char *text = text_in_parts("const double of_other = 7;"),
+       *wrong = text_in_parts("const double;;x");
+  assert_loads(text, "parts", false, 7);
+  assert_loads(text, "parts", true, 7);
+  assert_false(toolchain_load(wrong, "wrong", &k, error, sizeof error));
+  assert_non_null(strstr(error, "error:"));
+  assert_int_equal(count_files(p->folder, "tmp"), 0);
+  assert_int_equal(count_files(p->folder, "o"), 1); /* the .so */
+  assert_int_equal(count_files(p->folder, "log"), 0);
+  free(text);
+  free(wrong);
+}
+
 static void the_key_holds_text_compiler_and_flags(void **state) {
   (void)state;
   unsetenv("PERILAT_CC");
@@ -420,6 +456,7 @@ int main(void) {
       IN_OWN_CACHE(without_a_compiler_there_is_none),
       IN_OWN_CACHE(a_named_compiler_is_taken_or_none),
       IN_OWN_CACHE(a_compiler_that_fails_is_reported),
+      IN_OWN_CACHE(parts_are_compiled_each_and_linked),
       IN_OWN_CACHE(the_key_holds_text_compiler_and_flags),
       IN_OWN_CACHE(an_unwritable_cache_gives_a_temporary_one),
       IN_OWN_CACHE(a_temporary_cache_that_others_can_write_is_not_used),
