@@ -26,8 +26,7 @@ enum { PROFILE_MOST_STAGES = 8 };
 typedef struct profile {
   double part[PROFILE_PART_COUNT];   /* s */
   double stage[PROFILE_MOST_STAGES]; /* s: the law's, pass by pass of a law of families */
-  double alone; /* s: what one thread did in the last meeting, while all others waited */
-  double left;  /* when the first thread had done its last step; the team ends when all have */
+  double worked;                     /* s: by the first thread, or by one for all */
 } profile;
 
 extern const char *const profile_names[PROFILE_PART_COUNT];

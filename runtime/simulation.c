@@ -2,7 +2,6 @@
 
 #include <math.h>
 #include <omp.h>
-#include <sched.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -238,6 +237,7 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
                        k->output.energy, quasi_static || frames_want(s, "force"));
+  s->team = team_new(s->state->block_count);
   if (s->fields) s->state->parameter = s->fields->value;
   if (k->gravity_count > 0) sweep_add_gravity(s->state);
   if (!loads_initial_velocity(s->loads, s->state, d)) return false;
@@ -272,6 +272,7 @@ void simulation_free(simulation *s) {
   relaxation_free(s->relaxation);
   loads_free(s->loads);
   sweep_free(s->state);
+  team_free(s->team);
   random_fields_free(s->fields);
   free(s->bonds);
   if (s->lattice) rows_free(s->lattice);
@@ -471,24 +472,10 @@ void simulation_measure(simulation *s, profile *p) {
   s->state->timed = p != NULL;
 }
 
-/* What has to be done alone, with its time; sampling counts for itself (record_sample). */
-static void meet_alone(simulation *s, void (*alone)(simulation *)) {
-  profile *p = s->profile;
-  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->part[PROFILE_SAMPLING] : 0;
-  if (alone) alone(s);
-  if (!p) return;
-  p->alone = monotonic_seconds() - begun;
-  p->part[PROFILE_LOADS] += p->alone - (p->part[PROFILE_SAMPLING] - sampled);
-}
-
 /* The first thread's part of a stage. */
-static void note_stage(simulation *s, int stage, bool observing, double seconds) {
+static void note_block(simulation *s, bool observing, int stage, double seconds, double moving) {
   profile *p = s->profile;
-  double moving = 0;
-  for (int b = 0; b < s->state->block_count; b += omp_get_num_threads()) {
-    moving += s->state->blocks[b].moving;
-    s->state->blocks[b].moving = 0;
-  }
+  p->worked += seconds;
   if (observing) {
     p->part[PROFILE_SAMPLING] += seconds;
     return;
@@ -500,48 +487,40 @@ static void note_stage(simulation *s, int stage, bool observing, double seconds)
   p->stage[stage < PROFILE_MOST_STAGES ? stage : PROFILE_MOST_STAGES - 1] += seconds - moving;
 }
 
-/* A barrier; the last to arrive does what has to be done alone. Steps are short, so that waiting is
-   first a look at a number; where there are more threads than processors the others get theirs. */
-static void meet(simulation *s, void (*alone)(simulation *)) {
-  enum { PATIENCE = 4000 };
-  const long round = atomic_load(&s->meeting.round);
-  if (atomic_fetch_add(&s->meeting.arrived, 1) == omp_get_num_threads() - 1) {
-    meet_alone(s, alone);
-    atomic_store(&s->meeting.arrived, 0);
-    atomic_store(&s->meeting.round, round + 1);
-    return;
-  }
-  for (long looks = 0; atomic_load(&s->meeting.round) == round; looks++)
-    if (looks > PATIENCE) sched_yield();
-}
-
-/* One stage after the other by all threads, the last one followed by `alone`. A team may be smaller
-   than the number of blocks; the blocks, and so the results, stay the same. */
-static void run_stages(simulation *s, int stages, void (*work)(sweep *, int, int),
-                       void (*alone)(simulation *)) {
-  const bool measured = s->profile && omp_get_thread_num() == 0;
-  for (int stage = 0; stage < stages; stage++) {
-    const double begun = measured ? monotonic_seconds() : 0;
-    for (int b = omp_get_thread_num(); b < s->state->block_count; b += omp_get_num_threads())
-      work(s->state, stage, b);
-    const double done = measured ? monotonic_seconds() : 0;
-    if (measured) note_stage(s, stage, work == s->state->engine.observe, done - begun);
-    meet(s, stage == stages - 1 ? alone : NULL);
-    if (measured)
-      s->profile->part[PROFILE_WAITING] += monotonic_seconds() - done - s->profile->alone;
-  }
-}
-
-static void time_loop(simulation *s) {
-  const unsigned environment = sweep_enter();
+/* Tasks of the team: the stages of a step, then those of observing. */
+static void do_stage(void *of, int task, int block) {
+  simulation *s = of;
   const sweep_engine *engine = &s->state->engine;
-  for (;;) {
-    if (s->observe) run_stages(s, engine->observe_stages, engine->observe, after_observing);
-    if (!s->go_on) break;
-    run_stages(s, engine->step_stages, engine->step, after_step);
+  const bool observing = task >= engine->step_stages;
+  const int stage = observing ? task - engine->step_stages : task;
+  const bool measured = s->profile && omp_get_thread_num() == 0;
+  double *moving = &s->state->blocks[block].moving;
+  const double begun = measured ? monotonic_seconds() : 0;
+  *moving = 0;
+  (observing ? engine->observe : engine->step)(s->state, stage, block);
+  if (measured) note_block(s, observing, stage, monotonic_seconds() - begun, *moving);
+}
+
+static int next_task(const simulation *s) {
+  return s->observe ? s->state->engine.step_stages : s->go_on ? 0 : TEAM_END;
+}
+
+/* What one thread does between stages; sampling counts its time for itself (record_sample). */
+static int after_stage(void *of, int task) {
+  simulation *s = of;
+  profile *p = s->profile;
+  const sweep_engine *engine = &s->state->engine;
+  const bool stepped = task == engine->step_stages - 1,
+             observed = task == engine->step_stages + engine->observe_stages - 1;
+  if (!stepped && !observed) return task + 1;
+  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->part[PROFILE_SAMPLING] : 0;
+  (stepped ? after_step : after_observing)(s);
+  if (p) {
+    const double alone = monotonic_seconds() - begun;
+    p->worked += alone;
+    p->part[PROFILE_LOADS] += alone - (p->part[PROFILE_SAMPLING] - sampled);
   }
-  sweep_leave(environment);
-  if (s->profile && omp_get_thread_num() == 0) s->profile->left = monotonic_seconds();
+  return next_task(s);
 }
 
 /* First frame after the present step bounds an advance; one that is due but not taken does not. */
@@ -565,6 +544,21 @@ static void begin(simulation *s) {
   if (!s->observe) record_sample(s);
 }
 
+/* What the first thread does not work, it waits. */
+static void run_team(simulation *s) {
+  profile *p = s->profile;
+  const double begun = p ? monotonic_seconds() : 0, worked = p ? p->worked : 0;
+  const team_work work = {.of = s, .block = do_stage, .next = after_stage};
+  team_begin(s->team, next_task(s));
+#pragma omp parallel num_threads(s->state->block_count)
+  {
+    const unsigned environment = sweep_enter();
+    team_join(s->team, &work);
+    sweep_leave(environment);
+  }
+  if (p) p->part[PROFILE_WAITING] += monotonic_seconds() - begun - (p->worked - worked);
+}
+
 step_status simulation_advance(simulation *s, long steps,
                                const volatile sig_atomic_t *interrupted) {
   if (s->at.status != STEP_OK) return (step_status)s->at.status;
@@ -573,9 +567,7 @@ step_status simulation_advance(simulation *s, long steps,
   s->go_on = s->at.step < s->until && !(interrupted && *interrupted);
   s->observe = false;
   if (!s->at.begun) begin(s);
-#pragma omp parallel num_threads(s->state->block_count)
-  time_loop(s);
-  if (s->profile) s->profile->part[PROFILE_WAITING] += monotonic_seconds() - s->profile->left;
+  run_team(s);
   if (s->at.status == STEP_OK && s->at.step == s->step_count) s->at.status = STEP_END;
   return (step_status)s->at.status;
 }

@@ -3,8 +3,6 @@
 #ifndef PERILAT_RUNTIME_SIMULATION_PARTS_H
 #define PERILAT_RUNTIME_SIMULATION_PARTS_H
 
-#include <stdatomic.h>
-
 #include "dsl/arena.h"
 #include "runtime/ledger.h"
 #include "runtime/loads.h"
@@ -13,6 +11,7 @@
 #include "runtime/relaxation.h"
 #include "runtime/simulation.h"
 #include "runtime/sweep.h"
+#include "runtime/team.h"
 
 typedef struct progress_state { /* first part of a checkpoint: the sizes of others depend on it */
   int64_t begun;                /* the sample at step 0 is taken */
@@ -45,6 +44,7 @@ struct simulation {
   double *parameters;    /* the caller's; those of random fields become their mean */
   random_fields *fields; /* NULL without */
   sweep *state;
+  team *team; /* of a block each */
   loads *loads;
   monitors *monitors;
   relaxation *relaxation; /* NULL: a dynamic run */
@@ -69,11 +69,6 @@ struct simulation {
   const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
   const volatile sig_atomic_t *interrupted;
-  struct { /* of the threads at a barrier */
-    atomic_long arrived;
-    char apart[64]; /* those who wait look at `round` only */
-    atomic_long round;
-  } meeting;
 };
 
 /* False with a diagnostic when the deck asks for fields that no run has. */
