@@ -4,11 +4,11 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "tests/runtime/family_law.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
 /* Everything that moves and takes energy; the format takes threads, the law's values and more groups. */
@@ -125,8 +125,6 @@ static void threads_do_not_change_a_bit(void **state) {
 
 static void a_resumed_run_gives_the_same_bits(void **state) {
   (void)state;
-  static const char path[] = "test_family_run.state", fingerprint[] = "deck 1, law 3";
-  char error[200];
   small_run straight;
   open_busy(&straight, 2, broken, "/");
   const long total = simulation_step_count(straight.simulation);
@@ -134,22 +132,15 @@ static void a_resumed_run_gives_the_same_bits(void **state) {
   const long stops[] = {0, 7, total / 2 + 1, total - 1};
   for (int k = 0; k < 4; k++) {
     small_run first, second;
-    long frames = -1;
     open_busy(&first, 1, broken, "/");
-    while (simulation_step_done(first.simulation) < stops[k])
-      simulation_advance(first.simulation, stops[k] - simulation_step_done(first.simulation), NULL);
-    assert_true(simulation_save(first.simulation, path, fingerprint, 0, error, sizeof error));
-    small_close(&first);
     open_busy(&second, 3, broken, "/");
-    assert_true(
-        simulation_restore(second.simulation, path, fingerprint, &frames, error, sizeof error));
-    assert_int_equal(simulation_step_done(second.simulation), stops[k]);
+    hand_over(first.simulation, stops[k], second.simulation);
+    small_close(&first);
     small_go(&second);
     same_runs(&straight, &second);
     small_close(&second);
   }
   small_close(&straight);
-  unlink(path);
 }
 
 /* --- what a run shows ------------------------------------------------------------------------- */

@@ -4,11 +4,11 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "tests/runtime/family_law.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
 static const char broken[] = "S_t = 1e-4 tau = 1e-8";
@@ -84,31 +84,23 @@ static void same_runs(const small_run *a, const small_run *b) {
 
 static void threads_and_stops_do_not_change_a_bit(void **state) {
   (void)state;
-  static const char path[] = "test_list_run.state", fingerprint[] = "deck 1, law 3";
-  char error[200];
   small_run straight;
   open_busy(&straight, 1, broken, "");
   assert_int_equal(small_go(&straight), STEP_END);
   assert_true(small_last(&straight, "cracks") > 10);
   for (int threads = 2; threads <= 3; threads++) {
     small_run first, second;
-    long frames = -1;
     open_busy(&first, threads, broken, "");
     assert_int_equal(simulation_threads(first.simulation), threads);
-    const long stop = simulation_step_count(first.simulation) / threads;
-    while (simulation_step_done(first.simulation) < stop)
-      simulation_advance(first.simulation, stop - simulation_step_done(first.simulation), NULL);
-    assert_true(simulation_save(first.simulation, path, fingerprint, 0, error, sizeof error));
-    small_close(&first);
     open_busy(&second, 1, broken, "");
-    assert_true(
-        simulation_restore(second.simulation, path, fingerprint, &frames, error, sizeof error));
+    hand_over(first.simulation, simulation_step_count(first.simulation) / threads,
+              second.simulation);
+    small_close(&first);
     small_go(&second);
     same_runs(&straight, &second);
     small_close(&second);
   }
   small_close(&straight);
-  unlink(path);
 }
 
 /* Other particles, and other bonds of the same ones, are other runs. */

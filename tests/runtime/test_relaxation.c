@@ -4,11 +4,11 @@
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <unistd.h>
 
 #include <cmocka.h>
 
 #include "tests/runtime/family_law.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
 /* A plate drawn out, its ends held; `motion` is that of the right one, in a deck's words. */
@@ -236,8 +236,6 @@ static void same_runs(small_run *a, small_run *b) {
 
 static void threads_and_resuming_change_no_bit(void **state) {
   (void)state;
-  static const char path[] = "test_relaxation.state", fingerprint[] = "deck 1, law 4";
-  char error[200];
   small_run straight;
   open_plate(&straight, &family_hexagon, keys_of, "S_t = 1e-4", 1, 6e-5);
   int frames = 0;
@@ -253,15 +251,10 @@ static void threads_and_resuming_change_no_bit(void **state) {
   const long stops[] = {0, 60, total / 2, total - 1};
   for (int k = 0; k < 4; k++) {
     small_run first, second;
-    long taken = -1;
     open_plate(&first, &family_hexagon, keys_of, "S_t = 1e-4", 2, 6e-5);
-    while (simulation_step_done(first.simulation) < stops[k])
-      simulation_advance(first.simulation, stops[k] - simulation_step_done(first.simulation), NULL);
-    assert_true(simulation_save(first.simulation, path, fingerprint, 0, error, sizeof error));
-    small_close(&first);
     open_plate(&second, &family_hexagon, keys_of, "S_t = 1e-4", 3, 6e-5);
-    assert_true(
-        simulation_restore(second.simulation, path, fingerprint, &taken, error, sizeof error));
+    hand_over(first.simulation, stops[k], second.simulation);
+    small_close(&first);
     assert_int_equal(small_go(&second), STEP_END);
     same_runs(&straight, &second);
     small_close(&second);
@@ -272,7 +265,6 @@ static void threads_and_resuming_change_no_bit(void **state) {
                           ->field[0][simulation_rows(straight.simulation, 0)->particle_site[p]]);
   assert_true(most > 0.1);
   small_close(&straight);
-  unlink(path);
 }
 
 int main(void) {

@@ -7,9 +7,8 @@
 
 #include <cmocka.h>
 
-#include <unistd.h>
-
 #include "generator/interpret.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/verification/case.h"
 
 /* 122 neighbours; some rows are longer than a chunk. */
@@ -90,30 +89,22 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
 /* After an odd and an even number of steps: old and new fields have changed places or not. */
 static void a_resumed_run_gives_the_same_bits(void **state) {
   (void)state;
-  char path[] = "/tmp/perilat-large-XXXXXX", error[256];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   deck_case straight;
   open_threads(&straight, "simulation.threads=1", false);
   assert_int_equal(deck_case_go(&straight), STEP_END);
   const long steps = simulation_step_done(straight.simulation);
   for (long stop = steps / 2; stop <= steps / 2 + 1; stop++) {
     deck_case first, second;
-    long frames;
     open_threads(&first, "simulation.threads=1", false);
-    assert_int_equal(simulation_advance(first.simulation, stop, NULL), STEP_OK);
-    assert_true(broken_share(simulation_state(first.simulation)) > 0);
-    assert_true(simulation_save(first.simulation, path, "large", 0, error, sizeof error));
-    deck_case_close(&first);
     open_threads(&second, "simulation.threads=2", false);
-    assert_true(simulation_restore(second.simulation, path, "large", &frames, error, sizeof error));
+    hand_over(first.simulation, stop, second.simulation);
+    assert_true(broken_share(simulation_state(first.simulation)) > 0);
+    deck_case_close(&first);
     assert_int_equal(deck_case_go(&second), STEP_END);
     assert_same(&straight, &second);
     deck_case_close(&second);
   }
   deck_case_close(&straight);
-  unlink(path);
 }
 
 static void the_interpreter_gives_the_same_bits(void **state) {

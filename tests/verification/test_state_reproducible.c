@@ -7,8 +7,7 @@
 
 #include <cmocka.h>
 
-#include <unistd.h>
-
+#include "tests/runtime/hand_over.h"
 #include "tests/verification/case.h"
 
 static void open_prism(deck_case *c, const char *threads) {
@@ -84,29 +83,20 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
 /* Stopped in the midst of yielding, an odd and an even number of steps in. */
 static void a_resumed_run_gives_the_same_bits(void **state) {
   (void)state;
-  char path[] = "/tmp/perilat-state-XXXXXX", error[256];
-  const int file = mkstemp(path);
-  assert_true(file >= 0);
-  close(file);
   deck_case straight;
   open_prism(&straight, "simulation.threads=1");
   assert_int_equal(deck_case_go(&straight), STEP_END);
   for (long stop = 1200; stop <= 1201; stop++) {
     deck_case first, second;
-    long frames = -1;
     open_prism(&first, "simulation.threads=1");
-    assert_int_equal(simulation_advance(first.simulation, stop, NULL), STEP_OK);
-    assert_int_equal(simulation_step_done(first.simulation), stop);
-    assert_true(simulation_save(first.simulation, path, "prism", 0, error, sizeof error));
-    deck_case_close(&first);
     open_prism(&second, "simulation.threads=2");
-    assert_true(simulation_restore(second.simulation, path, "prism", &frames, error, sizeof error));
+    hand_over(first.simulation, stop, second.simulation);
+    deck_case_close(&first);
     assert_int_equal(deck_case_go(&second), STEP_END);
     assert_same(&straight, &second);
     deck_case_close(&second);
   }
   deck_case_close(&straight);
-  unlink(path);
 }
 
 int main(void) {
