@@ -224,8 +224,9 @@ void emit_family_store(emitter *e, const segment_root *r, const char *to) {
       c_text_add(e->out, ", %s) : %s;\n", to, to);
       break;
     }
-    c_text_add(e->out, "+= ");
-    write_value_or(e, r->node, "0.0");
+    c_text_add(e->out, "= present ? %s + ", to);
+    emit_value(e, r->node);
+    c_text_add(e->out, " : %s;\n", to);
     break;
   case TO_LARGEST:
   case TO_SMALLEST:

@@ -179,7 +179,8 @@ void emit_unrolled_pass(emitter *e, const family_pass *p) {
   write_known(e, &u.arrays, "const double *restrict", "");
   write_known(e, &u.words_of_bits, "const uint64_t *restrict", "bits_");
   write_known(e, &u.results, "double *restrict", "result_");
-  c_text_add(out, "  PL_INDEPENDENT\n  for (long q = 0; q < family->count; q++) {\n");
+  c_text_add(out, "  const long count = family->count / PL_LANES * PL_LANES;\n"
+                  "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
   write_variables(e, p);
   c_text_add(out, "%s  }\n", body.text ? body.text : "");
   free(body.text);

@@ -192,11 +192,13 @@ static void share_reciprocals_of_roots(ir *g, root_list *r) {
 }
 
 /* All at once: what several passes compute they compute in the same way. */
-static void fuse(ir *g, root_list *step, root_list *observe) {
+static void rewrite_last(ir *g, root_list *step, root_list *observe) {
   const int count = step->count + observe->count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (int k = 0; k < count; k++)
     all[k] = k < step->count ? step->items[k].node : observe->items[k - step->count].node;
+  rewrite_choices(g, all, count, all);
+  rewrite_factors(g, all, count, all);
   rewrite_fused(g, all, count, all);
   for (int k = 0; k < count; k++)
     *(k < step->count ? &step->items[k].node : &observe->items[k - step->count].node) = all[k];
@@ -285,7 +287,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
   share_reciprocals_of_roots(p.g, &observe);
-  fuse(p.g, &step, &observe);
+  rewrite_last(p.g, &step, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular) {

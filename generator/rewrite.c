@@ -19,7 +19,7 @@ struct rebuilding {
   int input_count;
   const unsigned char *
       shared; /* rewrite_reciprocals: denominators of several divisions; others: nodes that are used several times */
-  const unsigned char *sided; /* rewrite_fused: nodes that need what a neighbour has */
+  const unsigned char *needs; /* rewrite_fused: what nodes need: NEEDS_NEIGHBOUR, NEEDS_FAMILY */
 };
 
 static unsigned char *marks_of(const ir *g, const ir_node *roots, int root_count) {
@@ -58,6 +58,20 @@ static ir_node again(ir *g, ir_node old, const ir_node *operand) {
   return ir_arity(op) == 0 ? old : ir_make(g, op, operand[0], operand[1], operand[2]);
 }
 
+/* 1 for each node that two or more of the needed ones use, those with one operation left aside. */
+static unsigned char *shared_nodes(const ir *g, const unsigned char *marks, ir_op aside) {
+  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++)
+    for (int k = 0; marks[n] && ir_operation(g, n) != aside && k < ir_arity(ir_operation(g, n));
+         k++) {
+      unsigned char *use = &uses[ir_operand(g, n, k)];
+      *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
+    }
+  for (ir_node n = 0; n < ir_count(g); n++)
+    uses[n] = uses[n] >= 2;
+  return uses;
+}
+
 /* --- zero ------------------------------------------------------------------------------------- */
 
 static ir_node zero_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
@@ -92,12 +106,27 @@ static bool is_uniform(const ir *g, ir_node n) {
   return ir_place(g, n) <= ON_BODY;
 }
 
+static bool is_of_particle(const ir *g, ir_node n) {
+  return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
+}
+
+/* Toward each neighbour, by a value of the particle: (p*x)/q = (p/q)*x divides once. */
+static ir_node quotient_by_particle(ir *g, ir_node above, ir_node below) {
+  for (int k = 0; k < 2 && ir_operation(g, above) == IR_MUL; k++)
+    if (is_of_particle(g, ir_operand(g, above, k)))
+      return ir_mul(g, ir_div(g, ir_operand(g, above, k), below), ir_operand(g, above, 1 - k));
+  return ir_mul(g, above, ir_div(g, ir_constant(g, 1), below));
+}
+
 static ir_node reciprocal_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
   if (ir_operation(g, old) != IR_DIV || is_uniform(g, old)) return again(g, old, operand);
   ir_node below = ir_operand(g, old, 1);
-  if (!is_uniform(g, below) && !r->shared[below]) return again(g, old, operand);
-  return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
+  if (is_uniform(g, below) || r->shared[below])
+    return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
+  if (is_of_particle(g, below) && !is_of_particle(g, old))
+    return quotient_by_particle(g, operand[0], operand[1]);
+  return again(g, old, operand);
 }
 
 /* 1 for each node that two or more of the needed divisions divide by. */
@@ -122,29 +151,59 @@ void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *o
   free(marks);
 }
 
-/* --- factors that are the same for all bonds --------------------------------------------------- */
+/* --- choices between quotients ---------------------------------------------------------------- */
 
-/* 1 for each node that two or more of the needed ones use, those with one operation left aside. */
-static unsigned char *shared_nodes(const ir *g, const unsigned char *marks, ir_op aside) {
-  unsigned char *uses = must_calloc((size_t)ir_count(g) + 1, 1);
-  for (ir_node n = 0; n < ir_count(g); n++)
-    for (int k = 0; marks[n] && ir_operation(g, n) != aside && k < ir_arity(ir_operation(g, n));
-         k++) {
-      unsigned char *use = &uses[ir_operand(g, n, k)];
-      *use = *use < 2 ? (unsigned char)(*use + 1) : 2;
-    }
-  for (ir_node n = 0; n < ir_count(g); n++)
-    uses[n] = uses[n] >= 2;
-  return uses;
+static bool is_own_quotient(const rebuilding *r, ir_node old, ir_node n) {
+  return ir_operation(r->graph, n) == IR_DIV && !is_uniform(r->graph, n) && !r->shared[old];
 }
 
-/* Takes node n apart: n = factor * rest, to the order of multiplication. IR_NONE where no factor is uniform. */
+/* Of two conditions of one kind that share an operand, the one that asks about the chosen operand. */
+static ir_node chosen_condition(ir *g, ir_node chooses, ir_node a, ir_node b) {
+  const ir_op op = ir_operation(g, a);
+  for (int k = 0; k < 2 && op == ir_operation(g, b) && (op == IR_LT || op == IR_LE); k++) {
+    const ir_node same = ir_operand(g, a, k);
+    if (same != ir_operand(g, b, k)) continue;
+    const ir_node other = ir_select(g, chooses, ir_operand(g, a, 1 - k), ir_operand(g, b, 1 - k));
+    return k == 0 ? ir_make(g, op, same, other, IR_NONE) : ir_make(g, op, other, same, IR_NONE);
+  }
+  return IR_NONE;
+}
+
+static ir_node chosen_quotient(ir *g, ir_node chooses, ir_node a, ir_node b) {
+  const ir_node above = ir_select(g, chooses, ir_operand(g, a, 0), ir_operand(g, b, 0));
+  return ir_div(g, above, ir_select(g, chooses, ir_operand(g, a, 1), ir_operand(g, b, 1)));
+}
+
+/* c ? a/b : d/e, or c ? (p ? v : a/b) : (q ? v : d/e). */
+static ir_node choice_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
+  ir *g = r->graph;
+  if (ir_operation(g, old) != IR_SELECT) return again(g, old, operand);
+  const ir_node yes = operand[1], no = operand[2];
+  const ir_node old_yes = ir_operand(g, old, 1), old_no = ir_operand(g, old, 2);
+  if (is_own_quotient(r, old_yes, yes) && is_own_quotient(r, old_no, no))
+    return chosen_quotient(g, operand[0], yes, no);
+  if (ir_operation(g, yes) != IR_SELECT || ir_operation(g, no) != IR_SELECT ||
+      ir_operand(g, yes, 1) != ir_operand(g, no, 1) || r->shared[old_yes] || r->shared[old_no] ||
+      !is_own_quotient(r, ir_operand(g, old_yes, 2), ir_operand(g, yes, 2)) ||
+      !is_own_quotient(r, ir_operand(g, old_no, 2), ir_operand(g, no, 2)))
+    return again(g, old, operand);
+  const ir_node asked =
+      chosen_condition(g, operand[0], ir_operand(g, yes, 0), ir_operand(g, no, 0));
+  if (asked == IR_NONE) return again(g, old, operand);
+  return ir_select(g, asked, ir_operand(g, yes, 1),
+                   chosen_quotient(g, operand[0], ir_operand(g, yes, 2), ir_operand(g, no, 2)));
+}
+
+/* --- factors that are the same for all bonds --------------------------------------------------- */
+
+/* Takes node n apart: n = factor * rest, to the order of multiplication. IR_NONE where no factor is uniform, or where n is
+   done once for many of the values `of` that need it. */
 typedef struct factored {
   ir_node factor, rest;
 } factored;
 
-static factored take_factor(const ir *g, ir_node n) {
-  if (ir_operation(g, n) == IR_MUL && !is_uniform(g, n))
+static factored take_factor(const ir *g, ir_node n, ir_node of) {
+  if (ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && ir_place(g, n) == ir_place(g, of))
     for (int k = 0; k < 2; k++)
       if (is_uniform(g, ir_operand(g, n, k)))
         return (factored){ir_operand(g, n, k), ir_operand(g, n, 1 - k)};
@@ -162,7 +221,7 @@ static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node 
   bool moves = false;
   for (int k = 0; k < 2; k++) {
     const bool uniform = is_uniform(g, operand[k]);
-    part[k] = uniform ? (factored){operand[k], IR_NONE} : take_factor(g, operand[k]);
+    part[k] = uniform ? (factored){operand[k], IR_NONE} : take_factor(g, operand[k], old);
     const bool alone = uniform || !r->shared[ir_operand(g, old, k)];
     moves = moves || (alone && part[k].factor != IR_NONE);
   }
@@ -174,7 +233,7 @@ static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node 
 /* (u*x)/y = u*(x/y) */
 static ir_node factored_quotient(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
-  const factored above = take_factor(g, operand[0]);
+  const factored above = take_factor(g, operand[0], old);
   if (above.factor == IR_NONE || r->shared[ir_operand(g, old, 0)]) return again(g, old, operand);
   return ir_mul(g, above.factor, ir_div(g, above.rest, operand[1]));
 }
@@ -186,9 +245,14 @@ static bool is_size(const ir *g, ir_node n) {
          (op == IR_CONSTANT && ir_value(g, n) >= 0);
 }
 
-/* The larger or smaller of two is one operation of the processor, if the second is NaN wherever the first is. */
+/* The larger or smaller of two is one operation of the processor, if one is NaN wherever the other is. */
 static ir_node quick_extreme(ir *g, ir_op op, ir_node a, ir_node b) {
-  if (!rewrite_nan_follows(g, a, b)) return ir_make(g, op, a, b, IR_NONE);
+  if (!rewrite_nan_follows(g, a, b)) {
+    if (!rewrite_nan_follows(g, b, a)) return ir_make(g, op, a, b, IR_NONE);
+    const ir_node first = b;
+    b = a;
+    a = first;
+  }
   const bool smaller = op == IR_MIN;
   return ir_select(g, ir_make(g, IR_LT, smaller ? a : b, smaller ? b : a, IR_NONE), a, b);
 }
@@ -196,7 +260,7 @@ static ir_node quick_extreme(ir *g, ir_op op, ir_node a, ir_node b) {
 static ir_node factored_extreme(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
   const ir_op op = ir_operation(g, old);
-  const factored a = take_factor(g, operand[0]), b = take_factor(g, operand[1]);
+  const factored a = take_factor(g, operand[0], old), b = take_factor(g, operand[1], old);
   if (a.factor == IR_NONE || a.factor != b.factor || !is_size(g, a.factor))
     return quick_extreme(g, op, operand[0], operand[1]);
   return ir_mul(g, a.factor, quick_extreme(g, op, a.rest, b.rest));
@@ -211,7 +275,7 @@ static ir_node factor_rule(const rebuilding *r, ir_node old, const ir_node *oper
   case IR_DIV:
     return factored_quotient(r, old, operand);
   case IR_ABS: {
-    const factored a = take_factor(g, operand[0]);
+    const factored a = take_factor(g, operand[0], old);
     if (a.factor == IR_NONE) return again(g, old, operand);
     const ir_node size = ir_make(g, IR_ABS, a.factor, IR_NONE, IR_NONE);
     return ir_mul(g, size, ir_make(g, IR_ABS, a.rest, IR_NONE, IR_NONE));
@@ -222,6 +286,17 @@ static ir_node factor_rule(const rebuilding *r, ir_node old, const ir_node *oper
   default:
     return again(g, old, operand);
   }
+}
+
+void rewrite_choices(ir *g, const ir_node *roots, int root_count, ir_node *out) {
+  unsigned char *marks = marks_of(g, roots, root_count);
+  unsigned char *shared = shared_nodes(g, marks, IR_OP_COUNT);
+  for (int k = 0; k < root_count; k++)
+    if (roots[k] != IR_NONE) shared[roots[k]] = 1;
+  rebuilding r = {.graph = g, .rule = choice_rule, .shared = shared};
+  rebuild(&r, roots, root_count, out);
+  free(shared);
+  free(marks);
 }
 
 void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out) {
@@ -241,13 +316,17 @@ static bool is_local_product(const ir *g, ir_node n) {
   return ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && !ir_name(g, n);
 }
 
+enum { NEEDS_NEIGHBOUR = 1, NEEDS_FAMILY = 2 };
+
 /* Of two products the one that nothing else needs, else the second. None where the neighbour may have the one that the
-   particle has not: both ends of a bond would round another one. */
+   particle has not, both going over a family or neither: both ends of a bond would round another one. */
 static int product_to_fuse(const rebuilding *r, ir_node old, const ir_node *operand) {
   const bool first = is_local_product(r->graph, operand[0]),
              second = is_local_product(r->graph, operand[1]);
-  if (r->sided[old] && ir_operation(r->graph, operand[0]) == IR_MUL &&
-      ir_operation(r->graph, operand[1]) == IR_MUL)
+  const unsigned char *needs = r->needs;
+  const int other = needs[ir_operand(r->graph, old, 0)] ^ needs[ir_operand(r->graph, old, 1)];
+  if ((needs[old] & NEEDS_NEIGHBOUR) && !(other & NEEDS_FAMILY) &&
+      ir_operation(r->graph, operand[0]) == IR_MUL && ir_operation(r->graph, operand[1]) == IR_MUL)
     return -1;
   if (first && second)
     return r->shared[ir_operand(r->graph, old, 1)] && !r->shared[ir_operand(r->graph, old, 0)] ? 0
@@ -266,23 +345,24 @@ static ir_node fused_rule(const rebuilding *r, ir_node old, const ir_node *opera
   return ir_make(g, IR_FMA, a, b, rest);
 }
 
-static unsigned char *sided_nodes(const ir *g) {
-  unsigned char *sided = must_calloc((size_t)ir_count(g) + 1, 1);
+static unsigned char *needs_of_nodes(const ir *g) {
+  unsigned char *needs = must_calloc((size_t)ir_count(g) + 1, 1);
   for (ir_node n = 0; n < ir_count(g); n++) {
-    sided[n] = ir_operation(g, n) == IR_NEIGHBOUR;
-    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
-      sided[n] |= sided[ir_operand(g, n, k)];
+    const ir_op op = ir_operation(g, n);
+    needs[n] = op == IR_NEIGHBOUR ? NEEDS_NEIGHBOUR : ir_is_reduction(op) ? NEEDS_FAMILY : 0;
+    for (int k = 0; k < ir_arity(op); k++)
+      needs[n] |= needs[ir_operand(g, n, k)];
   }
-  return sided;
+  return needs;
 }
 
 void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out) {
   unsigned char *marks = marks_of(g, roots, root_count);
-  unsigned char *shared = shared_nodes(g, marks, IR_OP_COUNT), *sided = sided_nodes(g);
-  rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared, .sided = sided};
+  unsigned char *shared = shared_nodes(g, marks, IR_OP_COUNT), *needs = needs_of_nodes(g);
+  rebuilding r = {.graph = g, .rule = fused_rule, .shared = shared, .needs = needs};
   rebuild(&r, roots, root_count, out);
   free(shared);
-  free(sided);
+  free(needs);
   free(marks);
 }
 

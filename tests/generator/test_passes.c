@@ -572,11 +572,54 @@ static void the_larger_of_two_keeps_its_nan(void **state) {
   const ir_node choice =
       ir_select(g, ir_make(g, IR_LT, size_sum, size_x, IR_NONE), size_x, size_sum);
   assert_int_equal(out[0], ir_mul(g, size_k, choice));
-  assert_int_equal(out[1], roots[1]); /* y may be NaN where x is not */
-  assert_int_equal(out[2], roots[2]); /* the root of x < 0 is NaN, the sum is not */
+  assert_int_equal(out[1], ir_select(g, ir_make(g, IR_LT, sum, x, IR_NONE), x,
+                                     sum)); /* y may be NaN where x is not */
+  assert_int_equal(out[2], roots[2]);       /* the root of x < 0 is NaN, the sum is not */
   assert_true(rewrite_nan_follows(g, x, sum) && !rewrite_nan_follows(g, sum, x));
   assert_false(rewrite_nan_follows(g, root, x));
   assert_false(rewrite_nan_follows(g, x, ir_select(g, ir_make(g, IR_LT, x, y, IR_NONE), x, y)));
+  ir_free(g);
+}
+
+static void choices_divide_once(void **state) {
+  (void)state;
+  ir *g = ir_new();
+  ir_node x[6], out;
+  for (int k = 0; k < 6; k++)
+    x[k] = input(g, k, ON_BOND);
+  const ir_node zero = ir_constant(g, 0), asked = ir_make(g, IR_LT, zero, x[0], IR_NONE);
+  const ir_node a = ir_div(g, x[1], x[2]), b = ir_div(g, x[3], x[4]);
+  const ir_node plain = ir_select(g, asked, a, b);
+  const ir_node once = ir_div(g, ir_select(g, asked, x[1], x[3]), ir_select(g, asked, x[2], x[4]));
+  rewrite_choices(g, &plain, 1, &out);
+  assert_int_equal(out, once);
+  const ir_node guarded =
+      ir_select(g, asked, ir_select(g, ir_make(g, IR_LE, x[5], x[2], IR_NONE), zero, a),
+                ir_select(g, ir_make(g, IR_LE, x[5], x[4], IR_NONE), zero, b));
+  rewrite_choices(g, &guarded, 1, &out);
+  const ir_node below = ir_select(g, asked, x[2], x[4]);
+  assert_int_equal(out, ir_select(g, ir_make(g, IR_LE, x[5], below, IR_NONE), zero, once));
+  const ir_node needed[] = {plain, a}; /* a is divided in any case */
+  ir_node both[2];
+  rewrite_choices(g, needed, 2, both);
+  assert_int_equal(both[0], plain);
+  ir_free(g);
+}
+
+static void neighbours_share_the_reciprocal_of_a_particle(void **state) {
+  (void)state;
+  ir *g = ir_new();
+  const ir_node x = input(g, 0, ON_NEIGHBOUR), p = input(g, 1, ON_PARTICLE),
+                q = input(g, 2, ON_PARTICLE), one = ir_constant(g, 1);
+  const ir_node roots[] = {ir_div(g, x, q), ir_div(g, p, q)};
+  ir_node out[2];
+  rewrite_reciprocals(g, roots, 1, out);
+  assert_int_equal(out[0], ir_mul(g, x, ir_div(g, one, q)));
+  const ir_node product = ir_div(g, ir_mul(g, p, x), q);
+  rewrite_reciprocals(g, &product, 1, out);
+  assert_int_equal(out[0], ir_mul(g, roots[1], x));
+  rewrite_reciprocals(g, roots + 1, 1, out);
+  assert_int_equal(out[0], roots[1]);
   ir_free(g);
 }
 
@@ -615,6 +658,8 @@ int main(void) {
       cmocka_unit_test(sums_of_products_are_fused),
       cmocka_unit_test(uniform_factors_are_joined),
       cmocka_unit_test(the_larger_of_two_keeps_its_nan),
+      cmocka_unit_test(choices_divide_once),
+      cmocka_unit_test(neighbours_share_the_reciprocal_of_a_particle),
       cmocka_unit_test(zero_and_reciprocal_rewrites),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
