@@ -8,18 +8,18 @@
    of few rows, and stay in a cache. A block does the first passes on rows of its neighbours, too, as far as its own need
    them: that costs a few rows, and blocks wait for each other but once a step. */
 
-enum { ROWS_AT_A_TIME = 8 };
-
 struct family_window { /* row r stands in place r mod rows */
   int rows;
-  long plane;                 /* doubles between planes of links of bonds */
+  int at_a_time;              /* rows */
+  long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
       *force[3];   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
-  double **memory; /* [links + links of bonds + forces] */
+  double *memory; /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
+  int *straight;              /* [rows] places from here on where links of neighbours go on as those of the first */
 };
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -56,12 +56,38 @@ static bool suits(const sweep *w, const family *f) {
   }; /* of more, links fill no cache, and later passes may read new fields */
   const int least = w->lattice->row_count / w->block_count;
   return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
-         least >= ROWS_TO_HALO * halo(f, most_passes(w->law));
+         (w->block_count == 1 || least >= ROWS_TO_HALO * halo(f, most_passes(w->law)));
 }
 
-static double *padded(sweep *w, long count, double **memory) {
-  *memory = sweep_doubles(w, count + 2 * w->lattice->pitch);
-  return *memory + w->lattice->pitch;
+/* Short rows are done many at a time: each call sets up as much as some vectors take. */
+static int rows_at_a_time(const rows *g) {
+  enum { SITES = 1024, LEAST = 8, MOST = 32 };
+  const int count = (int)(SITES / g->pitch);
+  return count < LEAST ? LEAST : count > MOST ? MOST : count;
+}
+
+/* Room for a row before and one after. The same places of few planes are a multiple of a page apart: a load would wait
+   for the store to such a place, and caches would hold few of them. */
+static long distance_of_planes(const family_window *v, long pitch) {
+  enum { PAGE = 4096 / sizeof(double), STAGGER = 88 };
+  return ((v->rows + 2) * pitch + PAGE - 1) / PAGE * PAGE + STAGGER;
+}
+
+static void open_planes(sweep *w, const family *f, family_window *v) {
+  const pl_law *law = w->law;
+  const int forces = w->forces ? 0 : w->dof;
+  const long planes = law->link_count + (long)law->bond_link_count * f->neighbours + forces;
+  v->plane = distance_of_planes(v, w->lattice->pitch);
+  v->memory = sweep_doubles(w, planes * v->plane);
+  v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
+  v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
+  double *next = v->memory + w->lattice->pitch;
+  for (int k = 0; k < law->link_count; k++, next += v->plane)
+    v->link[k] = next;
+  for (int k = 0; k < law->bond_link_count; k++, next += f->neighbours * v->plane)
+    v->bond_link[k] = next;
+  for (int d = 0; d < forces; d++, next += v->plane)
+    v->force[d] = next;
 }
 
 static double **scratch_rows(sweep *w, const pl_field *fields, int count, int more) {
@@ -72,28 +98,33 @@ static double **scratch_rows(sweep *w, const pl_field *fields, int count, int mo
   return rows_of;
 }
 
+/* Where rows, or those of neighbours, begin again at place 0. */
+static void find_straight(family_window *v, int neighbours) {
+  bool *turns = must_calloc((size_t)v->rows, sizeof *turns);
+  v->straight = must_calloc((size_t)v->rows, sizeof *v->straight);
+  for (int k = 0; k < neighbours; k++)
+    turns[(2 * v->rows - v->row_offset[k]) % v->rows] = true;
+  turns[0] = true;
+  for (int here = v->rows - 1, end = v->rows; here >= 0; here--) {
+    v->straight[here] = end - here;
+    if (turns[here]) end = here;
+  }
+  free(turns);
+}
+
 static void open_window(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
-  v->rows = ROWS_AT_A_TIME + rows_kept(f, law);
-  v->plane = (v->rows + 2) * g->pitch;
-  v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
-  v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
-  v->memory =
-      must_calloc((size_t)(law->link_count + law->bond_link_count + w->dof) + 1, sizeof *v->memory);
-  for (int k = 0; k < law->link_count; k++)
-    v->link[k] = padded(w, v->rows * g->pitch, &v->memory[k]);
-  for (int k = 0; k < law->bond_link_count; k++)
-    v->bond_link[k] = padded(w, f->neighbours * v->plane, &v->memory[law->link_count + k]);
-  for (int d = 0; d < w->dof && !w->forces; d++)
-    v->force[d] =
-        padded(w, v->rows * g->pitch, &v->memory[law->link_count + law->bond_link_count + d]);
+  v->at_a_time = rows_at_a_time(g);
+  v->rows = v->at_a_time + rows_kept(f, law);
+  open_planes(w, f, v);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);
   v->row_offset = must_calloc((size_t)f->neighbours, sizeof *v->row_offset);
   for (int k = 0; k < f->neighbours; k++)
     v->row_offset[k] = (int)rint((double)g->offset[0][k] / (double)g->pitch);
+  find_straight(v, f->neighbours);
 }
 
 family_window *family_windows(sweep *w, const family *f) {
@@ -113,13 +144,14 @@ static void free_rows(double **rows_of, int count) {
 void family_windows_free(const sweep *w, family_window *v) {
   const pl_law *law = w->law;
   for (int k = 0; v && k < w->block_count; k++) {
-    free_rows(v[k].memory, law->link_count + law->bond_link_count + w->dof);
+    free(v[k].memory);
     free_rows(v[k].field, law->field_count);
     free_rows(v[k].observed, 1 + law->output_count);
     free(v[k].link);
     free(v[k].bond_link);
     free(v[k].offset);
     free(v[k].row_offset);
+    free(v[k].straight);
   }
   free(v);
 }
@@ -171,19 +203,46 @@ const double *family_window_force(const sweep *w, int block, int row, int compon
                                                     : force_place(w, block, row, component);
 }
 
-/* Rows first .. last-1. With `passing` forces are needed until the particles have moved. */
+/* The end of the rows that a run may take from `row` on, every second one: as many as need no other links, fields or
+   forces than the first, and whose neighbours stand alike. */
+static int end_of_run(const sweep *w, int block, int row, int last) {
+  const sweep_block *b = &w->blocks[block];
+  const family_window *v = &family_of(w)->windows[block];
+  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
+  const int step = FAMILY_ROWS_ALIKE, straight = v->straight[row % v->rows];
+  int inner[2], next = row + step;
+  if (row < b->first || row >= b->last) return next;
+  family_window_inner(w, block, &inner[0], &inner[1]);
+  const int edges[] = {b->first, b->last, inner[0], inner[1], row + straight};
+  for (int k = 0; k < 5; k++)
+    if (edges[k] > row) last = least(last, edges[k]);
+  while (w->law->neighbours && next < last && w->begin[next] == w->begin[row] &&
+         w->count[next] == w->count[row] && kind[next] == kind[row])
+    next += step;
+  return next;
+}
+
+/* With `passing` forces are needed until the particles have moved. */
+static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
+                      bool passing) {
+  const sweep_block *b = &w->blocks[block];
+  pl_family run = family_run_of(w, block, row);
+  run.rows = (end - row) / FAMILY_ROWS_ALIKE;
+  point_at_links(w, block, row, &run);
+  if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
+  for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
+    family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
+  pass(w->law, family_of(w)->uniforms, &run);
+}
+
+/* Rows first .. last-1: each of either kind. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
                      bool passing) {
-  const sweep_block *b = &w->blocks[block];
-  for (int row = first; row < last; row++) {
-    if (w->count[row] == 0) continue;
-    pl_family run = family_run_of(w, block, row);
-    point_at_links(w, block, row, &run);
-    if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
-    for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
-      family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
-    pass(w->law, family_of(w)->uniforms, &run);
-  }
+  for (int of_kind = first; of_kind < first + FAMILY_ROWS_ALIKE; of_kind++)
+    for (int row = of_kind, end; row < last; row = end) {
+      end = end_of_run(w, block, row, last);
+      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing);
+    }
 }
 
 static int most(int a, int b) {
@@ -210,7 +269,7 @@ void family_window_run(sweep *w, const pl_program *program, int block,
                     w->lattice->row_count);
   }
   while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
+    int end = least(next[0] + f->windows[block].at_a_time, last[0]);
     for (int p = 0; p < passes; p++) {
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
       next[p] = most(end, next[p]);
