@@ -573,6 +573,60 @@ unsigned program_at_hand(const ir *g, const family_program *p) {
   return bits;
 }
 
+/* The last pass before `pass` that leaves what the input reads; -1: no pass does. */
+static int writer_of(const ir *g, const family_program *p, ir_node input, int pass) {
+  static const segment_target targets[IR_SOURCE_COUNT] = {
+      [IR_FROM_LINK] = TO_LINK,           [IR_FROM_NEIGHBOUR_LINK] = TO_LINK,
+      [IR_FROM_BOND_LINK] = TO_BOND_LINK, [IR_FROM_NEIGHBOUR_BOND_LINK] = TO_BOND_LINK,
+      [IR_FROM_SHARED] = TO_SHARED,       [IR_FROM_SHARED_ODD] = TO_SHARED};
+  const segment_target target = targets[ir_input_source(g, input)];
+  for (int k = pass - 1; k >= 0 && target != TO_SLOT; k--)
+    for (int s = 0; s < p->passes[k].segment_count; s++)
+      for (int r = 0; r < p->passes[k].segments[s].root_count; r++) {
+        const segment_root *root = &p->passes[k].segments[s].roots[r];
+        if (root->target == target && root->index == ir_input_index(g, input)) return k;
+      }
+  return -1;
+}
+
+static int reaches_behind(unsigned at_hand, int from, int to) {
+  int behind = 0;
+  for (int p = from + 1; p <= to; p++)
+    behind += !(at_hand >> p & 1);
+  return behind;
+}
+
+/* Reaches of rows from a link of an earlier pass, the farthest that the segment reads, to where that pass now is. */
+static int reaches_of_segment(const ir *g, const family_program *p, unsigned at_hand, int pass,
+                              const segment *a) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  int most = 0;
+  for (int k = 0; k < a->root_count; k++)
+    ir_mark(g, &a->roots[k].node, 1, needed);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_operation(g, n) != IR_INPUT) continue;
+    const ir_source from = ir_input_source(g, n);
+    const int writer = writer_of(g, p, n, pass);
+    const bool own = from == IR_FROM_LINK || from == IR_FROM_BOND_LINK || a->kind == OVER_BONDS;
+    if (writer < 0) continue;
+    const int reaches = reaches_behind(at_hand, writer, pass) + !own;
+    most = reaches > most ? reaches : most;
+  }
+  free(needed);
+  return most;
+}
+
+int program_reaches_spared(const ir *g, const family_program *p) {
+  const unsigned at_hand = program_at_hand(g, p);
+  int most = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const int reaches = reaches_of_segment(g, p, at_hand, k, &p->passes[k].segments[s]);
+      most = reaches > most ? reaches : most;
+    }
+  return reaches_behind(at_hand, 0, p->pass_count - 1) + 1 - most;
+}
+
 /* --- the whole -------------------------------------------------------------------------------- */
 
 static void substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,

@@ -22,6 +22,10 @@ struct family_window { /* row r stands in place r mod rows */
   int *straight;              /* [rows] places from here on where links of neighbours go on as those of the first */
 };
 
+static int most(int a, int b) {
+  return a > b ? a : b;
+}
+
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 /* Rows that a block does at either end for its passes in addition to its own, and of which it reads the state. */
@@ -30,8 +34,7 @@ static int halo(const family *f, int passes) {
 }
 
 static int most_passes(const pl_law *law) {
-  const int step = law->step.pass_count, observe = law->observe.pass_count;
-  return step > observe ? step : observe;
+  return most(law->step.pass_count, law->observe.pass_count);
 }
 
 /* Rows by which a pass is behind the first one. */
@@ -42,11 +45,10 @@ static int rows_behind(const family *f, const pl_program *program, int pass) {
   return behind;
 }
 
-/* Rows between the first and the last that a link is kept of. */
-static int rows_kept(const family *f, const pl_law *law) {
-  const int step = rows_behind(f, &law->step, law->step.pass_count - 1),
-            observe = rows_behind(f, &law->observe, law->observe.pass_count - 1);
-  return (step > observe ? step : observe) + f->reach;
+/* Rows that the links, or the forces on particles that have yet to move, are kept of. */
+static int rows_kept(const family *f, const pl_program *program) {
+  const int links = rows_behind(f, program, program->pass_count - 1) + f->reach;
+  return most(links - program->spared * f->reach, f->reach);
 }
 
 static bool suits(const sweep *w, const family *f) {
@@ -66,11 +68,11 @@ static int rows_at_a_time(const rows *g) {
   return count < LEAST ? LEAST : count > MOST ? MOST : count;
 }
 
-/* Room for a row before and one after. The same places of few planes are a multiple of a page apart: a load would wait
-   for the store to such a place, and caches would hold few of them. */
+/* Room for a row before and one after, and an odd number of cache lines: the same places of no two of 64 planes are a
+   multiple of a page apart, where a load would wait for the store to such a place. */
 static long distance_of_planes(const family_window *v, long pitch) {
-  enum { PAGE = 4096 / sizeof(double), STAGGER = 88 };
-  return ((v->rows + 2) * pitch + PAGE - 1) / PAGE * PAGE + STAGGER;
+  const long lines = (v->rows + 2) * pitch / PL_LANES;
+  return (lines | 1) * PL_LANES;
 }
 
 static void open_planes(sweep *w, const family *f, family_window *v) {
@@ -116,7 +118,7 @@ static void open_window(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
   v->at_a_time = rows_at_a_time(g);
-  v->rows = v->at_a_time + rows_kept(f, law);
+  v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
   open_planes(w, f, v);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
@@ -245,10 +247,6 @@ static void run_rows(const sweep *w, pl_family_function pass, int block, int fir
     }
 }
 
-static int most(int a, int b) {
-  return a > b ? a : b;
-}
-
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
   const sweep_block *b = &w->blocks[block];
   const int lost = halo(family_of(w), w->law->step.pass_count);
@@ -256,31 +254,35 @@ void family_window_inner(const sweep *w, int block, int *first, int *last) {
   *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
 
-void family_window_run(sweep *w, const pl_program *program, int block,
-                       void (*move)(sweep *, int block, int first, int last)) {
+/* Where each pass begins and ends: where those after it need what it finds. */
+static void find_spans(const sweep *w, const pl_program *program, int block, int *next, int *last) {
   const sweep_block *b = &w->blocks[block];
   const family *f = family_of(w);
-  const int passes = program->pass_count, reach = f->reach;
-  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved;
-  family_window_inner(w, block, &moved, &last_moved);
+  const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
-    next[p] = most(b->first - reach * (passes - 1 - p), 0);
-    last[p] = least(b->last + rows_behind(f, program, passes - 1) - rows_behind(f, program, p),
-                    w->lattice->row_count);
+    next[p] = most(b->first - f->reach * (passes - 1 - p), 0);
+    last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
   }
-  while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + f->windows[block].at_a_time, last[0]);
+}
+
+void family_window_run(sweep *w, const pl_program *program, int block,
+                       void (*move)(sweep *, int block, int first, int last)) {
+  const family *f = family_of(w);
+  const int passes = program->pass_count, at_a_time = f->windows[block].at_a_time;
+  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved, end;
+  find_spans(w, program, block, next, last);
+  family_window_inner(w, block, &moved, &last_moved);
+  for (int ahead = next[0]; next[passes - 1] < last[passes - 1] || (move && moved < last_moved);) {
+    ahead += at_a_time;
     for (int p = 0; p < passes; p++) {
+      end = least(ahead - rows_behind(f, program, p), last[p]);
+      if (end <= next[p]) continue;
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
-      next[p] = most(end, next[p]);
-      const bool ahead = p + 1 == passes || !(program->at_hand >> (p + 1) & 1);
-      end = next[p] == last[p] ? w->lattice->row_count : next[p] - (ahead ? reach : 0);
-      if (p + 1 < passes) end = least(end, last[p + 1]);
+      next[p] = end;
     }
-    end = least(end, last_moved);
-    if (move && end > moved) {
-      move(w, block, moved, end);
-      moved = end;
-    }
+    end = least(ahead - rows_behind(f, program, passes - 1) - f->reach, last_moved);
+    if (!move || end <= moved) continue;
+    move(w, block, moved, end);
+    moved = end;
   }
 }
