@@ -368,6 +368,11 @@ static int chunk_of(const family_pass *p) {
   return chunk;
 }
 
+const char emit_rows_begin[] =
+    "  for (long row = 0; row < family->rows; row++) {\n"
+    "  const long begin = row*family->row_stride,\n"
+    "    end = begin + family->count / PL_LANES * PL_LANES;\n";
+
 static void write_rolled_pass(emitter *e, const family_pass *p) {
   static const family_words rolled = {.first = " + first",
                                       .k = "k",
@@ -385,8 +390,10 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
   for (int k = 0; k < p->plane_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double plane_%d[2*PL_MAX_DIRECTIONS][CHUNK];\n",
                k);
-  c_text_add(e->out, "  for (long first = 0; first < family->count; first += CHUNK) {\n"
-                     "    const long left = family->count - first;\n"
+  const bool rows = plan_is_of_small_family(e->plan);
+  c_text_add(e->out, rows ? emit_rows_begin : "  const long begin = 0, end = family->count;\n");
+  c_text_add(e->out, "  for (long first = begin; first < end; first += CHUNK) {\n"
+                     "    const long left = end - first;\n"
                      "    const long lanes = left < CHUNK ? left / PL_LANES * PL_LANES : CHUNK;\n");
   for (int k = 0; k < p->segment_count; k++) {
     const segment *a = &p->segments[k];
@@ -399,7 +406,7 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
       write_neighbours(e, a);
     emit_close(e);
   }
-  c_text_add(e->out, "  }\n");
+  c_text_add(e->out, rows ? "  }\n  }\n" : "  }\n");
 }
 
 static void write_pass(emitter *e, const family_program *q, int number) {
@@ -434,15 +441,19 @@ void emit_programs(emitter *e) {
   write_program(e, &e->plan->observe);
 }
 
+static void write_program_member(emitter *e, const family_program *p) {
+  c_text_add(e->out, "    .%s = {%d, %s_passes, %u, %d},\n", p->name, p->pass_count, p->name,
+             program_at_hand(e->graph, p), program_reaches_spared(e->graph, p));
+}
+
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
-             ".bond_link_count = %d,\n    .sum_count = %d,\n    .reads_shape = %d,\n"
-             "    .step = {%d, step_passes, %u},\n    .observe = {%d, observe_passes, %u},\n",
+             ".bond_link_count = %d,\n    .sum_count = %d,\n    .reads_shape = %d,\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
-             program_sum_count(&e->plan->step), e->plan->reads_shape, e->plan->step.pass_count,
-             program_at_hand(e->graph, &e->plan->step), e->plan->observe.pass_count,
-             program_at_hand(e->graph, &e->plan->observe));
+             program_sum_count(&e->plan->step), e->plan->reads_shape);
+  write_program_member(e, &e->plan->step);
+  write_program_member(e, &e->plan->observe);
 }

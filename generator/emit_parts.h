@@ -106,6 +106,9 @@ void emit_open_segment(emitter *e, const segment *a);
 /* `to = value;`, or what becomes of `to` where it is a reduction. */
 void emit_family_store(emitter *e, const segment_root *r, const char *to);
 
+/* Begins the loop over the rows of a run. */
+extern const char emit_rows_begin[];
+
 /* What a segment reads, before its loop; the beginning of that loop; slots as reductions begin. */
 void emit_family_inputs(emitter *e);
 void emit_family_loop(emitter *e, const char *indent);

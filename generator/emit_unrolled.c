@@ -179,10 +179,9 @@ void emit_unrolled_pass(emitter *e, const family_pass *p) {
   write_known(e, &u.arrays, "const double *restrict", "");
   write_known(e, &u.words_of_bits, "const uint64_t *restrict", "bits_");
   write_known(e, &u.results, "double *restrict", "result_");
-  c_text_add(out, "  const long count = family->count / PL_LANES * PL_LANES;\n"
-                  "  PL_INDEPENDENT\n  for (long q = 0; q < count; q++) {\n");
+  c_text_add(out, "%s  PL_INDEPENDENT\n  for (long q = begin; q < end; q++) {\n", emit_rows_begin);
   write_variables(e, p);
-  c_text_add(out, "%s  }\n", body.text ? body.text : "");
+  c_text_add(out, "%s  }\n  }\n", body.text ? body.text : "");
   free(body.text);
   free(u.arrays.text);
   free(u.words_of_bits.text);

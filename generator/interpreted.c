@@ -376,9 +376,11 @@ static void describe(interpreted *p, const char *key) {
   p->law.reads_shape = plan->reads_shape;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step =
-      (pl_program){plan->step.pass_count, step_passes, program_at_hand(plan->graph, &plan->step)};
+      (pl_program){plan->step.pass_count, step_passes, program_at_hand(plan->graph, &plan->step),
+                   program_reaches_spared(plan->graph, &plan->step)};
   p->law.observe = (pl_program){plan->observe.pass_count, observe_passes,
-                                program_at_hand(plan->graph, &plan->observe)};
+                                program_at_hand(plan->graph, &plan->observe),
+                                program_reaches_spared(plan->graph, &plan->observe)};
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */

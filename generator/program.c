@@ -156,6 +156,8 @@ static ir_node mirror_input(builder *b, ir_node n) {
   case IR_FROM_NEIGHBOUR_LINK:
   case IR_FROM_NEIGHBOUR_BOND_LINK:
     return linked_node(b, n);
+  case IR_FROM_SHARED_ODD:
+    return ir_neg(g, n);
   case IR_FROM_SHAPE:
     return neighbour_link(b, n);
   default:
@@ -224,7 +226,8 @@ static int level_of(builder *b, ir_node n) {
     ir_source from = ir_operation(b->g, n) == IR_INPUT ? ir_input_source(b->g, n) : IR_SOURCE_COUNT;
     if (from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK)
       level = level_of(b, linked_node(b, n)) + 1;
-    if (from == IR_FROM_SHARED || from == IR_FROM_SHARED_ODD) level = 1;
+    if (from == IR_FROM_SHARED || from == IR_FROM_SHARED_ODD)
+      level = level_of(b, b->shared[ir_input_index(b->g, n) - b->first_shared]) + 1;
   } else {
     for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
       int below = level_of(b, ir_operand(b->g, n, k));
@@ -570,6 +573,60 @@ unsigned program_at_hand(const ir *g, const family_program *p) {
   return bits;
 }
 
+/* The last pass before `pass` that leaves what the input reads; -1: no pass does. */
+static int writer_of(const ir *g, const family_program *p, ir_node input, int pass) {
+  static const segment_target targets[IR_SOURCE_COUNT] = {
+      [IR_FROM_LINK] = TO_LINK,           [IR_FROM_NEIGHBOUR_LINK] = TO_LINK,
+      [IR_FROM_BOND_LINK] = TO_BOND_LINK, [IR_FROM_NEIGHBOUR_BOND_LINK] = TO_BOND_LINK,
+      [IR_FROM_SHARED] = TO_SHARED,       [IR_FROM_SHARED_ODD] = TO_SHARED};
+  const segment_target target = targets[ir_input_source(g, input)];
+  for (int k = pass - 1; k >= 0 && target != TO_SLOT; k--)
+    for (int s = 0; s < p->passes[k].segment_count; s++)
+      for (int r = 0; r < p->passes[k].segments[s].root_count; r++) {
+        const segment_root *root = &p->passes[k].segments[s].roots[r];
+        if (root->target == target && root->index == ir_input_index(g, input)) return k;
+      }
+  return -1;
+}
+
+static int reaches_behind(unsigned at_hand, int from, int to) {
+  int behind = 0;
+  for (int p = from + 1; p <= to; p++)
+    behind += !(at_hand >> p & 1);
+  return behind;
+}
+
+/* Reaches of rows from a link of an earlier pass, the farthest that the segment reads, to where that pass now is. */
+static int reaches_of_segment(const ir *g, const family_program *p, unsigned at_hand, int pass,
+                              const segment *a) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  int most = 0;
+  for (int k = 0; k < a->root_count; k++)
+    ir_mark(g, &a->roots[k].node, 1, needed);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_operation(g, n) != IR_INPUT) continue;
+    const ir_source from = ir_input_source(g, n);
+    const int writer = writer_of(g, p, n, pass);
+    const bool own = from == IR_FROM_LINK || from == IR_FROM_BOND_LINK || a->kind == OVER_BONDS;
+    if (writer < 0) continue;
+    const int reaches = reaches_behind(at_hand, writer, pass) + !own;
+    most = reaches > most ? reaches : most;
+  }
+  free(needed);
+  return most;
+}
+
+int program_reaches_spared(const ir *g, const family_program *p) {
+  const unsigned at_hand = program_at_hand(g, p);
+  int most = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const int reaches = reaches_of_segment(g, p, at_hand, k, &p->passes[k].segments[s]);
+      most = reaches > most ? reaches : most;
+    }
+  return reaches_behind(at_hand, 0, p->pass_count - 1) + 1 - most;
+}
+
 /* --- the whole -------------------------------------------------------------------------------- */
 
 static void substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
@@ -600,16 +657,26 @@ static ir_node shared_input(builder *b, int k) {
                   name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
 }
 
+/* What follows from links and is the same from either end, too: its owner computes it in a pass of its own. In the plane
+   there are too few bonds for that. */
+static void share_factor(builder *b, segment_root *roots, int root_count) {
+  const ir_node factor = program_common_factor(b, roots, root_count);
+  if (factor == IR_NONE) return;
+  b->shared[b->shared_count++] = factor;
+  program_put_factor(b, roots, root_count, factor, shared_input(b, b->shared_count - 1));
+}
+
 /* Values that the ends of bonds share become inputs. */
 static void share(builder *b, segment_root *roots, int root_count) {
   program_choose_shared(b, roots, root_count);
   b->first_shared = 2 * b->links.of_bonds;
-  b->links.of_bonds += (b->shared_count + 1) / 2;
   ir_node *inputs = must_alloc(((size_t)b->shared_count + 1) * sizeof *inputs);
   for (int k = 0; k < b->shared_count; k++)
     inputs[k] = shared_input(b, k);
   substitute(b, roots, root_count, b->shared, inputs, b->shared_count);
   free(inputs);
+  if (b->sharing == SHARE_MORE) share_factor(b, roots, root_count);
+  b->links.of_bonds += (b->shared_count + 1) / 2;
 }
 
 static void build_pass(builder *b, family_pass *pass, int now, const segment_root *roots,
@@ -631,9 +698,10 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
           (segment_root){.node = b->link[k],
                          .target = is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK,
                          .index = b->link_number[k]};
-  for (int k = 0; k < b->shared_count && now == 0; k++)
-    wanted[count++] =
-        (segment_root){.node = b->shared[k], .target = TO_SHARED, .index = b->first_shared + k};
+  for (int k = 0; k < b->shared_count; k++)
+    if (level_of(b, b->shared[k]) == now)
+      wanted[count++] =
+          (segment_root){.node = b->shared[k], .target = TO_SHARED, .index = b->first_shared + k};
   for (int k = 0; k < count; k++) {
     bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
     if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);

@@ -73,5 +73,11 @@ int program_parity_of_root(builder *b, ir_node n);
 /* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands first, what is still dear
    given those before. */
 void program_choose_shared(builder *b, const segment_root *roots, int root_count);
+/* What all components of the force have as a factor, the same from either end, that no earlier pass can know: the force of
+   a bond over its length. IR_NONE: nothing that is worth it. */
+ir_node program_common_factor(builder *b, const segment_root *roots, int root_count);
+/* Puts `input` in its place. */
+void program_put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
+                        ir_node input);
 
 #endif

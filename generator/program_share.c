@@ -151,9 +151,11 @@ int program_parity(builder *b, ir_node n) {
   int known = map_get(&b->parity, n);
   if (known >= 0) return known - 1;
   const ir_op op = ir_operation(b->g, n);
-  int p = 0;
+  int p;
   if (is_whole(b, n))
     p = parity_of_leaf(b, n);
+  else if (ir_is_reduction(op))
+    p = 0; /* the other end has another family */
   else if (op == IR_ADD || op == IR_SUB)
     p = parity_of_sum(b, n);
   else if (op == IR_MUL || op == IR_DIV)
@@ -278,7 +280,7 @@ void program_choose_shared(builder *b, const segment_root *roots, int root_count
   for (int k = 0; k < b->link_count; k++)
     find_shareable(b, b->link[k], &seen, &found);
   qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
-  b->shared = arena_alloc(b->memory, ((size_t)found.count + 1) * sizeof *b->shared);
+  b->shared = arena_alloc(b->memory, ((size_t)found.count + 2) * sizeof *b->shared);
   for (int k = 0; k < found.count; k++)
     if (is_worth_sharing(b, found.items[k])) {
       const ir_node dear = dear_part(b, found.items[k]);
@@ -286,4 +288,69 @@ void program_choose_shared(builder *b, const segment_root *roots, int root_count
     }
   map_clear(&seen);
   free(found.items);
+}
+
+/* --- the force of a bond ------------------------------------------------------------------------ */
+
+/* The factors of what a force adds up over the neighbours; false where it is no such sum. */
+static bool factors_of_force(builder *b, const segment_root *r, term_list *t) {
+  t->count = 0;
+  if (ir_operation(b->g, r->node) != IR_FAMILY_SUM) return false;
+  if (!add_terms(b, ir_operand(b->g, r->node, 0), false, 1, t)) return false;
+  for (int k = 0; k < t->count; k++)
+    if (t->sign[k] < 0) return false;
+  return true;
+}
+
+static bool has_term(const term_list *t, ir_node n) {
+  for (int k = 0; k < t->count; k++)
+    if (t->term[k] == n) return true;
+  return false;
+}
+
+/* The product of the terms of `t` that `other` has, or has not; IR_NONE: of none. */
+static ir_node product_of(builder *b, const term_list *t, const term_list *other, bool in_other) {
+  ir_node product = IR_NONE;
+  for (int k = 0; k < t->count; k++)
+    if (has_term(other, t->term[k]) == in_other)
+      product = product == IR_NONE ? t->term[k] : ir_mul(b->g, product, t->term[k]);
+  return product;
+}
+
+/* The factors that all components of the force have. */
+static bool find_common(builder *b, const segment_root *roots, int root_count, term_list *common) {
+  bool any = false;
+  for (int k = 0; k < root_count; k++) {
+    term_list now;
+    if (roots[k].target != TO_PARTICLE_FORCE) continue;
+    if (!factors_of_force(b, &roots[k], &now)) return false;
+    if (!any) *common = now;
+    any = true;
+    int kept = 0;
+    for (int n = 0; n < common->count; n++)
+      if (has_term(&now, common->term[n])) common->term[kept++] = common->term[n];
+    common->count = kept;
+  }
+  return any && common->count > 0;
+}
+
+ir_node program_common_factor(builder *b, const segment_root *roots, int root_count) {
+  enum { DEAR = 4 }; /* a store and two loads; the ends add up fewer values than they would compute it of */
+  term_list common = {.count = 0};
+  if (!find_common(b, roots, root_count, &common)) return IR_NONE;
+  const ir_node product = product_of(b, &common, &common, true);
+  const bool late = !is_plain(b, product) && cost_beyond(b, product, DEAR) >= DEAR;
+  return late && program_parity(b, product) == 1 ? product : IR_NONE;
+}
+
+void program_put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
+                        ir_node input) {
+  term_list of_factor = {.count = 0}, now;
+  if (!add_terms(b, factor, false, 1, &of_factor)) return;
+  for (int k = 0; k < root_count; k++) {
+    if (roots[k].target != TO_PARTICLE_FORCE || !factors_of_force(b, &roots[k], &now)) continue;
+    const ir_node rest = product_of(b, &now, &of_factor, false);
+    roots[k].node = ir_make(b->g, IR_FAMILY_SUM, rest == IR_NONE ? input : ir_mul(b->g, rest, input),
+                            IR_NONE, IR_NONE);
+  }
 }

@@ -47,6 +47,8 @@ pl_family family_run_of(const sweep *w, int block, int row) {
   const long start = sweep_start(w, row);
   point_at_fields(w, b, start);
   pl_family run = {.count = w->count[row],
+                   .rows = 1,
+                   .row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
                    .neighbours = f->neighbours,
                    .plane = w->lattice->size,
                    .new_plane = w->lattice->size,

@@ -8,6 +8,7 @@
 
 enum { SHAPE_PLANES = PL_SHAPE_PLANES(3) }; /* the most */
 enum { FAMILY_MOST_PASSES = 16 };
+enum { FAMILY_ROWS_ALIKE = 2 }; /* rows to the next in which neighbours may stand alike */
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
   const double **old_field;

@@ -8,19 +8,23 @@
    of few rows, and stay in a cache. A block does the first passes on rows of its neighbours, too, as far as its own need
    them: that costs a few rows, and blocks wait for each other but once a step. */
 
-enum { ROWS_AT_A_TIME = 8 };
-
 struct family_window { /* row r stands in place r mod rows */
   int rows;
-  long plane;                 /* doubles between planes of links of bonds */
+  int at_a_time;              /* rows */
+  long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
       *force[3];   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
-  double **memory; /* [links + links of bonds + forces] */
+  double *memory; /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
+  int *straight;              /* [rows] places from here on where links of neighbours go on as those of the first */
 };
+
+static int most(int a, int b) {
+  return a > b ? a : b;
+}
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
@@ -30,8 +34,7 @@ static int halo(const family *f, int passes) {
 }
 
 static int most_passes(const pl_law *law) {
-  const int step = law->step.pass_count, observe = law->observe.pass_count;
-  return step > observe ? step : observe;
+  return most(law->step.pass_count, law->observe.pass_count);
 }
 
 /* Rows by which a pass is behind the first one. */
@@ -42,11 +45,10 @@ static int rows_behind(const family *f, const pl_program *program, int pass) {
   return behind;
 }
 
-/* Rows between the first and the last that a link is kept of. */
-static int rows_kept(const family *f, const pl_law *law) {
-  const int step = rows_behind(f, &law->step, law->step.pass_count - 1),
-            observe = rows_behind(f, &law->observe, law->observe.pass_count - 1);
-  return (step > observe ? step : observe) + f->reach;
+/* Rows that the links, or the forces on particles that have yet to move, are kept of. */
+static int rows_kept(const family *f, const pl_program *program) {
+  const int links = rows_behind(f, program, program->pass_count - 1) + f->reach;
+  return most(links - program->spared * f->reach, f->reach);
 }
 
 static bool suits(const sweep *w, const family *f) {
@@ -56,12 +58,38 @@ static bool suits(const sweep *w, const family *f) {
   }; /* of more, links fill no cache, and later passes may read new fields */
   const int least = w->lattice->row_count / w->block_count;
   return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
-         least >= ROWS_TO_HALO * halo(f, most_passes(w->law));
+         (w->block_count == 1 || least >= ROWS_TO_HALO * halo(f, most_passes(w->law)));
 }
 
-static double *padded(sweep *w, long count, double **memory) {
-  *memory = sweep_doubles(w, count + 2 * w->lattice->pitch);
-  return *memory + w->lattice->pitch;
+/* Short rows are done many at a time: each call sets up as much as some vectors take. */
+static int rows_at_a_time(const rows *g) {
+  enum { SITES = 1024, LEAST = 8, MOST = 32 };
+  const int count = (int)(SITES / g->pitch);
+  return count < LEAST ? LEAST : count > MOST ? MOST : count;
+}
+
+/* Room for a row before and one after, and an odd number of cache lines: the same places of no two of 64 planes are a
+   multiple of a page apart, where a load would wait for the store to such a place. */
+static long distance_of_planes(const family_window *v, long pitch) {
+  const long lines = (v->rows + 2) * pitch / PL_LANES;
+  return (lines | 1) * PL_LANES;
+}
+
+static void open_planes(sweep *w, const family *f, family_window *v) {
+  const pl_law *law = w->law;
+  const int forces = w->forces ? 0 : w->dof;
+  const long planes = law->link_count + (long)law->bond_link_count * f->neighbours + forces;
+  v->plane = distance_of_planes(v, w->lattice->pitch);
+  v->memory = sweep_doubles(w, planes * v->plane);
+  v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
+  v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
+  double *next = v->memory + w->lattice->pitch;
+  for (int k = 0; k < law->link_count; k++, next += v->plane)
+    v->link[k] = next;
+  for (int k = 0; k < law->bond_link_count; k++, next += f->neighbours * v->plane)
+    v->bond_link[k] = next;
+  for (int d = 0; d < forces; d++, next += v->plane)
+    v->force[d] = next;
 }
 
 static double **scratch_rows(sweep *w, const pl_field *fields, int count, int more) {
@@ -72,28 +100,33 @@ static double **scratch_rows(sweep *w, const pl_field *fields, int count, int mo
   return rows_of;
 }
 
+/* Where rows, or those of neighbours, begin again at place 0. */
+static void find_straight(family_window *v, int neighbours) {
+  bool *turns = must_calloc((size_t)v->rows, sizeof *turns);
+  v->straight = must_calloc((size_t)v->rows, sizeof *v->straight);
+  for (int k = 0; k < neighbours; k++)
+    turns[(2 * v->rows - v->row_offset[k]) % v->rows] = true;
+  turns[0] = true;
+  for (int here = v->rows - 1, end = v->rows; here >= 0; here--) {
+    v->straight[here] = end - here;
+    if (turns[here]) end = here;
+  }
+  free(turns);
+}
+
 static void open_window(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
-  v->rows = ROWS_AT_A_TIME + rows_kept(f, law);
-  v->plane = (v->rows + 2) * g->pitch;
-  v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
-  v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
-  v->memory =
-      must_calloc((size_t)(law->link_count + law->bond_link_count + w->dof) + 1, sizeof *v->memory);
-  for (int k = 0; k < law->link_count; k++)
-    v->link[k] = padded(w, v->rows * g->pitch, &v->memory[k]);
-  for (int k = 0; k < law->bond_link_count; k++)
-    v->bond_link[k] = padded(w, f->neighbours * v->plane, &v->memory[law->link_count + k]);
-  for (int d = 0; d < w->dof && !w->forces; d++)
-    v->force[d] =
-        padded(w, v->rows * g->pitch, &v->memory[law->link_count + law->bond_link_count + d]);
+  v->at_a_time = rows_at_a_time(g);
+  v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
+  open_planes(w, f, v);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);
   v->row_offset = must_calloc((size_t)f->neighbours, sizeof *v->row_offset);
   for (int k = 0; k < f->neighbours; k++)
     v->row_offset[k] = (int)rint((double)g->offset[0][k] / (double)g->pitch);
+  find_straight(v, f->neighbours);
 }
 
 family_window *family_windows(sweep *w, const family *f) {
@@ -113,13 +146,14 @@ static void free_rows(double **rows_of, int count) {
 void family_windows_free(const sweep *w, family_window *v) {
   const pl_law *law = w->law;
   for (int k = 0; v && k < w->block_count; k++) {
-    free_rows(v[k].memory, law->link_count + law->bond_link_count + w->dof);
+    free(v[k].memory);
     free_rows(v[k].field, law->field_count);
     free_rows(v[k].observed, 1 + law->output_count);
     free(v[k].link);
     free(v[k].bond_link);
     free(v[k].offset);
     free(v[k].row_offset);
+    free(v[k].straight);
   }
   free(v);
 }
@@ -171,23 +205,46 @@ const double *family_window_force(const sweep *w, int block, int row, int compon
                                                     : force_place(w, block, row, component);
 }
 
-/* Rows first .. last-1. With `passing` forces are needed until the particles have moved. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
-                     bool passing) {
+/* The end of the rows that a run may take from `row` on, every second one: as many as need no other links, fields or
+   forces than the first, and whose neighbours stand alike. */
+static int end_of_run(const sweep *w, int block, int row, int last) {
   const sweep_block *b = &w->blocks[block];
-  for (int row = first; row < last; row++) {
-    if (w->count[row] == 0) continue;
-    pl_family run = family_run_of(w, block, row);
-    point_at_links(w, block, row, &run);
-    if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
-    for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
-      family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
-    pass(w->law, family_of(w)->uniforms, &run);
-  }
+  const family_window *v = &family_of(w)->windows[block];
+  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
+  const int step = FAMILY_ROWS_ALIKE, straight = v->straight[row % v->rows];
+  int inner[2], next = row + step;
+  if (row < b->first || row >= b->last) return next;
+  family_window_inner(w, block, &inner[0], &inner[1]);
+  const int edges[] = {b->first, b->last, inner[0], inner[1], row + straight};
+  for (int k = 0; k < 5; k++)
+    if (edges[k] > row) last = least(last, edges[k]);
+  while (w->law->neighbours && next < last && w->begin[next] == w->begin[row] &&
+         w->count[next] == w->count[row] && kind[next] == kind[row])
+    next += step;
+  return next;
 }
 
-static int most(int a, int b) {
-  return a > b ? a : b;
+/* With `passing` forces are needed until the particles have moved. */
+static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
+                      bool passing) {
+  const sweep_block *b = &w->blocks[block];
+  pl_family run = family_run_of(w, block, row);
+  run.rows = (end - row) / FAMILY_ROWS_ALIKE;
+  point_at_links(w, block, row, &run);
+  if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
+  for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
+    family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
+  pass(w->law, family_of(w)->uniforms, &run);
+}
+
+/* Rows first .. last-1: each of either kind. */
+static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
+                     bool passing) {
+  for (int of_kind = first; of_kind < first + FAMILY_ROWS_ALIKE; of_kind++)
+    for (int row = of_kind, end; row < last; row = end) {
+      end = end_of_run(w, block, row, last);
+      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing);
+    }
 }
 
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
@@ -197,31 +254,35 @@ void family_window_inner(const sweep *w, int block, int *first, int *last) {
   *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
 
-void family_window_run(sweep *w, const pl_program *program, int block,
-                       void (*move)(sweep *, int block, int first, int last)) {
+/* Where each pass begins and ends: where those after it need what it finds. */
+static void find_spans(const sweep *w, const pl_program *program, int block, int *next, int *last) {
   const sweep_block *b = &w->blocks[block];
   const family *f = family_of(w);
-  const int passes = program->pass_count, reach = f->reach;
-  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved;
-  family_window_inner(w, block, &moved, &last_moved);
+  const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
-    next[p] = most(b->first - reach * (passes - 1 - p), 0);
-    last[p] = least(b->last + rows_behind(f, program, passes - 1) - rows_behind(f, program, p),
-                    w->lattice->row_count);
+    next[p] = most(b->first - f->reach * (passes - 1 - p), 0);
+    last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
   }
-  while (next[0] < last[0]) { /* when the first is done, all follow */
-    int end = least(next[0] + ROWS_AT_A_TIME, last[0]);
+}
+
+void family_window_run(sweep *w, const pl_program *program, int block,
+                       void (*move)(sweep *, int block, int first, int last)) {
+  const family *f = family_of(w);
+  const int passes = program->pass_count, at_a_time = f->windows[block].at_a_time;
+  int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved, end;
+  find_spans(w, program, block, next, last);
+  family_window_inner(w, block, &moved, &last_moved);
+  for (int ahead = next[0]; next[passes - 1] < last[passes - 1] || (move && moved < last_moved);) {
+    ahead += at_a_time;
     for (int p = 0; p < passes; p++) {
+      end = least(ahead - rows_behind(f, program, p), last[p]);
+      if (end <= next[p]) continue;
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
-      next[p] = most(end, next[p]);
-      const bool ahead = p + 1 == passes || !(program->at_hand >> (p + 1) & 1);
-      end = next[p] == last[p] ? w->lattice->row_count : next[p] - (ahead ? reach : 0);
-      if (p + 1 < passes) end = least(end, last[p + 1]);
+      next[p] = end;
     }
-    end = least(end, last_moved);
-    if (move && end > moved) {
-      move(w, block, moved, end);
-      moved = end;
-    }
+    end = least(ahead - rows_behind(f, program, passes - 1) - f->reach, last_moved);
+    if (!move || end <= moved) continue;
+    move(w, block, moved, end);
+    moved = end;
   }
 }

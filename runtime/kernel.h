@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 8
+#define PL_KERNEL_ABI 9
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -90,7 +90,8 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
 #define PL_SHAPE_PLANES(dimensions) (PL_SHAPE_VALUES(dimensions) + 1)
 
-/* A run of particles: a row, or some that go on in memory with absent sites between. Arrays begin at the run's first site. On rows neighbour k of site q is site
+/* A run of particles: a row, or some that go on in memory with absent sites between; of laws with `neighbours` also rows
+   whose neighbours stand alike, `row_stride` sites apart in all arrays. Arrays begin at the run's first site. On rows neighbour k of site q is site
    q + offset[k], on lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
    neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. In a law of families a bond's field, too,
    has a value on either side. Fields on particles have one plane, all others one for each neighbour, `plane` doubles
@@ -98,7 +99,8 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
    Links may stand in a window of rows: on rows the neighbour's are at q + link_offset[k], and their planes `link_plane`
    apart. */
 typedef struct pl_family {
-  long count;            /* sites, a multiple of PL_LANES */
+  long count;            /* sites of a row, a multiple of PL_LANES */
+  long rows, row_stride; /* 1 where pl_law.neighbours is 0 */
   long neighbours;       /* of a full family; even */
   long plane;            /* doubles between planes of a field, or of what lists know of bonds */
   long new_plane, link_plane;        /* the same of new fields and what is observed; of links of bonds */
@@ -151,6 +153,9 @@ typedef struct pl_program {
   /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's owner shares; so
      they must have done its row and those below, not those above. */
   unsigned at_hand;
+  /* On rows. While passes follow each other, each that is not at hand one reach of rows behind the one before, links must be
+     kept of one reach more than the last is behind the first; or of so many reaches less. */
+  int spared;
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, moment on i, moment on j. */

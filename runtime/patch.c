@@ -358,6 +358,7 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
   const pl_law *law = p->law;
   site_arrays s = {.first = first};
   pl_family run = {.count = count,
+                   .rows = 1,
                    .neighbours = 2 * p->lattice->directions,
                    .plane = p->size,
                    .new_plane = p->size,

@@ -115,6 +115,7 @@ static void pair_forces(pair *p, const law_case *c) {
   const double *old[MOST_FIELDS];
   double *new_field[MOST_FIELDS], *link[MOST_LINKS], *force[3];
   pl_family f = {.count = 8,
+                 .rows = 1,
                  .neighbours = 2,
                  .plane = PLACES,
                  .new_plane = PLACES,
