@@ -54,14 +54,12 @@ typedef struct segment {
   int root_count, root_capacity;
 } segment;
 
-/* A sum of products, which differ from bond to bond, adds each with one rounding. */
-static inline bool segment_fuses(const ir *g, const segment_root *r) {
-  return r->target == TO_SUM && !r->paired && ir_operation(g, r->node) == IR_MUL &&
-         ir_place(g, r->node) > ON_BODY;
-}
+/* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one factor must be what is
+   always finite, since absent bonds add 0 times it: a constant, or where particles are. */
+bool segment_fuses(const ir *g, const segment_root *r);
 
 /* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first factors, then the second
-   factors of those that fuse. Returns how many. */
+   factors of those that fuse (of pairs the finite ones). Returns how many. */
 int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
 
 typedef struct family_pass {
