@@ -4,6 +4,7 @@
 
 #include "dsl/arena.h"
 #include "generator/kinematics.h"
+#include "generator/particle_parts.h"
 #include "generator/plan_parts.h"
 #include "generator/rewrite.h"
 
@@ -27,13 +28,28 @@ static ir_node family_sum(ir *g, ir_node n) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
+/* The mean of the forces of both sides, by what either particle gives. Fields on bonds are the same seen from both ends. */
+static ir_node in_parts(const kernel_plan *plan, const lowered_law *of) {
+  const law *l = plan->law;
+  ir_node *same = must_alloc(((size_t)l->fields.count + 1) * sizeof *same);
+  int count = 0;
+  for (int k = 0; k < l->fields.count; k++)
+    if (l->fields.items[k]->place == ON_BOND) same[count++] = of->fields[k];
+  const ir_node half = ir_mul(plan->graph, ir_constant(plan->graph, 0.5), of->F);
+  const ir_node sum = particle_parts_of_both(plan->graph, half, same, count);
+  free(same);
+  return sum;
+}
+
 /* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the same on both. */
 static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir *g = plan->graph;
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
+    f = plan_is_of_large_family(plan)
+            ? in_parts(plan, of)
+            : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
