@@ -437,12 +437,14 @@ void emit_programs(emitter *e) {
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
-             ".bond_link_count = %d,\n    .sum_count = %d,\n    .reads_shape = %d,\n"
+             ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
+             ".reads_shape = %d,\n"
              "    .step = {%d, step_passes, %u},\n    .observe = {%d, observe_passes, %u},\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
-             program_sum_count(&e->plan->step), e->plan->reads_shape, e->plan->step.pass_count,
+             program_sum_count(&e->plan->step),
+             program_constant_sums(e->graph, &e->plan->step, NULL), e->plan->reads_shape, e->plan->step.pass_count,
              program_at_hand(e->graph, &e->plan->step), e->plan->observe.pass_count,
              program_at_hand(e->graph, &e->plan->observe));
 }

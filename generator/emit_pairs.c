@@ -119,9 +119,10 @@ typedef struct pair_loops {
   const segment *of;
   ir_node *node;    /* [count] */
   int count;        /* roots, then factors that are read again */
-  int *kept;        /* [root_count] where the value is kept; -1: a number that is the same for all */
+  int *kept;        /* [root_count] where the value is kept; -1: of constant sums */
   ir_node *to_keep; /* [kept_count] */
   int kept_count;
+  int constants; /* roots that are constant sums */
 } pair_loops;
 
 static pair_loops loops_of(const emitter *e, const segment *a) {
@@ -132,11 +133,12 @@ static pair_loops loops_of(const emitter *e, const segment *a) {
                   .to_keep = must_alloc(size * sizeof *l.to_keep)};
   l.count = segment_nodes(e->graph, a, l.node);
   for (int k = 0; k < a->root_count; k++) {
-    const bool keep = is_field(&a->roots[k]) || ir_place(e->graph, l.node[k]) > ON_BODY;
+    const bool keep = !segment_is_constant(e->graph, &a->roots[k]);
     l.kept[k] = keep ? 0 : -1;
+    l.constants += !keep;
     while (keep && l.kept[k] < l.kept_count && l.to_keep[l.kept[k]] != l.node[k])
       l.kept[k]++;
-    if (l.kept[k] == l.kept_count) l.to_keep[l.kept_count++] = l.node[k];
+    if (keep && l.kept[k] == l.kept_count) l.to_keep[l.kept_count++] = l.node[k];
   }
   return l;
 }
@@ -273,12 +275,7 @@ static void write_field_stores(emitter *e, const pair_loops *l) {
 /* Adds value k, or its product with node `factor`, to both ends. */
 static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
   const char sign = l->of->roots[k].parity > 0 ? '+' : '-';
-  if (l->kept[k] < 0) {
-    c_text_add(e->out, "        const double value_%d = present ? ", k);
-    emit_value(e, l->node[k]);
-    c_text_add(e->out, " : 0.0;\n");
-  } else
-    c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, l->kept[k]);
+  c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, l->kept[k]);
   if (factor == IR_NONE) {
     c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, k, k,
                sign, k);
@@ -292,19 +289,34 @@ static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
   c_text_add(e->out, ", far_%d[q]);\n", k);
 }
 
+/* Sums that do not change from step to step. */
+static void write_constants(emitter *e, const pair_loops *l) {
+  if (!l->constants) return;
+  c_text_add(e->out, "      if (!family->constants_known)\n");
+  emit_family_loop(e, "      ");
+  c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
+  for (int k = 0; k < l->of->root_count; k++) {
+    if (!segment_is_constant(e->graph, &l->of->roots[k])) continue;
+    c_text_add(e->out, "        const double value_%d = present ? ", k);
+    emit_value(e, l->node[k]);
+    c_text_add(e->out, " : 0.0;\n        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n",
+               k, k, k, l->of->roots[k].parity > 0 ? '+' : '-', k);
+  }
+  c_text_add(e->out, "      }\n");
+}
+
 static void write_second(emitter *e, const pair_loops *l) {
   const int roots = l->of->root_count;
   unsigned char *whole = e->needed;
-  bool asks = false;
+  write_constants(e, l);
+  if (l->constants == roots) return;
   e->needed = needed_for(e, l->node + roots, l->count - roots, false);
   emit_family_loop(e, "      ");
   emit_lines(e);
-  for (int k = 0; k < roots; k++)
-    asks = asks || l->kept[k] < 0;
-  if (asks) c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
   for (int k = 0, factors = roots; k < roots; k++) {
-    const bool fuses = segment_fuses(e->graph, &l->of->roots[k]);
-    if (!is_field(&l->of->roots[k]))
+    const segment_root *r = &l->of->roots[k];
+    const bool fuses = segment_fuses(e->graph, r);
+    if (!is_field(r) && !segment_is_constant(e->graph, r))
       write_sum(e, l, k, fuses ? l->node[factors] : IR_NONE);
     factors += fuses;
   }
@@ -314,18 +326,40 @@ static void write_second(emitter *e, const pair_loops *l) {
 }
 
 /* What the particles have got from behind; from then on the sums are 0 for the next pass. */
+static void write_end(emitter *e, const segment_root *r) {
+  c_text_add(e->out,
+             "    {\n"
+             "    double *restrict got = family->sum[%d] + first;\n"
+             "    for (long q = 0; q < lanes; q++) {\n"
+             "      slot_%d[q] += got[q];\n"
+             "      got[q] = 0.0;\n"
+             "    }\n"
+             "    }\n",
+             r->sum, r->index);
+}
+
+static void write_constant_end(emitter *e, const segment_root *r, int number) {
+  c_text_add(e->out, "    if (!family->constants_known)\n");
+  write_end(e, r);
+  c_text_add(e->out,
+             "    if (family->constant_sum && !family->ahead_only) {\n"
+             "    double *restrict constant = family->constant_sum[%d] + first;\n"
+             "    for (long q = 0; q < lanes; q++)\n"
+             "      slot_%d[q] = constant[q] = family->constants_known ? constant[q] : "
+             "slot_%d[q];\n"
+             "    }\n",
+             number, r->index, r->index);
+}
+
 static void write_ends(emitter *e, const segment *a) {
-  for (int k = 0; k < a->root_count; k++)
-    if (!is_field(&a->roots[k]))
-      c_text_add(e->out,
-                 "    {\n"
-                 "    double *restrict got = family->sum[%d] + first;\n"
-                 "    for (long q = 0; q < lanes; q++) {\n"
-                 "      slot_%d[q] += got[q];\n"
-                 "      got[q] = 0.0;\n"
-                 "    }\n"
-                 "    }\n",
-                 a->roots[k].sum, a->roots[k].index);
+  int number = program_constant_sums(e->graph, &e->plan->step, a);
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    if (segment_is_constant(e->graph, r))
+      write_constant_end(e, r, number++);
+    else if (!is_field(r))
+      write_end(e, r);
+  }
   c_text_add(e->out, "    if (family->ahead_only) continue;\n");
 }
 

@@ -508,6 +508,18 @@ int program_sum_count(const family_program *p) {
   return most;
 }
 
+int program_constant_sums(const ir *g, const family_program *p, const segment *before) {
+  int count = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      if (a == before) return count;
+      for (int r = 0; r < a->root_count; r++)
+        count += segment_is_constant(g, &a->roots[r]);
+    }
+  return count;
+}
+
 static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
                      int root_count, const node_map *parity, bool pairs) {
   scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};

@@ -121,6 +121,12 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
 bool program_is_paired(const family_pass *p);
 /* Whether the program writes the field, which stands toward neighbours, bond by bond at both ends. */
 bool program_pairs_field(const family_program *p, int field);
+/* A sum of what is the same for all bonds of a class: it does not change from step to step (pl_family.constant_sum). */
+static inline bool segment_is_constant(const ir *g, const segment_root *r) {
+  return r->paired && r->target == TO_SUM && ir_place(g, r->node) <= ON_BODY;
+}
+/* How many the program has, or has before that segment's. */
+int program_constant_sums(const ir *g, const family_program *p, const segment *before);
 /* Sums that one pass adds to far ends, the most. */
 int program_sum_count(const family_program *p);
 
