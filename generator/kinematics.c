@@ -200,8 +200,7 @@ static ir_node dot_of(ir *g, int dimensions, const ir_node *a, const ir_node *b)
 }
 
 /* The length of a family's bond and its stretch from what has been found of its chord. */
-static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s,
-                         const ir_node *d) {
+static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s, const ir_node *d) {
   ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
   for (int c = 0; c < dimensions; c++)
     both[c] = ir_add(g, k->reference_chord[c], k->chord[c]);
@@ -236,13 +235,13 @@ static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_no
   const ir_node per_square = ir_div(g, one, ir_mul(g, s, s));
   ir_node slope[3] = {IR_NONE, IR_NONE, IR_NONE};
   for (int c = 0; c < dimensions; c++) {
-    const ir_node at_rest = ir_mul(g, ir_mul(g, ir_constant(g, 2), k->reference_chord[c]), per_square);
+    const ir_node at_rest =
+        ir_mul(g, ir_mul(g, ir_constant(g, 2), k->reference_chord[c]), per_square);
     slope[c] = ir_add(g, at_rest, ir_mul(g, d[c], per_square));
   }
   const ir_node growth = named(g, dot_of(g, dimensions, d, slope), "growth");
   const ir_node change = ir_make(g, IR_ABS, growth, IR_NONE, IR_NONE);
-  const ir_node near =
-      ir_expect(g, ir_make(g, IR_LT, change, ir_constant(g, 1.0 / 128), IR_NONE));
+  const ir_node near = ir_expect(g, ir_make(g, IR_LT, change, ir_constant(g, 1.0 / 128), IR_NONE));
   const ir_node square = ir_add(g, one, growth), shorter = shortening_near(g, growth);
   const ir_node root = ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE);
   const ir_node rough = ir_sub(g, ir_mul(g, square, root), one);

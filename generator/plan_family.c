@@ -47,9 +47,8 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = plan_is_of_large_family(plan)
-            ? in_parts(plan, of)
-            : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
+    f = plan_is_of_large_family(plan) ? in_parts(plan, of)
+                                      : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
@@ -61,10 +60,10 @@ void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *r
   const bool large = plan_is_of_large_family(plan);
   if (large) f = ir_mul(g, f, present(g, PER_LENGTH));
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] = (segment_root){.node = family_sum(
-                                  g, ir_mul(g, f, present(g, (large ? CHORD : DIRECTION) + d))),
-                              .target = TO_PARTICLE_FORCE,
-                              .index = d};
+    roots[d] = (segment_root){
+        .node = family_sum(g, ir_mul(g, f, present(g, (large ? CHORD : DIRECTION) + d))),
+        .target = TO_PARTICLE_FORCE,
+        .index = d};
 }
 
 /* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are

@@ -117,8 +117,7 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
     b->old_filled = must_calloc(fields, sizeof *b->old_filled);
     b->new_filled = must_calloc(fields, sizeof *b->new_filled);
     b->settled = must_calloc(fields, sizeof *b->settled);
-    b->constant_sum =
-        must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *b->constant_sum);
+    b->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *b->constant_sum);
     b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
   }
   find_marks(w, f, p);
