@@ -449,11 +449,13 @@ static void write_program_member(emitter *e, const family_program *p) {
 void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
-             ".bond_link_count = %d,\n    .sum_count = %d,\n    .reads_shape = %d,\n",
+             ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
+             ".reads_shape = %d,\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
-             program_sum_count(&e->plan->step), e->plan->reads_shape);
+             program_sum_count(&e->plan->step),
+             program_constant_sums(e->graph, &e->plan->step, NULL), e->plan->reads_shape);
   write_program_member(e, &e->plan->step);
   write_program_member(e, &e->plan->observe);
 }

@@ -4,8 +4,15 @@
 
    Values of fields toward neighbours are 0 for nearly all bonds and seldom change, and to read and write them would take
    longer than to compute them: eight at a time bear marks of where one is not 0 (family->old_filled), elsewhere the loop has 0 as a
-   constant; and new values are stored only where they differ from what stands there. */
+   constant; and new values are stored only where they differ from what stands there.
+
+   For each bond of the chunk's particles one loop computes values and another adds them to both ends, so that the first can
+   be done once more where not all is as it was expected. */
+#include <stdlib.h>
+
+#include "dsl/arena.h"
 #include "generator/emit_parts.h"
+#include "generator/stages.h"
 
 static const char field_functions[] =
     "static const _Alignas(PL_ALIGNMENT) double zeros[%d];\n\n"
@@ -101,71 +108,106 @@ static void write_marks(emitter *e, const segment *a) {
     if (is_field(&a->roots[k]))
       c_text_add(e->out,
                  "    const uint64_t unsettled_%d = some_marked(family->settled[%d] + first / "
-                 "PL_LANES, lanes, UINT64_MAX);\n"
-                 "    _Alignas(PL_ALIGNMENT) double values_%d[CHUNK];\n",
-                 k, a->roots[k].index, k);
+                 "PL_LANES, lanes, UINT64_MAX);\n",
+                 k, a->roots[k].index);
 }
 
-static void write_outputs(emitter *e, const segment *a) {
-  for (int k = 0; k < a->root_count; k++)
-    if (is_field(&a->roots[k]))
-      c_text_add(e->out,
-                 "      const double *restrict before_%d = (old_filled_%d >> k & 1) == 0 ? zeros : "
-                 "family->old_field[%d] + first + k*family->plane;\n",
-                 k, a->roots[k].index, a->roots[k].index);
-    else
-      c_text_add(e->out,
-                 "      double *restrict to_%d = slot_%d, *restrict far_%d = family->sum[%d] + "
-                 "first + to;\n",
-                 k, a->roots[k].index, k, a->roots[k].sum);
-}
+/* --- two loops -------------------------------------------------------------------------------- */
 
-static void write_stores(emitter *e, const segment *a) {
+/* By the sign of what is moved there: gcc asks more if it is to ask for a bit. */
+static const char present_text[] =
+    "        const int64_t present = (int64_t)(bonds[q] << above) < 0;\n";
+
+/* What the segment computes for its roots (segment_nodes), and which of that the first loop keeps for the second. */
+typedef struct pair_loops {
+  const segment *of;
+  ir_node *node;    /* [count] */
+  int count;        /* roots, then factors that are read again */
+  int *kept;        /* [root_count] where the value is kept; -1: of constant sums */
+  ir_node *to_keep; /* [kept_count] */
+  int kept_count;
+  int constants; /* roots that are constant sums */
+} pair_loops;
+
+static pair_loops loops_of(const emitter *e, const segment *a) {
+  const size_t size = 2 * (size_t)a->root_count + 1;
+  pair_loops l = {.of = a,
+                  .node = must_alloc(size * sizeof *l.node),
+                  .kept = must_alloc(size * sizeof *l.kept),
+                  .to_keep = must_alloc(size * sizeof *l.to_keep)};
+  l.count = segment_nodes(e->graph, a, l.node);
   for (int k = 0; k < a->root_count; k++) {
-    const segment_root *r = &a->roots[k];
-    c_text_add(e->out, "        const double value_%d = present ? ", k);
-    emit_value(e, r->node);
-    c_text_add(e->out, " : 0.0;\n");
-    if (is_field(r))
-      c_text_add(e->out, "        values_%d[q] = value_%d;\n", k, k);
-    else
-      c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, k,
-                 k, r->parity > 0 ? '+' : '-', k);
+    const bool keep = !segment_is_constant(e->graph, &a->roots[k]);
+    l.kept[k] = keep ? 0 : -1;
+    l.constants += !keep;
+    while (keep && l.kept[k] < l.kept_count && l.to_keep[l.kept[k]] != l.node[k])
+      l.kept[k]++;
+    if (keep && l.kept[k] == l.kept_count) l.to_keep[l.kept_count++] = l.node[k];
   }
+  return l;
 }
 
-static void write_field_stores(emitter *e, const segment *a) {
-  for (int k = 0; k < a->root_count; k++)
-    if (is_field(&a->roots[k]))
-      c_text_add(e->out,
-                 "      const int settled_%d = are_equal(values_%d, before_%d, lanes);\n"
-                 "      if (!family->ahead_only && (!settled_%d || (unsettled_%d >> k & 1)))\n"
-                 "        store_at_ends(family, %d, first, lanes, k, values_%d, settled_%d);\n",
-                 k, k, k, k, k, a->roots[k].index, k, k);
+static void loops_free(pair_loops *l) {
+  free(l->node);
+  free(l->kept);
+  free(l->to_keep);
 }
 
-/* What the particles have got from behind; from then on the sums are 0 for the next pass. */
-static void write_ends(emitter *e, const segment *a) {
-  for (int k = 0; k < a->root_count; k++)
-    if (!is_field(&a->roots[k]))
-      c_text_add(e->out,
-                 "    {\n"
-                 "    double *restrict got = family->sum[%d] + first;\n"
-                 "    for (long q = 0; q < lanes; q++) {\n"
-                 "      slot_%d[q] += got[q];\n"
-                 "      got[q] = 0.0;\n"
-                 "    }\n"
-                 "    }\n",
-                 a->roots[k].sum, a->roots[k].index);
-  c_text_add(e->out, "    if (family->ahead_only) continue;\n");
+/* Marks what these nodes need; of choices by expected conditions, with `usual`, only what is expected. The caller frees it. */
+static unsigned char *needed_for(const emitter *e, const ir_node *nodes, int count, bool usual) {
+  unsigned char *mask = must_calloc((size_t)e->node_count + 1, 1);
+  for (int k = 0; k < count; k++)
+    mask[nodes[k]] = 1;
+  for (ir_node n = e->node_count - 1; n >= 0; n--) {
+    ir_node operand[3];
+    const int operands = mask[n] ? stages_operands(e, n, usual, operand) : 0;
+    for (int k = 0; k < operands; k++)
+      mask[operand[k]] = 1;
+  }
+  return mask;
 }
 
-static void write_loop(emitter *e, const segment *a) {
+static bool expects(const emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && stages_is_expected_choice(e, n)) return true;
+  return false;
+}
+
+/* Bonds that are not as expected leave their bits. One line for all conditions: gcc does not vectorise two. */
+static void write_expectations(emitter *e) {
+  const char *joined = "        unusual |= ((";
+  for (ir_node n = 0; n < e->node_count; n++) {
+    bool again = !e->needed[n] || !stages_is_expected_choice(e, n);
+    const ir_node asked = again ? IR_NONE : ir_operand(e->graph, n, 0);
+    for (ir_node before = 0; before < n && !again; before++)
+      again = e->needed[before] && stages_is_expected_choice(e, before) &&
+              ir_operand(e->graph, before, 0) == asked;
+    if (again) continue;
+    c_text_add(e->out, "%s", joined);
+    emit_condition(e, asked);
+    joined = ") && (";
+  }
+  c_text_add(e->out, ")) ? 0 : bonds[q];\n");
+}
+
+static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet) {
+  unsigned char *whole = e->needed;
+  e->needed = needed_for(e, l->to_keep, l->kept_count, usual);
+  e->usual = usual;
+  e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
-  c_text_add(e->out, "        const int64_t present = (bonds[q] & present_bit) != 0;\n");
-  write_stores(e, a);
+  if (usual && expects(e)) write_expectations(e);
+  c_text_add(e->out, present_text);
+  for (int k = 0; k < l->kept_count; k++) {
+    c_text_add(e->out, "        kept[%d][q] = present ? ", k);
+    emit_value(e, l->to_keep[k]);
+    c_text_add(e->out, " : 0.0;\n");
+  }
   c_text_add(e->out, "      }\n");
+  e->usual = e->quiet = false;
+  free(e->needed);
+  e->needed = whole;
 }
 
 static bool reads_held(const emitter *e) {
@@ -174,8 +216,8 @@ static bool reads_held(const emitter *e) {
   return false;
 }
 
-/* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere. */
-static void write_loops(emitter *e, const segment *a) {
+/* Whether toward neighbour k a field that is read may be other than 0, or something is held. False if nothing is asked. */
+static bool write_question(emitter *e) {
   const char *join = "      if (((";
   const bool held = reads_held(e);
   for (int f = 0; f < e->plan->law->fields.count; f++)
@@ -186,29 +228,167 @@ static void write_loops(emitter *e, const segment *a) {
       }
   const bool marks = *join == ' ' && join[1] == '|';
   if (marks) c_text_add(e->out, ") >> k & 1) != 0%s) {\n", held ? " || family->held_near" : "");
-  write_loop(e, a);
-  if (!marks) return;
-  c_text_add(e->out, "      } else {\n");
-  e->quiet = true;
-  write_loop(e, a);
-  e->quiet = false;
+  return marks;
+}
+
+/* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere; and
+   one with both sides of what was expected. */
+static void write_first(emitter *e, const pair_loops *l) {
+  const bool expected = expects(e);
+  if (l->kept_count == 0) return;
+  if (expected) c_text_add(e->out, "      uint64_t unusual = 0;\n");
+  const bool marks = write_question(e);
+  write_values(e, l, true, false);
+  if (marks) {
+    c_text_add(e->out, "      } else {\n");
+    write_values(e, l, true, true);
+    c_text_add(e->out, "      }\n");
+  }
+  if (!expected) return;
+  c_text_add(e->out,
+             "      if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
+  write_values(e, l, false, false);
   c_text_add(e->out, "      }\n");
 }
 
+static void write_outputs(emitter *e, const pair_loops *l) {
+  for (int k = 0; k < l->of->root_count; k++) {
+    const segment_root *r = &l->of->roots[k];
+    if (is_field(r))
+      c_text_add(e->out,
+                 "      const double *restrict before_%d = (old_filled_%d >> k & 1) == 0 ? zeros : "
+                 "family->old_field[%d] + first + k*family->plane;\n",
+                 k, r->index, r->index);
+    else
+      c_text_add(e->out,
+                 "      double *restrict to_%d = slot_%d, *restrict far_%d = family->sum[%d] + "
+                 "first + to;\n",
+                 k, r->index, k, r->sum);
+  }
+}
+
+static void write_field_stores(emitter *e, const pair_loops *l) {
+  for (int k = 0; k < l->of->root_count; k++)
+    if (is_field(&l->of->roots[k]))
+      c_text_add(e->out,
+                 "      const int settled_%d = are_equal(kept[%d], before_%d, lanes);\n"
+                 "      if (!family->ahead_only && (!settled_%d || (unsettled_%d >> k & 1)))\n"
+                 "        store_at_ends(family, %d, first, lanes, k, kept[%d], settled_%d);\n",
+                 k, l->kept[k], k, k, k, l->of->roots[k].index, l->kept[k], k);
+}
+
+/* Adds value k, or its product with node `factor`, to both ends. */
+static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
+  const char sign = l->of->roots[k].parity > 0 ? '+' : '-';
+  c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, l->kept[k]);
+  if (factor == IR_NONE) {
+    c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, k, k,
+               sign, k);
+    return;
+  }
+  c_text_add(e->out, "        to_%d[q] = pl_fma(value_%d, ", k, k);
+  emit_value(e, factor);
+  c_text_add(e->out, ", to_%d[q]);\n        far_%d[q] = pl_fma(%svalue_%d, ", k, k,
+             sign == '-' ? "-" : "", k);
+  emit_value(e, factor);
+  c_text_add(e->out, ", far_%d[q]);\n", k);
+}
+
+/* Sums that do not change from step to step. */
+static void write_constants(emitter *e, const pair_loops *l) {
+  if (!l->constants) return;
+  c_text_add(e->out, "      if (!family->constants_known)\n");
+  emit_family_loop(e, "      ");
+  c_text_add(e->out, present_text);
+  for (int k = 0; k < l->of->root_count; k++) {
+    if (!segment_is_constant(e->graph, &l->of->roots[k])) continue;
+    c_text_add(e->out, "        const double value_%d = present ? ", k);
+    emit_value(e, l->node[k]);
+    c_text_add(e->out, " : 0.0;\n        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n",
+               k, k, k, l->of->roots[k].parity > 0 ? '+' : '-', k);
+  }
+  c_text_add(e->out, "      }\n");
+}
+
+static void write_second(emitter *e, const pair_loops *l) {
+  const int roots = l->of->root_count;
+  unsigned char *whole = e->needed;
+  write_constants(e, l);
+  if (l->constants == roots) return;
+  e->needed = needed_for(e, l->node + roots, l->count - roots, false);
+  emit_family_loop(e, "      ");
+  emit_lines(e);
+  for (int k = 0, factors = roots; k < roots; k++) {
+    const segment_root *r = &l->of->roots[k];
+    const bool fuses = segment_fuses(e->graph, r);
+    if (!is_field(r) && !segment_is_constant(e->graph, r))
+      write_sum(e, l, k, fuses ? l->node[factors] : IR_NONE);
+    factors += fuses;
+  }
+  c_text_add(e->out, "      }\n");
+  free(e->needed);
+  e->needed = whole;
+}
+
+/* What the particles have got from behind; from then on the sums are 0 for the next pass. */
+static void write_end(emitter *e, const segment_root *r) {
+  c_text_add(e->out,
+             "    {\n"
+             "    double *restrict got = family->sum[%d] + first;\n"
+             "    for (long q = 0; q < lanes; q++) {\n"
+             "      slot_%d[q] += got[q];\n"
+             "      got[q] = 0.0;\n"
+             "    }\n"
+             "    }\n",
+             r->sum, r->index);
+}
+
+static void write_constant_end(emitter *e, const segment_root *r, int number) {
+  c_text_add(e->out, "    if (!family->constants_known)\n");
+  write_end(e, r);
+  c_text_add(e->out,
+             "    if (family->constant_sum && !family->ahead_only) {\n"
+             "    double *restrict constant = family->constant_sum[%d] + first;\n"
+             "    for (long q = 0; q < lanes; q++)\n"
+             "      slot_%d[q] = constant[q] = family->constants_known ? constant[q] : "
+             "slot_%d[q];\n"
+             "    }\n",
+             number, r->index, r->index);
+}
+
+static void write_ends(emitter *e, const segment *a) {
+  int number = program_constant_sums(e->graph, &e->plan->step, a);
+  for (int k = 0; k < a->root_count; k++) {
+    const segment_root *r = &a->roots[k];
+    if (segment_is_constant(e->graph, r))
+      write_constant_end(e, r, number++);
+    else if (!is_field(r))
+      write_end(e, r);
+  }
+  c_text_add(e->out, "    if (family->ahead_only) continue;\n");
+}
+
 void emit_pairs(emitter *e, const segment *a) {
+  pair_loops l = loops_of(e, a);
   emit_family_starts(e, a);
   write_marks(e, a);
+  if (l.kept_count)
+    c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l.kept_count);
   c_text_add(e->out,
              "    for (long k = 0; k < half; k++) { /* bond by bond, adding to both ends */\n"
              "      const long to = family->offset[k], link_to = family->link_offset[k], back = k "
              "+ half;\n"
              "      (void)back, (void)link_to;\n"
              "      const uint64_t *restrict bonds = family->bonds + first;\n"
-             "      const uint64_t present_bit = UINT64_C(1) << k;\n");
+             "      const uint64_t present_bit = UINT64_C(1) << k;\n"
+             "      const long above = 63 - k;\n"
+             "      (void)present_bit, (void)above;\n");
   emit_family_inputs(e);
-  write_outputs(e, a);
-  write_loops(e, a);
-  write_field_stores(e, a);
+  write_outputs(e, &l);
+  write_first(e, &l);
+  write_field_stores(e, &l);
+  write_second(e, &l);
   c_text_add(e->out, "    }\n");
   write_ends(e, a);
+  loops_free(&l);
 }

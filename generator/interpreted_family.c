@@ -347,9 +347,10 @@ static void store(family_runner *r, const segment_root *root, const double *valu
   }
 }
 
-/* A value of a bond at both of its ends. */
+/* A value of a bond at both of its ends; `factor` as above. */
 static void store_at_ends(family_runner *r, const segment_root *root, const double *value,
-                          const pl_family *f, long first, long k, long lanes) {
+                          const double *factor, const pl_family *f, long first, long k,
+                          long lanes) {
   const long there = first + f->offset[k];
   double *far = root->target == TO_SUM
                     ? f->sum[root->sum] + there
@@ -357,11 +358,11 @@ static void store_at_ends(family_runner *r, const segment_root *root, const doub
   for (long q = 0; q < lanes; q++) {
     const double here = is_present(f, first, k, q) ? value[q] : 0;
     if (root->target == TO_SUM)
-      far[q] += root->parity * here;
+      far[q] = pl_fma(root->parity * here, factor && here != 0 ? factor[q] : 1, far[q]);
     else if (!f->ahead_only)
       far[q] = here;
   }
-  if (root->target == TO_SUM || !f->ahead_only) store(r, root, value, NULL, f, first, k, lanes);
+  if (root->target == TO_SUM || !f->ahead_only) store(r, root, value, factor, f, first, k, lanes);
 }
 
 /* What the particles have got from the far sides of their bonds. */
@@ -412,7 +413,7 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
       const bool fuses = segment_fuses(r->plan->graph, &a->roots[n]);
       const double *factor = fuses ? r->result[factors++] : NULL;
       if (a->kind == OVER_PAIRS)
-        store_at_ends(r, &a->roots[n], r->result[n], f, first, k, lanes);
+        store_at_ends(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
       else
         store(r, &a->roots[n], r->result[n], factor, f, first, k, lanes);
     }

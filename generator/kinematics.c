@@ -199,8 +199,63 @@ static ir_node dot_of(ir *g, int dimensions, const ir_node *a, const ir_node *b)
   return sum;
 }
 
+/* The length of a family's bond and its stretch from what has been found of its chord. */
+static void find_stretch(ir *g, family_kinematics *k, int dimensions, ir_node s, const ir_node *d) {
+  ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
+  for (int c = 0; c < dimensions; c++)
+    both[c] = ir_add(g, k->reference_chord[c], k->chord[c]);
+  ir_node square = named(g, dot_of(g, dimensions, k->chord, k->chord), "square");
+  k->per_length = named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
+  k->length = named(g, ir_mul(g, square, k->per_length), "length");
+  ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
+  k->stretch = named(g, stretch_of(g, s, k->length, growth), "stretch");
+}
+
+/* (1 - (1 + h)^(-1/2))/h for |h| < 1/128 through Chebyshev's points, to 2^-56. */
+static ir_node shortening_near(ir *g, ir_node h) {
+  static const double fit[] = {0x1p-1,
+                               -0x1.8000000000058p-2,
+                               0x1.4000000000053p-2,
+                               -0x1.17fffff5006fep-2,
+                               0x1.f7ffffeb39b59p-3,
+                               -0x1.ce0aff8156949p-3,
+                               0x1.ad0a63171877fp-3};
+  enum { TERMS = sizeof fit / sizeof *fit };
+  ir_node series = ir_constant(g, fit[TERMS - 1]);
+  for (int k = TERMS - 2; k >= 0; k--)
+    series = ir_add(g, ir_constant(g, fit[k]), ir_mul(g, series, h));
+  return ir_mul(g, h, series);
+}
+
+/* The same, for as few operations as can be, where nearly all bonds are nearly as long as at first: with growth
+   h = (L/s)^2 - 1 and 1/L = (1 - r)/s the stretch is h - r (1 + h). */
+static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_node s,
+                              const ir_node *d) {
+  const ir_node one = ir_constant(g, 1), per_s = ir_div(g, one, s);
+  const ir_node per_square = ir_div(g, one, ir_mul(g, s, s));
+  ir_node slope[3] = {IR_NONE, IR_NONE, IR_NONE};
+  for (int c = 0; c < dimensions; c++) {
+    const ir_node at_rest =
+        ir_mul(g, ir_mul(g, ir_constant(g, 2), k->reference_chord[c]), per_square);
+    slope[c] = ir_add(g, at_rest, ir_mul(g, d[c], per_square));
+  }
+  const ir_node growth = named(g, dot_of(g, dimensions, d, slope), "growth");
+  const ir_node change = ir_make(g, IR_ABS, growth, IR_NONE, IR_NONE);
+  const ir_node near = ir_expect(g, ir_make(g, IR_LT, change, ir_constant(g, 1.0 / 128), IR_NONE));
+  const ir_node square = ir_add(g, one, growth), shorter = shortening_near(g, growth);
+  const ir_node root = ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE);
+  const ir_node rough = ir_sub(g, ir_mul(g, square, root), one);
+  const ir_node far_growth = ir_sub(g, growth, ir_mul(g, rough, rough));
+  const ir_node far = ir_mul(g, ir_constant(g, 0.5), far_growth);
+  const ir_node quick = ir_sub(g, growth, ir_mul(g, shorter, square));
+  k->stretch = named(g, ir_select(g, near, quick, far), "stretch");
+  const ir_node per_near = ir_sub(g, per_s, ir_mul(g, per_s, shorter));
+  k->per_length = named(g, ir_select(g, near, per_near, ir_mul(g, per_s, root)), "per_length");
+  k->length = named(g, ir_add(g, s, ir_mul(g, s, k->stretch)), "length");
+}
+
 /* Both ends compute the same bits: exchanging them changes signs only. */
-family_kinematics kinematics_family(ir *g, int dimensions) {
+family_kinematics kinematics_family(ir *g, int dimensions, bool near) {
   static const ends_input u_i[] = {ENDS_U_IX, ENDS_U_IY, ENDS_U_IZ},
                           u_j[] = {ENDS_U_JX, ENDS_U_JY, ENDS_U_JZ},
                           v_i[] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
@@ -209,30 +264,22 @@ family_kinematics kinematics_family(ir *g, int dimensions) {
   static const char *const d_names[] = {"d_x", "d_y", "d_z"}, *const e_names[] = {"e_x", "e_y",
                                                                                   "e_z"};
   family_kinematics k = {0};
-  ir_node chord[3] = {IR_NONE, IR_NONE, IR_NONE}, d[3] = {IR_NONE, IR_NONE, IR_NONE};
-  ir_node dv[3] = {IR_NONE, IR_NONE, IR_NONE}, now[3] = {IR_NONE, IR_NONE, IR_NONE};
-  ir_node both[3] = {IR_NONE, IR_NONE, IR_NONE};
+  ir_node d[3] = {IR_NONE, IR_NONE, IR_NONE}, dv[3] = {IR_NONE, IR_NONE, IR_NONE};
   ir_node s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   ir_mark_class(g, s);
   ir_node per_s = ir_div(g, ir_constant(g, 1), s);
   for (int c = 0; c < dimensions; c++) {
-    chord[c] = kinematics_input(g, chord_of[c]);
+    k.reference_chord[c] = kinematics_input(g, chord_of[c]);
     ir_node from = kinematics_input(g, u_i[c]), to = kinematics_input(g, u_j[c]);
     d[c] = named(g, ir_sub(g, to, from), d_names[c]);
-    now[c] = ir_add(g, chord[c], d[c]);
-    both[c] = ir_add(g, chord[c], now[c]);
+    k.chord[c] = ir_add(g, k.reference_chord[c], d[c]);
     from = kinematics_input(g, v_i[c]), to = kinematics_input(g, v_j[c]);
     dv[c] = ir_sub(g, to, from);
-    k.reference[c] = ir_div(g, chord[c], s);
+    k.reference[c] = ir_div(g, k.reference_chord[c], s);
   }
-  ir_node square = named(g, dot_of(g, dimensions, now, now), "square");
-  ir_node per_length =
-      named(g, ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE), "per_length");
-  k.length = named(g, ir_mul(g, square, per_length), "length");
-  ir_node growth = dot_of(g, dimensions, d, both); /* L^2 - s^2 */
-  k.stretch = named(g, stretch_of(g, s, k.length, growth), "stretch");
+  (near ? find_stretch_near : find_stretch)(g, &k, dimensions, s, d);
   for (int c = 0; c < dimensions; c++)
-    k.now[c] = named(g, ir_mul(g, now[c], per_length), e_names[c]);
+    k.now[c] = named(g, ir_mul(g, k.chord[c], k.per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);
   k.stretch_rate = named(g, ir_mul(g, rate, per_s), "stretch_rate");
   return k;

@@ -97,13 +97,17 @@ typedef struct bond_kinematics {
    angles stay below half a turn. */
 bond_kinematics kinematics_bond(ir *g, bool rotations);
 
-/* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. */
+/* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. With `near` it is
+   expected that bonds are nearly as long as at first (stretched by less than 1/256). */
 typedef struct family_kinematics {
   ir_node stretch, stretch_rate, length;
+  ir_node per_length;   /* 1/length, 1/m */
+  ir_node chord[3];     /* present chord, i to j, m */
   ir_node now[3];       /* present direction, i to j */
   ir_node reference[3]; /* reference direction */
+  ir_node reference_chord[3];
 } family_kinematics;
-family_kinematics kinematics_family(ir *g, int dimensions);
+family_kinematics kinematics_family(ir *g, int dimensions, bool near);
 
 /* Forces on end i and moments on both ends (the particle receives minus the end moments):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes

@@ -4,6 +4,7 @@
 
 #include "dsl/arena.h"
 #include "generator/kinematics.h"
+#include "generator/particle_parts.h"
 #include "generator/plan_parts.h"
 #include "generator/rewrite.h"
 
@@ -13,9 +14,12 @@ typedef struct family_planner {
   lowered_law step, frozen;
 } family_planner;
 
-/* Stands for component d of the present direction until the motion is known. */
-static ir_node present_direction(ir *g, int d) {
-  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + d, "e", ON_BOND);
+/* Stand for the motion until it is known: components of the present direction; 1/length and chord, of which it is the
+   product (where forces act along reference directions: of the reference bond). */
+enum { DIRECTION, PER_LENGTH = 3, CHORD };
+
+static ir_node present(ir *g, int which) {
+  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + which, "e", ON_BOND);
 }
 
 static ir_node family_sum(ir *g, ir_node n) {
@@ -24,13 +28,27 @@ static ir_node family_sum(ir *g, ir_node n) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
+/* The mean of the forces of both sides, by what either particle gives. Fields on bonds are the same seen from both ends. */
+static ir_node in_parts(const kernel_plan *plan, const lowered_law *of) {
+  const law *l = plan->law;
+  ir_node *same = must_alloc(((size_t)l->fields.count + 1) * sizeof *same);
+  int count = 0;
+  for (int k = 0; k < l->fields.count; k++)
+    if (l->fields.items[k]->place == ON_BOND) same[count++] = of->fields[k];
+  const ir_node half = ir_mul(plan->graph, ir_constant(plan->graph, 0.5), of->F);
+  const ir_node sum = particle_parts_of_both(plan->graph, half, same, count);
+  free(same);
+  return sum;
+}
+
 /* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the same on both. */
 static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir *g = plan->graph;
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
+    f = plan_is_of_large_family(plan) ? in_parts(plan, of)
+                                      : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
@@ -39,10 +57,13 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots) {
   ir *g = plan->graph;
   ir_node f = bond_force(plan, of);
+  const bool large = plan_is_of_large_family(plan);
+  if (large) f = ir_mul(g, f, present(g, PER_LENGTH));
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] = (segment_root){.node = family_sum(g, ir_mul(g, f, present_direction(g, d))),
-                              .target = TO_PARTICLE_FORCE,
-                              .index = d};
+    roots[d] = (segment_root){
+        .node = family_sum(g, ir_mul(g, f, present(g, (large ? CHORD : DIRECTION) + d))),
+        .target = TO_PARTICLE_FORCE,
+        .index = d};
 }
 
 /* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are
@@ -109,20 +130,24 @@ static root_list observe_roots(family_planner *p) {
 
 /* --- motion ----------------------------------------------------------------------------------- */
 
-enum { MOST_MOTION = 6 };
+enum { MOST_MOTION = 10 };
 
 program_motion plan_motion(const kernel_plan *plan, bool reference) {
   ir *g = plan->graph;
-  family_kinematics k = kinematics_family(g, plan->dimensions);
+  family_kinematics k = kinematics_family(g, plan->dimensions, plan_is_of_large_family(plan));
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;
   from[n] = lower_quantity(g, QUANTITY_STRETCH), to[n++] = k.stretch;
   from[n] = lower_quantity(g, QUANTITY_STRETCH_RATE), to[n++] = k.stretch_rate;
   from[n] = lower_quantity(g, QUANTITY_LENGTH), to[n++] = k.length;
+  from[n] = present(g, PER_LENGTH);
+  to[n++] = reference ? ir_div(g, ir_constant(g, 1), lower_quantity(g, QUANTITY_S)) : k.per_length;
   for (int d = 0; d < plan->dimensions; d++) {
-    from[n] = present_direction(g, d);
+    from[n] = present(g, DIRECTION + d);
     to[n++] = reference ? k.reference[d] : k.now[d];
+    from[n] = present(g, CHORD + d);
+    to[n++] = reference ? k.reference_chord[d] : k.chord[d];
   }
   return (program_motion){from, to, n};
 }

@@ -12,6 +12,7 @@ static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {
   ir_node made = ir_make(g, ir_operation(g, n), operand[0], operand[1], operand[2]);
   if (made != n && ir_name(g, n) && !is_leaf(g, made))
     ir_set_name(g, made, ir_name(g, n), ir_where(g, n));
+  if (ir_is_expected(g, n)) ir_expect(g, made);
   return made;
 }
 
@@ -510,6 +511,18 @@ int program_sum_count(const family_program *p) {
   return most;
 }
 
+int program_constant_sums(const ir *g, const family_program *p, const segment *before) {
+  int count = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      if (a == before) return count;
+      for (int r = 0; r < a->root_count; r++)
+        count += segment_is_constant(g, &a->roots[r]);
+    }
+  return count;
+}
+
 static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
                      int root_count, const node_map *parity, bool pairs) {
   scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};
@@ -540,14 +553,32 @@ static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root
   map_clear(&s.plane);
 }
 
+/* A constant of the class, or a sum of such and of displacements. */
+static bool is_finite(const ir *g, ir_node n) {
+  const ir_op op = ir_operation(g, n);
+  if (is_uniform(g, n)) return true;
+  if (op == IR_ADD || op == IR_SUB)
+    return is_finite(g, ir_operand(g, n, 0)) && is_finite(g, ir_operand(g, n, 1));
+  return op == IR_INPUT && ir_input_source(g, n) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(g, n)].array == FROM_DISPLACEMENT;
+}
+
+bool segment_fuses(const ir *g, const segment_root *r) {
+  if (r->target != TO_SUM || ir_operation(g, r->node) != IR_MUL || ir_place(g, r->node) <= ON_BODY)
+    return false;
+  return !r->paired || is_finite(g, ir_operand(g, r->node, 0)) ||
+         is_finite(g, ir_operand(g, r->node, 1));
+}
+
 int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
   int count = a->root_count;
   for (int k = 0; k < a->root_count; k++) {
     const segment_root *r = &a->roots[k];
     nodes[k] = r->node;
     if (!segment_fuses(g, r)) continue;
-    nodes[k] = ir_operand(g, r->node, 0);
-    nodes[count++] = ir_operand(g, r->node, 1);
+    const int second = !r->paired || is_finite(g, ir_operand(g, r->node, 1));
+    nodes[k] = ir_operand(g, r->node, 1 - second);
+    nodes[count++] = ir_operand(g, r->node, second);
   }
   return count;
 }

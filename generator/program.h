@@ -54,14 +54,12 @@ typedef struct segment {
   int root_count, root_capacity;
 } segment;
 
-/* A sum of products, which differ from bond to bond, adds each with one rounding. */
-static inline bool segment_fuses(const ir *g, const segment_root *r) {
-  return r->target == TO_SUM && !r->paired && ir_operation(g, r->node) == IR_MUL &&
-         ir_place(g, r->node) > ON_BODY;
-}
+/* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one factor must be what is
+   always finite, since absent bonds add 0 times it: a constant, or where particles are. */
+bool segment_fuses(const ir *g, const segment_root *r);
 
 /* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first factors, then the second
-   factors of those that fuse. Returns how many. */
+   factors of those that fuse (of pairs the finite ones). Returns how many. */
 int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
 
 typedef struct family_pass {
@@ -125,6 +123,12 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
 bool program_is_paired(const family_pass *p);
 /* Whether the program writes the field, which stands toward neighbours, bond by bond at both ends. */
 bool program_pairs_field(const family_program *p, int field);
+/* A sum of what is the same for all bonds of a class: it does not change from step to step (pl_family.constant_sum). */
+static inline bool segment_is_constant(const ir *g, const segment_root *r) {
+  return r->paired && r->target == TO_SUM && ir_place(g, r->node) <= ON_BODY;
+}
+/* How many the program has, or has before that segment's. */
+int program_constant_sums(const ir *g, const family_program *p, const segment *before);
 /* Sums that one pass adds to far ends, the most. */
 int program_sum_count(const family_program *p);
 

@@ -8,12 +8,15 @@
 typedef struct pairs_block { /* pointers to the run at hand, and sums of the block's own */
   const uint64_t **old_filled;
   uint64_t **new_filled, **settled;
+  double **constant_sum;
   pair_sums sums;
 } pairs_block;
 
 struct family_pairs {
   unsigned char *held_near;                       /* [row_count] pl_family */
   uint64_t **old_filled, **new_filled, **settled; /* [fields] */
+  double **constant_sum;                          /* [constant_sum_count][size] */
+  bool constants_known;                           /* after a step */
   pairs_block *blocks;                            /* [block_count] */
 };
 
@@ -32,6 +35,14 @@ static void point_at_marks(const sweep *w, const family_pairs *p, pairs_block *b
   run->settled = b->settled;
 }
 
+static void point_at_constants(const sweep *w, const family_pairs *p, pairs_block *b, long start,
+                               pl_family *run) {
+  for (int k = 0; k < w->law->constant_sum_count; k++)
+    b->constant_sum[k] = p->constant_sum[k] + start;
+  run->constant_sum = b->constant_sum;
+  run->constants_known = p->constants_known;
+}
+
 static void run_row(const sweep *w, int pass, int block, int row, bool ahead_only) {
   const family *f = family_of(w);
   pairs_block *b = &f->pairs->blocks[block];
@@ -39,6 +50,7 @@ static void run_row(const sweep *w, int pass, int block, int row, bool ahead_onl
   if (w->count[row] == 0) return;
   pl_family run = family_run_with_links(w, block, row);
   point_at_marks(w, f->pairs, b, start, &run);
+  point_at_constants(w, f->pairs, b, start, &run);
   run.sum = pair_sums_at(w, &b->sums, start);
   run.ahead_only = ahead_only;
   run.held_near = f->pairs->held_near[row];
@@ -59,6 +71,7 @@ void family_pairs_turn(family_pairs *p) {
   uint64_t **filled = p->old_filled;
   p->old_filled = p->new_filled;
   p->new_filled = filled;
+  p->constants_known = true;
 }
 
 static void find_marks(const sweep *w, const family *f, family_pairs *p) {
@@ -95,12 +108,16 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
   p->old_filled = pair_marks_new(w);
   p->new_filled = pair_marks_new(w);
   p->settled = pair_marks_new(w);
+  p->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *p->constant_sum);
+  for (int k = 0; k < w->law->constant_sum_count; k++)
+    p->constant_sum[k] = sweep_doubles(w, w->lattice->size);
   p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->block_count; k++) {
     pairs_block *b = &p->blocks[k];
     b->old_filled = must_calloc(fields, sizeof *b->old_filled);
     b->new_filled = must_calloc(fields, sizeof *b->new_filled);
     b->settled = must_calloc(fields, sizeof *b->settled);
+    b->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *b->constant_sum);
     b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
   }
   find_marks(w, f, p);
@@ -113,11 +130,15 @@ void family_pairs_free(const sweep *w, family_pairs *p) {
     free(p->blocks[k].old_filled);
     free(p->blocks[k].new_filled);
     free(p->blocks[k].settled);
+    free(p->blocks[k].constant_sum);
     pair_sums_free(w, &p->blocks[k].sums);
   }
   pair_marks_free(w, p->old_filled);
   pair_marks_free(w, p->new_filled);
   pair_marks_free(w, p->settled);
+  for (int k = 0; k < w->law->constant_sum_count; k++)
+    free(p->constant_sum[k]);
+  free(p->constant_sum);
   free(p->held_near);
   free(p->blocks);
   free(p);

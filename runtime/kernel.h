@@ -135,6 +135,10 @@ typedef struct pl_family {
   int ahead_only;
   int held_near; /* of the same laws: one of these particles, or one that their bonds reach, is held */
   double *const *sum; /* [sum_count] */
+  /* Of the same laws: sums of what is the same for all bonds of a class, which are the same in every step. A pass writes
+     them, unless NULL, and once they are known reads them instead of adding up. */
+  double *const *constant_sum; /* [constant_sum_count] */
+  int constants_known;
   /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
      may be other than 0 (filled), and old and new ones are the same (settled). Only for fields that such a bond writes;
      else NULL. */
@@ -203,6 +207,7 @@ typedef struct pl_law {
   int neighbours; /* of the full families that the passes are written for; 0: of any */
   int link_count, bond_link_count;
   int sum_count;      /* bonds add to both ends: so many sums; 0: either end computes its bonds */
+  int constant_sum_count; /* sums that the passes may keep from step to step; 0 where they keep none */
   int reads_shape;    /* the passes read `shape` */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */

@@ -168,6 +168,52 @@ static void small_displacements_lose_nothing(void **state) {
 
 /* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord turned by about
    atan(1/16), ends by about half a turn. */
+/* The bond of a large family: 1/length, stretch, length. */
+static void evaluate_near(const bond_state *b, double *value) {
+  ir *g = ir_new();
+  const family_kinematics k = kinematics_family(g, 2, true);
+  const ir_node roots[] = {k.per_length, k.stretch, k.length};
+  const double *ends[ENDS_COUNT] = {
+      [ENDS_U_IX] = &b->u[0][0],           [ENDS_U_IY] = &b->u[0][1],
+      [ENDS_U_JX] = &b->u[1][0],           [ENDS_U_JY] = &b->u[1][1],
+      [ENDS_CLASS_CHORD_X] = &b->chord[0], [ENDS_CLASS_CHORD_Y] = &b->chord[1]};
+  const double s = sqrt(b->chord[0] * b->chord[0] + b->chord[1] * b->chord[1]);
+  const double *quantities[QUANTITY_COUNT] = {[QUANTITY_S] = &s};
+  const interpreter_inputs in = {
+      .values = {[IR_FROM_QUANTITY] = quantities, [IR_FROM_ENDS] = ends}};
+  double *out[] = {value, value + 1, value + 2};
+  interpreter *p = interpreter_new(g, roots, 3);
+  interpreter_run(p, &in, 1, out);
+  interpreter_free(p);
+  ir_free(g);
+}
+
+/* On both sides of where the series ends, and with chords that turn: as good as displacements are. */
+static void bonds_of_large_families_lose_nothing(void **state) {
+  (void)state;
+  int near = 0, far = 0;
+  for (int n = 0; n < 4000; n++) {
+    bond_state b = random_state(n % 2 ? 0.3 : 1e-2);
+    if (n % 3 == 0) { /* turned, and stretched by up to a hundredth */
+      const double turn = uniform(-3, 3), longer = 1 + uniform(-0.01, 0.01);
+      b.u[1][0] =
+          b.u[0][0] + longer * (cos(turn) * b.chord[0] - sin(turn) * b.chord[1]) - b.chord[0];
+      b.u[1][1] =
+          b.u[0][1] + longer * (sin(turn) * b.chord[0] + cos(turn) * b.chord[1]) - b.chord[1];
+    }
+    const exact_bond x = exact(&b, 0);
+    const double s = hypot(b.chord[0], b.chord[1]);
+    const double moved = hypot(b.u[1][0] - b.u[0][0], b.u[1][1] - b.u[0][1]) / s;
+    double value[3];
+    evaluate_near(&b, value);
+    *(fabsl(x.stretch) < 1.0 / 256 ? &near : &far) += 1;
+    assert_near(value[0] * s, s / x.length, 1e-15 * (1 + 4 * moved));
+    assert_near(value[1], x.stretch, 1e-15 * (1 + 4 * moved) * moved);
+    assert_near(value[2] / s, x.length / s, 1e-15 * (1 + 4 * moved));
+  }
+  assert_true(near > 1000 && far > 1000);
+}
+
 static void expected_and_far_rotations_meet(void **state) {
   (void)state;
   int near = 0, wrapped_ends = 0;
@@ -300,6 +346,7 @@ static void divides_nothing(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(small_displacements_lose_nothing),
+      cmocka_unit_test(bonds_of_large_families_lose_nothing),
       cmocka_unit_test(expected_and_far_rotations_meet),
       cmocka_unit_test(rates_are_time_derivatives),
       cmocka_unit_test(rigid_rotation_gives_nothing),

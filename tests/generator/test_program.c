@@ -53,8 +53,9 @@ static void one_sum_needs_one_pass_and_one_loop(void **state) {
   tested_law *t =
       open_program("", "  force state F[j] = a*stretch[j]\n  output all = sum(stretch[j])\n");
   const family_program *step = &t->plan->step, *observe = &t->plan->observe;
-  assert_int_equal(step->pass_count,
-                   2); /* the first is over bonds: 1/length, which stretch and direction are made of */
+  assert_int_equal(
+      step->pass_count,
+      2); /* the first is over bonds: 1/length, which stretch and direction are made of */
   assert_int_equal(shared_by(step), 1);
   assert_int_equal(loops_of(&step->passes[0]), 0);
   assert_int_equal(loops_of(&step->passes[1]), 1);
@@ -156,6 +157,36 @@ static void bonds_of_large_families_add_to_both_ends(void **state) {
     for (int k = 0; k < a->root_count; k++)
       assert_int_equal(a->roots[k].parity, at ? -1 : 1);
   }
+  close_law(t);
+}
+
+/* Of a force that is linear in particles' sums each end gives what stands before the stretch, and the rest; the weight does
+   not change from step to step. */
+static void particles_of_large_families_give_their_parts(void **state) {
+  (void)state;
+  tested_law *t = open_large("  w = sum(s**2)\n  d = sum(s**2*stretch[j])/w\n"
+                             "  force state F[j] = s**2*(a*(stretch[j] - d/3) + b*d)/w\n");
+  const family_program *step = &t->plan->step;
+  assert_int_equal(step->pass_count, 2);
+  assert_int_equal(t->plan->links.of_particles, 2);
+  assert_int_equal(program_constant_sums(t->plan->graph, step, NULL), 1);
+  const segment *forces = pairs_of(&step->passes[1]);
+  assert_non_null(forces);
+  ir_node nodes[6];
+  assert_int_equal(segment_nodes(t->plan->graph, forces, nodes), 6);
+  assert_true(nodes[0] == nodes[1] && nodes[1] == nodes[2]); /* times the chord */
+  assert_int_equal(ir_count_cost(t->plan->graph, nodes, 1, ON_BOND).divisions, 0);
+  close_law(t);
+}
+
+/* What cannot be taken apart stays the mean of both sides. */
+static void forces_that_are_not_linear_stay_whole(void **state) {
+  (void)state;
+  tested_law *t = open_large("  d = sum(stretch[j])\n"
+                             "  force state F[j] = max(a*stretch[j] - b*d, a*stretch[j])\n");
+  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->links.of_particles, 1);
+  assert_non_null(pairs_of(&t->plan->step.passes[1]));
   close_law(t);
 }
 
@@ -818,6 +849,8 @@ int main(void) {
       cmocka_unit_test(ends_share_what_is_the_same_for_both),
       cmocka_unit_test(long_horizons_share_nothing),
       cmocka_unit_test(bonds_of_large_families_add_to_both_ends),
+      cmocka_unit_test(particles_of_large_families_give_their_parts),
+      cmocka_unit_test(forces_that_are_not_linear_stay_whole),
       cmocka_unit_test(ends_that_differ_are_no_pair),
       cmocka_unit_test(a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass),
       cmocka_unit_test(a_dear_value_toward_the_neighbour_is_kept),
