@@ -162,7 +162,8 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
       "out",        "bonds",       "present",       "lower",  "upper",   "low_open", "high_open",
       "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
       "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
-      "owner",      "sign",        "zeros",         "got",    "link_to", "changed"};
+      "owner",      "sign",        "zeros",         "got",    "link_to", "changed",
+      "bits"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;

@@ -218,25 +218,40 @@ static void drop_empty(planner *p) {
 
 /* --- buffers ---------------------------------------------------------------------------------- */
 
-/* A buffer is free again behind the last stage that reads it. */
+bool stages_is_lent(const pass_root *r) {
+  return r->target == TO_FORCE || r->target == TO_OBSERVED;
+}
+
+static int lent_results(const emitter *e) {
+  int lent = 0;
+  for (int k = 0; k < e->root_count; k++)
+    lent += stages_is_lent(&e->roots[k]);
+  return lent;
+}
+
+/* A buffer is free again behind the last stage that reads it. The first ones are the arrays of results that the last stage
+   writes anew: up to there they cost no place in the cache. */
 static void give_buffers(planner *p) {
   const emitter *e = p->e;
   const size_t size = ((size_t)e->node_count + 1) * sizeof(int);
   int *first = must_alloc(size), *last = must_alloc(size), *until = must_alloc(size);
   find_users(p, first, last);
-  p->s->buffers = 0;
+  const int lent = lent_results(e);
+  int given = lent;
   for (ir_node n = 0; n < e->node_count; n++)
-    p->s->buffer[n] = p->s->until[n] = -1;
+    p->s->buffer[n] = p->s->until[n] = until[n] = -1;
   for (int stage = 0; stage < p->s->count; stage++)
     for (ir_node n = 0; n < e->node_count; n++) {
       if (p->s->of[n] != stage || last[n] <= stage) continue;
-      int b = 0;
-      while (b < p->s->buffers && until[b] >= stage)
+      int b = last[n] > stages_last(p->s) ? lent : 0;
+      while (b < given && until[b] >= stage)
         b++;
-      if (b == p->s->buffers) p->s->buffers++;
+      if (b == given) given++;
       until[b] = p->s->until[n] = last[n];
       p->s->buffer[n] = b;
     }
+  p->s->lent = lent;
+  p->s->buffers = given - lent;
   free(first);
   free(last);
   free(until);

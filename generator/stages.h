@@ -30,9 +30,10 @@ typedef struct stage_cost {
 typedef struct stages {
   int count;
   int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
-  int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
+  int *buffer; /* [node_count] where it is kept for later stages: in the array of a result that lends it (below `lent`), or
+                  in a buffer; -1: it is not */
   int *until;  /* [node_count] last stage that it is kept for; -1 */
-  int buffers;
+  int lent, buffers;
   bool changes;     /* one more stage is done only where some damage changed */
   int conditions;   /* expected ones */
   stage_cost *cost; /* [count] */
@@ -59,5 +60,7 @@ int stages_last(const stages *s);
    damage takes. */
 bool stages_is_of_change(const emitter *e, const pass_root *r);
 bool stages_has_conditions(const emitter *e, const stages *s, int stage);
+/* A result whose array is a buffer until the last stage writes it. */
+bool stages_is_lent(const pass_root *r);
 
 #endif

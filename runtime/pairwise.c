@@ -166,39 +166,52 @@ static void gather(const sweep *w, int row, int component, const row_forces *her
   }
 }
 
-static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int directions,
-                                                             double sign, long q) {
+/* What bonds bring to the particle at q of a part, less than nothing where the far end gets the opposite. */
+static inline __attribute__((always_inline)) double bond_sum(const gathered *s, double sign,
+                                                             long q) {
   double f = s->own[0][q];
-  for (int k = 1; k < directions; k++)
+  for (int k = 1; k < DIRECTIONS; k++)
     f += s->own[k][q];
-  for (int k = 0; k < directions; k++)
+  for (int k = 0; k < DIRECTIONS; k++)
     f += sign * s->incoming[k][q];
   return f;
 }
 
-/* next = decay v + dt/m f, from place `first` on. Returns nonzero when a velocity is not below the limit (NaN is not below
- * anything). */
-static inline __attribute__((always_inline)) int64_t
-kick(const gathered *from, int directions, double sign, long first, long end, double kick_factor,
-     double decay, double limit, const double *restrict v, double *restrict next) {
-  const gathered s = *from;
-  int64_t bad = 0;
-  INDEPENDENT
-  for (long q = first; q < end; q++) {
-    const double after = decay * v[q] + kick_factor * bond_sum(&s, directions, sign, q);
-    next[q] = after;
-    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
-  }
-  return bad;
+/* Bits of |x|, which are in the order of the sizes, and of NaN above those of all numbers. */
+static inline uint64_t size_bits(double x) {
+  union {
+    double value;
+    uint64_t bits;
+  } u = {.value = __builtin_fabs(x)};
+  return u.bits;
 }
 
-/* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
-   forces on j are the opposite of those on i. */
+/* next = decay v + dt/m f, from place `first` on. Not 0 when a velocity is not below the limit (NaN is not below anything). */
+static inline __attribute__((always_inline)) int64_t
+kick(const gathered *from, double sign, long first, long end, double factor, double decay,
+     bool decays, double limit, const double *restrict v, double *restrict next) {
+  const gathered s = *from;
+  uint64_t largest = 0;
+  INDEPENDENT
+  for (long q = first; q < end; q++) {
+    const double before = decays ? decay * v[q] : v[q];
+    const double after = before + factor * bond_sum(&s, sign, q);
+    const uint64_t size = size_bits(after);
+    next[q] = after;
+    largest = largest > size ? largest : size;
+  }
+  return largest >= size_bits(limit);
+}
+
+/* Literal signs let the compiler vectorise. Moments come signed by end, forces on j are the opposite of those on i. */
 static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
                               long end, double *next) {
   const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
-  return d < 2 ? kick(s, DIRECTIONS, -1, first, end, factor, w->decay, w->limit[d], v, next)
-               : kick(s, DIRECTIONS, 1, first, end, factor, w->decay, w->limit[d], v, next);
+#define KICK(sign, decays)                                                                         \
+  kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
+  if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
+  return d < 2 ? KICK(-1, false) : KICK(1, false);
+#undef KICK
 }
 
 /* A row on its way. */
@@ -337,7 +350,7 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
     kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
     sweep_push(w, row, d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = bond_sum(&s, w->lattice->directions, d < 2 ? -1 : 1, q);
+      w->force[d][start + q] = bond_sum(&s, d < 2 ? -1 : 1, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
