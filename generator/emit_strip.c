@@ -139,27 +139,18 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
     }
 }
 
-/* Whether a choice that the stage makes, before node n, asks the same. */
-static bool is_asked_before(const emitter *e, const stages *s, ir_node n) {
-  for (ir_node k = 0; k < n; k++)
-    if (s->of[k] == s->of[n] && stages_is_expected_choice(e, k) &&
-        ir_operand(e->graph, k, 0) == ir_operand(e->graph, n, 0))
-      return true;
-  return false;
-}
-
 /* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
    does not vectorise two; and flags that are loaded in any case are one masked load. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
-  const char *joined = "    const int64_t bits = flags[q];\n    unusual |= (";
+  const char *const first = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = first;
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (s->of[n] != stage || !stages_is_expected_choice(e, n) || is_asked_before(e, s, n)) continue;
+    if (s->of[n] != stage || !stages_asks(e, s, n)) continue;
     c_text_add(e->out, "%s(", joined);
     emit_condition(e, ir_operand(e->graph, n, 0));
     c_text_add(e->out, ")");
     joined = " && ";
   }
-  c_text_add(e->out, ") ? 0 : bits;\n");
+  if (joined != first) c_text_add(e->out, ") ? 0 : bits;\n");
 }
 
 /* Bits of the damage of bonds that exist in which the new one differs. One line for all, as above. */
@@ -190,10 +181,10 @@ static void write_results(emitter *e, const stages *s, int stage) {
 /* Whether the loop of a stage looks at arrays of the strip, not at buffers alone. */
 static bool reads_bonds(const emitter *e, const stages *s, int stage, bool usual,
                         const unsigned char *mask, const unsigned char *kept_loads) {
-  bool reads = stage >= stages_last(s) || (usual && stages_has_conditions(e, s, stage));
+  bool reads = stage >= stages_last(s);
   for (ir_node n = 0; n < e->node_count && !reads; n++) {
     const bool lent = s->buffer[n] >= 0 && s->buffer[n] < s->lent;
-    reads = (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
+    reads = (usual && s->of[n] == stage && stages_asks(e, s, n)) || (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
             (lent && (kept_loads[n] || s->of[n] == stage));
   }
   return reads;
@@ -220,6 +211,18 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   free(kept_loads);
 }
 
+/* A stage for strips that have protected bonds, and for those that have none: nearly all. */
+static void write_stage_for_strip(emitter *e, const stages *s, int stage) {
+  const bool held = stages_has_held_choices(e, s, stage);
+  if (held) c_text_add(e->out, "  if (strip->unheld != 0) {\n");
+  write_stage(e, s, stage, true);
+  if (!held) return;
+  c_text_add(e->out, "  } else {\n");
+  write_stage(e, s, stage, false);
+  if (stages_has_conditions(e, s, stage)) c_text_add(e->out, "  unusual = -1;\n");
+  c_text_add(e->out, "  }\n");
+}
+
 static void write_stages(emitter *e, const stages *s) {
   if (s->buffers)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n", s->buffers, STAGES_PITCH);
@@ -230,12 +233,13 @@ static void write_stages(emitter *e, const stages *s) {
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
   if (s->changes) c_text_add(e->out, "  int64_t changed = 0;\n");
   for (int stage = 0; stage <= stages_last(s); stage++) {
-    write_stage(e, s, stage, true);
+    write_stage_for_strip(e, s, stage);
     if (!stages_has_conditions(e, s, stage)) continue;
     c_text_add(e->out,
                "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
     write_stage(e, s, stage, false);
-    c_text_add(e->out, "  }\n  unusual = 0;\n");
+    c_text_add(e->out, "  }\n");
+    if (!stages_relies_on(e, s, stage + 1)) c_text_add(e->out, "  unusual = 0;\n");
   }
   if (s->changes) {
     c_text_add(e->out, "  if (changed != 0) {\n");

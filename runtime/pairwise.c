@@ -25,6 +25,7 @@ typedef struct pairwise_block { /* what one thread works with */
 typedef struct pairwise {
   double *uniforms;       /* [directions][uniform_count] */
   int64_t **flags;        /* [row_count] of the bonds that the sites of a row's span own */
+  int64_t *some;          /* [row_count] the flags of all these bonds together */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
   pairwise_block *blocks; /* [block_count] */
@@ -71,6 +72,7 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   s->count = count;
   s->direction = direction;
   s->flags = own(w)->flags[row] + first;
+  s->unheld = (own(w)->some[row] & PL_PROTECTED(direction)) == 0;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -166,7 +168,7 @@ static void gather(const sweep *w, int row, int component, const row_forces *her
   }
 }
 
-/* What bonds bring to the particle at q of a part, less than nothing where the far end gets the opposite. */
+/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are alike. */
 static inline __attribute__((always_inline)) double bond_sum(const gathered *s, double sign,
                                                              long q) {
   double f = s->own[0][q];
@@ -203,10 +205,11 @@ kick(const gathered *from, double sign, long first, long end, double factor, dou
   return largest >= size_bits(limit);
 }
 
-/* Literal signs let the compiler vectorise. Moments come signed by end, forces on j are the opposite of those on i. */
+/* Literal signs let the compiler vectorise. Particles receive the opposite of end moments. */
 static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
                               long end, double *next) {
-  const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
+  const double size = w->time_step / w->mass[d], factor = d < 2 ? size : -size;
+  const double *v = w->velocity[d] + sweep_start(w, row);
 #define KICK(sign, decays)                                                                         \
   kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
   if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
@@ -350,7 +353,7 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
     kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
     sweep_push(w, row, d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = bond_sum(&s, d < 2 ? -1 : 1, q);
+      w->force[d][start + q] = d < 2 ? bond_sum(&s, -1, q) : -bond_sum(&s, 1, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
@@ -395,10 +398,13 @@ static void compose_flags(sweep *w, pairwise *p) {
   const rows *g = w->lattice;
   int64_t *read = must_calloc((size_t)g->pitch, sizeof *read);
   p->flags = must_calloc((size_t)g->row_count, sizeof *p->flags);
+  p->some = must_calloc((size_t)g->row_count, sizeof *p->some);
   for (int r = 0; r < g->row_count; r++) {
     const size_t bytes = (size_t)w->count[r] * sizeof *read;
     int64_t *same = r >= 2 && w->count[r - 2] == w->count[r] ? p->flags[r - 2] : NULL;
     read_flags(w, r, read);
+    for (long q = 0; q < w->count[r]; q++)
+      p->some[r] |= read[q];
     if (same && memcmp(same, read, bytes) != 0) same = NULL;
     p->flags[r] = same ? same : memcpy(sweep_doubles(w, w->count[r]), read, bytes);
   }
@@ -409,6 +415,7 @@ static void free_flags(const sweep *w, pairwise *p) {
   for (int r = w->lattice->row_count - 1; r >= 0; r--)
     if (r < 2 || p->flags[r] != p->flags[r - 2]) free(p->flags[r]);
   free(p->flags);
+  free(p->some);
 }
 
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
