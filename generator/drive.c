@@ -95,14 +95,14 @@ static void rig_move(rig *r, const motion *m) {
   }
 }
 
-/* Forces in a motion; state and damage go on. The particle receives minus the end moment. */
+/* Forces in a motion; state and damage go on. */
 static answer rig_step(rig *r, const motion *m) {
   rig_move(r, m);
   r->lost_state[0] = r->lost_rate[0] = 0;
   r->kernel->rows_ledger(r->kernel, r->uniforms, &r->strip);
   answer a = {.N = r->force[0][0] + 0.0, .lost_state = r->lost_state[0], .power = r->lost_rate[0]};
   for (int end = 0; end < 2 && r->kernel->dof > 2; end++)
-    a.M[end] = 0.0 - r->force[2 + end][0];
+    a.M[end] = r->force[2 + end][0] + 0.0;
   return a;
 }
 

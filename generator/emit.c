@@ -163,7 +163,7 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
       "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
       "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
       "owner",      "sign",        "zeros",         "got",    "link_to", "changed",  "constant",
-      "above"};
+      "above",      "bits"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -263,7 +263,7 @@ static void write_comparison(emitter *e, ir_node n) {
 
 static const char protected_text[] = "(flags[q] & protected_bit) != 0";
 
-static bool asks_whether_protected(const emitter *e, ir_node n) {
+bool emit_asks_whether_protected(const emitter *e, ir_node n) {
   return ir_operation(e->graph, n) == IR_LT && is_constant(e, ir_operand(e->graph, n, 0)) &&
          ir_value(e->graph, ir_operand(e->graph, n, 0)) == 0 &&
          is_ends_input(e, ir_operand(e->graph, n, 1), ENDS_PROTECTED);
@@ -274,7 +274,7 @@ static bool asks_whether_protected(const emitter *e, ir_node n) {
    condition. */
 void emit_condition(emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
-  if (!e->name[n] && asks_whether_protected(e, n)) {
+  if (!e->name[n] && emit_asks_whether_protected(e, n)) {
     c_text_add(e->out, "%s", protected_text);
   } else if (!e->name[n] && (op == IR_LT || op == IR_LE || op == IR_EQ)) {
     write_comparison(e, n);
@@ -327,6 +327,10 @@ static void write_select(emitter *e, ir_node n) {
   }
   if (e->usual && ir_is_expected(e->graph, ir_operand(e->graph, n, 0))) {
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
+    return;
+  }
+  if (e->usual && emit_asks_whether_protected(e, ir_operand(e->graph, n, 0))) {
+    write_operand(e, ir_operand(e->graph, n, 2), LEVEL_CHOICE);
     return;
   }
   emit_condition(e, ir_operand(e->graph, n, 0));

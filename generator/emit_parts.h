@@ -35,7 +35,7 @@ typedef struct emitter {
   scope_kind scope;
   const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
   int root_count;
-  bool usual; /* of choices by expected conditions only what is expected is written */
+  bool usual; /* of choices by expected conditions only what is expected is written, and no bond is protected */
   c_names names;
   unsigned char *needed;     /* [node_count] */
   int *uses;                 /* [node_count] by needed nodes and roots */
@@ -64,6 +64,8 @@ void emit_lines(emitter *e);
 void emit_value(emitter *e, ir_node n);
 /* Node n as C's condition. */
 void emit_condition(emitter *e, ir_node n);
+/* Whether node n, a condition, is that a bond of a strip is protected. */
+bool emit_asks_whether_protected(const emitter *e, ir_node n);
 /* What stands before the loop: values that are the same for all bonds, and the arrays of the others. */
 void emit_inputs_before_loop(emitter *e);
 void emit_loop_begin(emitter *e);

@@ -109,52 +109,62 @@ static void write_one_loop(emitter *e) {
 
 /* --- stages ----------------------------------------------------------------------------------- */
 
+/* Where values wait for later stages. */
+static void write_buffer(emitter *e, const stages *s, int buffer) {
+  int lent = 0;
+  for (int k = 0; k < e->root_count && buffer < s->lent; k++) {
+    const pass_root *r = &e->roots[k];
+    if (!stages_is_lent(r) || lent++ != buffer) continue;
+    write_indexed(e, strip_targets[r->target].array, r->index);
+    c_text_add(e->out, "[q]");
+  }
+  if (buffer >= s->lent) c_text_add(e->out, "kept[%d][k]", buffer - s->lent);
+}
+
 static void write_kept_loads(emitter *e, const stages *s, const unsigned char *kept_loads) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (kept_loads[n])
-      c_text_add(e->out, "    const double %s = kept[%d][k];\n", e->name[n], s->buffer[n]);
+    if (kept_loads[n]) {
+      c_text_add(e->out, "    const double %s = ", e->name[n]);
+      write_buffer(e, s, s->buffer[n]);
+      c_text_add(e->out, ";\n");
+    }
 }
 
 static void write_kept_stores(emitter *e, const stages *s, int stage) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (s->of[n] == stage && s->buffer[n] >= 0)
-      c_text_add(e->out, "    kept[%d][k] = %s;\n", s->buffer[n], e->name[n]);
-}
-
-/* Whether a choice that the stage makes, before node n, asks the same. */
-static bool is_asked_before(const emitter *e, const stages *s, ir_node n) {
-  for (ir_node k = 0; k < n; k++)
-    if (s->of[k] == s->of[n] && stages_is_expected_choice(e, k) &&
-        ir_operand(e->graph, k, 0) == ir_operand(e->graph, n, 0))
-      return true;
-  return false;
+    if (s->of[n] == stage && s->buffer[n] >= 0) {
+      c_text_add(e->out, "    ");
+      write_buffer(e, s, s->buffer[n]);
+      c_text_add(e->out, " = %s;\n", e->name[n]);
+    }
 }
 
 /* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
-   does not vectorise two. */
+   does not vectorise two; and flags that are loaded in any case are one masked load. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
-  const char *joined = "    unusual |= ((";
+  const char *const first = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = first;
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (s->of[n] != stage || !stages_is_expected_choice(e, n) || is_asked_before(e, s, n)) continue;
-    c_text_add(e->out, "%s", joined);
+    if (s->of[n] != stage || !stages_asks(e, s, n)) continue;
+    c_text_add(e->out, "%s(", joined);
     emit_condition(e, ir_operand(e->graph, n, 0));
-    joined = ") && (";
+    c_text_add(e->out, ")");
+    joined = " && ";
   }
-  c_text_add(e->out, ")) ? 0 : flags[q];\n");
+  if (joined != first) c_text_add(e->out, ") ? 0 : bits;\n");
 }
 
-/* Whether a bond that exists has new damage. One line for all, as above. */
+/* Bits of the damage of bonds that exist in which the new one differs. One line for all, as above. */
 static void write_changes(emitter *e) {
-  const char *joined = "    changed |= (";
+  const char *joined = "    changed |= present != 0 ? ";
   for (int k = 0; k < e->root_count; k++) {
     const pass_root *r = &e->roots[k];
     if (r->target != TO_FIELD || !stages_is_of_change(e, r)) continue;
     c_text_add(e->out, "%s(pl_to_bits(", joined);
     emit_value(e, r->node);
-    c_text_add(e->out, ") != pl_to_bits(at_field_%d[q]))", r->index);
-    joined = " || ";
+    c_text_add(e->out, ") ^ pl_to_bits(at_field_%d[q]))", r->index);
+    joined = " | ";
   }
-  c_text_add(e->out, ") ? flags[q] : 0;\n");
+  c_text_add(e->out, " : 0;\n");
 }
 
 /* What the pass gives in this stage: in the last one, and in that behind it. */
@@ -168,20 +178,25 @@ static void write_results(emitter *e, const stages *s, int stage) {
   if (s->changes && !of_change) write_changes(e);
 }
 
-static void write_stage_begin(emitter *e, const stages *s, int stage, bool usual,
-                              const unsigned char *mask) {
-  bool reads_bonds = stage >= stages_last(s) || (usual && stages_has_conditions(e, s, stage));
-  for (ir_node n = 0; n < e->node_count && !reads_bonds; n++)
-    reads_bonds = mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n);
-  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
-  if (reads_bonds) c_text_add(e->out, "    const long q = first + k;\n");
+/* Whether the loop of a stage looks at arrays of the strip, not at buffers alone. */
+static bool reads_bonds(const emitter *e, const stages *s, int stage, bool usual,
+                        const unsigned char *mask, const unsigned char *kept_loads) {
+  bool reads = stage >= stages_last(s);
+  for (ir_node n = 0; n < e->node_count && !reads; n++) {
+    const bool lent = s->buffer[n] >= 0 && s->buffer[n] < s->lent;
+    reads = (usual && s->of[n] == stage && stages_asks(e, s, n)) || (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
+            (lent && (kept_loads[n] || s->of[n] == stage));
+  }
+  return reads;
 }
 
 static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   const size_t size = (size_t)e->node_count + 1;
   unsigned char *mask = must_alloc(size), *kept_loads = must_alloc(size), *whole = e->needed;
   stages_mark(e, s, stage, usual, mask, kept_loads);
-  write_stage_begin(e, s, stage, usual, mask);
+  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
+  if (reads_bonds(e, s, stage, usual, mask, kept_loads))
+    c_text_add(e->out, "    const long q = first + k;\n");
   write_kept_loads(e, s, kept_loads);
   e->needed = mask;
   e->usual = usual;
@@ -196,24 +211,38 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
   free(kept_loads);
 }
 
+/* A stage for strips that have protected bonds, and for those that have none: nearly all. */
+static void write_stage_for_strip(emitter *e, const stages *s, int stage) {
+  const bool held = stages_has_held_choices(e, s, stage);
+  if (held) c_text_add(e->out, "  if (strip->unheld != 0) {\n");
+  write_stage(e, s, stage, true);
+  if (!held) return;
+  c_text_add(e->out, "  } else {\n");
+  write_stage(e, s, stage, false);
+  if (stages_has_conditions(e, s, stage)) c_text_add(e->out, "  unusual = -1;\n");
+  c_text_add(e->out, "  }\n");
+}
+
 static void write_stages(emitter *e, const stages *s) {
+  if (s->buffers)
+    c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n", s->buffers, STAGES_PITCH);
   c_text_add(e->out,
-             "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n"
              "  for (long first = 0; first < count; first += %d) {\n"
              "  const long last = count - first < %d ? count - first : %d;\n",
-             s->buffers, STAGES_PITCH, STAGES_PART, STAGES_PART, STAGES_PART);
+             STAGES_PART, STAGES_PART, STAGES_PART);
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
   if (s->changes) c_text_add(e->out, "  int64_t changed = 0;\n");
   for (int stage = 0; stage <= stages_last(s); stage++) {
-    write_stage(e, s, stage, true);
+    write_stage_for_strip(e, s, stage);
     if (!stages_has_conditions(e, s, stage)) continue;
     c_text_add(e->out,
                "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
     write_stage(e, s, stage, false);
-    c_text_add(e->out, "  }\n  unusual = 0;\n");
+    c_text_add(e->out, "  }\n");
+    if (!stages_relies_on(e, s, stage + 1)) c_text_add(e->out, "  unusual = 0;\n");
   }
   if (s->changes) {
-    c_text_add(e->out, "  if ((changed & present_bit) != 0) {\n");
+    c_text_add(e->out, "  if (changed != 0) {\n");
     write_stage(e, s, s->count - 1, false);
     c_text_add(e->out, "  }\n");
   }

@@ -293,8 +293,8 @@ bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_nod
     ir_node shear = named(g, ir_mul(g, ir_add(g, M_i, M_j), k->per_length), "V");
     f.f_x = ir_add(g, f.f_x, ir_mul(g, shear, k->e_y));
     f.f_y = ir_sub(g, f.f_y, ir_mul(g, shear, k->e_x));
-    f.moment_i = named(g, ir_neg(g, M_i), "moment_i");
-    f.moment_j = named(g, ir_neg(g, M_j), "moment_j");
+    f.moment_i = M_i;
+    f.moment_j = M_j;
   }
   named(g, f.f_x, "f_x");
   named(g, f.f_y, "f_y");

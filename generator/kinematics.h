@@ -109,11 +109,12 @@ typedef struct family_kinematics {
 } family_kinematics;
 family_kinematics kinematics_family(ir *g, int dimensions, bool near);
 
-/* Forces on end i and moments on both ends (the particle receives minus the end moments):
+/* Forces on end i and end moments (the particles receive the opposite of these):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes
    the bond's moment balance exact. M_i, M_j = IR_NONE: a central force. */
 typedef struct bond_forces {
-  ir_node f_x, f_y, moment_i, moment_j; /* what the particles receive; on j the force is opposite */
+  ir_node f_x, f_y;           /* what particle i receives, and j the opposite */
+  ir_node moment_i, moment_j; /* end moments: particles receive the opposite */
 } bond_forces;
 bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i, ir_node M_j);
 

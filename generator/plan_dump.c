@@ -9,7 +9,7 @@
 /* --- printing --------------------------------------------------------------------------------- */
 
 static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
-  static const char *const planes[] = {"force x", "force y", "moment on i", "moment on j"};
+  static const char *const planes[] = {"force x", "force y", "end moment i", "end moment j"};
   const law *l = p->law;
   switch (r->target) {
   case TO_FORCE:

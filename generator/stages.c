@@ -20,6 +20,9 @@ enum {
   LOOP_CYCLES = 2, /* counting and addresses */
   OPERATIONS_IN_FLIGHT = 300
 };
+/* Two operations can begin each cycle, but long vectors are held back where all cores work. */
+#define OPERATION_CYCLES 0.6
+#define STORE_CYCLES     0.4 /* and the load that follows; what a buffer takes of the first cache */
 
 /* clang-format off */
 static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
@@ -42,9 +45,18 @@ bool stages_is_expected_choice(const emitter *e, ir_node n) {
          ir_is_expected(e->graph, ir_operand(e->graph, n, 0)) && !emit_is_uniform(e, n);
 }
 
+bool stages_is_held_choice(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_SELECT &&
+         emit_asks_whether_protected(e, ir_operand(e->graph, n, 0));
+}
+
 int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]) {
   int count = emit_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
   if (usual && stages_is_expected_choice(e, n)) count = 2;
+  if (usual && stages_is_held_choice(e, n)) {
+    operand[0] = ir_operand(e->graph, n, 2);
+    return 1;
+  }
   for (int k = 0; k < count; k++)
     operand[k] = ir_operand(e->graph, n, k);
   return count;
@@ -124,15 +136,15 @@ static int finish_in(const planner *p, ir_node n, int stage) {
   return count ? start + prices[ir_operation(p->e->graph, n)].latency : 0;
 }
 
-/* Every line as early as chains of at most `longest` cycles allow. */
-static void place_early(planner *p, int longest) {
+/* Every line as early as chains allow, of at most `first` cycles in the first stage and `later` in the others. */
+static void place_early(planner *p, int first, int later) {
   for (ir_node n = 0; n < p->e->node_count; n++) {
     p->s->of[n] = -1;
     if (!p->usual[n] || !is_line(p->e, n)) continue;
     int stage = stage_below(p, n);
     p->s->of[n] = stage;
     p->finish[n] = finish_in(p, n, stage);
-    if (p->finish[n] <= longest) continue;
+    if (p->finish[n] <= (stage > 0 ? later : first)) continue;
     const int alone = finish_in(p, n, stage + 1);
     if (alone >= p->finish[n]) continue; /* a long operation of its own */
     p->s->of[n] = stage + 1;
@@ -218,25 +230,40 @@ static void drop_empty(planner *p) {
 
 /* --- buffers ---------------------------------------------------------------------------------- */
 
-/* A buffer is free again behind the last stage that reads it. */
+bool stages_is_lent(const pass_root *r) {
+  return r->target == TO_FORCE || r->target == TO_OBSERVED;
+}
+
+static int lent_results(const emitter *e) {
+  int lent = 0;
+  for (int k = 0; k < e->root_count; k++)
+    lent += stages_is_lent(&e->roots[k]);
+  return lent;
+}
+
+/* A buffer is free again behind the last stage that reads it. The first ones are the arrays of results that the last stage
+   writes anew: up to there they cost no place in the cache. */
 static void give_buffers(planner *p) {
   const emitter *e = p->e;
   const size_t size = ((size_t)e->node_count + 1) * sizeof(int);
   int *first = must_alloc(size), *last = must_alloc(size), *until = must_alloc(size);
   find_users(p, first, last);
-  p->s->buffers = 0;
+  const int lent = lent_results(e);
+  int given = lent;
   for (ir_node n = 0; n < e->node_count; n++)
-    p->s->buffer[n] = p->s->until[n] = -1;
+    p->s->buffer[n] = p->s->until[n] = until[n] = -1;
   for (int stage = 0; stage < p->s->count; stage++)
     for (ir_node n = 0; n < e->node_count; n++) {
       if (p->s->of[n] != stage || last[n] <= stage) continue;
-      int b = 0;
-      while (b < p->s->buffers && until[b] >= stage)
+      int b = last[n] > stages_last(p->s) ? lent : 0;
+      while (b < given && until[b] >= stage)
         b++;
-      if (b == p->s->buffers) p->s->buffers++;
+      if (b == given) given++;
       until[b] = p->s->until[n] = last[n];
       p->s->buffer[n] = b;
     }
+  p->s->lent = lent;
+  p->s->buffers = given - lent;
   free(first);
   free(last);
   free(until);
@@ -263,10 +290,10 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
     if (is_line(e, n)) p->finish[n] = finish_in(p, n, stage);
   }
   if (stage == stages_last(p->s)) c.stores += e->root_count;
-  const double busy = most(most(0.5 * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
+  const double busy = most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
-  c.cycles = hypot(busy, waiting) +
-             LOOP_CYCLES; /* neither hides all of the other: within 6 % of what was measured */
+  /* neither hides all of the other: within 6 % of what was measured */
+  c.cycles = hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
   return c;
 }
 
@@ -297,13 +324,13 @@ static void mark_usual(planner *p) {
   }
 }
 
-static stages *plan_with(planner *p, int longest) {
+static stages *plan_with(planner *p, int first, int later) {
   const size_t nodes = (size_t)p->e->node_count + 1;
   stages *s = p->s = must_calloc(1, sizeof *s);
   s->of = must_alloc(nodes * sizeof *s->of);
   s->buffer = must_alloc(nodes * sizeof *s->buffer);
   s->until = must_alloc(nodes * sizeof *s->until);
-  place_early(p, longest);
+  place_early(p, first, later);
   for (ir_node n = 0; n < p->e->node_count; n++) {
     if (s->of[n] < 0) continue;
     s->whole_chain = larger(s->whole_chain, p->finish[n]);
@@ -319,25 +346,28 @@ static stages *plan_with(planner *p, int longest) {
   return s;
 }
 
-enum { NO_CUT = 1 << 20 };
-static const int longest_chains[] = {NO_CUT, 160, 140, 120, 100, 85, 75, 65, 50};
+enum { NO_CUT = 1 << 20, SHORTEST_CHAIN = 50 };
+static const int longest_chains[] = {NO_CUT, 160, 140, 120, 100, 85, 75, 70, 60, SHORTEST_CHAIN};
+enum { CHAIN_COUNT = sizeof longest_chains / sizeof *longest_chains };
+
+/* The better of two plans; the other one goes. */
+static stages *cheaper(stages *a, stages *b) {
+  stages *worse = a->cycles <= b->cycles ? b : a;
+  stages *better = worse == b ? a : b;
+  stages_free(worse);
+  return better;
+}
 
 stages *stages_plan(const emitter *e, loop_cutting cutting) {
-  const size_t choices = sizeof longest_chains / sizeof *longest_chains;
   planner p = {.e = e};
   mark_usual(&p);
   p.finish = must_calloc((size_t)e->node_count + 1, sizeof *p.finish);
-  stages *best = NULL;
-  int whole_chain = 0;
-  for (size_t k = 0; k < choices; k++) {
-    if (cutting == CUT_ALWAYS && k + 1 < choices) continue;
-    if (cutting == CUT_NEVER && k > 0) break;
-    stages *s = plan_with(&p, longest_chains[k]);
-    if (k == 0) whole_chain = s->whole_chain;
-    stages *worse = best && best->cycles <= s->cycles ? s : best;
-    best = worse == s ? best : s;
-    stages_free(worse);
-  }
+  stages *best = cutting == CUT_ALWAYS ? plan_with(&p, SHORTEST_CHAIN, SHORTEST_CHAIN)
+                                       : plan_with(&p, NO_CUT, NO_CUT);
+  const int whole_chain = best->whole_chain;
+  for (int k = 1; k < CHAIN_COUNT && cutting != CUT_ALWAYS && cutting != CUT_NEVER; k++)
+    for (int l = 1; l < CHAIN_COUNT; l++)
+      best = cheaper(best, plan_with(&p, longest_chains[k], longest_chains[l]));
   best->whole_chain = whole_chain;
   free(p.finish);
   free(p.usual);
@@ -358,6 +388,29 @@ void stages_free(stages *s) {
 bool stages_has_conditions(const emitter *e, const stages *s, int stage) {
   for (ir_node n = 0; n < e->node_count; n++)
     if (s->of[n] == stage && stages_is_expected_choice(e, n)) return true;
+  return false;
+}
+
+bool stages_has_held_choices(const emitter *e, const stages *s, int stage) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->of[n] == stage && stages_is_held_choice(e, n)) return true;
+  return false;
+}
+
+bool stages_asks(const emitter *e, const stages *s, ir_node n) {
+  if (!stages_is_expected_choice(e, n)) return false;
+  for (ir_node k = 0; k < e->node_count; k++) {
+    const bool before = s->of[k] >= 0 && (s->of[k] < s->of[n] || (s->of[k] == s->of[n] && k < n));
+    if (before && stages_is_expected_choice(e, k) &&
+        ir_operand(e->graph, k, 0) == ir_operand(e->graph, n, 0))
+      return false;
+  }
+  return true;
+}
+
+bool stages_relies_on(const emitter *e, const stages *s, int stage) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->of[n] >= stage && stages_is_expected_choice(e, n) && !stages_asks(e, s, n)) return true;
   return false;
 }
 
@@ -408,7 +461,8 @@ void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsig
     }
     ir_node operand[3];
     const int count = stages_operands(e, n, usual, operand);
-    for (int k = 0; k < count; k++)
+    const bool answered = usual && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
+    for (int k = answered; k < count; k++)
       mask[operand[k]] = 1;
   }
 }

@@ -4,8 +4,9 @@
    Why: a processor keeps some hundred operations in flight. Where those of one bond wait for each other in a long chain,
    few bonds are in flight at once, and the processor waits with them; of short chains it overlaps many. And where a value
    is chosen by a condition that is expected to hold (ir_expect), a stage computes what is expected for all bonds and looks
-   once, at its end, whether all were as expected; if not, the stage is done again, with both sides. The last stage, which
-   overwrites fields, is never done twice.
+   once, at its end, whether all were as expected; if not, the stage is done again, with both sides, and so are later ones
+   that rely on the same. Where a strip says that none of its bonds is protected, what protected ones keep is not looked
+   at. The last stage, which overwrites fields, is never done twice.
 
    What follows from new damage alone is left to one more stage, done only where a bond has some: most steps leave nearly
    all damage as it is, which need not be written then, and whose energy need not be computed.
@@ -30,9 +31,10 @@ typedef struct stage_cost {
 typedef struct stages {
   int count;
   int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
-  int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
+  int *buffer; /* [node_count] where it is kept for later stages: in the array of a result that lends it (below `lent`), or
+                  in a buffer; -1: it is not */
   int *until;  /* [node_count] last stage that it is kept for; -1 */
-  int buffers;
+  int lent, buffers;
   bool changes;     /* one more stage is done only where some damage changed */
   int conditions;   /* expected ones */
   stage_cost *cost; /* [count] */
@@ -53,11 +55,20 @@ void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsig
                  unsigned char *kept_loads);
 /* A choice by a condition that is expected to hold. */
 bool stages_is_expected_choice(const emitter *e, ir_node n);
+/* A choice by whether a bond is protected, of which strips say when none is: then its last operand. */
+bool stages_is_held_choice(const emitter *e, ir_node n);
+bool stages_has_held_choices(const emitter *e, const stages *s, int stage);
 /* The stage that ends with what the pass gives, in every part. */
 int stages_last(const stages *s);
 /* A result of the stage behind that, which most steps leave as it is nearly everywhere: damage, and energy that nothing but
    damage takes. */
 bool stages_is_of_change(const emitter *e, const pass_root *r);
 bool stages_has_conditions(const emitter *e, const stages *s, int stage);
+/* A choice by a condition that is expected to hold, the first to ask for it: later ones rely on the answer. */
+bool stages_asks(const emitter *e, const stages *s, ir_node n);
+/* Whether this stage or a later one relies on what another choice asked. */
+bool stages_relies_on(const emitter *e, const stages *s, int stage);
+/* A result whose array is a buffer until the last stage writes it. */
+bool stages_is_lent(const pass_root *r);
 
 #endif

@@ -69,6 +69,7 @@ typedef struct pl_strip {
   long count;           /* bonds, a multiple of PL_LANES */
   long direction;       /* which bits of `flags` are meant */
   const int64_t *flags; /* [count] of the sites i */
+  int unheld;           /* not 0: no bond of the strip is protected */
   const double *displacement_i[PL_MAX_DOF], *displacement_j[PL_MAX_DOF];
   const double *velocity_i[PL_MAX_DOF], *velocity_j[PL_MAX_DOF];
   const double *const
@@ -162,7 +163,8 @@ typedef struct pl_program {
   int spared;
 } pl_program;
 
-/* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, moment on i, moment on j. */
+/* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end moments M_i, M_j of the
+   bond (on the particles the opposite). */
 typedef struct pl_law {
   int abi;        /* PL_KERNEL_ABI; checked at load */
   int kind;       /* pl_law_kind */

@@ -25,6 +25,7 @@ typedef struct pairwise_block { /* what one thread works with */
 typedef struct pairwise {
   double *uniforms;       /* [directions][uniform_count] */
   int64_t **flags;        /* [row_count] of the bonds that the sites of a row's span own */
+  int64_t *some;          /* [row_count] the flags of all these bonds together */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
   pairwise_block *blocks; /* [block_count] */
@@ -71,6 +72,7 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   s->count = count;
   s->direction = direction;
   s->flags = own(w)->flags[row] + first;
+  s->unheld = (own(w)->some[row] & PL_PROTECTED(direction)) == 0;
   s->time_step = w->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -166,39 +168,53 @@ static void gather(const sweep *w, int row, int component, const row_forces *her
   }
 }
 
-static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int directions,
-                                                             double sign, long q) {
+/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are alike. */
+static inline __attribute__((always_inline)) double bond_sum(const gathered *s, double sign,
+                                                             long q) {
   double f = s->own[0][q];
-  for (int k = 1; k < directions; k++)
+  for (int k = 1; k < DIRECTIONS; k++)
     f += s->own[k][q];
-  for (int k = 0; k < directions; k++)
+  for (int k = 0; k < DIRECTIONS; k++)
     f += sign * s->incoming[k][q];
   return f;
 }
 
-/* next = decay v + dt/m f, from place `first` on. Returns nonzero when a velocity is not below the limit (NaN is not below
- * anything). */
-static inline __attribute__((always_inline)) int64_t
-kick(const gathered *from, int directions, double sign, long first, long end, double kick_factor,
-     double decay, double limit, const double *restrict v, double *restrict next) {
-  const gathered s = *from;
-  int64_t bad = 0;
-  INDEPENDENT
-  for (long q = first; q < end; q++) {
-    const double after = decay * v[q] + kick_factor * bond_sum(&s, directions, sign, q);
-    next[q] = after;
-    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
-  }
-  return bad;
+/* Bits of |x|, which are in the order of the sizes, and of NaN above those of all numbers. */
+static inline uint64_t size_bits(double x) {
+  union {
+    double value;
+    uint64_t bits;
+  } u = {.value = __builtin_fabs(x)};
+  return u.bits;
 }
 
-/* Literal directions and signs let the compiler unroll and vectorise. Moments come signed by end,
-   forces on j are the opposite of those on i. */
+/* next = decay v + dt/m f, from place `first` on. Not 0 when a velocity is not below the limit (NaN is not below anything). */
+static inline __attribute__((always_inline)) int64_t
+kick(const gathered *from, double sign, long first, long end, double factor, double decay,
+     bool decays, double limit, const double *restrict v, double *restrict next) {
+  const gathered s = *from;
+  uint64_t largest = 0;
+  INDEPENDENT
+  for (long q = first; q < end; q++) {
+    const double before = decays ? decay * v[q] : v[q];
+    const double after = before + factor * bond_sum(&s, sign, q);
+    const uint64_t size = size_bits(after);
+    next[q] = after;
+    largest = largest > size ? largest : size;
+  }
+  return largest >= size_bits(limit);
+}
+
+/* Literal signs let the compiler vectorise. Particles receive the opposite of end moments. */
 static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
                               long end, double *next) {
-  const double factor = w->time_step / w->mass[d], *v = w->velocity[d] + sweep_start(w, row);
-  return d < 2 ? kick(s, DIRECTIONS, -1, first, end, factor, w->decay, w->limit[d], v, next)
-               : kick(s, DIRECTIONS, 1, first, end, factor, w->decay, w->limit[d], v, next);
+  const double size = w->time_step / w->mass[d], factor = d < 2 ? size : -size;
+  const double *v = w->velocity[d] + sweep_start(w, row);
+#define KICK(sign, decays)                                                                         \
+  kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
+  if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
+  return d < 2 ? KICK(-1, false) : KICK(1, false);
+#undef KICK
 }
 
 /* A row on its way. */
@@ -337,7 +353,7 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
     kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
     sweep_push(w, row, d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = bond_sum(&s, w->lattice->directions, d < 2 ? -1 : 1, q);
+      w->force[d][start + q] = d < 2 ? bond_sum(&s, -1, q) : -bond_sum(&s, 1, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
@@ -382,10 +398,13 @@ static void compose_flags(sweep *w, pairwise *p) {
   const rows *g = w->lattice;
   int64_t *read = must_calloc((size_t)g->pitch, sizeof *read);
   p->flags = must_calloc((size_t)g->row_count, sizeof *p->flags);
+  p->some = must_calloc((size_t)g->row_count, sizeof *p->some);
   for (int r = 0; r < g->row_count; r++) {
     const size_t bytes = (size_t)w->count[r] * sizeof *read;
     int64_t *same = r >= 2 && w->count[r - 2] == w->count[r] ? p->flags[r - 2] : NULL;
     read_flags(w, r, read);
+    for (long q = 0; q < w->count[r]; q++)
+      p->some[r] |= read[q];
     if (same && memcmp(same, read, bytes) != 0) same = NULL;
     p->flags[r] = same ? same : memcpy(sweep_doubles(w, w->count[r]), read, bytes);
   }
@@ -396,6 +415,7 @@ static void free_flags(const sweep *w, pairwise *p) {
   for (int r = w->lattice->row_count - 1; r >= 0; r--)
     if (r < 2 || p->flags[r] != p->flags[r - 2]) free(p->flags[r]);
   free(p->flags);
+  free(p->some);
 }
 
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {

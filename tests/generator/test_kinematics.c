@@ -312,8 +312,8 @@ static void forces_do_the_work_of_the_law(void **state) {
     evaluate(&b, value);
     double s = hypot(b.chord[0], b.chord[1]);
     long double power = (long double)value[VALUE_F_X] * (b.v[0][0] - b.v[1][0]) +
-                        (long double)value[VALUE_F_Y] * (b.v[0][1] - b.v[1][1]) +
-                        (long double)value[VALUE_MOMENT_I] * b.omega[0] +
+                        (long double)value[VALUE_F_Y] * (b.v[0][1] - b.v[1][1]) -
+                        (long double)value[VALUE_MOMENT_I] * b.omega[0] -
                         (long double)value[VALUE_MOMENT_J] * b.omega[1];
     long double inner = (long double)b.N * value[VALUE_RATE] * s +
                         (long double)b.M_i * value[VALUE_THETA_RATE_I] +
@@ -324,8 +324,8 @@ static void forces_do_the_work_of_the_law(void **state) {
     assert_near((double)(power + inner), 0, 1e-14 * scale);
     /* moments about end i: both end moments and the force on j */
     double cx = value[VALUE_LENGTH] * value[VALUE_E_X], cy = value[VALUE_LENGTH] * value[VALUE_E_Y];
-    double about_i = value[VALUE_MOMENT_I] + value[VALUE_MOMENT_J] - cx * value[VALUE_F_Y] +
-                     cy * value[VALUE_F_X];
+    double about_i = cy * value[VALUE_F_X] - cx * value[VALUE_F_Y] - value[VALUE_MOMENT_I] -
+                     value[VALUE_MOMENT_J];
     assert_near(about_i, 0, 1e-14 * (moments + fabs(b.N) * s));
   }
 }

@@ -465,13 +465,13 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
                                          "pass tangent\n",
                                          "pass bounds\n",
                                          " EA\n",
-                                         "writes force x, force y, moment on i, moment on j, omega",
+                                         "writes force x, force y, end moment i, end moment j, omega",
                                          "dissipated by rates",
                                          "stored energy",
                                          "lower bound of alpha3",
                                          "div %",
                                          "; eps_mp (line ",
-                                         "moment on i = %"};
+                                         "end moment i = %"};
   for (size_t k = 0; k < sizeof expected / sizeof *expected; k++)
     if (!strstr(text, expected[k])) fail_msg("the dump does not say `%s`:\n%s", expected[k], text);
   free(text);

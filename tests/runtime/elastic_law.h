@@ -118,8 +118,8 @@ static void elastic_strip(const pl_law *law, const double *u, const pl_strip *s,
     s->force[0][q] = b.N * b.e[0] + V * b.e[1];
     s->force[1][q] = b.N * b.e[1] - V * b.e[0];
     if (law->kind == PL_MICROPOLAR) {
-      s->force[2][q] = -b.M_i;
-      s->force[3][q] = -b.M_j;
+      s->force[2][q] = b.M_i;
+      s->force[3][q] = b.M_j;
     }
     if (!ledger) continue;
     s->dissipated_state[q] += (b.omega - before) * elastic_energy(u, &b);

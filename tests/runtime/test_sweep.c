@@ -75,8 +75,8 @@ static double *forces_by_list(const sweep *w) {
       force[3 * bonds[m].i + d] += plane[d];
       force[3 * bonds[m].j + d] -= plane[d];
     }
-    force[3 * bonds[m].i + 2] += plane[2];
-    force[3 * bonds[m].j + 2] += plane[3];
+    force[3 * bonds[m].i + 2] -= plane[2];
+    force[3 * bonds[m].j + 2] -= plane[3];
   }
   free(bonds);
   return force;
