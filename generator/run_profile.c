@@ -81,10 +81,10 @@ static void print_parts(const run *r, double seconds) {
       print_part(profile_names[k], p->part[k], seconds);
       continue;
     }
-    for (int number = 0; number < passes && number < PROFILE_MOST_STAGES; number++) {
+    for (int number = 0; number < passes && number < SWEEP_TIMED_PASSES; number++) {
       char name[40];
       snprintf(name, sizeof name, "law, pass %d of %d", number + 1, passes);
-      print_part(name, p->stage[number], seconds);
+      print_part(name, p->pass[number], seconds);
     }
   }
   print_part("rest", seconds - known, seconds);

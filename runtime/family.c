@@ -70,6 +70,15 @@ pl_family family_run_of(const sweep *w, int block, int row) {
   return run;
 }
 
+double family_pass_begins(const sweep *w) {
+  return w->timed ? monotonic_seconds() : 0;
+}
+
+void family_pass_ends(const sweep *w, int block, int pass, double begun) {
+  const int slot = least(pass, SWEEP_TIMED_PASSES - 1);
+  if (w->timed) w->blocks[block].passes[slot] += monotonic_seconds() - begun;
+}
+
 /* --- particles -------------------------------------------------------------------------------- */
 
 /* next = decay v + dt/m f. Not 0 when a velocity is not below the limit (NaN is not below anything). */

@@ -62,9 +62,11 @@ static void run_row(const sweep *w, int pass, int block, int row, bool ahead_onl
 void family_pairs_stage(const sweep *w, int pass, int block) {
   const sweep_block *b = &w->blocks[block];
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;
+  const double begun = family_pass_begins(w);
   for (int row = s->before; row < b->last; row++)
     run_row(w, pass, block, row, row < b->first);
   pair_sums_clear_ahead(w, s);
+  family_pass_ends(w, block, pass, begun);
 }
 
 void family_pairs_turn(family_pairs *p) {

@@ -47,6 +47,10 @@ pl_family family_run_of(const sweep *w, int block, int row);
 /* The same, and links of the whole body. */
 pl_family family_run_with_links(const sweep *w, int block, int row);
 
+/* The time that a pass takes, from its beginning on; only kept when the sweep is timed. */
+double family_pass_begins(const sweep *w);
+void family_pass_ends(const sweep *w, int block, int pass, double begun);
+
 /* --- family_stages.c: links of the whole body; a stage for each pass ---------------------------- */
 
 /* Pass after pass on what can be done without other blocks, then, stage by stage, on the rest. */

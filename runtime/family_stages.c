@@ -63,7 +63,9 @@ static void run_inner(const sweep *w, const pl_program *program, int block) {
   while (next[0] < last[0]) { /* when the first is done, all follow */
     int end = least(next[0] + at_a_time, last[0]);
     for (int p = 0; p < passes; p++) {
+      const double begun = family_pass_begins(w);
       run_rows(w, program->pass[p], block, next[p], end);
+      family_pass_ends(w, block, p, begun);
       next[p] = end > next[p] ? end : next[p];
       if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - family_of(w)->reach;
     }
@@ -75,8 +77,10 @@ static void run_outer(const sweep *w, const pl_program *program, int pass, int b
   const sweep_block *b = &w->blocks[block];
   int first, last;
   inner_rows(w, block, pass, &first, &last);
+  const double begun = family_pass_begins(w);
   run_rows(w, program->pass[pass], block, b->first, first);
   run_rows(w, program->pass[pass], block, last, b->last);
+  family_pass_ends(w, block, pass, begun);
 }
 
 void family_stage(const sweep *w, const pl_program *program, int stage, int block) {

@@ -14,12 +14,13 @@ struct family_window { /* row r stands in place r mod rows */
   long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
-      *force[3];   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
+      *force[3];  /* begin of place 0: of rows that move at once; NULL where all forces are kept */
   double *memory; /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
-  int *straight;              /* [rows] places from here on where links of neighbours go on as those of the first */
+  int *
+      straight; /* [rows] places from here on where links of neighbours go on as those of the first */
 };
 
 static int most(int a, int b) {
@@ -277,7 +278,9 @@ void family_window_run(sweep *w, const pl_program *program, int block,
     for (int p = 0; p < passes; p++) {
       end = least(ahead - rows_behind(f, program, p), last[p]);
       if (end <= next[p]) continue;
+      const double begun = family_pass_begins(w);
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
+      family_pass_ends(w, block, p, begun);
       next[p] = end;
     }
     end = least(ahead - rows_behind(f, program, passes - 1) - f->reach, last_moved);

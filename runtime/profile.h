@@ -3,7 +3,7 @@
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
-#include "runtime/clock.h"
+#include "runtime/sweep.h"
 
 /* X(code, name) */
 #define PROFILE_PARTS(X)                                                                           \
@@ -21,12 +21,10 @@ typedef enum profile_part {
       PROFILE_PART_COUNT
 } profile_part;
 
-enum { PROFILE_MOST_STAGES = 8 };
-
 typedef struct profile {
-  double part[PROFILE_PART_COUNT];   /* s */
-  double stage[PROFILE_MOST_STAGES]; /* s: the law's, pass by pass of a law of families */
-  double worked;                     /* s: by the first thread, or by one for all */
+  double part[PROFILE_PART_COUNT]; /* s */
+  double pass[SWEEP_TIMED_PASSES]; /* s: of a law of families, pass by pass */
+  double worked;                   /* s: by the first thread, or by one for all */
 } profile;
 
 extern const char *const profile_names[PROFILE_PART_COUNT];

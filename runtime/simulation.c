@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/clock.h"
 #include "runtime/stability.h"
 
 /* --- set-up: mass and step -------------------------------------------------------------------- */
@@ -472,19 +473,22 @@ void simulation_measure(simulation *s, profile *p) {
   s->state->timed = p != NULL;
 }
 
-/* The first thread's part of a stage. */
-static void note_block(simulation *s, bool observing, int stage, double seconds, double moving) {
-  profile *p = s->profile;
+/* What the first thread did of a stage. */
+static void note_block(profile *p, const sweep_block *b, bool observing, double seconds) {
   p->worked += seconds;
   if (observing) {
     p->part[PROFILE_SAMPLING] += seconds;
     return;
   }
-  if (s->law->kind == PL_STATE && stage == s->state->engine.step_stages - 1)
-    moving = seconds; /* nothing else is done there */
-  p->part[PROFILE_PARTICLES] += moving;
-  p->part[PROFILE_LAW] += seconds - moving;
-  p->stage[stage < PROFILE_MOST_STAGES ? stage : PROFILE_MOST_STAGES - 1] += seconds - moving;
+  p->part[PROFILE_PARTICLES] += b->moving;
+  p->part[PROFILE_LAW] += seconds - b->moving;
+  for (int k = 0; k < SWEEP_TIMED_PASSES; k++)
+    p->pass[k] += b->passes[k];
+}
+
+static void forget_times(sweep_block *b) {
+  b->moving = 0;
+  memset(b->passes, 0, sizeof b->passes);
 }
 
 /* Tasks of the team: the stages of a step, then those of observing. */
@@ -494,11 +498,11 @@ static void do_stage(void *of, int task, int block) {
   const bool observing = task >= engine->step_stages;
   const int stage = observing ? task - engine->step_stages : task;
   const bool measured = s->profile && omp_get_thread_num() == 0;
-  double *moving = &s->state->blocks[block].moving;
+  sweep_block *b = &s->state->blocks[block];
   const double begun = measured ? monotonic_seconds() : 0;
-  *moving = 0;
+  if (s->profile) forget_times(b);
   (observing ? engine->observe : engine->step)(s->state, stage, block);
-  if (measured) note_block(s, observing, stage, monotonic_seconds() - begun, *moving);
+  if (measured) note_block(s->profile, b, observing, monotonic_seconds() - begun);
 }
 
 static int next_task(const simulation *s) {

@@ -13,13 +13,16 @@
 #include "runtime/kernel.h"
 #include "runtime/rows.h"
 
+enum { SWEEP_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
+
 typedef struct sweep_block { /* what one thread works on */
   int first, last;           /* rows first .. last-1 */
   double *next;              /* [dof][pitch] velocities after the kick */
   long bad_site;             /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
-  double moving; /* s spent on moving particles since it was last set to 0; only kept when `timed` */
+  /* s spent on moving particles, and on the passes of a law of families, since set to 0; only kept when `timed` */
+  double moving, passes[SWEEP_TIMED_PASSES];
 } sweep_block;
 
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
@@ -45,7 +48,8 @@ typedef struct sweep_engine {
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
-  bool keeps_links; /* laws of families: what passes leave for each other is kept of the whole body */
+  bool
+      keeps_links; /* laws of families: what passes leave for each other is kept of the whole body */
   void *own;
 } sweep_engine;
 
