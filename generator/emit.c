@@ -698,7 +698,7 @@ static const char
     for_strips[] = "\"no-thread-jumps\", \"no-gcse\"",
     for_families[] =
         "\"no-thread-jumps\", \"no-tree-sink\", \"no-tree-pre\", \"no-tree-slp-vectorize\", "
-        "\"no-predictive-commoning\", \"no-tree-loop-distribution\"";
+        "\"no-predictive-commoning\", \"no-tree-loop-distribution\", \"no-split-loops\"";
 
 static void write_prelude(emitter *e) {
   c_text_add(e->out,
