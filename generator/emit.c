@@ -467,27 +467,28 @@ static void write_body_input(emitter *e, ir_node n) {
 
 /* --- lines ------------------------------------------------------------------------------------ */
 
-/* One line for each node that has a name here, in the order of the graph. */
-void emit_lines(emitter *e) {
+void emit_line(emitter *e, ir_node n) {
   const char *indent = e->scope == IN_NEIGHBOURS  ? "        "
                        : e->scope == IN_PARTICLES ? "      "
                        : in_loop(e)               ? "    "
                                                   : "  ";
-  for (ir_node n = 0; n < e->node_count; n++) {
-    if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) ||
-        is_ends_input(e, n, ENDS_TIME_STEP))
-      continue;
-    c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
-    if (!emit_is_input(e, n))
-      write_expression(e, n);
-    else if (e->scope >= IN_PARTICLES)
-      emit_segment_input(e, n);
-    else if (in_loop(e))
-      write_loop_input(e, n);
-    else
-      write_body_input(e, n);
-    emit_line_end(e, n);
-  }
+  if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) || is_ends_input(e, n, ENDS_TIME_STEP))
+    return;
+  c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
+  if (!emit_is_input(e, n))
+    write_expression(e, n);
+  else if (e->scope >= IN_PARTICLES)
+    emit_segment_input(e, n);
+  else if (in_loop(e))
+    write_loop_input(e, n);
+  else
+    write_body_input(e, n);
+  emit_line_end(e, n);
+}
+
+void emit_lines(emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    emit_line(e, n);
 }
 
 /* --- roots and loops --------------------------------------------------------------------------- */
@@ -698,12 +699,15 @@ static void write_entry(emitter *e, const char *key) {
 
 /* --- the whole text --------------------------------------------------------------------------- */
 
-/* Bonds of a strip share no output, whatever the pointers look like. */
+/* Bonds of a strip share no output, whatever the pointers look like. What an array of a family held is there already: gcc
+   would load it again behind every store, and compute again what follows; clang, spared the load, would branch. */
 static const char own_macros[] =
     "\n#if defined(__clang__)\n"
     "#define PL_INDEPENDENT _Pragma(\"clang loop vectorize(assume_safety)\")\n"
+    "#define PL_AGAIN(value, array) ((void)(value), (array)[q])\n"
     "#else\n"
     "#define PL_INDEPENDENT _Pragma(\"GCC ivdep\")\n"
+    "#define PL_AGAIN(value, array) (value)\n"
     "#endif\n"
     "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n"
     "#if defined(PL_PART) /* one of the parts that are compiled at the same time */\n"
@@ -714,11 +718,13 @@ static const char own_macros[] =
     "#define PL_IN_PART(part) 1\n"
     "#endif\n\n";
 
-/* In strips gcc would ask one question of a case several times, and keep what it had better load again (8 % of a step); of
+/* gcc would ask one question of a case several times, and of strips keep what it had better load again (8 % of a step); of
    families it would move what is loaded for a choice into a branch. The others only take the compiler's time. */
-static const char for_strips[] = "\"no-thread-jumps\", \"no-gcse\"",
-                  for_families[] = "\"no-tree-sink\", \"no-tree-pre\", \"no-tree-slp-vectorize\", "
-                                   "\"no-predictive-commoning\", \"no-tree-loop-distribution\"";
+static const char
+    for_strips[] = "\"no-thread-jumps\", \"no-gcse\"",
+    for_families[] =
+        "\"no-thread-jumps\", \"no-tree-sink\", \"no-tree-pre\", \"no-tree-slp-vectorize\", "
+        "\"no-predictive-commoning\", \"no-tree-loop-distribution\", \"no-split-loops\"";
 
 static void write_prelude(emitter *e) {
   c_text_add(e->out,

@@ -224,9 +224,9 @@ void emit_family_store(emitter *e, const segment_root *r, const char *to) {
       c_text_add(e->out, ", %s) : %s;\n", to, to);
       break;
     }
-    c_text_add(e->out, "= present ? %s + ", to);
+    c_text_add(e->out, e->unrolled ? "= present ? %s + " : "+= present ? ", to);
     emit_value(e, r->node);
-    c_text_add(e->out, " : %s;\n", to);
+    c_text_add(e->out, " : %s;\n", e->unrolled ? to : "0.0"); /* an array is written in any case */
     break;
   case TO_LARGEST:
   case TO_SMALLEST:

@@ -58,7 +58,8 @@ void emit_close(emitter *e);
 /* A value loaded from `uniforms`; in `prepare` the same node is computed. */
 bool emit_is_uniform(const emitter *e, ir_node n);
 bool emit_is_input(const emitter *e, ir_node n);
-/* `const double x = ...;` for each node that has a name here, in the order of the graph. */
+/* `const double x = ...;` for a node that has a name here; for each of them, in the order of the graph. */
+void emit_line(emitter *e, ir_node n);
 void emit_lines(emitter *e);
 /* Node n as an operand that needs no parentheses inside a choice. */
 void emit_value(emitter *e, ir_node n);

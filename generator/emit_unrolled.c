@@ -1,5 +1,6 @@
 /* Passes over small families (emit_parts.h). Arrays and the values of bond classes are named before the loop, each once,
-   by a number; slots and planes are variables. */
+   by a number; slots and planes are variables, and so is what an array holds, read once: compilers do not see that it is
+   still the same behind what was written in between. */
 #include <stdlib.h>
 #include <string.h>
 
@@ -54,19 +55,22 @@ static void write_result_array(emitter *e, const void *root) {
 void emit_unrolled_input(emitter *e, ir_node n) {
   unrolled *u = e->unrolled;
   const ir_source from = ir_input_source(e->graph, n);
-  const int index = ir_input_index(e->graph, n);
-  if (emit_is_time_step(e, n))
+  const int index = ir_input_index(e->graph, n), arrays = u->arrays.count;
+  if (emit_is_time_step(e, n)) {
     c_text_add(e->out, "at_uniform_%d", number_of(u, &u->uniforms, "family->time_step"));
-  else if (from == IR_FROM_SLOT)
+  } else if (from == IR_FROM_SLOT) {
     c_text_add(e->out, "at_slot_%d", index);
-  else if (from == IR_FROM_PLANE)
+  } else if (from == IR_FROM_PLANE) {
     c_text_add(e->out, "at_plane_%d_%d", index, u->neighbour);
-  else if (emit_is_held(e, n))
+  } else if (emit_is_held(e, n)) {
     c_text_add(e->out, "at_bits_%d[q] != 0 ? 1.0 : 0.0",
                number_of_written(e, &u->words_of_bits, write_input_array, &n));
-  else
-    c_text_add(e->out, "%sat_%d[q]", from == IR_FROM_SHARED_ODD && e->words->far ? "-" : "",
-               number_of_written(e, &u->arrays, write_input_array, &n));
+  } else {
+    const int number = number_of_written(e, &u->arrays, write_input_array, &n);
+    if (from == IR_FROM_SHARED_ODD && e->words->far) c_text_add(e->out, "-");
+    c_text_add(e->out, number < arrays ? "PL_AGAIN(at_read_%d, at_%d)" : "(at_read_%d = at_%d[q])",
+               number, number);
+  }
 }
 
 static void write_uniforms(emitter *e) {
@@ -108,18 +112,6 @@ static void write_presence(emitter *e) {
              number_of(u, &u->words_of_bits, array), e->words->owned);
 }
 
-static void write_block(emitter *e, const segment *a, int neighbour, const family_words *words) {
-  e->unrolled->neighbour = neighbour;
-  e->words = words;
-  c_text_add(e->out, "      {\n");
-  write_uniforms(e);
-  emit_lines(e);
-  if (neighbour >= 0 && emit_asks_for_presence(a)) write_presence(e);
-  for (int k = 0; k < a->root_count; k++)
-    emit_family_store(e, &a->roots[k], result_name(e, &a->roots[k]));
-  c_text_add(e->out, "      }\n");
-}
-
 static family_words words_of(unrolled *u, int k, int half) {
   const bool far = k >= half;
   const char *link_to = arena_printf(u->memory, "family->link_offset[%d]", k);
@@ -133,6 +125,68 @@ static family_words words_of(unrolled *u, int k, int half) {
                         .far = far};
 }
 
+/* Bonds of one particle, line by line: a processor looks only so far ahead, and one bond's long chain of operations leaves
+   it waiting where it does not see the next bond's. */
+enum { ABREAST = 3 };
+
+static void name_abreast(emitter *e, const char *const *plain, const char **name, int bond) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    name[n] = plain[n] ? arena_printf(e->unrolled->memory, "at_%d_%s", bond, plain[n]) : NULL;
+}
+
+static void turn_to(emitter *e, int bond, const family_words *words, const char **name) {
+  e->unrolled->neighbour = bond;
+  e->words = words;
+  e->name = name;
+}
+
+static void write_abreast(emitter *e, const segment *a, int first, int count,
+                          const family_words *words) {
+  const char **plain = e->name, **name[ABREAST];
+  c_text_add(e->out, "      {\n");
+  for (int k = 0; k < count; k++) {
+    name[k] = must_alloc(((size_t)e->node_count + 1) * sizeof *name[k]);
+    name_abreast(e, plain, name[k], first + k);
+    turn_to(e, first + k, &words[k], name[k]);
+    write_uniforms(e);
+  }
+  for (ir_node n = 0; n < e->node_count; n++)
+    for (int k = 0; k < count; k++) {
+      turn_to(e, first + k, &words[k], name[k]);
+      emit_line(e, n);
+    }
+  for (int k = 0; k < count; k++) {
+    turn_to(e, first + k, &words[k], name[k]);
+    for (int r = 0; r < a->root_count; r++)
+      emit_family_store(e, &a->roots[r], result_name(e, &a->roots[r]));
+    free(name[k]);
+  }
+  c_text_add(e->out, "      }\n");
+  e->name = plain;
+}
+
+static void write_bonds(emitter *e, const segment *a, int half) {
+  for (int first = 0; first < half; first += ABREAST) {
+    family_words words[ABREAST];
+    const int count = half - first < ABREAST ? half - first : ABREAST;
+    for (int k = 0; k < count; k++)
+      words[k] = words_of(e->unrolled, first + k, half);
+    write_abreast(e, a, first, count, words);
+  }
+}
+
+static void write_block(emitter *e, const segment *a, int neighbour, const family_words *words) {
+  e->unrolled->neighbour = neighbour;
+  e->words = words;
+  c_text_add(e->out, "      {\n");
+  write_uniforms(e);
+  emit_lines(e);
+  if (neighbour >= 0 && emit_asks_for_presence(a)) write_presence(e);
+  for (int k = 0; k < a->root_count; k++)
+    emit_family_store(e, &a->roots[k], result_name(e, &a->roots[k]));
+  c_text_add(e->out, "      }\n");
+}
+
 static void write_segment(emitter *e, const segment *a) {
   static const family_words own = {.first = ""};
   const int neighbours = e->plan->law->neighbours, half = neighbours / 2;
@@ -143,8 +197,10 @@ static void write_segment(emitter *e, const segment *a) {
                  emit_reduction_start(&a->roots[k]));
   if (a->kind == OVER_PARTICLES)
     write_block(e, a, -1, &own);
+  else if (a->kind == OVER_BONDS)
+    write_bonds(e, a, half);
   else
-    for (int k = 0; k < (a->kind == OVER_BONDS ? half : neighbours); k++) {
+    for (int k = 0; k < neighbours; k++) {
       const family_words words = words_of(e->unrolled, k, half);
       write_block(e, a, k, &words);
     }
@@ -158,7 +214,9 @@ static void write_known(emitter *e, const known_texts *t, const char *type, cons
     c_text_add(e->out, "  %s at_%s%d = %s;\n", type, name, k, t->text[k]);
 }
 
-static void write_variables(emitter *e, const family_pass *p) {
+static void write_variables(emitter *e, const family_pass *p, const unrolled *u) {
+  for (int k = 0; k < u->arrays.count; k++)
+    c_text_add(e->out, "    double at_read_%d;\n", k);
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "    double at_slot_%d;\n", k);
   for (int k = 0; k < p->plane_count; k++)
@@ -180,7 +238,7 @@ void emit_unrolled_pass(emitter *e, const family_pass *p) {
   write_known(e, &u.words_of_bits, "const uint64_t *restrict", "bits_");
   write_known(e, &u.results, "double *restrict", "result_");
   c_text_add(out, "%s  PL_INDEPENDENT\n  for (long q = begin; q < end; q++) {\n", emit_rows_begin);
-  write_variables(e, p);
+  write_variables(e, p, &u);
   c_text_add(out, "%s  }\n  }\n", body.text ? body.text : "");
   free(body.text);
   free(u.arrays.text);

@@ -19,7 +19,8 @@ struct rebuilding {
   int input_count;
   const unsigned char *
       shared; /* rewrite_reciprocals: denominators of several divisions; others: nodes that are used several times */
-  const unsigned char *needs; /* rewrite_fused: what nodes need: NEEDS_NEIGHBOUR, NEEDS_FAMILY */
+  const unsigned char *needs;   /* rewrite_fused: what nodes need: NEEDS_NEIGHBOUR, NEEDS_FAMILY */
+  const unsigned char *lasting; /* rewrite_reciprocals: nodes that are the same in all steps */
 };
 
 static unsigned char *marks_of(const ir *g, const ir_node *roots, int root_count) {
@@ -122,7 +123,7 @@ static ir_node reciprocal_rule(const rebuilding *r, ir_node old, const ir_node *
   ir *g = r->graph;
   if (ir_operation(g, old) != IR_DIV || is_uniform(g, old)) return again(g, old, operand);
   ir_node below = ir_operand(g, old, 1);
-  if (is_uniform(g, below) || r->shared[below])
+  if (is_uniform(g, below) || r->shared[below] || (r->lasting[below] && !r->lasting[old]))
     return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
   if (is_of_particle(g, below) && !is_of_particle(g, old))
     return quotient_by_particle(g, operand[0], operand[1]);
@@ -142,11 +143,24 @@ static unsigned char *shared_denominators(const ir *g, const unsigned char *mark
   return uses;
 }
 
+/* What follows from parameters, the lattice and the bonds that exist. */
+static unsigned char *lasting_nodes(const ir *g) {
+  unsigned char *lasting = must_calloc((size_t)ir_count(g) + 1, 1);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    const bool input = ir_operation(g, n) == IR_INPUT;
+    lasting[n] = !input || is_uniform(g, n) || ir_input_source(g, n) == IR_FROM_SHAPE;
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      lasting[n] &= lasting[ir_operand(g, n, k)];
+  }
+  return lasting;
+}
+
 void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out) {
   unsigned char *marks = marks_of(g, roots, root_count);
-  unsigned char *shared = shared_denominators(g, marks);
-  rebuilding r = {.graph = g, .rule = reciprocal_rule, .shared = shared};
+  unsigned char *shared = shared_denominators(g, marks), *lasting = lasting_nodes(g);
+  rebuilding r = {.graph = g, .rule = reciprocal_rule, .shared = shared, .lasting = lasting};
   rebuild(&r, roots, root_count, out);
+  free(lasting);
   free(shared);
   free(marks);
 }

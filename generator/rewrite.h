@@ -12,7 +12,8 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
                   int input_count, ir_node *out);
 
 /* x/u with u the same for all bonds becomes x*(1/u), so that 1/u is hoisted; several divisions by
-   one denominator share its reciprocal, and so do divisions toward each neighbour by a value of the particle. A quotient is off by 1.5 units in the last place at most
+   one denominator share its reciprocal, and so do divisions toward each neighbour by a value of the particle; so does
+   what changes where it is divided by what lasts (the number of a particle's bonds, say), whose reciprocal needs not wait. A quotient is off by 1.5 units in the last place at most
    instead of 0.5. Assumes that 1/u does not overflow. */
 void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out);
 

@@ -93,19 +93,18 @@ static void read_processor(char *text, size_t size) {
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
    interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by name and then orders
    instructions for none in particular; told to order them for an older one of the same build it gains 5 %. Combining more than two instructions takes gcc a third
-   of its time on these loops and gains nothing. Threading jumps, it duplicates the sides of selections and what follows
-   them before it makes loops without branches: more operations, and up to half of its time. */
+   of its time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
   "-std=gnu11 -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off "             \
-  "--param max-combine-insns=2 --param max-jump-thread-duplication-stmts=0 -fPIC -shared"
+  "--param max-combine-insns=2 -fPIC -shared"
 
 const char *toolchain_flags(void) {
   char processor[8192];
   read_processor(processor, sizeof processor);
   if (!strstr(processor, " avx512f")) return COMMON_FLAGS;
-  return strstr(processor, "GenuineIntel") ? COMMON_FLAGS
-             " -mprefer-vector-width=512 -mtune=icelake-server"
-                                           : COMMON_FLAGS " -mprefer-vector-width=512";
+  return strstr(processor, "GenuineIntel")
+             ? COMMON_FLAGS " -mprefer-vector-width=512 -mtune=icelake-server"
+             : COMMON_FLAGS " -mprefer-vector-width=512";
 }
 
 /* --- running it ------------------------------------------------------------------------------- */

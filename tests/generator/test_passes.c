@@ -620,6 +620,10 @@ static void neighbours_share_the_reciprocal_of_a_particle(void **state) {
   assert_int_equal(out[0], ir_mul(g, roots[1], x));
   rewrite_reciprocals(g, roots + 1, 1, out);
   assert_int_equal(out[0], roots[1]);
+  const ir_node degree = ir_make(g, IR_FAMILY_SUM, one, IR_NONE, IR_NONE); /* lasts, p does not */
+  const ir_node mean = ir_div(g, p, degree);
+  rewrite_reciprocals(g, &mean, 1, out);
+  assert_int_equal(out[0], ir_mul(g, p, ir_div(g, one, degree)));
   ir_free(g);
 }
 
