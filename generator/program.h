@@ -108,7 +108,8 @@ static inline shared_place program_shared_place(int index) {
 
 /* pl_program.at_hand */
 unsigned program_at_hand(const ir *g, const family_program *p);
-/* pl_program.spared */
+/* pl_program.upward, spared */
+unsigned program_upward(const ir *g, const family_program *p);
 int program_reaches_spared(const ir *g, const family_program *p);
 
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their

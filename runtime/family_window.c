@@ -14,12 +14,13 @@ struct family_window { /* row r stands in place r mod rows */
   long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
-      *force[3];   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
+      *force[3];  /* begin of place 0: of rows that move at once; NULL where all forces are kept */
   double *memory; /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
-  int *straight;              /* [rows] places from here on where links of neighbours go on as those of the first */
+  int *
+      straight; /* [rows] places from here on where links of neighbours go on as those of the first */
 };
 
 static int most(int a, int b) {
@@ -28,21 +29,26 @@ static int most(int a, int b) {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Rows that a block does at either end for its passes in addition to its own, and of which it reads the state. */
-static int halo(const family *f, int passes) {
-  return f->reach * passes;
-}
-
-static int most_passes(const pl_law *law) {
-  return most(law->step.pass_count, law->observe.pass_count);
-}
-
 /* Rows by which a pass is behind the first one. */
 static int rows_behind(const family *f, const pl_program *program, int pass) {
   int behind = 0;
   for (int p = 1; p <= pass; p++)
     if (!(program->at_hand >> p & 1)) behind += f->reach;
   return behind;
+}
+
+/* Rows below a block that a pass must do, too, for those after it. */
+static int rows_before(const family *f, const pl_program *program, int pass) {
+  int before = 0;
+  for (int p = pass + 1; p < program->pass_count; p++)
+    if (!(program->upward >> p & 1)) before += f->reach;
+  return before;
+}
+
+/* Rows of which a block reads the state at either end in addition to its own. */
+static int halo(const family *f, const pl_program *program) {
+  return most(rows_before(f, program, 0), rows_behind(f, program, program->pass_count - 1)) +
+         f->reach;
 }
 
 /* Rows that the links, or the forces on particles that have yet to move, are kept of. */
@@ -58,7 +64,8 @@ static bool suits(const sweep *w, const family *f) {
   }; /* of more, links fill no cache, and later passes may read new fields */
   const int least = w->lattice->row_count / w->block_count;
   return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
-         (w->block_count == 1 || least >= ROWS_TO_HALO * halo(f, most_passes(w->law)));
+         (w->block_count == 1 ||
+          least >= ROWS_TO_HALO * most(halo(f, &w->law->step), halo(f, &w->law->observe)));
 }
 
 /* Short rows are done many at a time: each call sets up as much as some vectors take. */
@@ -249,7 +256,7 @@ static void run_rows(const sweep *w, pl_family_function pass, int block, int fir
 
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
   const sweep_block *b = &w->blocks[block];
-  const int lost = halo(family_of(w), w->law->step.pass_count);
+  const int lost = halo(family_of(w), &w->law->step);
   *first = b->first == 0 ? 0 : b->first + lost;
   *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
@@ -260,7 +267,7 @@ static void find_spans(const sweep *w, const pl_program *program, int block, int
   const family *f = family_of(w);
   const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
-    next[p] = most(b->first - f->reach * (passes - 1 - p), 0);
+    next[p] = most(b->first - rows_before(f, program, p), 0);
     last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
   }
 }
