@@ -335,9 +335,7 @@ static bool find_common(builder *b, const segment_root *roots, int root_count, t
 }
 
 ir_node program_common_factor(builder *b, const segment_root *roots, int root_count) {
-  enum {
-    DEAR = 4
-  }; /* a store and two loads; the ends add up fewer values than they would compute it of */
+  enum { DEAR = 4 }; /* a store and two loads, of fewer values than it is computed from */
   term_list common = {.count = 0};
   if (!find_common(b, roots, root_count, &common)) return IR_NONE;
   const ir_node product = product_of(b, &common, &common, true);

@@ -125,7 +125,7 @@ static long family_end(const pl_family *f) {
 }
 
 static long family_next(const pl_family *f, long q) {
-  const bool last_of_row = f->rows > 1 && (q + 1) % f->row_stride == f->count;
+  const int last_of_row = f->rows > 1 && (q + 1) % f->row_stride == f->count;
   return q + 1 + (last_of_row ? f->row_stride - f->count : 0);
 }
 
