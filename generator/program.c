@@ -676,7 +676,7 @@ static ir_node shared_input(builder *b, int k) {
 }
 
 /* What follows from links and is the same from either end, too: its owner computes it in a pass of its own. In the plane
-   there are too few bonds for that. */
+   that pass costs more than the few bonds spare. */
 static void share_factor(builder *b, segment_root *roots, int root_count) {
   const ir_node factor = program_common_factor(b, roots, root_count);
   if (factor == IR_NONE) return;
