@@ -442,8 +442,9 @@ void emit_programs(emitter *e) {
 }
 
 static void write_program_member(emitter *e, const family_program *p) {
-  c_text_add(e->out, "    .%s = {%d, %s_passes, %u, %d},\n", p->name, p->pass_count, p->name,
-             program_at_hand(e->graph, p), program_reaches_spared(e->graph, p));
+  c_text_add(e->out, "    .%s = {%d, %s_passes, %u, %u, %d},\n", p->name, p->pass_count, p->name,
+             program_at_hand(e->graph, p), program_upward(e->graph, p),
+             program_reaches_spared(e->graph, p));
 }
 
 void emit_program_members(emitter *e) {

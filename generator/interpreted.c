@@ -335,6 +335,15 @@ static const pl_field *describe_fields(arena *memory, const symbol_list *list) {
   return all;
 }
 
+static pl_program program_facts(const ir *g, const family_program *p,
+                                const pl_family_function *passes) {
+  return (pl_program){.pass_count = p->pass_count,
+                      .pass = passes,
+                      .at_hand = program_at_hand(g, p),
+                      .upward = program_upward(g, p),
+                      .spared = program_reaches_spared(g, p)};
+}
+
 static void describe(interpreted *p, const char *key) {
   const kernel_plan *plan = p->plan;
   const law *l = plan->law;
@@ -375,12 +384,8 @@ static void describe(interpreted *p, const char *key) {
   p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step =
-      (pl_program){plan->step.pass_count, step_passes, program_at_hand(plan->graph, &plan->step),
-                   program_reaches_spared(plan->graph, &plan->step)};
-  p->law.observe = (pl_program){plan->observe.pass_count, observe_passes,
-                                program_at_hand(plan->graph, &plan->observe),
-                                program_reaches_spared(plan->graph, &plan->observe)};
+  p->law.step = program_facts(plan->graph, &plan->step, step_passes);
+  p->law.observe = program_facts(plan->graph, &plan->observe, observe_passes);
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */

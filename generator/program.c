@@ -583,25 +583,43 @@ int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
   return count;
 }
 
-static bool reads_neighbours_links(const ir *g, const family_pass *p) {
+static bool is_neighbours_link(ir_source from) {
+  return from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK;
+}
+
+static bool is_shared(ir_source from) {
+  return from == IR_FROM_SHARED || from == IR_FROM_SHARED_ODD;
+}
+
+static bool segment_reads(const ir *g, const segment *a, bool (*wanted)(ir_source from)) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   bool does = false;
-  for (int s = 0; s < p->segment_count; s++)
-    for (int k = 0; k < p->segments[s].root_count; k++)
-      ir_mark(g, &p->segments[s].roots[k].node, 1, needed);
+  for (int k = 0; k < a->root_count; k++)
+    ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g) && !does; n++)
-    does = needed[n] && ir_operation(g, n) == IR_INPUT &&
-           (ir_input_source(g, n) == IR_FROM_NEIGHBOUR_LINK ||
-            ir_input_source(g, n) == IR_FROM_NEIGHBOUR_BOND_LINK);
+    does = needed[n] && ir_operation(g, n) == IR_INPUT && wanted(ir_input_source(g, n));
   free(needed);
   return does;
 }
 
 unsigned program_at_hand(const ir *g, const family_program *p) {
-  unsigned bits = 0;
+  unsigned others = 0;
   for (int k = 0; k < p->pass_count; k++)
-    if (!reads_neighbours_links(g, &p->passes[k])) bits |= 1u << k;
-  return bits;
+    for (int s = 0; s < p->passes[k].segment_count; s++)
+      if (segment_reads(g, &p->passes[k].segments[s], is_neighbours_link)) others |= 1u << k;
+  return ~others & ((1u << p->pass_count) - 1);
+}
+
+unsigned program_upward(const ir *g, const family_program *p) {
+  unsigned others = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      if (a->kind != OVER_BONDS &&
+          (segment_reads(g, a, is_neighbours_link) || segment_reads(g, a, is_shared)))
+        others |= 1u << k;
+    }
+  return ~others & ((1u << p->pass_count) - 1);
 }
 
 /* The last pass before `pass` that leaves what the input reads; -1: no pass does. */
@@ -689,7 +707,7 @@ static ir_node shared_input(builder *b, int k) {
 }
 
 /* What follows from links and is the same from either end, too: its owner computes it in a pass of its own. In the plane
-   there are too few bonds for that. */
+   that pass costs more than the few bonds spare. */
 static void share_factor(builder *b, segment_root *roots, int root_count) {
   const ir_node factor = program_common_factor(b, roots, root_count);
   if (factor == IR_NONE) return;

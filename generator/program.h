@@ -3,7 +3,8 @@
    of particles: particle by particle, neighbour by neighbour with sums into slots, or bond by bond, which is over the
    neighbours whose bonds the particle owns; in large families such a loop also adds to sums of both ends. Values of particles that later segments need stand in slots; values toward
    neighbours that are too dear to be computed twice stand in planes. What is dear and the same from either end of a bond
-   is computed once, by the owner in the first pass, and shared by both ends from then on. The emitter writes segments as
+   is computed once, by the owner in the first pass, and shared by both ends from then on; so, later, is the force of a bond
+   (SHARE_MORE). The emitter writes segments as
    loops, the interpreter runs them. */
 #ifndef PERILAT_GENERATOR_PROGRAM_H
 #define PERILAT_GENERATOR_PROGRAM_H
@@ -84,7 +85,7 @@ typedef struct program_motion {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MORE, /* also what costs less: of small families, whose values stay in caches */
+  SHARE_MORE, /* also what costs less, and forces of bonds: of small families in space, whose values stay in caches */
   SHARE_MOST, /* the same, and less is left to be computed from it: in the plane, where a few rows of values are enough */
   SHARE_PAIRS /* all: of large families, where a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
@@ -106,7 +107,8 @@ static inline shared_place program_shared_place(int index) {
 
 /* pl_program.at_hand */
 unsigned program_at_hand(const ir *g, const family_program *p);
-/* pl_program.spared */
+/* pl_program.upward, spared */
+unsigned program_upward(const ir *g, const family_program *p);
 int program_reaches_spared(const ir *g, const family_program *p);
 
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their

@@ -335,7 +335,7 @@ static bool find_common(builder *b, const segment_root *roots, int root_count, t
 }
 
 ir_node program_common_factor(builder *b, const segment_root *roots, int root_count) {
-  enum { DEAR = 4 }; /* a store and two loads; the ends add up fewer values than they would compute it of */
+  enum { DEAR = 4 }; /* a store and two loads, of fewer values than it is computed from */
   term_list common = {.count = 0};
   if (!find_common(b, roots, root_count, &common)) return IR_NONE;
   const ir_node product = product_of(b, &common, &common, true);
@@ -350,7 +350,7 @@ void program_put_factor(builder *b, segment_root *roots, int root_count, ir_node
   for (int k = 0; k < root_count; k++) {
     if (roots[k].target != TO_PARTICLE_FORCE || !factors_of_force(b, &roots[k], &now)) continue;
     const ir_node rest = product_of(b, &now, &of_factor, false);
-    roots[k].node = ir_make(b->g, IR_FAMILY_SUM, rest == IR_NONE ? input : ir_mul(b->g, rest, input),
-                            IR_NONE, IR_NONE);
+    roots[k].node = ir_make(b->g, IR_FAMILY_SUM,
+                            rest == IR_NONE ? input : ir_mul(b->g, rest, input), IR_NONE, IR_NONE);
   }
 }

@@ -11,6 +11,7 @@
 struct family_window { /* row r stands in place r mod rows */
   int rows;
   int at_a_time;              /* rows */
+  int step;                   /* to the next row of a run */
   long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
@@ -19,8 +20,7 @@ struct family_window { /* row r stands in place r mod rows */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
-  int *
-      straight; /* [rows] places from here on where links of neighbours go on as those of the first */
+  int *straight; /* [rows] places from here on before a row, or one of a neighbour, is at place 0 */
 };
 
 static int most(int a, int b) {
@@ -29,21 +29,26 @@ static int most(int a, int b) {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Rows that a block does at either end for its passes in addition to its own, and of which it reads the state. */
-static int halo(const family *f, int passes) {
-  return f->reach * passes;
-}
-
-static int most_passes(const pl_law *law) {
-  return most(law->step.pass_count, law->observe.pass_count);
-}
-
 /* Rows by which a pass is behind the first one. */
 static int rows_behind(const family *f, const pl_program *program, int pass) {
   int behind = 0;
   for (int p = 1; p <= pass; p++)
     if (!(program->at_hand >> p & 1)) behind += f->reach;
   return behind;
+}
+
+/* Rows below a block that a pass must do, too, for those after it. */
+static int rows_before(const family *f, const pl_program *program, int pass) {
+  int before = 0;
+  for (int p = pass + 1; p < program->pass_count; p++)
+    if (!(program->upward >> p & 1)) before += f->reach;
+  return before;
+}
+
+/* Rows of which a block reads the state at either end in addition to its own. */
+static int halo(const family *f, const pl_program *program) {
+  return most(rows_before(f, program, 0), rows_behind(f, program, program->pass_count - 1)) +
+         f->reach;
 }
 
 /* Rows that the links, or the forces on particles that have yet to move, are kept of. */
@@ -59,14 +64,17 @@ static bool suits(const sweep *w, const family *f) {
   }; /* of more, links fill no cache, and later passes may read new fields */
   const int least = w->lattice->row_count / w->block_count;
   return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
-         (w->block_count == 1 || least >= ROWS_TO_HALO * halo(f, most_passes(w->law)));
+         (w->block_count == 1 ||
+          least >= ROWS_TO_HALO * most(halo(f, &w->law->step), halo(f, &w->law->observe)));
 }
 
-/* Short rows are done many at a time: each call sets up as much as some vectors take. */
-static int rows_at_a_time(const rows *g) {
-  enum { SITES = 1024, LEAST = 8, MOST = 32 };
-  const int count = (int)(SITES / g->pitch);
-  return count < LEAST ? LEAST : count > MOST ? MOST : count;
+/* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much as some vectors take. Of long
+   rows the next one finds more in the first cache than the next one alike. */
+static void choose_runs(family_window *v, const pl_law *law, long pitch) {
+  enum { SITES = 1024, FEW = 8, MANY = 32 };
+  const int rows_here = (int)(SITES / pitch);
+  v->at_a_time = rows_here < FEW ? FEW : least(rows_here, MANY);
+  v->step = law->neighbours && rows_here >= FEW ? FAMILY_ROWS_ALIKE : 1;
 }
 
 /* Room for a row before and one after, and an odd number of cache lines: the same places of no two of 64 planes are a
@@ -118,7 +126,7 @@ static void find_straight(family_window *v, int neighbours) {
 static void open_window(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
-  v->at_a_time = rows_at_a_time(g);
+  choose_runs(v, law, g->pitch);
   v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
   open_planes(w, f, v);
   v->field = scratch_rows(w, law->fields, law->field_count, 0);
@@ -206,22 +214,21 @@ const double *family_window_force(const sweep *w, int block, int row, int compon
                                                     : force_place(w, block, row, component);
 }
 
-/* The end of the rows that a run may take from `row` on, every second one: as many as need no other links, fields or
-   forces than the first, and whose neighbours stand alike. */
+/* The end of the rows that a run may take from `row` on, step by step: as many as need no other links, fields or forces than
+   the first, and whose neighbours stand alike. */
 static int end_of_run(const sweep *w, int block, int row, int last) {
   const sweep_block *b = &w->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
   const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
-  const int step = FAMILY_ROWS_ALIKE, straight = v->straight[row % v->rows];
-  int inner[2], next = row + step;
-  if (row < b->first || row >= b->last) return next;
+  int inner[2], next = row + v->step;
+  if (v->step == 1 || row < b->first || row >= b->last) return next;
   family_window_inner(w, block, &inner[0], &inner[1]);
-  const int edges[] = {b->first, b->last, inner[0], inner[1], row + straight};
-  for (int k = 0; k < 5; k++)
+  const int edges[] = {b->last, inner[0], inner[1], row + v->straight[row % v->rows]};
+  for (int k = 0; k < 4; k++)
     if (edges[k] > row) last = least(last, edges[k]);
-  while (w->law->neighbours && next < last && w->begin[next] == w->begin[row] &&
-         w->count[next] == w->count[row] && kind[next] == kind[row])
-    next += step;
+  while (next < last && w->begin[next] == w->begin[row] && w->count[next] == w->count[row] &&
+         kind[next] == kind[row])
+    next += v->step;
   return next;
 }
 
@@ -230,7 +237,7 @@ static void run_until(const sweep *w, pl_family_function pass, int block, int ro
                       bool passing) {
   const sweep_block *b = &w->blocks[block];
   pl_family run = family_run_of(w, block, row);
-  run.rows = (end - row) / FAMILY_ROWS_ALIKE;
+  run.rows = (end - row) / family_of(w)->windows[block].step;
   point_at_links(w, block, row, &run);
   if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
   for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
@@ -238,10 +245,10 @@ static void run_until(const sweep *w, pl_family_function pass, int block, int ro
   pass(w->law, family_of(w)->uniforms, &run);
 }
 
-/* Rows first .. last-1: each of either kind. */
+/* Rows first .. last-1. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
                      bool passing) {
-  for (int of_kind = first; of_kind < first + FAMILY_ROWS_ALIKE; of_kind++)
+  for (int of_kind = first; of_kind < first + family_of(w)->windows[block].step; of_kind++)
     for (int row = of_kind, end; row < last; row = end) {
       end = end_of_run(w, block, row, last);
       if (w->count[row] > 0) run_until(w, pass, block, row, end, passing);
@@ -250,7 +257,7 @@ static void run_rows(const sweep *w, pl_family_function pass, int block, int fir
 
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
   const sweep_block *b = &w->blocks[block];
-  const int lost = halo(family_of(w), w->law->step.pass_count);
+  const int lost = halo(family_of(w), &w->law->step);
   *first = b->first == 0 ? 0 : b->first + lost;
   *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
 }
@@ -261,7 +268,7 @@ static void find_spans(const sweep *w, const pl_program *program, int block, int
   const family *f = family_of(w);
   const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
-    next[p] = most(b->first - f->reach * (passes - 1 - p), 0);
+    next[p] = most(b->first - rows_before(f, program, p), 0);
     last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
   }
 }

@@ -158,6 +158,8 @@ typedef struct pl_program {
   /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's owner shares; so
      they must have done its row and those below, not those above. */
   unsigned at_hand;
+  /* On rows. Bit p: pass p reads links of higher rows and of the particle's own only. */
+  unsigned upward;
   /* On rows. While passes follow each other, each that is not at hand one reach of rows behind the one before, links must be
      kept of one reach more than the last is behind the first; or of so many reaches less. */
   int spared;

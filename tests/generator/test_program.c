@@ -120,21 +120,45 @@ static void long_horizons_share_nothing(void **state) {
 }
 
 /* The law planned again for families of so many neighbours. */
-static tested_law *open_large(const char *lines) {
+static tested_law *open_family(int neighbours, const char *lines) {
   tested_law *t = open_program("  for space\n", lines);
   plan_interpreted_free(t->kernel);
   plan_free(t->plan);
-  t->law->neighbours = 122;
+  t->law->neighbours = neighbours;
   t->plan = plan_kernel(t->law, &t->said);
   assert_non_null(t->plan);
   t->kernel = plan_interpreted(t->plan, "test");
   return t;
 }
 
+static tested_law *open_large(const char *lines) {
+  return open_family(122, lines);
+}
+
 static const segment *pairs_of(const family_pass *p) {
   for (int k = 0; k < p->segment_count; k++)
     if (p->segments[k].kind == OVER_PAIRS) return &p->segments[k];
   return NULL;
+}
+
+/* Where many bonds meet in space, one end computes the force over the length, when both sums are known, and both read it. Links
+   are kept of one reach of rows only. */
+static void one_end_computes_the_force_of_a_bond(void **state) {
+  (void)state;
+  tested_law *t = open_family(18, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
+  const family_program *step = &t->plan->step;
+  assert_int_equal(step->pass_count, 4);
+  assert_int_equal(step->passes[2].segment_count, 1);
+  const segment *bonds = &step->passes[2].segments[0];
+  assert_int_equal(bonds->kind, OVER_BONDS);
+  assert_int_equal(bonds->root_count, 1);
+  assert_int_equal(bonds->roots[0].target, TO_SHARED);
+  assert_int_equal(program_at_hand(t->plan->graph, step), 1 + 2 + 8);
+  assert_int_equal(program_reaches_spared(t->plan->graph, step), 1);
+  close_law(t);
+  t = open_family(18, "  force state F[j] = a*stretch[j]\n"); /* nothing that passes would add */
+  assert_int_equal(t->plan->step.pass_count, 2);
+  close_law(t);
 }
 
 /* Forces of the ends are opposite, sums of stretches the same; a later pass reads the damage that the first one found. */
@@ -848,6 +872,7 @@ int main(void) {
       cmocka_unit_test(one_sum_needs_one_pass_and_one_loop),
       cmocka_unit_test(ends_share_what_is_the_same_for_both),
       cmocka_unit_test(long_horizons_share_nothing),
+      cmocka_unit_test(one_end_computes_the_force_of_a_bond),
       cmocka_unit_test(bonds_of_large_families_add_to_both_ends),
       cmocka_unit_test(particles_of_large_families_give_their_parts),
       cmocka_unit_test(forces_that_are_not_linear_stay_whole),

@@ -119,9 +119,19 @@ static family_bond family_look(const double *uniforms, const pl_family *f, long 
   return b;
 }
 
+/* Sites of a run, row after row. */
+static long family_end(const pl_family *f) {
+  return (f->rows - 1) * f->row_stride + f->count;
+}
+
+static long family_next(const pl_family *f, long q) {
+  const int last_of_row = f->rows > 1 && (q + 1) % f->row_stride == f->count;
+  return q + 1 + (last_of_row ? f->row_stride - f->count : 0);
+}
+
 static void family_fields_pass(const pl_law *law, const double *uniforms, const pl_family *f) {
   (void)law;
-  for (long q = 0; q < f->count; q++) {
+  for (long q = 0; q < family_end(f); q = family_next(f, q)) {
     double sum = 0, largest = 0;
     for (long k = 0; k < f->neighbours; k++) {
       const family_bond b = family_look(uniforms, f, k, q);
@@ -146,7 +156,7 @@ static double family_state(const double *u, const pl_family *f, long at, const f
 
 static void family_force_pass(const pl_law *law, const double *uniforms, const pl_family *f) {
   (void)law;
-  for (long q = 0; q < f->count; q++) {
+  for (long q = 0; q < family_end(f); q = family_next(f, q)) {
     double force[2] = {0, 0};
     for (long k = 0; k < f->neighbours; k++) {
       const double *u = family_uniforms_of(uniforms, f, k);
@@ -164,7 +174,7 @@ static void family_force_pass(const pl_law *law, const double *uniforms, const p
 
 static void family_observe_pass(const pl_law *law, const double *uniforms, const pl_family *f) {
   (void)law;
-  for (long q = 0; q < f->count; q++) {
+  for (long q = 0; q < family_end(f); q = family_next(f, q)) {
     double sum = 0, squares = 0, products[3] = {0, 0, 0};
     for (long k = 0; k < f->neighbours; k++) {
       double C[2];

@@ -21,9 +21,9 @@ static const char plate[] =
     "&notch lattice = 'c' shape = 'segment' from = 0.05, 0.2 to = 0.11, 0.24 /\n";
 
 /* Particles in a motion that stretches and breaks. */
-static sweep *moving_plate(const small_run *r, const rows *g, int blocks, bool ledger,
-                           bool forces) {
-  sweep *w = sweep_new(g, &family_hexagon, r->parameters, 2e-7, blocks, ledger, forces);
+static sweep *moving_plate(const pl_law *law, const small_run *r, const rows *g, int blocks,
+                           bool ledger, bool forces) {
+  sweep *w = sweep_new(g, law, r->parameters, 2e-7, blocks, ledger, forces);
   for (long q = 0; q < g->size; q++) {
     if (!g->present[q]) continue;
     w->velocity[0][q] = 3 * sin(40 * g->y[q]) + 20 * g->x[q];
@@ -67,12 +67,15 @@ static void windows_and_whole_bodies_give_the_same_bits(void **state) {
   assert_non_null(g);
   g->mass = simulation_rows(r.simulation, 0)->mass;
   const int many = g->row_count / 2; /* of two rows: too few for windows */
-  sweep *whole = moving_plate(&r, g, many, false, false);
+  sweep *whole = moving_plate(&family_hexagon, &r, g, many, false, false);
+  pl_law six = family_hexagon; /* whose passes take several rows a call */
+  six.neighbours = 6;
   assert_null(family_of(whole)->windows);
   assert_true(count_broken(whole) > 20);
   for (int blocks = 1; blocks <= 3; blocks++)
-    for (int kept = 0; kept < 3; kept++) {
-      sweep *w = moving_plate(&r, g, blocks, kept == 2, kept == 1);
+    for (int kept = 0; kept < 6; kept++) {
+      sweep *w = moving_plate(kept < 3 ? &family_hexagon : &six, &r, g, blocks, kept % 3 == 2,
+                              kept % 3 == 1);
       assert_non_null(family_of(w)->windows);
       assert_same_state(whole, w);
       sweep_observe(w);
