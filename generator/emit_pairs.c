@@ -135,7 +135,14 @@ typedef struct pair_loops {
   int kept_count;
   int constants;   /* roots that are constant sums */
   bool asks, told; /* what is as expected: for later passes, or by an earlier one */
+  bool one;        /* one loop does both: it need not be done again */
 } pair_loops;
+
+static bool expects(const emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && stages_is_expected_choice(e, n)) return true;
+  return false;
+}
 
 static pair_loops loops_of(const emitter *e, const segment *a) {
   const size_t size = 2 * (size_t)a->root_count + 1;
@@ -145,6 +152,7 @@ static pair_loops loops_of(const emitter *e, const segment *a) {
                   .to_keep = must_alloc(size * sizeof *l.to_keep)};
   l.asks = program_asks(e->graph, &e->plan->step) == a;
   l.told = program_is_told(e->graph, &e->plan->step, a);
+  l.one = l.told || !expects(e);
   l.count = segment_nodes(e->graph, a, l.node);
   for (int k = 0; k < a->root_count; k++) {
     const bool keep = !segment_is_constant(e->graph, &a->roots[k]);
@@ -177,12 +185,6 @@ static unsigned char *needed_for(const emitter *e, const ir_node *nodes, int cou
   return mask;
 }
 
-static bool expects(const emitter *e) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && stages_is_expected_choice(e, n)) return true;
-  return false;
-}
-
 /* Bonds that are not as expected leave their bits. One line for all conditions: gcc does not vectorise two. */
 static void write_expectations(emitter *e) {
   const char *joined = "        unusual |= ((";
@@ -205,7 +207,7 @@ static void write_value(emitter *e, const pair_loops *l, int k) {
   c_text_add(e->out, "        const double value_%d = present ? ", k);
   emit_value(e, l->to_keep[k]);
   c_text_add(e->out, " : 0.0;\n");
-  bool stored = !l->told;
+  bool stored = !l->one;
   for (int n = 0; n < l->of->root_count; n++)
     stored = stored || (is_field(&l->of->roots[n]) && l->kept[n] == k);
   if (stored) c_text_add(e->out, "        kept[%d][q] = value_%d;\n", k, k);
@@ -238,20 +240,20 @@ static void write_sums(emitter *e, const pair_loops *l) {
   }
 }
 
-/* The first loop; where an earlier pass has told what is as expected, the only one. */
+/* The first loop, or the only one. */
 static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet) {
   unsigned char *whole = e->needed;
-  e->needed = l->told ? needed_for(e, l->node, l->count, usual)
-                      : needed_for(e, l->to_keep, l->kept_count, usual);
+  e->needed = l->one ? needed_for(e, l->node, l->count, usual)
+                     : needed_for(e, l->to_keep, l->kept_count, usual);
   e->usual = usual;
   e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
-  if (usual && !l->told && expects(e)) write_expectations(e);
+  if (usual && !l->one) write_expectations(e);
   c_text_add(e->out, present_text);
   for (int k = 0; k < l->kept_count; k++)
     write_value(e, l, k);
-  if (l->told) write_sums(e, l);
+  if (l->one) write_sums(e, l);
   c_text_add(e->out, "      }\n");
   e->usual = e->quiet = false;
   free(e->needed);
@@ -291,21 +293,14 @@ static void write_usual(emitter *e, const pair_loops *l) {
 
 /* These, and one with both sides of what was expected. */
 static void write_first(emitter *e, const pair_loops *l) {
-  if (l->kept_count == 0) return;
-  if (l->told) {
-    c_text_add(e->out, "      if ((unusual & present_bit) != 0) {\n");
-    write_values(e, l, false, false);
-    c_text_add(e->out, "      } else {\n");
-    write_usual(e, l);
-    c_text_add(e->out, "      }\n");
-    return;
-  }
-  const bool expected = expects(e);
-  if (expected) c_text_add(e->out, "      uint64_t unusual = 0;\n");
+  if (l->told) c_text_add(e->out, "      if ((unusual & present_bit) == 0) {\n");
+  if (!l->one) c_text_add(e->out, "      uint64_t unusual = 0;\n");
   write_usual(e, l);
-  if (!expected) return;
-  c_text_add(e->out,
-             "      if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
+  if (l->one && !l->told) return;
+  c_text_add(e->out, l->told
+                         ? "      } else { /* both sides of what was expected */\n"
+                         : "      if ((unusual & present_bit) != 0) { /* both sides of what was "
+                           "expected */\n");
   if (l->asks) c_text_add(e->out, "      told |= present_bit;\n");
   write_values(e, l, false, false);
   c_text_add(e->out, "      }\n");
@@ -357,7 +352,7 @@ static void write_second(emitter *e, const pair_loops *l) {
   const int roots = l->of->root_count;
   unsigned char *whole = e->needed;
   write_constants(e, l);
-  if (l->told || l->constants == roots) return;
+  if (l->one) return;
   e->needed = needed_for(e, l->node + roots, l->count - roots, false);
   emit_family_loop(e, "      ");
   emit_lines(e);
@@ -407,16 +402,21 @@ static void write_ends(emitter *e, const segment *a) {
   c_text_add(e->out, "    if (family->ahead_only) continue;\n");
 }
 
-void emit_pairs(emitter *e, const segment *a) {
-  pair_loops l = loops_of(e, a);
-  emit_family_starts(e, a);
-  write_marks(e, a);
-  if (l.kept_count && !(l.told && !writes_fields(a)))
-    c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l.kept_count);
-  if (l.asks) c_text_add(e->out, "    uint64_t told = 0;\n");
-  if (l.told)
+/* What a chunk needs before its bonds. */
+static void write_chunk(emitter *e, const pair_loops *l) {
+  emit_family_starts(e, l->of);
+  write_marks(e, l->of);
+  if (l->kept_count && (!l->one || writes_fields(l->of)))
+    c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l->kept_count);
+  if (l->asks) c_text_add(e->out, "    uint64_t told = 0;\n");
+  if (l->told)
     c_text_add(e->out, "    const uint64_t unusual = family->unusual ? family->unusual[first / "
                        "PL_LANES] : UINT64_MAX;\n");
+}
+
+void emit_pairs(emitter *e, const segment *a) {
+  pair_loops l = loops_of(e, a);
+  write_chunk(e, &l);
   c_text_add(e->out,
              "    for (long k = 0; k < half; k++) { /* bond by bond, adding to both ends */\n"
              "      const long to = family->offset[k], link_to = family->link_offset[k], back = k "
@@ -428,7 +428,7 @@ void emit_pairs(emitter *e, const segment *a) {
              "      (void)present_bit, (void)above;\n");
   emit_family_inputs(e);
   write_outputs(e, &l);
-  write_first(e, &l);
+  if (l.kept_count) write_first(e, &l);
   write_field_stores(e, &l);
   write_second(e, &l);
   c_text_add(e->out, "    }\n");
