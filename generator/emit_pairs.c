@@ -202,15 +202,20 @@ static void write_expectations(emitter *e) {
   c_text_add(e->out, ")) ? 0 : bonds[q];\n");
 }
 
+/* Whether kept value k is that of a field, or of a sum. */
+static bool is_kept_for(const pair_loops *l, int k, bool field) {
+  for (int n = 0; n < l->of->root_count; n++)
+    if (l->kept[n] == k && is_field(&l->of->roots[n]) == field) return true;
+  return false;
+}
+
 /* Value k, 0 where the bond is absent: kept for the second loop, or for what is stored behind the loop. */
 static void write_value(emitter *e, const pair_loops *l, int k) {
   c_text_add(e->out, "        const double value_%d = present ? ", k);
   emit_value(e, l->to_keep[k]);
   c_text_add(e->out, " : 0.0;\n");
-  bool stored = !l->one;
-  for (int n = 0; n < l->of->root_count; n++)
-    stored = stored || (is_field(&l->of->roots[n]) && l->kept[n] == k);
-  if (stored) c_text_add(e->out, "        kept[%d][q] = value_%d;\n", k, k);
+  if (!l->one || is_kept_for(l, k, true))
+    c_text_add(e->out, "        kept[%d][q] = value_%d;\n", k, k);
 }
 
 /* Adds a root's value, or its product with node `factor`, to both ends. */
@@ -357,7 +362,8 @@ static void write_second(emitter *e, const pair_loops *l) {
   emit_family_loop(e, "      ");
   emit_lines(e);
   for (int k = 0; k < l->kept_count; k++)
-    c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, k);
+    if (is_kept_for(l, k, false))
+      c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, k);
   write_sums(e, l);
   c_text_add(e->out, "      }\n");
   free(e->needed);
