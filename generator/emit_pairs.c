@@ -254,7 +254,7 @@ static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet
   e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
-  if (usual && !l->one) write_expectations(e);
+  if (!l->one) write_expectations(e);
   c_text_add(e->out, present_text);
   for (int k = 0; k < l->kept_count; k++)
     write_value(e, l, k);
@@ -287,27 +287,32 @@ static bool write_question(emitter *e) {
 }
 
 /* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere. */
-static void write_usual(emitter *e, const pair_loops *l) {
+static void write_either(emitter *e, const pair_loops *l, bool usual) {
   const bool marks = write_question(e);
-  write_values(e, l, true, false);
+  write_values(e, l, usual, false);
   if (!marks) return;
   c_text_add(e->out, "      } else {\n");
-  write_values(e, l, true, true);
+  write_values(e, l, usual, true);
   c_text_add(e->out, "      }\n");
 }
 
-/* These, and one with both sides of what was expected. */
+/* These, and the same with both sides of what is expected: where it does not hold, which is tried first where it did not hold
+   when the pass was here last. */
 static void write_first(emitter *e, const pair_loops *l) {
-  if (l->told) c_text_add(e->out, "      if ((unusual & present_bit) == 0) {\n");
-  if (!l->one) c_text_add(e->out, "      uint64_t unusual = 0;\n");
-  write_usual(e, l);
-  if (l->one && !l->told) return;
-  c_text_add(e->out, l->told
-                         ? "      } else { /* both sides of what was expected */\n"
-                         : "      if ((unusual & present_bit) != 0) { /* both sides of what was "
-                           "expected */\n");
-  if (l->asks) c_text_add(e->out, "      told |= present_bit;\n");
-  write_values(e, l, false, false);
+  if (l->one && !l->told) {
+    write_either(e, l, true);
+    return;
+  }
+  if (!l->told)
+    c_text_add(e->out, l->asks ? "      uint64_t unusual = before & present_bit;\n"
+                               : "      uint64_t unusual = 0;\n");
+  c_text_add(e->out, "      if ((unusual & present_bit) == 0) {\n");
+  write_either(e, l, true);
+  c_text_add(e->out,
+             l->told ? "      } else {\n" : "      }\n      if ((unusual & present_bit) != 0) {\n");
+  if (!l->told) c_text_add(e->out, "      unusual = 0;\n");
+  write_either(e, l, false);
+  if (l->asks) c_text_add(e->out, "      told |= unusual & present_bit;\n");
   c_text_add(e->out, "      }\n");
 }
 
@@ -414,7 +419,9 @@ static void write_chunk(emitter *e, const pair_loops *l) {
   write_marks(e, l->of);
   if (l->kept_count && (!l->one || writes_fields(l->of)))
     c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l->kept_count);
-  if (l->asks) c_text_add(e->out, "    uint64_t told = 0;\n");
+  if (l->asks)
+    c_text_add(e->out, "    const uint64_t before = family->unusual && !family->ahead_only ? "
+                       "family->unusual[first / PL_LANES] : 0;\n    uint64_t told = 0;\n");
   if (l->told)
     c_text_add(e->out, "    const uint64_t unusual = family->unusual ? family->unusual[first / "
                        "PL_LANES] : UINT64_MAX;\n");
