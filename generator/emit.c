@@ -163,7 +163,7 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
       "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
       "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
       "owner",      "sign",        "zeros",         "got",    "link_to", "changed",  "constant",
-      "above",      "bits"};
+      "above",      "bits",        "told",          "before"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;

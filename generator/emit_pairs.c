@@ -7,7 +7,7 @@
    constant; and new values are stored only where they differ from what stands there.
 
    For each bond of the chunk's particles one loop computes values and another adds them to both ends, so that the first can
-   be done once more where not all is as it was expected. */
+   be done once more where not all is as it was expected. Later passes are told where (family->unusual) and need one loop. */
 #include <stdlib.h>
 
 #include "dsl/arena.h"
@@ -90,6 +90,13 @@ static bool writes_field(const segment *a, int field) {
   return false;
 }
 
+static bool writes_fields(const segment *a) {
+  bool any = false;
+  for (int k = 0; k < a->root_count; k++)
+    any = any || is_field(&a->roots[k]);
+  return any;
+}
+
 /* Whether the segment reads the old, or the new, values of the field. */
 static bool reads_marked(const emitter *e, int field, bool new) {
   for (ir_node n = 0; n < e->node_count; n++) {
@@ -126,8 +133,16 @@ typedef struct pair_loops {
   int *kept;        /* [root_count] where the value is kept; -1: of constant sums */
   ir_node *to_keep; /* [kept_count] */
   int kept_count;
-  int constants; /* roots that are constant sums */
+  int constants;   /* roots that are constant sums */
+  bool asks, told; /* what is as expected: for later passes, or by an earlier one */
+  bool one;        /* one loop does both: it need not be done again */
 } pair_loops;
+
+static bool expects(const emitter *e) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && stages_is_expected_choice(e, n)) return true;
+  return false;
+}
 
 static pair_loops loops_of(const emitter *e, const segment *a) {
   const size_t size = 2 * (size_t)a->root_count + 1;
@@ -135,6 +150,9 @@ static pair_loops loops_of(const emitter *e, const segment *a) {
                   .node = must_alloc(size * sizeof *l.node),
                   .kept = must_alloc(size * sizeof *l.kept),
                   .to_keep = must_alloc(size * sizeof *l.to_keep)};
+  l.asks = program_asks(e->graph, &e->plan->step) == a;
+  l.told = program_is_told(e->graph, &e->plan->step, a);
+  l.one = l.told || !expects(e);
   l.count = segment_nodes(e->graph, a, l.node);
   for (int k = 0; k < a->root_count; k++) {
     const bool keep = !segment_is_constant(e->graph, &a->roots[k]);
@@ -167,12 +185,6 @@ static unsigned char *needed_for(const emitter *e, const ir_node *nodes, int cou
   return mask;
 }
 
-static bool expects(const emitter *e) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && stages_is_expected_choice(e, n)) return true;
-  return false;
-}
-
 /* Bonds that are not as expected leave their bits. One line for all conditions: gcc does not vectorise two. */
 static void write_expectations(emitter *e) {
   const char *joined = "        unusual |= ((";
@@ -190,20 +202,63 @@ static void write_expectations(emitter *e) {
   c_text_add(e->out, ")) ? 0 : bonds[q];\n");
 }
 
+/* Whether kept value k is that of a field, or of a sum. */
+static bool is_kept_for(const pair_loops *l, int k, bool field) {
+  for (int n = 0; n < l->of->root_count; n++)
+    if (l->kept[n] == k && is_field(&l->of->roots[n]) == field) return true;
+  return false;
+}
+
+/* Value k, 0 where the bond is absent: kept for the second loop, or for what is stored behind the loop. */
+static void write_value(emitter *e, const pair_loops *l, int k) {
+  c_text_add(e->out, "        const double value_%d = present ? ", k);
+  emit_value(e, l->to_keep[k]);
+  c_text_add(e->out, " : 0.0;\n");
+  if (!l->one || is_kept_for(l, k, true))
+    c_text_add(e->out, "        kept[%d][q] = value_%d;\n", k, k);
+}
+
+/* Adds a root's value, or its product with node `factor`, to both ends. */
+static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
+  const char sign = l->of->roots[k].parity > 0 ? '+' : '-';
+  const int value = l->kept[k];
+  if (factor == IR_NONE) {
+    c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, value,
+               k, sign, value);
+    return;
+  }
+  c_text_add(e->out, "        to_%d[q] = pl_fma(value_%d, ", k, value);
+  emit_value(e, factor);
+  c_text_add(e->out, ", to_%d[q]);\n        far_%d[q] = pl_fma(%svalue_%d, ", k, k,
+             sign == '-' ? "-" : "", value);
+  emit_value(e, factor);
+  c_text_add(e->out, ", far_%d[q]);\n", k);
+}
+
+static void write_sums(emitter *e, const pair_loops *l) {
+  for (int k = 0, factors = l->of->root_count; k < l->of->root_count; k++) {
+    const segment_root *r = &l->of->roots[k];
+    const bool fuses = segment_fuses(e->graph, r);
+    if (!is_field(r) && !segment_is_constant(e->graph, r))
+      write_sum(e, l, k, fuses ? l->node[factors] : IR_NONE);
+    factors += fuses;
+  }
+}
+
+/* The first loop, or the only one. */
 static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet) {
   unsigned char *whole = e->needed;
-  e->needed = needed_for(e, l->to_keep, l->kept_count, usual);
+  e->needed = l->one ? needed_for(e, l->node, l->count, usual)
+                     : needed_for(e, l->to_keep, l->kept_count, usual);
   e->usual = usual;
   e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
-  if (usual && expects(e)) write_expectations(e);
+  if (!l->one) write_expectations(e);
   c_text_add(e->out, present_text);
-  for (int k = 0; k < l->kept_count; k++) {
-    c_text_add(e->out, "        kept[%d][q] = present ? ", k);
-    emit_value(e, l->to_keep[k]);
-    c_text_add(e->out, " : 0.0;\n");
-  }
+  for (int k = 0; k < l->kept_count; k++)
+    write_value(e, l, k);
+  if (l->one) write_sums(e, l);
   c_text_add(e->out, "      }\n");
   e->usual = e->quiet = false;
   free(e->needed);
@@ -231,23 +286,33 @@ static bool write_question(emitter *e) {
   return marks;
 }
 
-/* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere; and
-   one with both sides of what was expected. */
-static void write_first(emitter *e, const pair_loops *l) {
-  const bool expected = expects(e);
-  if (l->kept_count == 0) return;
-  if (expected) c_text_add(e->out, "      uint64_t unusual = 0;\n");
+/* One loop for where all fields that it reads are 0 and nothing is held, with these as constants, and one for elsewhere. */
+static void write_either(emitter *e, const pair_loops *l, bool usual) {
   const bool marks = write_question(e);
-  write_values(e, l, true, false);
-  if (marks) {
-    c_text_add(e->out, "      } else {\n");
-    write_values(e, l, true, true);
-    c_text_add(e->out, "      }\n");
+  write_values(e, l, usual, false);
+  if (!marks) return;
+  c_text_add(e->out, "      } else {\n");
+  write_values(e, l, usual, true);
+  c_text_add(e->out, "      }\n");
+}
+
+/* These, and the same with both sides of what is expected: where it does not hold, which is tried first where it did not hold
+   when the pass was here last. */
+static void write_first(emitter *e, const pair_loops *l) {
+  if (l->one && !l->told) {
+    write_either(e, l, true);
+    return;
   }
-  if (!expected) return;
+  if (!l->told)
+    c_text_add(e->out, l->asks ? "      uint64_t unusual = before & present_bit;\n"
+                               : "      uint64_t unusual = 0;\n");
+  c_text_add(e->out, "      if ((unusual & present_bit) == 0) {\n");
+  write_either(e, l, true);
   c_text_add(e->out,
-             "      if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
-  write_values(e, l, false, false);
+             l->told ? "      } else {\n" : "      }\n      if ((unusual & present_bit) != 0) {\n");
+  if (!l->told) c_text_add(e->out, "      unusual = 0;\n");
+  write_either(e, l, false);
+  if (l->asks) c_text_add(e->out, "      told |= unusual & present_bit;\n");
   c_text_add(e->out, "      }\n");
 }
 
@@ -277,23 +342,6 @@ static void write_field_stores(emitter *e, const pair_loops *l) {
                  k, l->kept[k], k, k, k, l->of->roots[k].index, l->kept[k], k);
 }
 
-/* Adds value k, or its product with node `factor`, to both ends. */
-static void write_sum(emitter *e, const pair_loops *l, int k, ir_node factor) {
-  const char sign = l->of->roots[k].parity > 0 ? '+' : '-';
-  c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, l->kept[k]);
-  if (factor == IR_NONE) {
-    c_text_add(e->out, "        to_%d[q] += value_%d;\n        far_%d[q] %c= value_%d;\n", k, k, k,
-               sign, k);
-    return;
-  }
-  c_text_add(e->out, "        to_%d[q] = pl_fma(value_%d, ", k, k);
-  emit_value(e, factor);
-  c_text_add(e->out, ", to_%d[q]);\n        far_%d[q] = pl_fma(%svalue_%d, ", k, k,
-             sign == '-' ? "-" : "", k);
-  emit_value(e, factor);
-  c_text_add(e->out, ", far_%d[q]);\n", k);
-}
-
 /* Sums that do not change from step to step. */
 static void write_constants(emitter *e, const pair_loops *l) {
   if (!l->constants) return;
@@ -314,17 +362,14 @@ static void write_second(emitter *e, const pair_loops *l) {
   const int roots = l->of->root_count;
   unsigned char *whole = e->needed;
   write_constants(e, l);
-  if (l->constants == roots) return;
+  if (l->one) return;
   e->needed = needed_for(e, l->node + roots, l->count - roots, false);
   emit_family_loop(e, "      ");
   emit_lines(e);
-  for (int k = 0, factors = roots; k < roots; k++) {
-    const segment_root *r = &l->of->roots[k];
-    const bool fuses = segment_fuses(e->graph, r);
-    if (!is_field(r) && !segment_is_constant(e->graph, r))
-      write_sum(e, l, k, fuses ? l->node[factors] : IR_NONE);
-    factors += fuses;
-  }
+  for (int k = 0; k < l->kept_count; k++)
+    if (is_kept_for(l, k, false))
+      c_text_add(e->out, "        const double value_%d = kept[%d][q];\n", k, k);
+  write_sums(e, l);
   c_text_add(e->out, "      }\n");
   free(e->needed);
   e->needed = whole;
@@ -368,12 +413,23 @@ static void write_ends(emitter *e, const segment *a) {
   c_text_add(e->out, "    if (family->ahead_only) continue;\n");
 }
 
+/* What a chunk needs before its bonds. */
+static void write_chunk(emitter *e, const pair_loops *l) {
+  emit_family_starts(e, l->of);
+  write_marks(e, l->of);
+  if (l->kept_count && (!l->one || writes_fields(l->of)))
+    c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l->kept_count);
+  if (l->asks)
+    c_text_add(e->out, "    const uint64_t before = family->unusual && !family->ahead_only ? "
+                       "family->unusual[first / PL_LANES] : 0;\n    uint64_t told = 0;\n");
+  if (l->told)
+    c_text_add(e->out, "    const uint64_t unusual = family->unusual ? family->unusual[first / "
+                       "PL_LANES] : UINT64_MAX;\n");
+}
+
 void emit_pairs(emitter *e, const segment *a) {
   pair_loops l = loops_of(e, a);
-  emit_family_starts(e, a);
-  write_marks(e, a);
-  if (l.kept_count)
-    c_text_add(e->out, "    _Alignas(PL_ALIGNMENT) double kept[%d][CHUNK];\n", l.kept_count);
+  write_chunk(e, &l);
   c_text_add(e->out,
              "    for (long k = 0; k < half; k++) { /* bond by bond, adding to both ends */\n"
              "      const long to = family->offset[k], link_to = family->link_offset[k], back = k "
@@ -385,10 +441,13 @@ void emit_pairs(emitter *e, const segment *a) {
              "      (void)present_bit, (void)above;\n");
   emit_family_inputs(e);
   write_outputs(e, &l);
-  write_first(e, &l);
+  if (l.kept_count) write_first(e, &l);
   write_field_stores(e, &l);
   write_second(e, &l);
   c_text_add(e->out, "    }\n");
+  if (l.asks)
+    c_text_add(e->out, "    if (family->unusual && !family->ahead_only) family->unusual[first / "
+                       "PL_LANES] = told;\n");
   write_ends(e, a);
   loops_free(&l);
 }

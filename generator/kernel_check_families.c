@@ -23,10 +23,10 @@ typedef struct body {
   double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
   double **before; /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
-  uint64_t **marks[MARKS];            /* [fields][SIZE] as in pl_family */
-  uint64_t *bonds, *incoming, *held;  /* [SIZE] */
-  long offset[2 * PL_MAX_DIRECTIONS]; /* rows */
-  int32_t *neighbour;                 /* [neighbours][SIZE] lists; NULL on rows */
+  uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
+  uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
+  long offset[2 * PL_MAX_DIRECTIONS];          /* rows */
+  int32_t *neighbour;                          /* [neighbours][SIZE] lists; NULL on rows */
   double **chord;    /* [dimensions][neighbours * SIZE] lists: m, and their lengths behind them */
   double **particle; /* [2][SIZE] lists: volumes, masses */
 } body;
@@ -86,6 +86,7 @@ static body body_new(const pl_law *law, int neighbours) {
   b.bonds = must_calloc(SIZE, sizeof *b.bonds);
   b.incoming = must_calloc(SIZE, sizeof *b.incoming);
   b.held = must_calloc(SIZE, sizeof *b.held);
+  b.unusual = must_calloc(SIZE, sizeof *b.unusual);
   if (!is_list(&b)) return b;
   b.neighbour = must_calloc((size_t)neighbours * SIZE, sizeof *b.neighbour);
   b.chord = planes_new(law->dimensions + 1, (long)neighbours * SIZE);
@@ -113,6 +114,7 @@ static void body_free(body *b) {
   free(b->bonds);
   free(b->incoming);
   free(b->held);
+  free(b->unusual);
   if (!is_list(b)) return;
   free(b->neighbour);
   planes_free(b->chord, b->law->dimensions + 1);
@@ -355,6 +357,7 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .sum = from_site(&s, b->sum[side], law->sum_count, site),
                  .ahead_only = ahead_only,
                  .held_near = any_held(b),
+                 .unusual = b->unusual + site / PL_LANES,
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);

@@ -523,6 +523,64 @@ int program_constant_sums(const ir *g, const family_program *p, const segment *b
   return count;
 }
 
+static bool is_expected_choice(const ir *g, ir_node n) {
+  return ir_operation(g, n) == IR_SELECT && ir_place(g, n) > ON_BODY &&
+         ir_is_expected(g, ir_operand(g, n, 0));
+}
+
+/* Marks the conditions that the segment expects to hold; false without one. */
+static bool mark_expected(const ir *g, const segment *a, unsigned char *conditions) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool any = false;
+  for (int k = 0; k < a->root_count; k++)
+    ir_mark(g, &a->roots[k].node, 1, needed);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || !is_expected_choice(g, n)) continue;
+    conditions[ir_operand(g, n, 0)] = 1;
+    any = true;
+  }
+  free(needed);
+  return any;
+}
+
+const segment *program_asks(const ir *g, const family_program *p) {
+  unsigned char *conditions = must_calloc((size_t)ir_count(g) + 1, 1);
+  const segment *found = NULL;
+  for (int k = 0; k < p->pass_count && !found; k++)
+    for (int s = 0; s < p->passes[k].segment_count && !found; s++) {
+      const segment *a = &p->passes[k].segments[s];
+      if (a->kind == OVER_PAIRS && mark_expected(g, a, conditions)) found = a;
+    }
+  free(conditions);
+  return found;
+}
+
+/* Of the motion alone: what else a node reads may be another thing in another pass. */
+static bool is_of_motion(const ir *g, ir_node n) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool is = true;
+  ir_mark(g, &n, 1, needed);
+  for (ir_node m = 0; m <= n && is; m++)
+    is = !needed[m] || ir_operation(g, m) != IR_INPUT || ir_place(g, m) <= ON_BODY ||
+         ir_input_source(g, m) == IR_FROM_ENDS;
+  free(needed);
+  return is;
+}
+
+bool program_is_told(const ir *g, const family_program *p, const segment *a) {
+  const segment *asks = program_asks(g, p);
+  if (!asks || asks == a) return false;
+  unsigned char *asked = must_calloc((size_t)ir_count(g) + 1, 1),
+                *wanted = must_calloc((size_t)ir_count(g) + 1, 1);
+  mark_expected(g, asks, asked);
+  bool told = mark_expected(g, a, wanted);
+  for (ir_node n = 0; n < ir_count(g) && told; n++)
+    told = !wanted[n] || (asked[n] && is_of_motion(g, n));
+  free(asked);
+  free(wanted);
+  return told;
+}
+
 static void schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
                      int root_count, const node_map *parity, bool pairs) {
   scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};

@@ -131,6 +131,10 @@ static inline bool segment_is_constant(const ir *g, const segment_root *r) {
 }
 /* How many the program has, or has before that segment's. */
 int program_constant_sums(const ir *g, const family_program *p, const segment *before);
+/* Which segment of pairs finds out where bonds are as is expected (ir_expect), for all that come later; NULL: none. Later
+   segments may expect only what it has asked of the motion. */
+const segment *program_asks(const ir *g, const family_program *p);
+bool program_is_told(const ir *g, const family_program *p, const segment *a);
 /* Sums that one pass adds to far ends, the most. */
 int program_sum_count(const family_program *p);
 

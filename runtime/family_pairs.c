@@ -17,6 +17,7 @@ struct family_pairs {
   uint64_t **old_filled, **new_filled, **settled; /* [fields] */
   double **constant_sum;                          /* [constant_sum_count][size] */
   bool constants_known;                           /* after a step */
+  uint64_t *unusual;                              /* [size/PL_LANES] */
   pairs_block *blocks;                            /* [block_count] */
 };
 
@@ -41,6 +42,7 @@ static void point_at_constants(const sweep *w, const family_pairs *p, pairs_bloc
     b->constant_sum[k] = p->constant_sum[k] + start;
   run->constant_sum = b->constant_sum;
   run->constants_known = p->constants_known;
+  run->unusual = p->unusual + start / PL_LANES;
 }
 
 static void run_row(const sweep *w, int pass, int block, int row, bool ahead_only) {
@@ -110,6 +112,7 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
   p->old_filled = pair_marks_new(w);
   p->new_filled = pair_marks_new(w);
   p->settled = pair_marks_new(w);
+  p->unusual = must_calloc((size_t)(w->lattice->size / PL_LANES) + 1, sizeof *p->unusual);
   p->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *p->constant_sum);
   for (int k = 0; k < w->law->constant_sum_count; k++)
     p->constant_sum[k] = sweep_doubles(w, w->lattice->size);
@@ -141,6 +144,7 @@ void family_pairs_free(const sweep *w, family_pairs *p) {
   for (int k = 0; k < w->law->constant_sum_count; k++)
     free(p->constant_sum[k]);
   free(p->constant_sum);
+  free(p->unusual);
   free(p->held_near);
   free(p->blocks);
   free(p);

@@ -140,6 +140,10 @@ typedef struct pl_family {
      them, unless NULL, and once they are known reads them instead of adding up. */
   double *const *constant_sum; /* [constant_sum_count] */
   int constants_known;
+  /* Of the same laws, unless NULL: word q/PL_LANES of the first of some particles that a pass takes together, bit k <
+     neighbours/2: toward neighbour k not all is as is expected. The first pass that asks writes it, later ones read it; what
+     stands there before, 0 or the last step's, only says what to try first. */
+  uint64_t *unusual;
   /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
      may be other than 0 (filled), and old and new ones are the same (settled). Only for fields that such a bond writes;
      else NULL. */
