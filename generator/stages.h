@@ -48,10 +48,10 @@ void stages_free(stages *s);
 
 /* Operands of node n, operand[3]; in the loop that relies on what is expected, of a choice by an expected condition only
    the condition and the value it is expected to choose. Returns their number. */
-int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]);
+int stages_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]);
 /* Marks what the loop of a stage computes or loads, and `kept_loads`, what it takes from the buffers; mask and kept_loads:
-   [node_count], zeroed here. `usual`: it relies on what is expected. */
-void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
+   [node_count], zeroed here. `relies`: on what (reliance). */
+void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, unsigned char *mask,
                  unsigned char *kept_loads);
 /* A choice by a condition that is expected to hold. */
 bool stages_is_expected_choice(const emitter *e, ir_node n);
