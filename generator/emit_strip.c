@@ -142,7 +142,7 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
 /* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
    does not vectorise two; and flags that are loaded in any case are one masked load. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
-  const char *const first = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = first;
+  const char *const begin = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = begin;
   for (ir_node n = 0; n < e->node_count; n++) {
     if (s->of[n] != stage || !stages_asks(e, s, n)) continue;
     c_text_add(e->out, "%s(", joined);
@@ -150,7 +150,7 @@ static void write_expectations(emitter *e, const stages *s, int stage) {
     c_text_add(e->out, ")");
     joined = " && ";
   }
-  if (joined != first) c_text_add(e->out, ") ? 0 : bits;\n");
+  if (joined != begin) c_text_add(e->out, ") ? 0 : bits;\n");
 }
 
 /* Not 0 when a bond that exists has new damage. One line for all, as above. */

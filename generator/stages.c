@@ -22,7 +22,7 @@ enum {
 };
 /* Two operations can begin each cycle, but long vectors are held back where all cores work. */
 #define OPERATION_CYCLES 0.6
-#define STORE_CYCLES     0.4 /* and the load that follows; what a buffer takes of the first cache */
+#define STORE_CYCLES     0.6 /* and the load that follows; what a buffer takes of the first cache */
 
 /* clang-format off */
 static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
@@ -292,7 +292,8 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
     if (is_line(e, n)) p->finish[n] = finish_in(p, n, stage);
   }
   if (stage == stages_last(p->s)) c.stores += e->root_count;
-  const double busy = most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
+  const double busy =
+      most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
   /* neither hides all of the other: within 6 % of what was measured */
   c.cycles = hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
@@ -349,7 +350,7 @@ static stages *plan_with(planner *p, int first, int later) {
 }
 
 enum { NO_CUT = 1 << 20, SHORTEST_CHAIN = 50 };
-static const int longest_chains[] = {NO_CUT, 160, 140, 120, 100, 85, 75, 70, 60, SHORTEST_CHAIN};
+static const int longest_chains[] = {NO_CUT, 160, 140, 120, 105, 95, 85, 75, 66, SHORTEST_CHAIN};
 enum { CHAIN_COUNT = sizeof longest_chains / sizeof *longest_chains };
 
 /* The better of two plans; the other one goes. */
