@@ -329,7 +329,7 @@ static void write_select(emitter *e, ir_node n) {
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
     return;
   }
-  if ((e->relies & SURE_OF_UNHELD) &&
+  if ((e->relies & SURE_OF_UNHELD) && e->name[n] &&
       emit_asks_whether_protected(e, ir_operand(e->graph, n, 0))) {
     write_operand(e, ir_operand(e->graph, n, 2), LEVEL_CHOICE);
     return;

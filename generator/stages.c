@@ -48,7 +48,7 @@ bool stages_is_expected_choice(const emitter *e, ir_node n) {
 }
 
 bool stages_is_held_choice(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_SELECT &&
+  return e->name[n] && ir_operation(e->graph, n) == IR_SELECT &&
          emit_asks_whether_protected(e, ir_operand(e->graph, n, 0));
 }
 

@@ -57,7 +57,7 @@ void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, 
                  unsigned char *kept_loads);
 /* A choice by a condition that is expected to hold. */
 bool stages_is_expected_choice(const emitter *e, ir_node n);
-/* A choice by whether a bond is protected, of which strips say when none is: then its last operand. */
+/* A line that is a choice by whether a bond is protected, of which strips say when none is: then its last operand. */
 bool stages_is_held_choice(const emitter *e, ir_node n);
 bool stages_has_held_choices(const emitter *e, const stages *s, int stage);
 /* The stage that ends with what the pass gives, in every part. */
