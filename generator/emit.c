@@ -325,11 +325,12 @@ static void write_select(emitter *e, ir_node n) {
     write_extreme(e, n);
     return;
   }
-  if (e->usual && ir_is_expected(e->graph, ir_operand(e->graph, n, 0))) {
+  if ((e->relies & SURE_OF_EXPECTED) && ir_is_expected(e->graph, ir_operand(e->graph, n, 0))) {
     write_operand(e, ir_operand(e->graph, n, 1), LEVEL_CHOICE);
     return;
   }
-  if (e->usual && emit_asks_whether_protected(e, ir_operand(e->graph, n, 0))) {
+  if ((e->relies & SURE_OF_UNHELD) && e->name[n] &&
+      emit_asks_whether_protected(e, ir_operand(e->graph, n, 0))) {
     write_operand(e, ir_operand(e->graph, n, 2), LEVEL_CHOICE);
     return;
   }

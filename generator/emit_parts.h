@@ -24,6 +24,13 @@ typedef struct family_words {
   bool far; /* the bond is the neighbour's, which is known only where families are unrolled */
 } family_words;
 
+/* What a loop over a strip relies on: of choices by it only what it says is computed. */
+typedef enum reliance {
+  SURE_OF_NOTHING = 0,
+  SURE_OF_EXPECTED = 1, /* conditions that are expected to hold do */
+  SURE_OF_UNHELD = 2    /* no bond is protected */
+} reliance;
+
 typedef struct emitter {
   const kernel_plan *plan;
   const ir *graph;
@@ -35,7 +42,7 @@ typedef struct emitter {
   scope_kind scope;
   const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
   int root_count;
-  bool usual; /* of choices by expected conditions only what is expected is written, and no bond is protected */
+  unsigned relies; /* reliance, together */
   c_names names;
   unsigned char *needed;     /* [node_count] */
   int *uses;                 /* [node_count] by needed nodes and roots */

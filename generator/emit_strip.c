@@ -142,7 +142,7 @@ static void write_kept_stores(emitter *e, const stages *s, int stage) {
 /* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
    does not vectorise two; and flags that are loaded in any case are one masked load. */
 static void write_expectations(emitter *e, const stages *s, int stage) {
-  const char *const first = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = first;
+  const char *const begin = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = begin;
   for (ir_node n = 0; n < e->node_count; n++) {
     if (s->of[n] != stage || !stages_asks(e, s, n)) continue;
     c_text_add(e->out, "%s(", joined);
@@ -150,10 +150,10 @@ static void write_expectations(emitter *e, const stages *s, int stage) {
     c_text_add(e->out, ")");
     joined = " && ";
   }
-  if (joined != first) c_text_add(e->out, ") ? 0 : bits;\n");
+  if (joined != begin) c_text_add(e->out, ") ? 0 : bits;\n");
 }
 
-/* Bits of the damage of bonds that exist in which the new one differs. One line for all, as above. */
+/* Not 0 when a bond that exists has new damage. One line for all, as above. */
 static void write_changes(emitter *e) {
   const char *joined = "    changed |= present != 0 ? ";
   for (int k = 0; k < e->root_count; k++) {
@@ -161,7 +161,7 @@ static void write_changes(emitter *e) {
     if (r->target != TO_FIELD || !stages_is_of_change(e, r)) continue;
     c_text_add(e->out, "%s(pl_to_bits(", joined);
     emit_value(e, r->node);
-    c_text_add(e->out, ") ^ pl_to_bits(at_field_%d[q]))", r->index);
+    c_text_add(e->out, ") - pl_to_bits(at_field_%d[q]))", r->index);
     joined = " | ";
   }
   c_text_add(e->out, " : 0;\n");
@@ -179,30 +179,32 @@ static void write_results(emitter *e, const stages *s, int stage) {
 }
 
 /* Whether the loop of a stage looks at arrays of the strip, not at buffers alone. */
-static bool reads_bonds(const emitter *e, const stages *s, int stage, bool usual,
+static bool reads_bonds(const emitter *e, const stages *s, int stage, unsigned relies,
                         const unsigned char *mask, const unsigned char *kept_loads) {
   bool reads = stage >= stages_last(s);
   for (ir_node n = 0; n < e->node_count && !reads; n++) {
     const bool lent = s->buffer[n] >= 0 && s->buffer[n] < s->lent;
-    reads = (usual && s->of[n] == stage && stages_asks(e, s, n)) || (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
+    const bool asks = (relies & SURE_OF_EXPECTED) && s->of[n] == stage && stages_asks(e, s, n);
+    reads = asks || (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
             (lent && (kept_loads[n] || s->of[n] == stage));
   }
   return reads;
 }
 
-static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
+static void write_stage(emitter *e, const stages *s, int stage, unsigned relies) {
   const size_t size = (size_t)e->node_count + 1;
   unsigned char *mask = must_alloc(size), *kept_loads = must_alloc(size), *whole = e->needed;
-  stages_mark(e, s, stage, usual, mask, kept_loads);
+  stages_mark(e, s, stage, relies, mask, kept_loads);
   c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
-  if (reads_bonds(e, s, stage, usual, mask, kept_loads))
+  if (reads_bonds(e, s, stage, relies, mask, kept_loads))
     c_text_add(e->out, "    const long q = first + k;\n");
   write_kept_loads(e, s, kept_loads);
   e->needed = mask;
-  e->usual = usual;
+  e->relies = relies;
   emit_lines(e);
-  if (usual && stages_has_conditions(e, s, stage)) write_expectations(e, s, stage);
-  e->usual = false;
+  if ((relies & SURE_OF_EXPECTED) && stages_has_conditions(e, s, stage))
+    write_expectations(e, s, stage);
+  e->relies = SURE_OF_NOTHING;
   e->needed = whole;
   write_kept_stores(e, s, stage);
   write_results(e, s, stage);
@@ -215,11 +217,10 @@ static void write_stage(emitter *e, const stages *s, int stage, bool usual) {
 static void write_stage_for_strip(emitter *e, const stages *s, int stage) {
   const bool held = stages_has_held_choices(e, s, stage);
   if (held) c_text_add(e->out, "  if (strip->unheld != 0) {\n");
-  write_stage(e, s, stage, true);
+  write_stage(e, s, stage, SURE_OF_EXPECTED | SURE_OF_UNHELD);
   if (!held) return;
-  c_text_add(e->out, "  } else {\n");
-  write_stage(e, s, stage, false);
-  if (stages_has_conditions(e, s, stage)) c_text_add(e->out, "  unusual = -1;\n");
+  c_text_add(e->out, "  }\n  if (strip->unheld == 0) {\n");
+  write_stage(e, s, stage, SURE_OF_EXPECTED);
   c_text_add(e->out, "  }\n");
 }
 
@@ -231,19 +232,19 @@ static void write_stages(emitter *e, const stages *s) {
              "  const long last = count - first < %d ? count - first : %d;\n",
              STAGES_PART, STAGES_PART, STAGES_PART);
   if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
-  if (s->changes) c_text_add(e->out, "  int64_t changed = 0;\n");
+  if (s->changes) c_text_add(e->out, "  uint64_t changed = 0;\n");
   for (int stage = 0; stage <= stages_last(s); stage++) {
     write_stage_for_strip(e, s, stage);
     if (!stages_has_conditions(e, s, stage)) continue;
     c_text_add(e->out,
                "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
-    write_stage(e, s, stage, false);
+    write_stage(e, s, stage, SURE_OF_NOTHING);
     c_text_add(e->out, "  }\n");
     if (!stages_relies_on(e, s, stage + 1)) c_text_add(e->out, "  unusual = 0;\n");
   }
   if (s->changes) {
     c_text_add(e->out, "  if (changed != 0) {\n");
-    write_stage(e, s, s->count - 1, false);
+    write_stage(e, s, s->count - 1, SURE_OF_NOTHING);
     c_text_add(e->out, "  }\n");
   }
   c_text_add(e->out, "  }\n");

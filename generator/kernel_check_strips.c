@@ -29,6 +29,7 @@ typedef struct strip_arrays {
   double **kept[2];   /* [kept_planes][SITES] */
   double **force[2], **observed[2];
   int64_t *flags;
+  bool unheld;
 } strip_arrays;
 
 static strip_arrays arrays_new(const pl_law *kernel) {
@@ -83,19 +84,21 @@ static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed)
   }
 }
 
-/* An eighth of the bonds is absent, an eighth protected. Bits of other directions mean nothing
+/* An eighth of the bonds is absent; of every second strip an eighth is protected. Bits of other directions mean nothing
  * here. */
-static int64_t draw_flags(uint64_t *seed) {
+static int64_t draw_flags(bool unheld, uint64_t *seed) {
   const int64_t mine = PL_PRESENT(DIRECTION) | PL_PROTECTED(DIRECTION);
   uint64_t kind = draw_bits(seed) % 8;
   int64_t others = (int64_t)draw_bits(seed) & ~mine;
-  return others | (kind ? PL_PRESENT(DIRECTION) : 0) | (kind == 1 ? PL_PROTECTED(DIRECTION) : 0);
+  return others | (kind ? PL_PRESENT(DIRECTION) : 0) |
+         (kind == 1 && !unheld ? PL_PROTECTED(DIRECTION) : 0);
 }
 
 static void fill_bonds(strip_arrays *a, const double *parameters, uint64_t *seed) {
   const int fields = a->law->field_count;
+  a->unheld = draw_bits(seed) % 2;
   for (int q = 0; q < SITES; q++) {
-    a->flags[q] = draw_flags(seed);
+    a->flags[q] = draw_flags(a->unheld, seed);
     for (int k = 0; k < a->law->varying_count; k++)
       a->parameter[k][q] = parameters[a->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
     for (int k = 0; k < a->kept_planes; k++)
@@ -124,6 +127,7 @@ static pl_strip strip_of(const strip_arrays *a, int side) {
   pl_strip s = {.count = SITES,
                 .direction = DIRECTION,
                 .flags = a->flags,
+                .unheld = a->unheld,
                 .time_step = 1.7e-7,
                 .parameter = (const double *const *)a->parameter,
                 .field = a->kept[side],

@@ -22,7 +22,7 @@ enum {
 };
 /* Two operations can begin each cycle, but long vectors are held back where all cores work. */
 #define OPERATION_CYCLES 0.6
-#define STORE_CYCLES     0.4 /* and the load that follows; what a buffer takes of the first cache */
+#define STORE_CYCLES     0.6 /* and the load that follows; what a buffer takes of the first cache */
 
 /* clang-format off */
 static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
@@ -38,6 +38,8 @@ static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
 };
 /* clang-format on */
 
+enum { SURE_OF_ALL = SURE_OF_EXPECTED | SURE_OF_UNHELD };
+
 /* --- lines and their operands ----------------------------------------------------------------- */
 
 bool stages_is_expected_choice(const emitter *e, ir_node n) {
@@ -46,14 +48,14 @@ bool stages_is_expected_choice(const emitter *e, ir_node n) {
 }
 
 bool stages_is_held_choice(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_SELECT &&
+  return e->name[n] && ir_operation(e->graph, n) == IR_SELECT &&
          emit_asks_whether_protected(e, ir_operand(e->graph, n, 0));
 }
 
-int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]) {
+int stages_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]) {
   int count = emit_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
-  if (usual && stages_is_expected_choice(e, n)) count = 2;
-  if (usual && stages_is_held_choice(e, n)) {
+  if ((relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n)) count = 2;
+  if ((relies & SURE_OF_UNHELD) && stages_is_held_choice(e, n)) {
     operand[0] = ir_operand(e->graph, n, 2);
     return 1;
   }
@@ -111,7 +113,7 @@ static int larger(int a, int b) {
 static int stage_below(const planner *p, ir_node n) {
   ir_node operand[3];
   int stage = 0;
-  const int count = stages_operands(p->e, n, true, operand);
+  const int count = stages_operands(p->e, n, SURE_OF_ALL, operand);
   for (int k = 0; k < count; k++) {
     const ir_node o = operand[k];
     stage = larger(stage, is_line(p->e, o) ? p->s->of[o] : stage_below(p, o));
@@ -124,7 +126,7 @@ static int finish_in(const planner *p, ir_node n, int stage) {
   ir_node operand[3];
   int start = 0;
   if (is_loaded(p->e, n)) return LOAD_LATENCY;
-  const int count = stages_operands(p->e, n, true, operand);
+  const int count = stages_operands(p->e, n, SURE_OF_ALL, operand);
   for (int k = 0; k < count; k++) {
     const ir_node o = operand[k];
     const bool here = p->s->of[o] == stage || p->s->of[o] < 0;
@@ -170,7 +172,7 @@ static void find_users(const planner *p, int *first, int *last) {
   for (ir_node n = 0; n < e->node_count; n++)
     first[n] = last[n] = -1;
   for (int stage = 0; stage < p->s->count; stage++) {
-    stages_mark(e, p->s, stage, true, mask, taken);
+    stages_mark(e, p->s, stage, SURE_OF_ALL, mask, taken);
     for (ir_node n = 0; n < e->node_count; n++) {
       if (!taken[n]) continue;
       if (first[n] < 0) first[n] = stage;
@@ -185,7 +187,7 @@ static void find_users(const planner *p, int *first, int *last) {
 static int newly_kept(const planner *p, ir_node n, int to, const int *last) {
   ir_node operand[3];
   int kept = 0;
-  const int count = stages_operands(p->e, n, true, operand);
+  const int count = stages_operands(p->e, n, SURE_OF_ALL, operand);
   for (int k = 0; k < count; k++) {
     const ir_node o = operand[k];
     if (is_line(p->e, o))
@@ -278,7 +280,7 @@ static double most(double a, double b) {
 static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned char *taken) {
   const emitter *e = p->e;
   stage_cost c = {0};
-  stages_mark(e, p->s, stage, true, mask, taken);
+  stages_mark(e, p->s, stage, SURE_OF_ALL, mask, taken);
   for (ir_node n = 0; n < e->node_count; n++) {
     c.loads += taken[n] || (mask[n] && is_loaded(e, n));
     c.stores += p->s->of[n] == stage && p->s->buffer[n] >= 0;
@@ -290,7 +292,8 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
     if (is_line(e, n)) p->finish[n] = finish_in(p, n, stage);
   }
   if (stage == stages_last(p->s)) c.stores += e->root_count;
-  const double busy = most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
+  const double busy =
+      most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
   /* neither hides all of the other: within 6 % of what was measured */
   c.cycles = hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
@@ -318,7 +321,7 @@ static void mark_usual(planner *p) {
     if (is_always_computed(e, &e->roots[k])) p->usual[e->roots[k].node] = 1;
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     ir_node operand[3];
-    const int count = p->usual[n] ? stages_operands(e, n, true, operand) : 0;
+    const int count = p->usual[n] ? stages_operands(e, n, SURE_OF_ALL, operand) : 0;
     for (int k = 0; k < count; k++)
       p->usual[operand[k]] = 1;
   }
@@ -347,7 +350,7 @@ static stages *plan_with(planner *p, int first, int later) {
 }
 
 enum { NO_CUT = 1 << 20, SHORTEST_CHAIN = 50 };
-static const int longest_chains[] = {NO_CUT, 160, 140, 120, 100, 85, 75, 70, 60, SHORTEST_CHAIN};
+static const int longest_chains[] = {NO_CUT, 160, 140, 120, 105, 95, 85, 75, 66, SHORTEST_CHAIN};
 enum { CHAIN_COUNT = sizeof longest_chains / sizeof *longest_chains };
 
 /* The better of two plans; the other one goes. */
@@ -446,7 +449,7 @@ static bool comes_from_before(const emitter *e, const stages *s, ir_node n, int 
   return s->of[n] < stages_last(s) || is_result(e, n);
 }
 
-void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
+void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, unsigned char *mask,
                  unsigned char *kept_loads) {
   memset(mask, 0, (size_t)e->node_count + 1);
   memset(kept_loads, 0, (size_t)e->node_count + 1);
@@ -454,14 +457,15 @@ void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsig
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     if (!mask[n]) continue;
     /* what only the unexpected needs is not kept for it: it is computed again */
-    if (comes_from_before(e, s, n, stage) && (usual || s->until[n] >= stage)) {
+    if (comes_from_before(e, s, n, stage) && (relies != SURE_OF_NOTHING || s->until[n] >= stage)) {
       kept_loads[n] = 1;
       mask[n] = 0;
       continue;
     }
     ir_node operand[3];
-    const int count = stages_operands(e, n, usual, operand);
-    const bool answered = usual && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
+    const int count = stages_operands(e, n, relies, operand);
+    const bool answered =
+        (relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
     for (int k = answered; k < count; k++)
       mask[operand[k]] = 1;
   }

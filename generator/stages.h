@@ -1,5 +1,6 @@
 /* Cuts the loop over a strip of bonds into stages, loops over the same bonds one after the other, with the values that
-   later stages need kept in buffers in the first cache.
+   later stages need kept in buffers in the first cache; the arrays of the results are the first of these, until the last
+   stage writes what they are for.
 
    Why: a processor keeps some hundred operations in flight. Where those of one bond wait for each other in a long chain,
    few bonds are in flight at once, and the processor waits with them; of short chains it overlaps many. And where a value
@@ -31,10 +32,10 @@ typedef struct stage_cost {
 typedef struct stages {
   int count;
   int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
-  int *buffer; /* [node_count] where it is kept for later stages: in the array of a result that lends it (below `lent`), or
-                  in a buffer; -1: it is not */
+  int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
   int *until;  /* [node_count] last stage that it is kept for; -1 */
-  int lent, buffers;
+  int lent;    /* the first buffers are arrays of results; */
+  int buffers; /* so many stand behind them */
   bool changes;     /* one more stage is done only where some damage changed */
   int conditions;   /* expected ones */
   stage_cost *cost; /* [count] */
@@ -46,16 +47,17 @@ typedef struct stages {
 stages *stages_plan(const emitter *e, loop_cutting cutting);
 void stages_free(stages *s);
 
-/* Operands of node n, operand[3]; in the loop that relies on what is expected, of a choice by an expected condition only
-   the condition and the value it is expected to choose. Returns their number. */
-int stages_operands(const emitter *e, ir_node n, bool usual, ir_node operand[3]);
+/* Operands of node n, operand[3]; in a loop that relies on what is expected, of a choice by an expected condition only
+   the condition and the value it is expected to choose, and where no bond is protected, only what others get. Returns their
+   number. */
+int stages_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]);
 /* Marks what the loop of a stage computes or loads, and `kept_loads`, what it takes from the buffers; mask and kept_loads:
-   [node_count], zeroed here. `usual`: it relies on what is expected. */
-void stages_mark(const emitter *e, const stages *s, int stage, bool usual, unsigned char *mask,
+   [node_count], zeroed here. `relies`: on what (reliance). */
+void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, unsigned char *mask,
                  unsigned char *kept_loads);
 /* A choice by a condition that is expected to hold. */
 bool stages_is_expected_choice(const emitter *e, ir_node n);
-/* A choice by whether a bond is protected, of which strips say when none is: then its last operand. */
+/* A line that is a choice by whether a bond is protected, of which strips say when none is: then its last operand. */
 bool stages_is_held_choice(const emitter *e, ir_node n);
 bool stages_has_held_choices(const emitter *e, const stages *s, int stage);
 /* The stage that ends with what the pass gives, in every part. */

@@ -210,8 +210,7 @@ static int64_t kick_component(const sweep *w, int row, const gathered *s, int d,
                               long end, double *next) {
   const double size = w->time_step / w->mass[d], factor = d < 2 ? size : -size;
   const double *v = w->velocity[d] + sweep_start(w, row);
-#define KICK(sign, decays)                                                                         \
-  kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
+#define KICK(sign, decays) kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
   if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
   return d < 2 ? KICK(-1, false) : KICK(1, false);
 #undef KICK

@@ -318,7 +318,7 @@ static void forces_are_the_slope_of_the_energy(void **state) {
       t->kernel->rows_observe(t->kernel, t->uniforms, &high->strip);
       for (int n = 0; n < MOST_BONDS; n++) {
         double slope = (high->observed[0][n] - low->observed[0][n]) / (2 * h);
-        double force = k == 2 ? b->force[2 + end][n] : (end ? -1 : 1) * b->force[k][n];
+        double force = k == 2 ? -b->force[2 + end][n] : (end ? -1 : 1) * b->force[k][n];
         /* rounding of the energy (up to EA s/10) over h, and the curvature of the rotation */
         assert_near(force, -slope, 1e-8 * (k < 2 ? EA : EA * c.s), "force");
       }
