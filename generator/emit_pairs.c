@@ -250,7 +250,7 @@ static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet
   unsigned char *whole = e->needed;
   e->needed = l->one ? needed_for(e, l->node, l->count, usual)
                      : needed_for(e, l->to_keep, l->kept_count, usual);
-  e->usual = usual;
+  e->relies = usual ? SURE_OF_EXPECTED : SURE_OF_NOTHING;
   e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
@@ -260,7 +260,8 @@ static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet
     write_value(e, l, k);
   if (l->one) write_sums(e, l);
   c_text_add(e->out, "      }\n");
-  e->usual = e->quiet = false;
+  e->relies = SURE_OF_NOTHING;
+  e->quiet = false;
   free(e->needed);
   e->needed = whole;
 }

@@ -24,7 +24,7 @@ typedef struct family_words {
   bool far; /* the bond is the neighbour's, which is known only where families are unrolled */
 } family_words;
 
-/* What a loop over a strip relies on: of choices by it only what it says is computed. */
+/* What a loop over bonds relies on: of choices by it only what it says is computed. */
 typedef enum reliance {
   SURE_OF_NOTHING = 0,
   SURE_OF_EXPECTED = 1, /* conditions that are expected to hold do */
