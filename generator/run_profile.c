@@ -81,11 +81,14 @@ static void print_parts(const run *r, double seconds) {
       print_part(profile_names[k], p->part[k], seconds);
       continue;
     }
+    double between = p->part[PROFILE_LAW];
     for (int number = 0; number < passes && number < SWEEP_TIMED_PASSES; number++) {
       char name[40];
       snprintf(name, sizeof name, "law, pass %d of %d", number + 1, passes);
       print_part(name, p->pass[number], seconds);
+      between -= p->pass[number];
     }
+    print_part("law, between passes", between, seconds);
   }
   print_part("rest", seconds - known, seconds);
 }
