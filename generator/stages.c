@@ -146,7 +146,8 @@ static void place_early(planner *p, int first, int later) {
     int stage = stage_below(p, n);
     p->s->of[n] = stage;
     p->finish[n] = finish_in(p, n, stage);
-    if (p->finish[n] <= (stage > 0 ? later : first)) continue;
+    if (p->finish[n] <= (stage > 0 ? later : first) || stages_is_held_choice(p->e, n))
+      continue; /* behind what it chooses it would be a copy of a buffer */
     const int alone = finish_in(p, n, stage + 1);
     if (alone >= p->finish[n]) continue; /* a long operation of its own */
     p->s->of[n] = stage + 1;
@@ -205,7 +206,9 @@ static void place_late(planner *p) {
   int *first = must_alloc(size), *last = must_alloc(size);
   find_users(p, first, last);
   for (ir_node n = p->e->node_count - 1; n >= 0; n--) {
-    if (p->s->of[n] < 0 || first[n] <= p->s->of[n] || stages_is_expected_choice(p->e, n)) continue;
+    if (p->s->of[n] < 0 || first[n] <= p->s->of[n] || stages_is_expected_choice(p->e, n) ||
+        stages_is_held_choice(p->e, n))
+      continue;
     if (first[n] >= p->s->count || newly_kept(p, n, first[n], last) > 0) continue;
     p->s->of[n] = first[n];
     find_users(p, first, last);
