@@ -52,6 +52,9 @@ static void write_result_array(emitter *e, const void *root) {
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 
+/* Of more neighbours no registers hold what was read: it is read again, as an operand. */
+enum { MOST_KEPT = 8 };
+
 void emit_unrolled_input(emitter *e, ir_node n) {
   unrolled *u = e->unrolled;
   const ir_source from = ir_input_source(e->graph, n);
@@ -68,8 +71,12 @@ void emit_unrolled_input(emitter *e, ir_node n) {
   } else {
     const int number = number_of_written(e, &u->arrays, write_input_array, &n);
     if (from == IR_FROM_SHARED_ODD && e->words->far) c_text_add(e->out, "-");
-    c_text_add(e->out, number < arrays ? "PL_AGAIN(at_read_%d, at_%d)" : "(at_read_%d = at_%d[q])",
-               number, number);
+    if (e->plan->law->neighbours > MOST_KEPT)
+      c_text_add(e->out, "at_%d[q]", number);
+    else if (number < arrays)
+      c_text_add(e->out, "PL_AGAIN(at_read_%d, at_%d)", number, number);
+    else
+      c_text_add(e->out, "(at_read_%d = at_%d[q])", number, number);
   }
 }
 
@@ -215,7 +222,7 @@ static void write_known(emitter *e, const known_texts *t, const char *type, cons
 }
 
 static void write_variables(emitter *e, const family_pass *p, const unrolled *u) {
-  for (int k = 0; k < u->arrays.count; k++)
+  for (int k = 0; k < u->arrays.count && e->plan->law->neighbours <= MOST_KEPT; k++)
     c_text_add(e->out, "    double at_read_%d;\n", k);
   for (int k = 0; k < p->slot_count; k++)
     c_text_add(e->out, "    double at_slot_%d;\n", k);

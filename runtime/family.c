@@ -313,12 +313,6 @@ static void new_blocks(const sweep *w, family *f) {
   }
 }
 
-static void free_arrays(double **arrays, int count) {
-  for (int k = 0; k < count; k++)
-    free(arrays[k]);
-  free(arrays);
-}
-
 static void free_own(sweep *w) {
   family *f = family_of(w);
   for (int k = 0; k < w->block_count; k++) {
@@ -328,14 +322,12 @@ static void free_own(sweep *w) {
     free(f->blocks[k].bond_link);
     free(f->blocks[k].observed);
   }
-  free_arrays(f->new_field, w->law->field_count);
-  if (f->link) free_arrays(f->link, w->law->link_count);
-  if (f->bond_link) free_arrays(f->bond_link, w->law->bond_link_count);
+  free(f->new_field);
+  free(f->link);
+  free(f->bond_link);
   family_windows_free(w, f->windows);
   family_pairs_free(w, f->pairs);
-  free_arrays(f->observed, 1 + w->law->output_count);
-  for (int v = 0; v < SHAPE_PLANES; v++)
-    free(f->shape[v]);
+  free(f->observed);
   free(f->blocks);
   free(f->uniforms);
   free(f);

@@ -136,13 +136,11 @@ void family_pairs_free(const sweep *w, family_pairs *p) {
     free(p->blocks[k].new_filled);
     free(p->blocks[k].settled);
     free(p->blocks[k].constant_sum);
-    pair_sums_free(w, &p->blocks[k].sums);
+    pair_sums_free(&p->blocks[k].sums);
   }
   pair_marks_free(w, p->old_filled);
   pair_marks_free(w, p->new_filled);
   pair_marks_free(w, p->settled);
-  for (int k = 0; k < w->law->constant_sum_count; k++)
-    free(p->constant_sum[k]);
   free(p->constant_sum);
   free(p->unusual);
   free(p->held_near);

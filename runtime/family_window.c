@@ -146,18 +146,10 @@ family_window *family_windows(sweep *w, const family *f) {
   return v;
 }
 
-static void free_rows(double **rows_of, int count) {
-  for (int k = 0; k < count; k++)
-    free(rows_of[k]);
-  free(rows_of);
-}
-
 void family_windows_free(const sweep *w, family_window *v) {
-  const pl_law *law = w->law;
   for (int k = 0; v && k < w->block_count; k++) {
-    free(v[k].memory);
-    free_rows(v[k].field, law->field_count);
-    free_rows(v[k].observed, 1 + law->output_count);
+    free(v[k].field);
+    free(v[k].observed);
     free(v[k].link);
     free(v[k].bond_link);
     free(v[k].offset);

@@ -20,9 +20,7 @@ pair_sums pair_sums_new(sweep *w, const sweep_block *b, int reach) {
   return s;
 }
 
-void pair_sums_free(const sweep *w, pair_sums *s) {
-  for (int k = 0; k < w->law->sum_count && s->sum; k++)
-    free(s->sum[k]);
+void pair_sums_free(pair_sums *s) {
   free(s->sum);
   free(s->at_run);
 }

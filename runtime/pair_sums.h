@@ -14,7 +14,7 @@ typedef struct pair_sums { /* of one thread */
 
 /* `reach`: rows that a bond reaches ahead, at most. */
 pair_sums pair_sums_new(sweep *w, const sweep_block *b, int reach);
-void pair_sums_free(const sweep *w, pair_sums *s);
+void pair_sums_free(pair_sums *s);
 /* Points at the sums of a run that begins at that site. */
 double *const *pair_sums_at(const sweep *w, pair_sums *s, long start);
 /* After a pass: forgets what was for the particles of others. */

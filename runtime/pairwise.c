@@ -410,13 +410,6 @@ static void compose_flags(sweep *w, pairwise *p) {
   free(read);
 }
 
-static void free_flags(const sweep *w, pairwise *p) {
-  for (int r = w->lattice->row_count - 1; r >= 0; r--)
-    if (r < 2 || p->flags[r] != p->flags[r - 2]) free(p->flags[r]);
-  free(p->flags);
-  free(p->some);
-}
-
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
   const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
@@ -433,17 +426,12 @@ static void free_own(sweep *w) {
   pairwise *p = own(w);
   for (int k = 0; k < w->block_count; k++) {
     pairwise_block *b = &p->blocks[k];
-    free(b->buffer[0].values);
-    free(b->buffer[1].values);
-    free(b->seam.values);
-    free(b->fields);
-    free(b->observed);
     free(b->pointers);
     free(b->parameters);
   }
   free(p->blocks);
-  free(p->uniforms);
-  free_flags(w, p);
+  free(p->flags);
+  free(p->some);
   free(p);
 }
 

@@ -16,13 +16,8 @@
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 double *sweep_doubles(sweep *w, long count) {
-  size_t bytes = (size_t)count * sizeof(double);
-  bytes = (bytes + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
-  double *p = aligned_alloc(PL_ALIGNMENT, bytes ? bytes : PL_ALIGNMENT);
-  if (!p) must_alloc(SIZE_MAX); /* ends the program with the usual message */
-  memset(p, 0, bytes ? bytes : PL_ALIGNMENT);
-  w->bytes += bytes;
-  return p;
+  w->bytes += (size_t)count * sizeof(double);
+  return pool_doubles(w->memory, count);
 }
 
 /* Part of every row that holds sites, widened to whole vectors. */
@@ -96,6 +91,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
                  int threads, bool ledger, bool forces) {
   sweep *w = must_calloc(1, sizeof *w);
   const bool families = law->kind == PL_STATE;
+  w->memory = pool_new();
   assert(law->dimensions == lattice->dimensions);
   w->lattice = lattice;
   w->law = law;
@@ -127,32 +123,12 @@ void sweep_add_gravity(sweep *w) {
 void sweep_free(sweep *w) {
   if (!w) return;
   w->engine.free(w);
-  for (int k = 0; k < w->block_count; k++)
-    free(w->blocks[k].next);
-  for (int d = 0; d < w->dof; d++) {
-    free(w->displacement[d]);
-    free(w->velocity[d]);
-    free(w->force[d]);
-  }
-  for (int f = 0; f < w->law->field_count; f++)
-    free(w->field[f]);
   free(w->field);
-  free(w->dissipated_state);
-  free(w->dissipated_rate);
-  free(w->row_kinetic);
-  free(w->row_stored);
-  free(w->row_mass);
-  free(w->row_pending);
-  free(w->row_internal);
-  free(w->row_internal_pending);
-  free(w->row_gravity);
   free(w->row_stuck);
-  free(w->weight);
-  free(w->relative_mass);
-  free(w->mobility);
   free(w->begin);
   free(w->count);
   free(w->blocks);
+  pool_free(w->memory);
   free(w);
 }
 

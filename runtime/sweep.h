@@ -11,6 +11,7 @@
 #define PERILAT_RUNTIME_SWEEP_H
 
 #include "runtime/kernel.h"
+#include "runtime/pool.h"
 #include "runtime/rows.h"
 
 enum { SWEEP_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
@@ -87,6 +88,7 @@ struct sweep {
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */
   int block_count;
   sweep_block *blocks;
+  pool *memory; /* of the arrays */
   size_t bytes; /* held altogether */
   sweep_engine engine;
 };

@@ -11,7 +11,7 @@
 #define INDEPENDENT _Pragma("GCC ivdep")
 #endif
 
-/* `count` zeros, aligned, counted in w->bytes. */
+/* `count` zeros, aligned, counted in w->bytes; they go with the sweep. */
 double *sweep_doubles(sweep *w, long count);
 
 /* First site of the part of a row that holds sites. */
