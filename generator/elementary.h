@@ -268,13 +268,13 @@ PL_ELEMENTARY double pl_cbrt(double x) {
 PL_ELEMENTARY double pl_inverse_root(double x) {
   const double halved = pl_from_bits(UINT64_C(0x5fe6eb50c7b537a9) - (pl_to_bits(x) >> 1));
   const double guess = ((x >= 0x1p-1022) & (x < PL_INFINITY)) ? halved : PL_NAN;
-  const double e = pl_fma(-x * guess, guess, 1.0);
+  const double e = pl_fma(-(x * guess), guess, 1.0);
   double p = 0x1.3fb9f447738bep-2;
   p = pl_fma(p, e, 0x1.814ff73d7fbbep-2);
   p = pl_fma(p, e, 0x1.0000591eb5bddp-1);
   p = pl_fma(p, e, 0x1.ffffe6d78db8bp-1);
   const double near = guess * p;
-  const double rest = pl_fma(-x * near, near, 1.0);
+  const double rest = pl_fma(-(x * near), near, 1.0);
   return pl_fma(near * rest, pl_fma(0.375, rest, 0.5), near);
 }
 
