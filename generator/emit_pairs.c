@@ -171,14 +171,15 @@ static void loops_free(pair_loops *l) {
   free(l->to_keep);
 }
 
-/* Marks what these nodes need; of choices by expected conditions, with `usual`, only what is expected. The caller frees it. */
-static unsigned char *needed_for(const emitter *e, const ir_node *nodes, int count, bool usual) {
+/* Marks what these nodes need; of choices by what is relied on only what is chosen then. The caller frees it. */
+static unsigned char *needed_for(const emitter *e, const ir_node *nodes, int count,
+                                 unsigned relies) {
   unsigned char *mask = must_calloc((size_t)e->node_count + 1, 1);
   for (int k = 0; k < count; k++)
     mask[nodes[k]] = 1;
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     ir_node operand[3];
-    const int operands = mask[n] ? stages_operands(e, n, usual, operand) : 0;
+    const int operands = mask[n] ? stages_operands(e, n, relies, operand) : 0;
     for (int k = 0; k < operands; k++)
       mask[operand[k]] = 1;
   }
@@ -248,9 +249,9 @@ static void write_sums(emitter *e, const pair_loops *l) {
 /* The first loop, or the only one. */
 static void write_values(emitter *e, const pair_loops *l, bool usual, bool quiet) {
   unsigned char *whole = e->needed;
-  e->needed = l->one ? needed_for(e, l->node, l->count, usual)
-                     : needed_for(e, l->to_keep, l->kept_count, usual);
   e->relies = usual ? SURE_OF_EXPECTED : SURE_OF_NOTHING;
+  e->needed = l->one ? needed_for(e, l->node, l->count, e->relies)
+                     : needed_for(e, l->to_keep, l->kept_count, e->relies);
   e->quiet = quiet;
   emit_family_loop(e, "      ");
   emit_lines(e);
@@ -364,7 +365,7 @@ static void write_second(emitter *e, const pair_loops *l) {
   unsigned char *whole = e->needed;
   write_constants(e, l);
   if (l->one) return;
-  e->needed = needed_for(e, l->node + roots, l->count - roots, false);
+  e->needed = needed_for(e, l->node + roots, l->count - roots, SURE_OF_NOTHING);
   emit_family_loop(e, "      ");
   emit_lines(e);
   for (int k = 0; k < l->kept_count; k++)

@@ -243,15 +243,18 @@ static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_no
   const ir_node change = ir_make(g, IR_ABS, growth, IR_NONE, IR_NONE);
   const ir_node near = ir_expect(g, ir_make(g, IR_LT, change, ir_constant(g, 1.0 / 128), IR_NONE));
   const ir_node square = ir_add(g, one, growth), shorter = shortening_near(g, growth);
-  const ir_node root = ir_make(g, IR_INVERSE_ROOT, square, IR_NONE, IR_NONE);
-  const ir_node rough = ir_sub(g, ir_mul(g, square, root), one);
+  /* of a bond that is nearly closed 1 + growth would have no digit left */
+  const ir_node far_square = ir_mul(g, dot_of(g, dimensions, k->chord, k->chord), per_square);
+  const ir_node root = ir_make(g, IR_INVERSE_ROOT, far_square, IR_NONE, IR_NONE);
+  const ir_node ratio = ir_mul(g, far_square, root), rough = ir_sub(g, ratio, one);
   const ir_node far_growth = ir_sub(g, growth, ir_mul(g, rough, rough));
   const ir_node far = ir_mul(g, ir_constant(g, 0.5), far_growth);
   const ir_node quick = ir_sub(g, growth, ir_mul(g, shorter, square));
   k->stretch = named(g, ir_select(g, near, quick, far), "stretch");
   const ir_node per_near = ir_sub(g, per_s, ir_mul(g, per_s, shorter));
   k->per_length = named(g, ir_select(g, near, per_near, ir_mul(g, per_s, root)), "per_length");
-  k->length = named(g, ir_add(g, s, ir_mul(g, s, k->stretch)), "length");
+  const ir_node near_length = ir_add(g, s, ir_mul(g, s, quick));
+  k->length = named(g, ir_select(g, near, near_length, ir_mul(g, s, ratio)), "length");
 }
 
 /* Both ends compute the same bits: exchanging them changes signs only. */

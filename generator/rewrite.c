@@ -111,20 +111,32 @@ static bool is_of_particle(const ir *g, ir_node n) {
   return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
 }
 
+/* a/b by 1/b, with what rounding left put right: the bits of the division (Markstein 1990), so that x/x is 1 and n of n
+   broken bonds are all of them. */
+static ir_node quotient_by_reciprocal(ir *g, ir_node above, ir_node below) {
+  const ir_node reciprocal = ir_div(g, ir_constant(g, 1), below);
+  const ir_node rough = ir_mul(g, above, reciprocal);
+  const ir_node left = ir_make(g, IR_FMA, ir_neg(g, rough), below, above);
+  return ir_make(g, IR_FMA, left, reciprocal, rough);
+}
+
 /* Toward each neighbour, by a value of the particle: (p*x)/q = (p/q)*x divides once. */
 static ir_node quotient_by_particle(ir *g, ir_node above, ir_node below) {
   for (int k = 0; k < 2 && ir_operation(g, above) == IR_MUL; k++)
     if (is_of_particle(g, ir_operand(g, above, k)))
       return ir_mul(g, ir_div(g, ir_operand(g, above, k), below), ir_operand(g, above, 1 - k));
-  return ir_mul(g, above, ir_div(g, ir_constant(g, 1), below));
+  return quotient_by_reciprocal(g, above, below);
 }
 
 static ir_node reciprocal_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
   if (ir_operation(g, old) != IR_DIV || is_uniform(g, old)) return again(g, old, operand);
   ir_node below = ir_operand(g, old, 1);
-  if (is_uniform(g, below) || r->shared[below] || (r->lasting[below] && !r->lasting[old]))
+  const bool lasts = !is_uniform(g, below) && r->lasting[below] && !r->lasting[old];
+  if (lasts && is_of_particle(g, old)) return quotient_by_reciprocal(g, operand[0], operand[1]);
+  if (is_uniform(g, below) || r->shared[below])
     return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
+  if (lasts) return quotient_by_reciprocal(g, operand[0], operand[1]);
   if (is_of_particle(g, below) && !is_of_particle(g, old))
     return quotient_by_particle(g, operand[0], operand[1]);
   return again(g, old, operand);

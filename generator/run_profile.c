@@ -88,7 +88,7 @@ static void print_parts(const run *r, double seconds) {
       print_part(name, p->pass[number], seconds);
       between -= p->pass[number];
     }
-    print_part("law, between passes", between, seconds);
+    print_part("law, between passes", fmax(between, 0), seconds);
   }
   print_part("rest", seconds - known, seconds);
 }
@@ -108,8 +108,8 @@ void print_profile(const run *r, double seconds, long steps) {
   const rows *g = simulation_rows(r->simulation, 0);
   const int threads = simulation_threads(r->simulation);
   if (steps <= 0 || seconds <= 0) return;
-  printf("  profile    %.2f s, %d thread%s, by the clock of the first\n", seconds, threads,
-         threads == 1 ? "" : "s");
+  printf("  profile    %.2f s, %d thread%s\n", seconds, threads,
+         threads == 1 ? "" : "s, their mean");
   print_parts(r, seconds);
   const double each = seconds / (double)steps / (double)g->particle_count;
   const double bytes = bytes_of_step(r), operations = operations_of_step(r), peak = triad(threads);

@@ -102,9 +102,9 @@ const char *toolchain_flags(void) {
   char processor[8192];
   read_processor(processor, sizeof processor);
   if (!strstr(processor, " avx512f")) return COMMON_FLAGS;
-  return strstr(processor, "GenuineIntel")
-             ? COMMON_FLAGS " -mprefer-vector-width=512 -mtune=icelake-server"
-             : COMMON_FLAGS " -mprefer-vector-width=512";
+  return strstr(processor, "GenuineIntel") ? COMMON_FLAGS
+             " -mprefer-vector-width=512 -mtune=icelake-server"
+                                           : COMMON_FLAGS " -mprefer-vector-width=512";
 }
 
 /* --- running it ------------------------------------------------------------------------------- */
@@ -112,6 +112,7 @@ const char *toolchain_flags(void) {
 typedef struct arguments {
   char *words[MOST_ARGUMENTS + 1]; /* malloc'ed */
   int count;
+  bool too_many; /* nothing is started */
 } arguments;
 
 static char *copy_of(const char *text) {
@@ -119,7 +120,10 @@ static char *copy_of(const char *text) {
 }
 
 static void add_word(arguments *a, const char *word) {
-  if (a->count < MOST_ARGUMENTS) a->words[a->count++] = copy_of(word);
+  if (a->count < MOST_ARGUMENTS)
+    a->words[a->count++] = copy_of(word);
+  else
+    a->too_many = true;
 }
 
 /* All words of `text`, but not `less`. */
@@ -144,7 +148,8 @@ static pid_t start(arguments *a, const char *log) {
   posix_spawn_file_actions_adddup2(&actions, 1, 2);
   a->words[a->count] = NULL;
   pid_t child;
-  const int failed = posix_spawnp(&child, a->words[0], &actions, NULL, a->words, environ);
+  const bool failed =
+      a->too_many || posix_spawnp(&child, a->words[0], &actions, NULL, a->words, environ) != 0;
   posix_spawn_file_actions_destroy(&actions);
   return failed ? 0 : child;
 }

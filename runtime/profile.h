@@ -1,5 +1,5 @@
-/* Where the time of a run goes, by the clock of its first thread: what that thread works on, and how long it waits for the
-   others. Parts do not overlap, so that they add up to what the run took but for the little that is in none. */
+/* Where the time of a run goes, a mean over its threads: what they work on, and how long they wait for each other. Parts do
+   not overlap, so that they add up to what the run took but for the little that is in none. */
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
@@ -24,7 +24,8 @@ typedef enum profile_part {
 typedef struct profile {
   double part[PROFILE_PART_COUNT]; /* s */
   double pass[SWEEP_TIMED_PASSES]; /* s: of a law of families, pass by pass */
-  double worked;                   /* s: by the first thread, or by one for all */
+  double elapsed;                  /* s: of the team, work and waiting */
+  double sampled, loaded;          /* s: by one thread for all: samples; loads and monitors */
 } profile;
 
 extern const char *const profile_names[PROFILE_PART_COUNT];

@@ -392,7 +392,7 @@ static void take_sample(simulation *s) {
 static void record_sample(simulation *s) {
   const double begun = s->profile ? monotonic_seconds() : 0;
   take_sample(s);
-  if (s->profile) s->profile->part[PROFILE_SAMPLING] += monotonic_seconds() - begun;
+  if (s->profile) s->profile->sampled += monotonic_seconds() - begun;
 }
 
 const deck_stop *simulation_stopped_by(const simulation *s) {
@@ -470,25 +470,6 @@ static void after_observing(simulation *s) {
 
 void simulation_measure(simulation *s, profile *p) {
   s->profile = p;
-  s->state->timed = p != NULL;
-}
-
-/* What the first thread did of a stage. */
-static void note_block(profile *p, const sweep_block *b, bool observing, double seconds) {
-  p->worked += seconds;
-  if (observing) {
-    p->part[PROFILE_SAMPLING] += seconds;
-    return;
-  }
-  p->part[PROFILE_PARTICLES] += b->moving;
-  p->part[PROFILE_LAW] += seconds - b->moving;
-  for (int k = 0; k < SWEEP_TIMED_PASSES; k++)
-    p->pass[k] += b->passes[k];
-}
-
-static void forget_times(sweep_block *b) {
-  b->moving = 0;
-  memset(b->passes, 0, sizeof b->passes);
 }
 
 /* Tasks of the team: the stages of a step, then those of observing. */
@@ -497,15 +478,15 @@ static void do_stage(void *of, int task, int block) {
   const sweep_engine *engine = &s->state->engine;
   const bool observing = task >= engine->step_stages;
   const int stage = observing ? task - engine->step_stages : task;
-  const bool measured = s->profile && omp_get_thread_num() == 0;
   sweep_block *b = &s->state->blocks[block];
-  const double begun = measured ? monotonic_seconds() : 0;
-  if (s->profile) forget_times(b);
+  const double begun = s->profile ? monotonic_seconds() : 0;
   (observing ? engine->observe : engine->step)(s->state, stage, block);
-  if (measured) note_block(s->profile, b, observing, monotonic_seconds() - begun);
+  if (s->profile) *(observing ? &b->observing : &b->stepping) += monotonic_seconds() - begun;
 }
 
-static int next_task(const simulation *s) {
+/* Blocks keep the times of what they do in steps only. */
+static int next_task(simulation *s) {
+  s->state->timed = s->profile && !s->observe;
   return s->observe ? s->state->engine.step_stages : s->go_on ? 0 : TEAM_END;
 }
 
@@ -517,13 +498,9 @@ static int after_stage(void *of, int task) {
   const bool stepped = task == engine->step_stages - 1,
              observed = task == engine->step_stages + engine->observe_stages - 1;
   if (!stepped && !observed) return task + 1;
-  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->part[PROFILE_SAMPLING] : 0;
+  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->sampled : 0;
   (stepped ? after_step : after_observing)(s);
-  if (p) {
-    const double alone = monotonic_seconds() - begun;
-    p->worked += alone;
-    p->part[PROFILE_LOADS] += alone - (p->part[PROFILE_SAMPLING] - sampled);
-  }
+  if (p) p->loaded += monotonic_seconds() - begun - (p->sampled - sampled);
   return next_task(s);
 }
 
@@ -548,10 +525,7 @@ static void begin(simulation *s) {
   if (!s->observe) record_sample(s);
 }
 
-/* What the first thread does not work, it waits. */
 static void run_team(simulation *s) {
-  profile *p = s->profile;
-  const double begun = p ? monotonic_seconds() : 0, worked = p ? p->worked : 0;
   const team_work work = {.of = s, .block = do_stage, .next = after_stage};
   team_begin(s->team, next_task(s));
 #pragma omp parallel num_threads(s->state->block_count)
@@ -560,7 +534,26 @@ static void run_team(simulation *s) {
     team_join(s->team, &work);
     sweep_leave(environment);
   }
-  if (p) p->part[PROFILE_WAITING] += monotonic_seconds() - begun - (p->worked - worked);
+}
+
+/* Of all blocks, a thread's share; when it does not work, it waits. */
+static void sum_profile(profile *p, const sweep *w) {
+  const double share = 1.0 / w->block_count;
+  double *part = p->part;
+  part[PROFILE_LAW] = part[PROFILE_PARTICLES] = 0;
+  part[PROFILE_SAMPLING] = p->sampled;
+  part[PROFILE_LOADS] = p->loaded;
+  memset(p->pass, 0, sizeof p->pass);
+  for (int k = 0; k < w->block_count; k++) {
+    const sweep_block *b = &w->blocks[k];
+    part[PROFILE_LAW] += share * (b->stepping - b->moving);
+    part[PROFILE_PARTICLES] += share * b->moving;
+    part[PROFILE_SAMPLING] += share * b->observing;
+    for (int n = 0; n < SWEEP_TIMED_PASSES; n++)
+      p->pass[n] += share * b->passes[n];
+  }
+  part[PROFILE_WAITING] = p->elapsed - part[PROFILE_LAW] - part[PROFILE_PARTICLES] -
+                          part[PROFILE_SAMPLING] - part[PROFILE_LOADS];
 }
 
 step_status simulation_advance(simulation *s, long steps,
@@ -570,8 +563,13 @@ step_status simulation_advance(simulation *s, long steps,
   s->interrupted = interrupted;
   s->go_on = s->at.step < s->until && !(interrupted && *interrupted);
   s->observe = false;
+  const double begun = s->profile ? monotonic_seconds() : 0;
   if (!s->at.begun) begin(s);
   run_team(s);
+  if (s->profile) {
+    s->profile->elapsed += monotonic_seconds() - begun;
+    sum_profile(s->profile, s->state);
+  }
   if (s->at.status == STEP_OK && s->at.step == s->step_count) s->at.status = STEP_END;
   return (step_status)s->at.status;
 }

@@ -44,7 +44,7 @@ struct simulation {
   double *parameters;    /* the caller's; those of random fields become their mean */
   random_fields *fields; /* NULL without */
   sweep *state;
-  team *team; /* of a block each */
+  team *team; /* of the threads; each has a block of the sweep */
   loads *loads;
   monitors *monitors;
   relaxation *relaxation; /* NULL: a dynamic run */

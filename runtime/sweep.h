@@ -22,8 +22,9 @@ typedef struct sweep_block { /* what one thread works on */
   long bad_site;             /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
-  /* s spent on moving particles, and on the passes of a law of families, since set to 0; only kept when `timed` */
-  double moving, passes[SWEEP_TIMED_PASSES];
+  /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law of families, and on
+     samples; only kept when `timed` */
+  double stepping, moving, passes[SWEEP_TIMED_PASSES], observing;
 } sweep_block;
 
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
@@ -65,7 +66,7 @@ struct sweep {
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
   bool forces;    /* somebody looks at the forces of every step */
-  bool timed;     /* blocks keep the time that moving particles takes */
+  bool timed;     /* blocks keep the times of their parts of a step */
   int dimensions, dof;
   double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
   double *relative_mass;   /* [size] of a particle, over the mean; NULL where all are alike */

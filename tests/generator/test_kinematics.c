@@ -166,8 +166,6 @@ static void small_displacements_lose_nothing(void **state) {
   }
 }
 
-/* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord turned by about
-   atan(1/16), ends by about half a turn. */
 /* The bond of a large family: 1/length, stretch, length. */
 static void evaluate_near(const bond_state *b, double *value) {
   ir *g = ir_new();
@@ -214,6 +212,24 @@ static void bonds_of_large_families_lose_nothing(void **state) {
   assert_true(near > 1000 && far > 1000);
 }
 
+/* Nearly closed: 1/length has all its digits as long as the chord has any. */
+static void closing_bonds_keep_their_direction(void **state) {
+  (void)state;
+  for (double left = 0x1p-2; left >= 0x1p-48; left /= 2) {
+    bond_state b = {.chord = {0.5, 0.25}};
+    b.u[1][0] = (left - 1) * b.chord[0];
+    b.u[1][1] = (left - 1) * b.chord[1];
+    const double length = left * hypot(0.5, 0.25);
+    double value[3];
+    evaluate_near(&b, value);
+    assert_near(value[0] * length, 1, 8 * 0x1p-52);
+    assert_near(value[1], left - 1, 8 * 0x1p-52);
+    assert_near(value[2] / length, 1, 8 * 0x1p-52);
+  }
+}
+
+/* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord turned by about
+   atan(1/16), ends by about half a turn. */
 static void expected_and_far_rotations_meet(void **state) {
   (void)state;
   int near = 0, wrapped_ends = 0;
@@ -347,6 +363,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(small_displacements_lose_nothing),
       cmocka_unit_test(bonds_of_large_families_lose_nothing),
+      cmocka_unit_test(closing_bonds_keep_their_direction),
       cmocka_unit_test(expected_and_far_rotations_meet),
       cmocka_unit_test(rates_are_time_derivatives),
       cmocka_unit_test(rigid_rotation_gives_nothing),

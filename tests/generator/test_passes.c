@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <float.h>
 
+#include "generator/interpret.h"
 #include "generator/rewrite.h"
 #include "law_text.h"
 
@@ -459,19 +460,20 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
   plan_dump(t->plan, out);
   plan_dump_ir(t->plan, out);
   fclose(out);
-  static const char *const expected[] = {"kernel of mplm_bilinear: micropolar bond",
-                                         "pass rows\n",
-                                         "pass rows_observe\n",
-                                         "pass tangent\n",
-                                         "pass bounds\n",
-                                         " EA\n",
-                                         "writes force x, force y, end moment i, end moment j, omega",
-                                         "dissipated by rates",
-                                         "stored energy",
-                                         "lower bound of alpha3",
-                                         "div %",
-                                         "; eps_mp (line ",
-                                         "end moment i = %"};
+  static const char *const expected[] = {
+      "kernel of mplm_bilinear: micropolar bond",
+      "pass rows\n",
+      "pass rows_observe\n",
+      "pass tangent\n",
+      "pass bounds\n",
+      " EA\n",
+      "writes force x, force y, end moment i, end moment j, omega",
+      "dissipated by rates",
+      "stored energy",
+      "lower bound of alpha3",
+      "div %",
+      "; eps_mp (line ",
+      "end moment i = %"};
   for (size_t k = 0; k < sizeof expected / sizeof *expected; k++)
     if (!strstr(text, expected[k])) fail_msg("the dump does not say `%s`:\n%s", expected[k], text);
   free(text);
@@ -606,6 +608,42 @@ static void choices_divide_once(void **state) {
   ir_free(g);
 }
 
+/* a/b by its reciprocal, put right: the bits of a division. */
+static ir_node by_reciprocal(ir *g, ir_node above, ir_node below) {
+  const ir_node reciprocal = ir_div(g, ir_constant(g, 1), below),
+                rough = ir_mul(g, above, reciprocal);
+  return ir_make(g, IR_FMA, ir_make(g, IR_FMA, ir_neg(g, rough), below, above), reciprocal, rough);
+}
+
+static double value_of(const ir *g, ir_node n, const double *a, const double *b) {
+  const double *fields[] = {a, b};
+  const interpreter_inputs in = {.values = {[IR_FROM_FIELD] = fields}};
+  double value, *out[] = {&value};
+  interpreter *p = interpreter_new(g, &n, 1);
+  interpreter_run(p, &in, 1, out);
+  interpreter_free(p);
+  return value;
+}
+
+/* Also where n (1/n) is not 1, as for 49, and where a/b is between two numbers. */
+static void quotients_keep_their_bits(void **state) {
+  (void)state;
+  long rough = 0;
+  for (int n = 1; n <= 128; n++)
+    for (int a = 0; a <= n; a++) {
+      ir *g = ir_new();
+      const ir_node x = input(g, 0, ON_NEIGHBOUR), d = input(g, 1, ON_PARTICLE);
+      const ir_node quotient = ir_div(g, x, d);
+      ir_node out;
+      rewrite_reciprocals(g, &quotient, 1, &out);
+      const double above[1] = {a}, below[1] = {n};
+      assert_true(value_of(g, out, above, below) == (double)a / n);
+      rough += a * (1.0 / n) != (double)a / n;
+      ir_free(g);
+    }
+  assert_true(rough > 100);
+}
+
 static void neighbours_share_the_reciprocal_of_a_particle(void **state) {
   (void)state;
   ir *g = ir_new();
@@ -614,7 +652,7 @@ static void neighbours_share_the_reciprocal_of_a_particle(void **state) {
   const ir_node roots[] = {ir_div(g, x, q), ir_div(g, p, q)};
   ir_node out[2];
   rewrite_reciprocals(g, roots, 1, out);
-  assert_int_equal(out[0], ir_mul(g, x, ir_div(g, one, q)));
+  assert_int_equal(out[0], by_reciprocal(g, x, q));
   const ir_node product = ir_div(g, ir_mul(g, p, x), q);
   rewrite_reciprocals(g, &product, 1, out);
   assert_int_equal(out[0], ir_mul(g, roots[1], x));
@@ -623,7 +661,7 @@ static void neighbours_share_the_reciprocal_of_a_particle(void **state) {
   const ir_node degree = ir_make(g, IR_FAMILY_SUM, one, IR_NONE, IR_NONE); /* lasts, p does not */
   const ir_node mean = ir_div(g, p, degree);
   rewrite_reciprocals(g, &mean, 1, out);
-  assert_int_equal(out[0], ir_mul(g, p, ir_div(g, one, degree)));
+  assert_int_equal(out[0], by_reciprocal(g, p, degree));
   ir_free(g);
 }
 
@@ -663,6 +701,7 @@ int main(void) {
       cmocka_unit_test(uniform_factors_are_joined),
       cmocka_unit_test(the_larger_of_two_keeps_its_nan),
       cmocka_unit_test(choices_divide_once),
+      cmocka_unit_test(quotients_keep_their_bits),
       cmocka_unit_test(neighbours_share_the_reciprocal_of_a_particle),
       cmocka_unit_test(zero_and_reciprocal_rewrites),
   };
