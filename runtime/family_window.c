@@ -58,7 +58,7 @@ static int rows_kept(const family *f, const pl_program *program) {
 }
 
 static bool suits(const sweep *w, const family *f) {
-  enum { ROWS_TO_HALO = 8 }; /* fewer rows of a block: too much would be done twice */
+  enum { ROWS_TO_HALO = 4 }; /* fewer rows of a block: too much would be done twice */
   enum {
     MOST_NEIGHBOURS = 39
   }; /* of more, links fill no cache, and later passes may read new fields */
