@@ -188,6 +188,10 @@ ir_node ir_expect(ir *g, ir_node condition) {
 bool ir_is_expected(const ir *g, ir_node n) {
   return at(g, n)->expected;
 }
+
+bool ir_is_expected_choice(const ir *g, ir_node n) {
+  return ir_operation(g, n) == IR_SELECT && ir_is_expected(g, ir_operand(g, n, 0));
+}
 bool ir_is_logical(const ir *g, ir_node n) {
   return operations[at(g, n)->op].logical;
 }

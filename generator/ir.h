@@ -107,6 +107,8 @@ bool ir_is_of_class(const ir *g, ir_node n);
 /* Says that a condition holds nearly always, so that what is chosen where it does not need not be fast. Returns it. */
 ir_node ir_expect(ir *g, ir_node condition);
 bool ir_is_expected(const ir *g, ir_node n);
+/* Chooses by such a condition. */
+bool ir_is_expected_choice(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
 bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
 const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */

@@ -523,11 +523,6 @@ int program_constant_sums(const ir *g, const family_program *p, const segment *b
   return count;
 }
 
-static bool is_expected_choice(const ir *g, ir_node n) {
-  return ir_operation(g, n) == IR_SELECT && ir_place(g, n) > ON_BODY &&
-         ir_is_expected(g, ir_operand(g, n, 0));
-}
-
 /* Marks the conditions that the segment expects to hold; false without one. */
 static bool mark_expected(const ir *g, const segment *a, unsigned char *conditions) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
@@ -535,7 +530,7 @@ static bool mark_expected(const ir *g, const segment *a, unsigned char *conditio
   for (int k = 0; k < a->root_count; k++)
     ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g); n++) {
-    if (!needed[n] || !is_expected_choice(g, n)) continue;
+    if (!needed[n] || ir_place(g, n) <= ON_BODY || !ir_is_expected_choice(g, n)) continue;
     conditions[ir_operand(g, n, 0)] = 1;
     any = true;
   }

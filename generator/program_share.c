@@ -297,8 +297,11 @@ static bool factors_of_force(builder *b, const segment_root *r, term_list *t) {
   t->count = 0;
   if (ir_operation(b->g, r->node) != IR_FAMILY_SUM) return false;
   if (!add_terms(b, ir_operand(b->g, r->node, 0), false, 1, t)) return false;
-  for (int k = 0; k < t->count; k++)
+  for (int k = 0; k < t->count; k++) {
     if (t->sign[k] < 0) return false;
+    for (int n = 0; n < k; n++) /* of terms it is asked whether they are there, not how often */
+      if (t->term[n] == t->term[k]) return false;
+  }
   return true;
 }
 

@@ -43,8 +43,7 @@ enum { SURE_OF_ALL = SURE_OF_EXPECTED | SURE_OF_UNHELD };
 /* --- lines and their operands ----------------------------------------------------------------- */
 
 bool stages_is_expected_choice(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_SELECT &&
-         ir_is_expected(e->graph, ir_operand(e->graph, n, 0)) && !emit_is_uniform(e, n);
+  return ir_is_expected_choice(e->graph, n) && !emit_is_uniform(e, n);
 }
 
 bool stages_is_held_choice(const emitter *e, ir_node n) {
