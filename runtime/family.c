@@ -247,13 +247,16 @@ static void observe(sweep *w, int stage, int block) {
     observe_rows(w, block);
 }
 
-static void output_values(sweep *w, int output, double *values) {
-  const family *f = family_of(w);
-  const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
-  for (int stage = 0; stage < program_stages(f, &w->law->observe); stage++)
+static void find_outputs(sweep *w) {
+  for (int stage = 0; stage < program_stages(family_of(w), &w->law->observe); stage++)
     for (int b = 0; b < w->block_count; b++)
       run_program(w, &w->law->observe, stage, b);
-  memcpy(values, f->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
+}
+
+static void output_values(sweep *w, int output, double *values) {
+  const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
+  memcpy(values, family_of(w)->observed[1 + output],
+         count * (size_t)w->lattice->size * sizeof *values);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -365,6 +368,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
                         .turn = turn,
                         .fields_set = fields_set,
                         .observe = observe,
+                        .find_outputs = find_outputs,
                         .output = output_values,
                         .free = free_own,
                         .keeps_links = f->windows == NULL,
