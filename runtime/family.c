@@ -216,7 +216,7 @@ static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0)
+    if (w->lattice->present[q] && (w->lattice->bonds[q] || rows_degree(w->lattice, q) > 0))
       sum += family_of(w)->observed[0][q];
   return sum;
 }
