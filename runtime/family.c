@@ -126,7 +126,7 @@ static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
     bad |= w->mobility
                ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
                : kick(count, factor, w->decay, w->limit[d], f, v, next);
-    bad |= sweep_push(w, row, d, next);
+    bad |= sweep_push(w, whole_row(w, row), d, next);
   }
   return bad;
 }
@@ -144,13 +144,13 @@ static void move_rows(sweep *w, int block, int first, int last) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   for (int row = first; row < last; row++) {
     if (kick_row(w, b, row, true)) {
-      sweep_note_bad(w, b, row);
+      sweep_note_bad(w, b, row, 0);
       continue;
     }
     for (int d = 0; d < w->dof && w->ledger; d++)
       w->row_internal[row] += work_over(w, row, d, w->velocity[d] + sweep_start(w, row)) +
                               work_over(w, row, d, b->next + d * w->lattice->pitch);
-    sweep_drift(w, b, row);
+    sweep_drift(w, b, whole_row(w, row));
   }
   if (w->timed) b->moving += monotonic_seconds() - begun;
 }

@@ -20,6 +20,7 @@ typedef struct pairwise_block { /* what one thread works with */
   double *observed; /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
   const double **parameters; /* [varying] for strips */
+  char apart[SWEEP_APART];
 } pairwise_block;
 
 typedef struct pairwise {
@@ -110,11 +111,10 @@ static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, 
   kernel(w->law, pairwise_uniforms(w, direction), &s);
 }
 
-/* Forces of the bonds that a row owns, from place `first` of its span on. */
-static void evaluate_part(sweep *w, pairwise_block *b, int row, long first, long count,
-                          const row_forces *buffer) {
+/* Forces of the bonds that the sites of a part own. */
+static void evaluate_part(sweep *w, pairwise_block *b, row_part at, const row_forces *buffer) {
   for (int k = 0; k < w->lattice->directions; k++)
-    evaluate_strip(w, b, row, k, first, count, buffer);
+    evaluate_strip(w, b, at.row, k, at.first, at.end - at.first, buffer);
 }
 
 /* The same on a copy of the fields: forces of the present state without a trace. */
@@ -188,32 +188,36 @@ static inline uint64_t size_bits(double x) {
   return u.bits;
 }
 
-/* next = decay v + dt/m f, from place `first` on. Not 0 when a velocity is not below the limit (NaN is not below anything). */
+/* next = decay v + dt/m f in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
+   (NaN is not below anything). One loop whose choices are literal: that is what compilers make vectors of. */
 static inline __attribute__((always_inline)) int64_t
-kick(const gathered *from, double sign, long first, long end, double factor, double decay,
-     bool decays, double limit, const double *restrict v, double *restrict next) {
-  const gathered s = *from;
-  uint64_t largest = 0;
+kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
+  const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
+  const double decay = w->decay, step = w->time_step;
+  const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
+  uint64_t largest[] = {0, 0, 0};
   INDEPENDENT
-  for (long q = first; q < end; q++) {
-    const double before = decays ? decay * v[q] : v[q];
-    const double after = before + factor * bond_sum(&s, sign, q);
-    const uint64_t size = size_bits(after);
-    next[q] = after;
-    largest = largest > size ? largest : size;
-  }
-  return largest >= size_bits(limit);
+  for (long q = at.first; q < at.end; q++)
+    for (int d = 0; d < dof; d++) {
+      const double v = w->velocity[d][start + q];
+      const double after =
+          (decays ? decay * v : v) + factor[d] * bond_sum(&from[d], d < 2 ? -1 : 1, q);
+      const uint64_t size = size_bits(after);
+      next[d * pitch + q] = after;
+      largest[d] = largest[d] > size ? largest[d] : size;
+    }
+  int64_t bad = 0;
+  for (int d = 0; d < dof; d++)
+    bad |= largest[d] >= size_bits(w->limit[d]);
+  return bad;
 }
 
-/* Literal signs let the compiler vectorise. Particles receive the opposite of end moments. */
-static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
-                              long end, double *next) {
-  const double size = w->time_step / w->mass[d], factor = d < 2 ? size : -size;
-  const double *v = w->velocity[d] + sweep_start(w, row);
-#define KICK(sign, decays) kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
-  if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
-  return d < 2 ? KICK(-1, false) : KICK(1, false);
-#undef KICK
+/* Particles receive the opposite of end moments. */
+static int64_t kick_part(const sweep *w, const gathered *from, row_part at, double *next) {
+  const bool decays = w->decay != 1;
+  if (w->dof == 2)
+    return decays ? kick(w, from, 2, true, at, next) : kick(w, from, 2, false, at, next);
+  return decays ? kick(w, from, 3, true, at, next) : kick(w, from, 3, false, at, next);
 }
 
 /* A row on its way. */
@@ -221,28 +225,21 @@ typedef struct moved_row {
   int row;
   bool known; /* the forces of its bonds are */
   gathered from[PL_MAX_DOF];
-  int64_t bad[PL_MAX_DOF]; /* not 0: some velocity */
+  long moved; /* places that are, from the first on */
 } moved_row;
 
-static void kick_part(const sweep *w, const sweep_block *b, moved_row *m, long first, long end) {
-  for (int d = 0; d < w->dof; d++)
-    m->bad[d] |=
-        kick_component(w, m->row, &m->from[d], d, first, end, b->next + d * w->lattice->pitch);
-}
-
-/* Moves a row whose particles were kicked. A row with a bad velocity stays where it is, so that its state before the step
-   can be reported. */
-static void move_row(sweep *w, sweep_block *b, moved_row *m) {
-  int64_t any = 0;
-  for (int d = 0; d < w->dof; d++) {
-    if (w->weight && d < w->dimensions)
-      m->bad[d] = sweep_push(w, m->row, d, b->next + d * w->lattice->pitch);
-    any |= m->bad[d];
+/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does what follows in its row:
+   the state before the step can be reported. */
+static void move_part(sweep *w, sweep_block *b, moved_row *m, row_part at) {
+  const double begun = w->timed ? monotonic_seconds() : 0;
+  int64_t bad = kick_part(w, m->from, at, b->next);
+  for (int d = 0; d < w->dimensions && w->weight; d++)
+    bad |= sweep_push(w, at, d, b->next + d * w->lattice->pitch);
+  if (!bad && m->moved == at.first) {
+    sweep_drift(w, b, at);
+    m->moved = at.end;
   }
-  if (any)
-    sweep_note_bad(w, b, m->row);
-  else
-    sweep_drift(w, b, m->row);
+  if (w->timed) b->moving += monotonic_seconds() - begun;
 }
 
 /* Equal parts of a row of that many places, whole vectors. */
@@ -254,19 +251,13 @@ static long part_of(long count) {
 /* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
    for those of the next, and their forces for the particles. */
 static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
-  sweep_block *b = &w->blocks[block];
   const long count = w->count[m->row], part = part_of(count);
-  double moving = 0;
   for (long first = 0; first < count; first += part) {
-    const long end = first + part < count ? first + part : count;
-    if (!m->known) evaluate_part(w, &own(w)->blocks[block], m->row, first, end - first, here);
-    if (w->timed) moving -= monotonic_seconds();
-    kick_part(w, b, m, first, end);
-    if (w->timed) moving += monotonic_seconds();
+    const row_part at = {m->row, first, first + part < count ? first + part : count};
+    if (!m->known) evaluate_part(w, &own(w)->blocks[block], at, here);
+    move_part(w, &w->blocks[block], m, at);
   }
-  if (w->timed) moving -= monotonic_seconds();
-  move_row(w, b, m);
-  if (w->timed) b->moving += moving + monotonic_seconds();
+  if (m->moved < count) sweep_note_bad(w, &w->blocks[block], m->row, m->moved);
 }
 
 static void evaluate_seam(sweep *w, int block) {
@@ -275,7 +266,7 @@ static void evaluate_seam(sweep *w, int block) {
   const int row = b->last - 1;
   b->bad_site = -1;
   take_buffer_for_row(w, &p->seam, row);
-  if (w->count[row] > 0) evaluate_part(w, p, row, 0, w->count[row], &p->seam);
+  if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
 }
 
 static void move_rows(sweep *w, int block) {
@@ -284,15 +275,11 @@ static void move_rows(sweep *w, int block) {
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
   for (int r = b->first; r < b->last; r++) {
-    moved_row m;
-    m.row = r;
-    m.known = r == b->last - 1;
+    moved_row m = {.row = r, .known = r == b->last - 1};
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (!m.known) take_buffer_for_row(w, here, r);
-    for (int d = 0; d < w->dof; d++) {
+    for (int d = 0; d < w->dof; d++)
       gather(w, r, d, here, below, &m.from[d]);
-      m.bad[d] = 0;
-    }
     advance_row(w, block, &m, here);
     below = here;
   }
@@ -346,13 +333,14 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
+  moved_row m = {.row = row};
+  for (int d = 0; d < w->dof; d++)
+    gather(w, row, d, here, below, &m.from[d]);
+  kick_part(w, m.from, whole_row(w, row), b->next);
   for (int d = 0; d < w->dof; d++) {
-    gathered s;
-    gather(w, row, d, here, below, &s);
-    kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
-    sweep_push(w, row, d, b->next + d * w->lattice->pitch);
+    sweep_push(w, whole_row(w, row), d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = d < 2 ? bond_sum(&s, -1, q) : -bond_sum(&s, 1, q);
+      w->force[d][start + q] = d < 2 ? bond_sum(&m.from[d], -1, q) : -bond_sum(&m.from[d], 1, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
@@ -412,23 +400,18 @@ static void compose_flags(sweep *w, pairwise *p) {
 
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
-  const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
+  const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 1);
   row_forces *const all[] = {&b->buffer[0], &b->buffer[1], &b->seam};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
     *all[k] = (row_forces){.values = sweep_doubles(w, p->buffer)};
+  b->pointers = sweep_apart(w, pointers * sizeof *b->pointers);
+  b->parameters = sweep_apart(w, (size_t)w->law->varying_count * sizeof *b->parameters);
   b->fields = sweep_doubles(w, w->law->field_count * pitch);
   b->observed = sweep_doubles(w, (1 + w->law->output_count) * pitch);
-  b->pointers = must_calloc(pointers, sizeof *b->pointers);
-  b->parameters = must_calloc((size_t)w->law->varying_count + 1, sizeof *b->parameters);
 }
 
 static void free_own(sweep *w) {
   pairwise *p = own(w);
-  for (int k = 0; k < w->block_count; k++) {
-    pairwise_block *b = &p->blocks[k];
-    free(b->pointers);
-    free(b->parameters);
-  }
   free(p->blocks);
   free(p->flags);
   free(p->some);

@@ -15,6 +15,9 @@
 #include "runtime/rows.h"
 
 enum { SWEEP_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
+enum {
+  SWEEP_APART = 128
+}; /* B: nearer to what another thread writes, reading waits for that thread: pairs of lines go together */
 
 typedef struct sweep_block { /* what one thread works on */
   int first, last;           /* rows first .. last-1 */
@@ -25,6 +28,7 @@ typedef struct sweep_block { /* what one thread works on */
   /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law of families, and on
      samples; only kept when `timed` */
   double stepping, moving, passes[SWEEP_TIMED_PASSES], observing;
+  char apart[SWEEP_APART];
 } sweep_block;
 
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
@@ -83,8 +87,9 @@ struct sweep {
                                 used); NULL when never asked */
   double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
   double *row_internal, *row_internal_pending;               /* [row_count] J */
-  unsigned char *row_stuck; /* [row_count] a velocity of the row was bad: it has not moved */
-  double *row_gravity;      /* [row_count] J: work of gravity since the start; NULL without */
+  long *
+      row_stuck; /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
+  double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
   long *begin,
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */
   int block_count;
