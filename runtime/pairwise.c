@@ -7,6 +7,7 @@
 #include "dsl/arena.h"
 #include "runtime/clock.h"
 #include "runtime/sweep_parts.h"
+#include "runtime/team.h"
 
 /* Bond forces of one row. Only the places from `begin` to `end` of a row are not zero. */
 typedef struct row_forces {
@@ -15,7 +16,9 @@ typedef struct row_forces {
 } row_forces;
 
 typedef struct pairwise_block { /* what one thread works with */
-  row_forces buffer[2], seam;
+  row_forces buffer[2];
+  row_forces seam;       /* of the last row: the block above needs them, too */
+  team_errand seam_done; /* once a step */
   double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
   double *observed; /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
@@ -29,6 +32,7 @@ typedef struct pairwise {
   int64_t *some;          /* [row_count] the flags of all these bonds together */
   long stride;            /* doubles of a direction in a buffer */
   long buffer;            /* doubles of a buffer */
+  long steps;             /* done */
   pairwise_block *blocks; /* [block_count] */
 } pairwise;
 
@@ -248,32 +252,38 @@ static long part_of(long count) {
   return parts ? (count / parts + PL_LANES - 1) / PL_LANES * PL_LANES : 0;
 }
 
+/* The bonds of a block's last row, before it or the row above moves: the first row of the next block waits for them. */
+static void need_seam(sweep *w, int block) {
+  pairwise_block *p = &own(w)->blocks[block];
+  const int row = w->blocks[block].last - 1;
+  if (!team_is_first(&p->seam_done, own(w)->steps)) return;
+  take_buffer_for_row(w, &p->seam, row);
+  if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
+  team_did(&p->seam_done, own(w)->steps);
+}
+
 /* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
    for those of the next, and their forces for the particles. */
 static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
+  sweep_block *b = &w->blocks[block];
   const long count = w->count[m->row], part = part_of(count);
   for (long first = 0; first < count; first += part) {
     const row_part at = {m->row, first, first + part < count ? first + part : count};
     if (!m->known) evaluate_part(w, &own(w)->blocks[block], at, here);
-    move_part(w, &w->blocks[block], m, at);
+    if (m->row == b->first && block > 0) need_seam(w, block - 1);
+    move_part(w, b, m, at);
   }
-  if (m->moved < count) sweep_note_bad(w, &w->blocks[block], m->row, m->moved);
+  if (m->moved < count) sweep_note_bad(w, b, m->row, m->moved);
 }
 
-static void evaluate_seam(sweep *w, int block) {
+static void step(sweep *w, int stage, int block) {
+  (void)stage; /* there is one */
   sweep_block *b = &w->blocks[block];
-  pairwise_block *p = &own(w)->blocks[block];
-  const int row = b->last - 1;
-  b->bad_site = -1;
-  take_buffer_for_row(w, &p->seam, row);
-  if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
-}
-
-static void move_rows(sweep *w, int block) {
-  const sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
+  b->bad_site = -1;
+  need_seam(w, block);
   for (int r = b->first; r < b->last; r++) {
     moved_row m = {.row = r, .known = r == b->last - 1};
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
@@ -285,11 +295,8 @@ static void move_rows(sweep *w, int block) {
   }
 }
 
-static void step(sweep *w, int stage, int block) {
-  if (stage == 0)
-    evaluate_seam(w, block);
-  else
-    move_rows(w, block);
+static void turn(sweep *w) {
+  own(w)->steps++;
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -433,9 +440,10 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
     w->dissipated_state = sweep_doubles(w, w->lattice->size);
     w->dissipated_rate = sweep_doubles(w, w->lattice->size);
   }
-  return (sweep_engine){.step_stages = 2,
+  return (sweep_engine){.step_stages = 1,
                         .observe_stages = 1,
                         .step = step,
+                        .turn = turn,
                         .observe = observe,
                         .output = output_values,
                         .free = free_own,
