@@ -8,8 +8,7 @@
 /* From a bad particle on, or from a little before it, its row has not moved; all else has. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
   const sweep *w = s->state;
-  const long stuck = w->row_stuck[rows_row(s->lattice, site)];
-  const bool moved = stuck == 0 || site < stuck;
+  const bool moved = sweep_has_moved(w, site);
   for (int d = 0; d < 3; d++) {
     u[d] = d < w->dof ? w->displacement[d][site] : 0;
     v[d] = d < w->dof ? w->velocity[d][site] : 0;

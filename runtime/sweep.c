@@ -290,6 +290,11 @@ int sweep_bad(const sweep *w) {
   return -1;
 }
 
+bool sweep_has_moved(const sweep *w, long site) {
+  const long stuck = w->row_stuck[rows_row(w->lattice, site)];
+  return stuck == 0 || site < stuck;
+}
+
 void sweep_fields_set(sweep *w) {
   if (w->engine.fields_set) w->engine.fields_set(w);
 }

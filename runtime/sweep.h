@@ -26,8 +26,8 @@ typedef struct sweep_block { /* what one thread works on */
   int bad_component;
   double bad_velocity;
   /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law of families, and on
-     samples; only kept when `timed` */
-  double stepping, moving, passes[SWEEP_TIMED_PASSES], observing;
+     samples; only kept when `timed`. Putting loaded particles right is no part of a step. */
+  double stepping, moving, passes[SWEEP_TIMED_PASSES], loading, observing;
   char apart[SWEEP_APART];
 } sweep_block;
 
@@ -126,6 +126,8 @@ void sweep_fields_set(sweep *w);
 
 /* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved. */
 int sweep_bad(const sweep *w);
+/* In the last step: false where a bad velocity keeps the site where it was. */
+bool sweep_has_moved(const sweep *w, long site);
 /* Ends a step in which nothing was bad, alone. */
 void sweep_turn(sweep *w);
 /* All stages and blocks of a step, one after the other: for tools and tests. False when it went
