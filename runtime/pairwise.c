@@ -125,11 +125,16 @@ static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, 
   kernel(w->law, pairwise_uniforms(w, direction), &s);
 }
 
-/* Asks for `count` doubles to come into the second cache. Inlined, as compilers leave out calls that seem to do nothing. */
-static inline __attribute__((always_inline)) void fetch(const double *from, long count) {
-  enum { TO_READ = 0, SECOND_CACHE = 2 };
-  for (long q = 0; q < count; q += PL_LANES)
-    __builtin_prefetch(from + q, TO_READ, SECOND_CACHE);
+/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that seem to do nothing. */
+static inline __attribute__((always_inline)) void fetch(const double *from, long count,
+                                                        bool to_write) {
+  enum { SECOND_CACHE = 2 };
+  for (long q = 0; q < count; q += PL_LANES) {
+    if (to_write)
+      __builtin_prefetch(from + q, 1);
+    else
+      __builtin_prefetch(from + q, 0, SECOND_CACHE);
+  }
 }
 
 /* A third of what the part after this one is the first to read: a processor waits for few lines at a time. */
@@ -138,7 +143,7 @@ static inline __attribute__((always_inline)) void fetch_ahead(const sweep *w, ro
   const pairwise *p = own(w);
   const long site = sweep_start(w, at.row) + at.first + LONGEST_PART, count = at.end - at.first;
   for (int s = direction; s < p->stream_count; s += DIRECTIONS)
-    fetch(p->streams[s] + site, count);
+    fetch(p->streams[s] + site, count, false);
 }
 
 /* Forces of the bonds that the sites of a part own. */
@@ -275,11 +280,21 @@ static long part_of(long count) {
   return parts ? (count / parts + PL_LANES - 1) / PL_LANES * PL_LANES : 0;
 }
 
+/* A row that another processor has been at: all its lines at once, as they come slowly. */
+static inline __attribute__((always_inline)) void fetch_row(const sweep *w, int row,
+                                                            bool to_write) {
+  for (int d = 0; d < w->dof; d++) {
+    fetch(w->displacement[d] + sweep_start(w, row), w->count[row], to_write);
+    fetch(w->velocity[d] + sweep_start(w, row), w->count[row], to_write);
+  }
+}
+
 /* The bonds of a block's last row, before it or the row above moves: the first row of the next block waits for them. */
 static void need_seam(sweep *w, int block) {
   pairwise_block *p = &own(w)->blocks[block];
   const int row = w->blocks[block].last - 1;
   if (!team_is_first(&p->seam_done, own(w)->steps)) return;
+  if (block + 1 < w->block_count) fetch_row(w, row + 1, false);
   take_buffer_for_row(w, &p->seam, row);
   if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
   team_did(&p->seam_done, own(w)->steps);
@@ -293,7 +308,10 @@ static void advance_row(sweep *w, int block, moved_row *m, const row_forces *her
   for (long first = 0; first < count; first += part) {
     const row_part at = {m->row, first, first + part < count ? first + part : count};
     if (!m->known) evaluate_part(w, &own(w)->blocks[block], at, here);
-    if (m->row == b->first && block > 0) need_seam(w, block - 1);
+    if (m->row == b->first && block > 0 && first == 0) {
+      need_seam(w, block - 1);
+      fetch_row(w, m->row, true);
+    }
     move_part(w, b, m, at);
   }
   if (m->moved < count) sweep_note_bad(w, b, m->row, m->moved);
