@@ -124,7 +124,7 @@ void sweep_leave(unsigned before);
 /* To be called when values of `field` have been set otherwise than by a step. */
 void sweep_fields_set(sweep *w);
 
-/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved. */
+/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there on. */
 int sweep_bad(const sweep *w);
 /* In the last step: false where a bad velocity keeps the site where it was. */
 bool sweep_has_moved(const sweep *w, long site);
