@@ -126,7 +126,7 @@ static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
     bad |= w->mobility
                ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
                : kick(count, factor, w->decay, w->limit[d], f, v, next);
-    bad |= sweep_push(w, row, d, next);
+    bad |= sweep_push(w, whole_row(w, row), d, next);
   }
   return bad;
 }
@@ -144,13 +144,13 @@ static void move_rows(sweep *w, int block, int first, int last) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   for (int row = first; row < last; row++) {
     if (kick_row(w, b, row, true)) {
-      sweep_note_bad(w, b, row);
+      sweep_note_bad(w, b, row, 0);
       continue;
     }
     for (int d = 0; d < w->dof && w->ledger; d++)
       w->row_internal[row] += work_over(w, row, d, w->velocity[d] + sweep_start(w, row)) +
                               work_over(w, row, d, b->next + d * w->lattice->pitch);
-    sweep_drift(w, b, row);
+    sweep_drift(w, b, whole_row(w, row));
   }
   if (w->timed) b->moving += monotonic_seconds() - begun;
 }
@@ -303,28 +303,22 @@ static void new_links(sweep *w, family *f) {
     f->bond_link[k] = sweep_doubles(w, sweep_planes(w, PL_ON_NEIGHBOUR) * size);
 }
 
-static void new_blocks(const sweep *w, family *f) {
+static void new_blocks(sweep *w, family *f) {
   const pl_law *law = w->law;
+  const size_t one = sizeof(double *), fields = (size_t)law->field_count * one;
   f->blocks = must_calloc((size_t)w->block_count, sizeof *f->blocks);
   for (int k = 0; k < w->block_count; k++) {
     family_block *b = &f->blocks[k];
-    b->old_field = must_calloc((size_t)law->field_count + 1, sizeof *b->old_field);
-    b->new_field = must_calloc((size_t)law->field_count + 1, sizeof *b->new_field);
-    b->link = must_calloc((size_t)law->link_count + 1, sizeof *b->link);
-    b->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *b->bond_link);
-    b->observed = must_calloc((size_t)law->output_count + 1, sizeof *b->observed);
+    b->old_field = sweep_apart(w, fields);
+    b->new_field = sweep_apart(w, fields);
+    b->link = sweep_apart(w, (size_t)law->link_count * one);
+    b->bond_link = sweep_apart(w, (size_t)law->bond_link_count * one);
+    b->observed = sweep_apart(w, (size_t)(1 + law->output_count) * one);
   }
 }
 
 static void free_own(sweep *w) {
   family *f = family_of(w);
-  for (int k = 0; k < w->block_count; k++) {
-    free(f->blocks[k].old_field);
-    free(f->blocks[k].new_field);
-    free(f->blocks[k].link);
-    free(f->blocks[k].bond_link);
-    free(f->blocks[k].observed);
-  }
   free(f->new_field);
   free(f->link);
   free(f->bond_link);

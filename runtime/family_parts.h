@@ -15,6 +15,7 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
   double **new_field, **link, **bond_link, **observed;
   const double *shape[SHAPE_PLANES];
   double *force[3];
+  char apart[SWEEP_APART];
 } family_block;
 
 typedef struct family_window family_window;

@@ -252,6 +252,32 @@ static void add_end_moment(loads *l, int index, diagnostics *d) {
               -(y[l->lattice->particle_site[at->particles[p]]] - mean) / square);
 }
 
+static int by_site(const void *a, const void *b) {
+  const constraint *p = a, *q = b;
+  if (p->site != q->site) return p->site < q->site ? -1 : 1;
+  return (p->component > q->component) - (p->component < q->component);
+}
+
+static int by_site_and_cause(const void *a, const void *b) {
+  const applied *p = a, *q = b;
+  if (p->site != q->site) return p->site < q->site ? -1 : 1;
+  if (p->component != q->component) return p->component < q->component ? -1 : 1;
+  return (p->cause > q->cause) - (p->cause < q->cause);
+}
+
+/* No two items compare as equal. */
+static void put_in_order(loads *l, const motions *m) {
+  if (l->constraint_count > 0)
+    qsort(l->constraints, (size_t)l->constraint_count, sizeof *l->constraints, by_site);
+  if (l->force_count > 0)
+    qsort(l->forces, (size_t)l->force_count, sizeof *l->forces, by_site_and_cause);
+  for (long i = 0; i < l->constraint_count; i++) {
+    const constraint *c = &l->constraints[i];
+    const int32_t particle = l->lattice->site_particle[c->site];
+    m->holder[(long)c->component * l->lattice->particle_count + particle] = (int32_t)i + 1;
+  }
+}
+
 static void find_holders(loads *l, const motions *m) {
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
@@ -260,11 +286,12 @@ static void find_holders(loads *l, const motions *m) {
   }
 }
 
-static double force_at(const loads *l, const sweep *w, const applied *f, long step) {
+/* Of which a cause's forces are shares. */
+static double factor_at(const loads *l, const sweep *w, int cause, long step) {
   const int forces = l->deck->force_count;
-  const time_function *shape = f->cause < forces ? &l->deck->forces[f->cause].force
-                                                 : &l->deck->end_moments[f->cause - forces].moment;
-  return f->share * load_at(l, w, shape, time_function_at, step);
+  const time_function *shape =
+      cause < forces ? &l->deck->forces[cause].force : &l->deck->end_moments[cause - forces].moment;
+  return load_at(l, w, shape, time_function_at, step);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -289,6 +316,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   add_forces(l, &m);
   for (int i = 0; i < k->end_moment_count; i++)
     add_end_moment(l, i, d);
+  put_in_order(l, &m);
   find_holders(l, &m);
   protect(l, w);
   free(m.holder);
@@ -448,74 +476,168 @@ void loads_begin(loads *l, sweep *w) {
     take_up(l, w, c, 0);
   }
   for (long i = 0; i < l->force_count; i++) {
-    l->forces[i].now = force_at(l, w, &l->forces[i], 0);
+    l->forces[i].now = l->forces[i].share * factor_at(l, w, l->forces[i].cause, 0);
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
   }
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
   if (w->weight) set_gravity(l, w, 0);
 }
 
-/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over
-   the way of a free particle: the velocity after the step turns out to be larger by `change`. */
-static void correct_free_way(loads *l, const sweep *w, int component, int64_t site, double before,
-                             double change) {
-  const double mass = sweep_mass(w, component, site);
-  if (component < w->dimensions)
-    l->work += w->push_work[component] * (mass / w->mass[component]) * change;
-  l->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
-  if (w->law->kind == PL_STATE && w->ledger)
-    l->internal -= 0.5 * w->time_step * w->force[component][site] * change;
+/* The first item of an order by site that stands at `site` or further on; items begin with their site. */
+static long first_at(const void *items, long count, size_t size, int64_t site) {
+  long low = 0, high = count;
+  while (low < high) {
+    const long middle = low + (high - low) / 2;
+    const int64_t *here = (const void *)((const char *)items + (size_t)middle * size);
+    if (*here < site)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
 }
 
-static void apply_forces(loads *l, const sweep *w) {
-  for (long i = 0; i < l->force_count; i++) {
-    const applied *f = &l->forces[i];
+/* The loads on the rows of a block in a step. */
+typedef struct load_run {
+  loads *l;
+  sweep *w;
+  long step;
+  bool stuck; /* some rows have not moved */
+  long first_constraint, last_constraint, first_force, last_force;
+} load_run;
+
+static load_run run_of(loads *l, sweep *w, int block, long step) {
+  const sweep_block *b = &w->blocks[block];
+  const int64_t from = rows_start(l->lattice, b->first), to = rows_start(l->lattice, b->last);
+  load_run r = {.l = l, .w = w, .step = step, .stuck = b->bad_site >= 0};
+  r.first_constraint = first_at(l->constraints, l->constraint_count, sizeof *l->constraints, from);
+  r.last_constraint = first_at(l->constraints, l->constraint_count, sizeof *l->constraints, to);
+  r.first_force = first_at(l->forces, l->force_count, sizeof *l->forces, from);
+  r.last_force = first_at(l->forces, l->force_count, sizeof *l->forces, to);
+  return r;
+}
+
+static bool has_moved(const load_run *r, int64_t site) {
+  return !r->stuck || sweep_has_moved(r->w, site);
+}
+
+/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over
+   the way of a free particle: the velocity after the step turns out to be larger by `change`. */
+static void correct_free_way(const sweep *w, int component, int64_t site, double before,
+                             double change, load_sums *sums) {
+  const double mass = sweep_mass(w, component, site);
+  if (component < w->dimensions)
+    sums->work += w->push_work[component] * (mass / w->mass[component]) * change;
+  sums->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
+  if (w->law->kind == PL_STATE && w->ledger)
+    sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
+}
+
+static void apply_forces(const load_run *r) {
+  const sweep *w = r->w;
+  for (long i = r->first_force; i < r->last_force; i++) {
+    applied *f = &r->l->forces[i];
+    if (!has_moved(r, f->site)) continue;
     const double change = w->time_step / sweep_mass(w, f->component, f->site) * f->now;
     w->velocity[f->component][f->site] += change;
     w->displacement[f->component][f->site] += w->time_step * change;
-    correct_free_way(l, w, f->component, f->site, f->velocity, change);
+    correct_free_way(w, f->component, f->site, f->velocity, change, &f->sums);
   }
+}
+
+/* Values of the deck's functions after the step: few of them serve many particles. */
+typedef struct remembered {
+  int32_t index[8]; /* of a function, + 1; 0: none */
+  double value[8];
+} remembered;
+
+/* True: *value is that of the function; else it is to be set now. */
+static bool is_remembered(remembered *m, int32_t index, double **value) {
+  const int slot = index % 8;
+  *value = &m->value[slot];
+  if (m->index[slot] == index + 1) return true;
+  m->index[slot] = index + 1;
+  return false;
+}
+
+static double motion_after(const load_run *r, const constraint *c, remembered *m) {
+  double *motion;
+  if (c->drive < 0) return 0;
+  if (!is_remembered(m, c->drive, &motion)) *motion = motion_at(r->l, r->w, c, r->step + 1);
+  return *motion;
+}
+
+static double force_after(const load_run *r, const applied *f, remembered *m) {
+  double *factor;
+  if (!is_remembered(m, f->cause, &factor)) *factor = factor_at(r->l, r->w, f->cause, r->step + 1);
+  return f->share * *factor;
 }
 
 /* Prescribed motion and what it takes: reaction over the step times the mean of the velocities
  * before and after. */
-static void apply_motion(loads *l, sweep *w, constraint *c, long step) {
+static void apply_motion(const load_run *r, constraint *c, remembered *after) {
+  const sweep *w = r->w;
   double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
   const double before = c->velocity;
   c->reaction = 0;
   if (c->active) {
-    const double target = c->anchor + motion_at(l, w, c, step + 1);
+    const double target = c->anchor + motion_after(r, c, after);
     const double prescribed = (target - c->held) / w->time_step;
     c->reaction = sweep_mass(w, c->component, c->site) * (prescribed - *v) / w->time_step;
-    correct_free_way(l, w, c->component, c->site, before, prescribed - *v);
+    correct_free_way(w, c->component, c->site, before, prescribed - *v, &c->sums);
     c->held = target;
     *v = prescribed;
     *u = target;
   }
-  l->work += 0.5 * w->time_step * c->reaction * (before + *v);
+  c->sums.work += 0.5 * w->time_step * c->reaction * (before + *v);
   c->velocity = *v;
 }
 
+static void apply_motions(const load_run *r) {
+  remembered after = {{0}, {0}};
+  for (long i = r->first_constraint; i < r->last_constraint; i++)
+    if (has_moved(r, r->l->constraints[i].site)) apply_motion(r, &r->l->constraints[i], &after);
+}
+
 /* A force works with the mean of its values at both ends of the way. */
-static void next_forces(loads *l, const sweep *w, long step) {
-  for (long i = 0; i < l->force_count; i++) {
-    applied *f = &l->forces[i];
-    const double next = force_at(l, w, f, step + 1);
-    f->velocity = w->velocity[f->component][f->site];
-    l->work += 0.5 * w->time_step * (f->now + next) * f->velocity;
+static void next_forces(const load_run *r) {
+  remembered after = {{0}, {0}};
+  for (long i = r->first_force; i < r->last_force; i++) {
+    applied *f = &r->l->forces[i];
+    const double next = force_after(r, f, &after);
+    f->velocity = r->w->velocity[f->component][f->site];
+    f->sums.work += 0.5 * r->w->time_step * (f->now + next) * f->velocity;
     f->now = next;
   }
 }
 
-void loads_apply(loads *l, sweep *w, long step) {
-  apply_forces(l, w);
-  for (long i = 0; i < l->constraint_count; i++)
-    apply_motion(l, w, &l->constraints[i], step);
-  next_forces(l, w, step);
-  for (long i = 0; i < l->constraint_count; i++)
+void loads_apply(loads *l, sweep *w, int block, long step) {
+  const load_run r = run_of(l, w, block, step);
+  apply_forces(&r);
+  apply_motions(&r);
+  next_forces(&r);
+  for (long i = r.first_constraint; i < r.last_constraint; i++)
     take_up(l, w, &l->constraints[i], step + 1);
+}
+
+void loads_turn(const loads *l, sweep *w, long step) {
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, step + 1);
   if (w->weight) set_gravity(l, w, step + 1);
+}
+
+static void add_sums(load_sums *to, const load_sums *more) {
+  to->work += more->work;
+  to->dissipated += more->dissipated;
+  to->internal += more->internal;
+}
+
+load_sums loads_total(const loads *l) {
+  load_sums total = {0, 0, 0};
+  for (long i = 0; i < l->force_count; i++)
+    add_sums(&total, &l->forces[i].sums);
+  for (long i = 0; i < l->constraint_count; i++)
+    add_sums(&total, &l->constraints[i].sums);
+  return total;
 }
 
 /* Velocity of a component after the coming step if nothing but bonds, damping and gravity acted on

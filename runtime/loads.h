@@ -16,6 +16,13 @@
 #include "runtime/rows.h"
 #include "runtime/sweep.h"
 
+typedef struct load_sums { /* J, since the start */
+  double work; /* done by applied forces up to now and by reactions up to the last half step */
+  /* of loaded particles beyond what the sweep counts: */
+  double dissipated; /* by mass damping */
+  double internal;   /* work done against the forces of the bonds; laws of families */
+} load_sums;
+
 typedef struct constraint { /* one component of one particle that is held or driven */
   int64_t site;
   int32_t component;
@@ -25,6 +32,7 @@ typedef struct constraint { /* one component of one particle that is held or dri
   double held;     /* present prescribed displacement */
   double velocity; /* after the last step */
   double reaction; /* N, N m: of the last step */
+  load_sums sums;
 } constraint;
 
 typedef struct applied { /* part of a force that acts on one component of one particle */
@@ -35,6 +43,7 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   double share;    /* force = share * time function */
   double now;      /* N: force of the coming step */
   double velocity; /* m/s: after the last step */
+  load_sums sums;
 } applied;
 
 typedef struct region_sites { /* of a region of the deck */
@@ -55,15 +64,12 @@ typedef struct loads {
   const deck *deck;
   const rows *lattice;
   region_sites *regions; /* [deck->region_count] */
+  /* Both in the order of their sites, so that each thread puts its own right, and sums in one order whatever the threads. */
   constraint *constraints;
   long constraint_count;
   applied *forces;
   long force_count;
   load_clock clock;
-  double work; /* J: done by applied forces up to now and by reactions up to the last half step */
-  /* J, of loaded particles beyond what the sweep counts: */
-  double dissipated; /* by mass damping */
-  double internal;   /* work done against the forces of the bonds; laws of families */
 } loads;
 
 /* Selects the regions, protects what is to be protected, collects supports, drives and forces. NULL
@@ -77,9 +83,12 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
 void loads_increment(loads *l, const sweep *w, load_clock clock);
 /* To be called once, before the first step: forces at time 0, places of the supports. */
 void loads_begin(loads *l, sweep *w);
-/* After the sweep of step n -> n+1: applied forces, prescribed motions, reactions, work; then the
-   damping of the coming step is set (with a clock of its own it stays as it is). */
-void loads_apply(loads *l, sweep *w, long step);
+/* When step n -> n+1 has moved the rows of a block: applied forces, prescribed motions, reactions, work. What has not moved, as
+   its row has a bad velocity, is left alone. */
+void loads_apply(loads *l, sweep *w, int block, long step);
+/* When all blocks have, alone: gravity and damping of the coming step (with a clock of its own that stays as it is). */
+void loads_turn(const loads *l, sweep *w, long step);
+load_sums loads_total(const loads *l);
 
 /* Loaded particles are not free, as sweep_observe has it: what that adds to the kinetic energy
    sampled, and the work of the reactions from the last half step to the present state. */

@@ -7,6 +7,13 @@
 #include "dsl/arena.h"
 #include "runtime/clock.h"
 #include "runtime/sweep_parts.h"
+#include "runtime/team.h"
+
+enum {
+  DIRECTIONS = 3,       /* of a law of bonds */
+  FAR_BYTES = 32 << 20, /* of the state of a body, from which on caches do not hold enough of it */
+  LONGEST_PART = 160    /* bonds of a direction that are looked at before those of the next */
+};
 
 /* Bond forces of one row. Only the places from `begin` to `end` of a row are not zero. */
 typedef struct row_forces {
@@ -15,19 +22,27 @@ typedef struct row_forces {
 } row_forces;
 
 typedef struct pairwise_block { /* what one thread works with */
-  row_forces buffer[2], seam;
+  row_forces buffer[2];
+  row_forces seam;       /* of the last row: the block above needs them, too */
+  team_errand seam_done; /* once a step */
   double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
   double *observed; /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
   const double **parameters; /* [varying] for strips */
+  char apart[SWEEP_APART];
 } pairwise_block;
 
 typedef struct pairwise {
-  double *uniforms;       /* [directions][uniform_count] */
-  int64_t **flags;        /* [row_count] of the bonds that the sites of a row's span own */
-  int64_t *some;          /* [row_count] the flags of all these bonds together */
-  long stride;            /* doubles of a direction in a buffer */
-  long buffer;            /* doubles of a buffer */
+  double *uniforms; /* [directions][uniform_count] */
+  int64_t **flags;  /* [row_count] of the bonds that the sites of a row's span own */
+  int64_t *some;    /* [row_count] the flags of all these bonds together */
+  long stride;      /* doubles of a direction in a buffer */
+  long buffer;      /* doubles of a buffer */
+  /* What a row is the first to read, by its sites: states of its bonds, motions of the row above. None where a body fits into
+     caches. */
+  const double **streams;
+  int stream_count;
+  long steps;             /* done */
   pairwise_block *blocks; /* [block_count] */
 } pairwise;
 
@@ -110,11 +125,33 @@ static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, 
   kernel(w->law, pairwise_uniforms(w, direction), &s);
 }
 
-/* Forces of the bonds that a row owns, from place `first` of its span on. */
-static void evaluate_part(sweep *w, pairwise_block *b, int row, long first, long count,
-                          const row_forces *buffer) {
-  for (int k = 0; k < w->lattice->directions; k++)
-    evaluate_strip(w, b, row, k, first, count, buffer);
+/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that seem to do nothing. */
+static inline __attribute__((always_inline)) void fetch(const double *from, long count,
+                                                        bool to_write) {
+  enum { SECOND_CACHE = 2 };
+  for (long q = 0; q < count; q += PL_LANES) {
+    if (to_write)
+      __builtin_prefetch(from + q, 1);
+    else
+      __builtin_prefetch(from + q, 0, SECOND_CACHE);
+  }
+}
+
+/* A third of what the part after this one is the first to read: a processor waits for few lines at a time. */
+static inline __attribute__((always_inline)) void fetch_ahead(const sweep *w, row_part at,
+                                                              int direction) {
+  const pairwise *p = own(w);
+  const long site = sweep_start(w, at.row) + at.first + LONGEST_PART, count = at.end - at.first;
+  for (int s = direction; s < p->stream_count; s += DIRECTIONS)
+    fetch(p->streams[s] + site, count, false);
+}
+
+/* Forces of the bonds that the sites of a part own. */
+static void evaluate_part(sweep *w, pairwise_block *b, row_part at, const row_forces *buffer) {
+  for (int k = 0; k < DIRECTIONS; k++) {
+    fetch_ahead(w, at, k);
+    evaluate_strip(w, b, at.row, k, at.first, at.end - at.first, buffer);
+  }
 }
 
 /* The same on a copy of the fields: forces of the present state without a trace. */
@@ -141,11 +178,6 @@ const int64_t *pairwise_flags(const sweep *w, int row) {
 }
 
 /* --- particles of a row ----------------------------------------------------------------------- */
-
-enum {
-  DIRECTIONS = 3,    /* of a law of bonds */
-  LONGEST_PART = 160 /* bonds of a direction that are looked at before those of the next */
-};
 
 typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
                              direction */
@@ -188,32 +220,36 @@ static inline uint64_t size_bits(double x) {
   return u.bits;
 }
 
-/* next = decay v + dt/m f, from place `first` on. Not 0 when a velocity is not below the limit (NaN is not below anything). */
+/* next = decay v + dt/m f in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
+   (NaN is not below anything). One loop whose choices are literal: that is what compilers make vectors of. */
 static inline __attribute__((always_inline)) int64_t
-kick(const gathered *from, double sign, long first, long end, double factor, double decay,
-     bool decays, double limit, const double *restrict v, double *restrict next) {
-  const gathered s = *from;
-  uint64_t largest = 0;
+kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
+  const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
+  const double decay = w->decay, step = w->time_step;
+  const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
+  uint64_t largest[] = {0, 0, 0};
   INDEPENDENT
-  for (long q = first; q < end; q++) {
-    const double before = decays ? decay * v[q] : v[q];
-    const double after = before + factor * bond_sum(&s, sign, q);
-    const uint64_t size = size_bits(after);
-    next[q] = after;
-    largest = largest > size ? largest : size;
-  }
-  return largest >= size_bits(limit);
+  for (long q = at.first; q < at.end; q++)
+    for (int d = 0; d < dof; d++) {
+      const double v = w->velocity[d][start + q];
+      const double after =
+          (decays ? decay * v : v) + factor[d] * bond_sum(&from[d], d < 2 ? -1 : 1, q);
+      const uint64_t size = size_bits(after);
+      next[d * pitch + q] = after;
+      largest[d] = largest[d] > size ? largest[d] : size;
+    }
+  int64_t bad = 0;
+  for (int d = 0; d < dof; d++)
+    bad |= largest[d] >= size_bits(w->limit[d]);
+  return bad;
 }
 
-/* Literal signs let the compiler vectorise. Particles receive the opposite of end moments. */
-static int64_t kick_component(const sweep *w, int row, const gathered *s, int d, long first,
-                              long end, double *next) {
-  const double size = w->time_step / w->mass[d], factor = d < 2 ? size : -size;
-  const double *v = w->velocity[d] + sweep_start(w, row);
-#define KICK(sign, decays) kick(s, sign, first, end, factor, w->decay, decays, w->limit[d], v, next)
-  if (w->decay != 1) return d < 2 ? KICK(-1, true) : KICK(1, true);
-  return d < 2 ? KICK(-1, false) : KICK(1, false);
-#undef KICK
+/* Particles receive the opposite of end moments. */
+static int64_t kick_part(const sweep *w, const gathered *from, row_part at, double *next) {
+  const bool decays = w->decay != 1;
+  if (w->dof == 2)
+    return decays ? kick(w, from, 2, true, at, next) : kick(w, from, 2, false, at, next);
+  return decays ? kick(w, from, 3, true, at, next) : kick(w, from, 3, false, at, next);
 }
 
 /* A row on its way. */
@@ -221,28 +257,21 @@ typedef struct moved_row {
   int row;
   bool known; /* the forces of its bonds are */
   gathered from[PL_MAX_DOF];
-  int64_t bad[PL_MAX_DOF]; /* not 0: some velocity */
+  long moved; /* places that are, from the first on */
 } moved_row;
 
-static void kick_part(const sweep *w, const sweep_block *b, moved_row *m, long first, long end) {
-  for (int d = 0; d < w->dof; d++)
-    m->bad[d] |=
-        kick_component(w, m->row, &m->from[d], d, first, end, b->next + d * w->lattice->pitch);
-}
-
-/* Moves a row whose particles were kicked. A row with a bad velocity stays where it is, so that its state before the step
-   can be reported. */
-static void move_row(sweep *w, sweep_block *b, moved_row *m) {
-  int64_t any = 0;
-  for (int d = 0; d < w->dof; d++) {
-    if (w->weight && d < w->dimensions)
-      m->bad[d] = sweep_push(w, m->row, d, b->next + d * w->lattice->pitch);
-    any |= m->bad[d];
+/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does what follows in its row:
+   the state before the step can be reported. */
+static void move_part(sweep *w, sweep_block *b, moved_row *m, row_part at) {
+  const double begun = w->timed ? monotonic_seconds() : 0;
+  int64_t bad = kick_part(w, m->from, at, b->next);
+  for (int d = 0; d < w->dimensions && w->weight; d++)
+    bad |= sweep_push(w, at, d, b->next + d * w->lattice->pitch);
+  if (!bad && m->moved == at.first) {
+    sweep_drift(w, b, at);
+    m->moved = at.end;
   }
-  if (any)
-    sweep_note_bad(w, b, m->row);
-  else
-    sweep_drift(w, b, m->row);
+  if (w->timed) b->moving += monotonic_seconds() - begun;
 }
 
 /* Equal parts of a row of that many places, whole vectors. */
@@ -251,58 +280,64 @@ static long part_of(long count) {
   return parts ? (count / parts + PL_LANES - 1) / PL_LANES * PL_LANES : 0;
 }
 
+/* A row that another processor has been at: all its lines at once, as they come slowly. */
+static inline __attribute__((always_inline)) void fetch_row(const sweep *w, int row,
+                                                            bool to_write) {
+  for (int d = 0; d < w->dof; d++) {
+    fetch(w->displacement[d] + sweep_start(w, row), w->count[row], to_write);
+    fetch(w->velocity[d] + sweep_start(w, row), w->count[row], to_write);
+  }
+}
+
+/* The bonds of a block's last row, before it or the row above moves: the first row of the next block waits for them. */
+static void need_seam(sweep *w, int block) {
+  pairwise_block *p = &own(w)->blocks[block];
+  const int row = w->blocks[block].last - 1;
+  if (!team_is_first(&p->seam_done, own(w)->steps)) return;
+  if (block + 1 < w->block_count) fetch_row(w, row + 1, false);
+  take_buffer_for_row(w, &p->seam, row);
+  if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
+  team_did(&p->seam_done, own(w)->steps);
+}
+
 /* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
    for those of the next, and their forces for the particles. */
 static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
   sweep_block *b = &w->blocks[block];
   const long count = w->count[m->row], part = part_of(count);
-  double moving = 0;
   for (long first = 0; first < count; first += part) {
-    const long end = first + part < count ? first + part : count;
-    if (!m->known) evaluate_part(w, &own(w)->blocks[block], m->row, first, end - first, here);
-    if (w->timed) moving -= monotonic_seconds();
-    kick_part(w, b, m, first, end);
-    if (w->timed) moving += monotonic_seconds();
+    const row_part at = {m->row, first, first + part < count ? first + part : count};
+    if (!m->known) evaluate_part(w, &own(w)->blocks[block], at, here);
+    if (m->row == b->first && block > 0 && first == 0) {
+      need_seam(w, block - 1);
+      fetch_row(w, m->row, true);
+    }
+    move_part(w, b, m, at);
   }
-  if (w->timed) moving -= monotonic_seconds();
-  move_row(w, b, m);
-  if (w->timed) b->moving += moving + monotonic_seconds();
+  if (m->moved < count) sweep_note_bad(w, b, m->row, m->moved);
 }
 
-static void evaluate_seam(sweep *w, int block) {
+static void step(sweep *w, int stage, int block) {
+  (void)stage; /* there is one */
   sweep_block *b = &w->blocks[block];
-  pairwise_block *p = &own(w)->blocks[block];
-  const int row = b->last - 1;
-  b->bad_site = -1;
-  take_buffer_for_row(w, &p->seam, row);
-  if (w->count[row] > 0) evaluate_part(w, p, row, 0, w->count[row], &p->seam);
-}
-
-static void move_rows(sweep *w, int block) {
-  const sweep_block *b = &w->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
+  b->bad_site = -1;
+  need_seam(w, block);
   for (int r = b->first; r < b->last; r++) {
-    moved_row m;
-    m.row = r;
-    m.known = r == b->last - 1;
+    moved_row m = {.row = r, .known = r == b->last - 1};
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (!m.known) take_buffer_for_row(w, here, r);
-    for (int d = 0; d < w->dof; d++) {
+    for (int d = 0; d < w->dof; d++)
       gather(w, r, d, here, below, &m.from[d]);
-      m.bad[d] = 0;
-    }
     advance_row(w, block, &m, here);
     below = here;
   }
 }
 
-static void step(sweep *w, int stage, int block) {
-  if (stage == 0)
-    evaluate_seam(w, block);
-  else
-    move_rows(w, block);
+static void turn(sweep *w) {
+  own(w)->steps++;
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
@@ -346,13 +381,14 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
+  moved_row m = {.row = row};
+  for (int d = 0; d < w->dof; d++)
+    gather(w, row, d, here, below, &m.from[d]);
+  kick_part(w, m.from, whole_row(w, row), b->next);
   for (int d = 0; d < w->dof; d++) {
-    gathered s;
-    gather(w, row, d, here, below, &s);
-    kick_component(w, row, &s, d, 0, count, b->next + d * w->lattice->pitch);
-    sweep_push(w, row, d, b->next + d * w->lattice->pitch);
+    sweep_push(w, whole_row(w, row), d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = d < 2 ? bond_sum(&s, -1, q) : -bond_sum(&s, 1, q);
+      w->force[d][start + q] = d < 2 ? bond_sum(&m.from[d], -1, q) : -bond_sum(&m.from[d], 1, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
@@ -410,26 +446,40 @@ static void compose_flags(sweep *w, pairwise *p) {
   free(read);
 }
 
+/* In an order in which thirds (fetch_ahead) are alike. */
+static void list_streams(const sweep *w, pairwise *p) {
+  const rows *g = w->lattice;
+  const int most = DIRECTIONS * w->law->field_count + 2 * w->dof + 2;
+  p->streams = must_calloc((size_t)most, sizeof *p->streams);
+  if (w->bytes < (size_t)FAR_BYTES) return;
+  for (int f = 0; f < w->law->field_count; f++)
+    for (int k = 0; k < DIRECTIONS; k++)
+      p->streams[p->stream_count++] = w->field[f] + k * g->size;
+  for (int d = 0; d < w->dof; d++)
+    p->streams[p->stream_count++] = w->displacement[d] + g->pitch;
+  for (int d = 0; d < w->dof; d++)
+    p->streams[p->stream_count++] = w->velocity[d] + g->pitch;
+  if (!w->ledger) return;
+  p->streams[p->stream_count++] = w->dissipated_state;
+  p->streams[p->stream_count++] = w->dissipated_rate;
+}
+
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
   const long pitch = w->lattice->pitch;
-  const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 2);
+  const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 1);
   row_forces *const all[] = {&b->buffer[0], &b->buffer[1], &b->seam};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
     *all[k] = (row_forces){.values = sweep_doubles(w, p->buffer)};
+  b->pointers = sweep_apart(w, pointers * sizeof *b->pointers);
+  b->parameters = sweep_apart(w, (size_t)w->law->varying_count * sizeof *b->parameters);
   b->fields = sweep_doubles(w, w->law->field_count * pitch);
   b->observed = sweep_doubles(w, (1 + w->law->output_count) * pitch);
-  b->pointers = must_calloc(pointers, sizeof *b->pointers);
-  b->parameters = must_calloc((size_t)w->law->varying_count + 1, sizeof *b->parameters);
 }
 
 static void free_own(sweep *w) {
   pairwise *p = own(w);
-  for (int k = 0; k < w->block_count; k++) {
-    pairwise_block *b = &p->blocks[k];
-    free(b->pointers);
-    free(b->parameters);
-  }
   free(p->blocks);
+  free(p->streams);
   free(p->flags);
   free(p->some);
   free(p);
@@ -450,9 +500,11 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
     w->dissipated_state = sweep_doubles(w, w->lattice->size);
     w->dissipated_rate = sweep_doubles(w, w->lattice->size);
   }
-  return (sweep_engine){.step_stages = 2,
+  list_streams(w, p);
+  return (sweep_engine){.step_stages = 1,
                         .observe_stages = 1,
                         .step = step,
+                        .turn = turn,
                         .observe = observe,
                         .output = output_values,
                         .free = free_own,

@@ -2,9 +2,9 @@
    and displacements, so that bond forces never go to memory. Long rows go part by part, so that what one direction of bonds
    loads is in the first cache for the next.
 
-   A row's forces need the bonds of the row below, so that the last row of a block (its seam) is
-   evaluated before anything moves: the first stage of a step does the seams, the second one the
-   rows.
+   A row's forces need the bonds of the row below, so that each block evaluates its last row (its seam) first of all. The
+   first row of the next block moves when that is done, by whichever thread: a step is one stage, and threads wait for
+   all others but once.
 
    A particle's force is summed in one order: its own bonds by direction, then those that others own
    by direction. */

@@ -427,7 +427,7 @@ double simulation_monitor_peak(const simulation *s, int index, double *time) {
 
 /* --- time loop -------------------------------------------------------------------------------- */
 
-/* What one thread does after all have moved their rows. */
+/* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_step(simulation *s) {
   if (sweep_bad(s->state) >= 0) {
     bad_explain(s);
@@ -436,7 +436,7 @@ static void after_step(simulation *s) {
     return;
   }
   sweep_turn(s->state);
-  loads_apply(s->loads, s->state, (long)s->at.step);
+  loads_turn(s->loads, s->state, (long)s->at.step);
   s->at.step++;
   s->go_on = s->at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
@@ -472,16 +472,30 @@ void simulation_measure(simulation *s, profile *p) {
   s->profile = p;
 }
 
+/* Adds the time from `begun` to now, and returns now; nothing where nothing is measured. */
+static double add_time(const simulation *s, double begun, double *sum) {
+  if (!s->profile) return 0;
+  const double now = monotonic_seconds();
+  *sum += now - begun;
+  return now;
+}
+
 /* Tasks of the team: the stages of a step, then those of observing. */
 static void do_stage(void *of, int task, int block) {
   simulation *s = of;
   const sweep_engine *engine = &s->state->engine;
-  const bool observing = task >= engine->step_stages;
-  const int stage = observing ? task - engine->step_stages : task;
   sweep_block *b = &s->state->blocks[block];
-  const double begun = s->profile ? monotonic_seconds() : 0;
-  (observing ? engine->observe : engine->step)(s->state, stage, block);
-  if (s->profile) *(observing ? &b->observing : &b->stepping) += monotonic_seconds() - begun;
+  double now = s->profile ? monotonic_seconds() : 0;
+  if (task >= engine->step_stages) {
+    engine->observe(s->state, task - engine->step_stages, block);
+    add_time(s, now, &b->observing);
+    return;
+  }
+  engine->step(s->state, task, block);
+  now = add_time(s, now, &b->stepping);
+  if (task < engine->step_stages - 1) return;
+  loads_apply(s->loads, s->state, block, (long)s->at.step);
+  add_time(s, now, &b->loading);
 }
 
 /* Blocks keep the times of what they do in steps only. */
@@ -548,6 +562,7 @@ static void sum_profile(profile *p, const sweep *w) {
     const sweep_block *b = &w->blocks[k];
     part[PROFILE_LAW] += share * (b->stepping - b->moving);
     part[PROFILE_PARTICLES] += share * b->moving;
+    part[PROFILE_LOADS] += share * b->loading;
     part[PROFILE_SAMPLING] += share * b->observing;
     for (int n = 0; n < SWEEP_TIMED_PASSES; n++)
       p->pass[n] += share * b->passes[n];

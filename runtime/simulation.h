@@ -85,9 +85,9 @@ typedef struct bad_neighbour { /* of a law of families */
 } bad_neighbour;
 
 /* When STEP_BAD: the lowest particle whose velocity was no number or took it further than a spacing
-   (half a turn) in one step, and its bond that gave such a force, or else the largest. Rows that
-   were bad were not moved, so that their state is that before the step; a partner in another row is
-   moved back by its velocity. With a law of families there is no such bond, but all neighbours. */
+   (half a turn) in one step, and its bond that gave such a force, or else the largest. A row was
+   not moved from about the first bad particle on, so that the state there is that before the step; a partner elsewhere
+   is moved back by its velocity. With a law of families there is no such bond, but all neighbours. */
 typedef struct bad_state {
   long step;
   double time;

@@ -5,10 +5,10 @@
 #include "runtime/bond_probe.h"
 #include "runtime/simulation_parts.h"
 
-/* Rows of bad particles were not moved; others have been. */
+/* From a bad particle on, or from a little before it, its row has not moved; all else has. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
   const sweep *w = s->state;
-  const bool moved = !w->row_stuck[rows_row(s->lattice, site)];
+  const bool moved = sweep_has_moved(w, site);
   for (int d = 0; d < 3; d++) {
     u[d] = d < w->dof ? w->displacement[d][site] : 0;
     v[d] = d < w->dof ? w->velocity[d][site] : 0;

@@ -59,9 +59,6 @@ static part_list parts_of(const simulation *s, progress_state *head) {
   add_part(&l, "constraints", s->loads->constraints,
            (size_t)s->loads->constraint_count * sizeof(constraint));
   add_part(&l, "forces", s->loads->forces, (size_t)s->loads->force_count * sizeof(applied));
-  add_part(&l, "work", &s->loads->work, sizeof(double));
-  add_part(&l, "dissipated", &s->loads->dissipated, sizeof(double));
-  add_part(&l, "internal", &s->loads->internal, sizeof(double));
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
   add_part(&l, "rings", s->monitors->ring_memory, (size_t)s->monitors->ring_size * sizeof(double));
@@ -124,12 +121,14 @@ static void put_places_back(const simulation *s, own_places *own) {
     c->held = read.held;
     c->velocity = read.velocity;
     c->reaction = read.reaction;
+    c->sums = read.sums;
   }
   for (long k = 0; k < l->force_count; k++) {
     const applied read = l->forces[k];
     l->forces[k] = own->forces[k];
     l->forces[k].now = read.now;
     l->forces[k].velocity = read.velocity;
+    l->forces[k].sums = read.sums;
   }
   if (s->relaxation && s->at.begun) { /* a sample at the start, and one after each increment */
     s->relaxation->state.done = s->at.samples - 1;

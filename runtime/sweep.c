@@ -20,6 +20,11 @@ double *sweep_doubles(sweep *w, long count) {
   return pool_doubles(w->memory, count);
 }
 
+void *sweep_apart(sweep *w, size_t bytes) {
+  const long gap = SWEEP_APART / (long)sizeof(double);
+  return sweep_doubles(w, (long)((bytes + sizeof(double) - 1) / sizeof(double)) + 2 * gap) + gap;
+}
+
 /* Part of every row that holds sites, widened to whole vectors. */
 static void find_spans(sweep *w) {
   const rows *g = w->lattice;
@@ -61,7 +66,7 @@ static void new_state(sweep *w, bool forces) {
                      &w->row_pending, &w->row_internal, &w->row_internal_pending};
   for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
     *sums[k] = sweep_doubles(w, g->row_count);
-  w->row_stuck = must_calloc((size_t)g->row_count + 1, 1);
+  w->row_stuck = must_calloc((size_t)g->row_count, sizeof *w->row_stuck);
 }
 
 static void new_masses(sweep *w) {
@@ -181,55 +186,54 @@ static int64_t add_push(long count, double push, double limit, const double *res
   return bad;
 }
 
-int64_t sweep_push(const sweep *w, int row, int component, double *next) {
+int64_t sweep_push(const sweep *w, row_part at, int component, double *next) {
   if (!w->weight || component >= w->dimensions) return 0;
-  return add_push(w->count[row], w->push[component], w->limit[component],
-                  w->weight + sweep_start(w, row), next);
+  return add_push(at.end - at.first, w->push[component], w->limit[component],
+                  w->weight + sweep_start(w, at.row) + at.first, next + at.first);
 }
 
-static void drift(long count, double time_step, const double *restrict next, double *restrict v,
-                  double *restrict u) {
+/* All components in one loop, with a literal number of them. */
+static inline __attribute__((always_inline)) void drift(const sweep *w, int dof, row_part at,
+                                                        const double *next) {
+  const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
+  const double step = w->time_step;
   INDEPENDENT
-  for (long q = 0; q < count; q++) {
-    v[q] = next[q];
-    u[q] += time_step * next[q];
-  }
+  for (long q = at.first; q < at.end; q++)
+    for (int d = 0; d < dof; d++) {
+      const double now = next[d * pitch + q];
+      w->velocity[d][start + q] = now;
+      w->displacement[d][start + q] += step * now;
+    }
 }
 
-/* Sum of a (a + b) or a b: eight lanes, then their sum. */
-static double lane_sum(long count, const double *restrict a, const double *restrict b,
-                       bool square) {
+/* Sum of weight a (a + b) or weight a b; without weights they count as 1. Eight lanes, then their sum: the order is the same
+   whatever the vector width. */
+static inline __attribute__((always_inline)) double
+lane_sum(long count, const double *restrict weight, const double *restrict a,
+         const double *restrict b, bool square) {
   double lane[PL_LANES] = {0};
   for (long q = 0; q < count; q += PL_LANES)
-    for (int l = 0; l < PL_LANES; l++)
-      lane[l] += a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]);
+    for (int l = 0; l < PL_LANES; l++) {
+      const double term = a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]);
+      lane[l] += weight ? weight[q + l] * term : term;
+    }
   double sum = 0;
   for (int l = 0; l < PL_LANES; l++)
     sum += lane[l];
   return sum;
 }
 
-/* The same, each term times a weight. */
-static double weighed_sum(long count, const double *restrict weight, const double *restrict a,
-                          const double *restrict b, bool square) {
-  double lane[PL_LANES] = {0};
-  for (long q = 0; q < count; q += PL_LANES)
-    for (int l = 0; l < PL_LANES; l++)
-      lane[l] += weight[q + l] * (a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]));
-  double sum = 0;
-  for (int l = 0; l < PL_LANES; l++)
-    sum += lane[l];
-  return sum;
-}
-
-/* Sum of m a (a + b) or m a b over the particles of a row, with m relative to their mean mass. */
-static double mass_sum(const sweep *w, int row, const double *a, const double *b, bool square) {
-  if (!w->relative_mass) return lane_sum(w->count[row], a, b, square);
-  return weighed_sum(w->count[row], w->relative_mass + sweep_start(w, row), a, b, square);
+/* Sum of m a (a + b) or m a b over particles, with m relative to their mean mass; literal choices make vectors. */
+static double mass_sum(const sweep *w, row_part at, const double *a, const double *b, bool square) {
+  const long count = at.end - at.first;
+  const double *m = w->relative_mass;
+  if (m) m += sweep_start(w, at.row) + at.first;
+  if (!m) return square ? lane_sum(count, NULL, a, b, true) : lane_sum(count, NULL, a, b, false);
+  return square ? lane_sum(count, m, a, b, true) : lane_sum(count, m, a, b, false);
 }
 
 double sweep_dot(long count, const double *a, const double *b) {
-  return lane_sum(count, a, b, false);
+  return lane_sum(count, NULL, a, b, false);
 }
 
 double sweep_total(long count, const double *restrict a) {
@@ -243,38 +247,52 @@ double sweep_total(long count, const double *restrict a) {
   return sum;
 }
 
-void sweep_note_bad(const sweep *w, sweep_block *b, int row) {
-  w->row_stuck[row] = 1;
-  if (b->bad_site >= 0 && b->bad_site < sweep_start(w, row)) return;
-  for (long q = 0; q < w->count[row]; q++)
+void sweep_note_bad(const sweep *w, sweep_block *b, int row, long first) {
+  const long start = sweep_start(w, row);
+  w->row_stuck[row] = start + first;
+  if (b->bad_site >= 0 && b->bad_site < start) return;
+  for (long q = first; q < w->count[row]; q++)
     for (int d = 0; d < w->dof; d++) {
       const double v = b->next[d * w->lattice->pitch + q];
       if (fabs(v) < w->limit[d]) continue;
-      b->bad_site = sweep_start(w, row) + q;
+      b->bad_site = start + q;
       b->bad_component = d;
       b->bad_velocity = v;
       return;
     }
 }
 
-void sweep_drift(sweep *w, sweep_block *b, int row) {
-  const long start = sweep_start(w, row), count = w->count[row];
+static void keep_ledger(sweep *w, const sweep_block *b, row_part at) {
+  const long start = sweep_start(w, at.row) + at.first, count = at.end - at.first;
   for (int d = 0; d < w->dof; d++) {
-    double *next = b->next + d * w->lattice->pitch, *v = w->velocity[d] + start;
+    const double *next = b->next + d * w->lattice->pitch + at.first;
     if (w->decay < 1 && w->ledger)
-      w->row_mass[row] += 0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, row, v, next, true);
+      w->row_mass[at.row] +=
+          0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, at, w->velocity[d] + start, next, true);
     if (w->weight && d < w->dimensions)
-      w->row_gravity[row] +=
+      w->row_gravity[at.row] +=
           w->push_work[d] * (w->relative_mass ? sweep_dot(count, w->relative_mass + start, next)
                                               : sweep_total(count, next));
-    drift(count, w->time_step, next, v, w->displacement[d] + start);
   }
+}
+
+void sweep_drift(sweep *w, sweep_block *b, row_part at) {
+  if ((w->decay < 1 && w->ledger) || w->weight) keep_ledger(w, b, at);
+  if (w->dof == 2)
+    drift(w, 2, at, b->next);
+  else
+    drift(w, 3, at, b->next);
 }
 
 int sweep_bad(const sweep *w) {
   for (int k = 0; k < w->block_count; k++)
     if (w->blocks[k].bad_site >= 0) return k;
   return -1;
+}
+
+bool sweep_has_moved(const sweep *w, long site) {
+  const long stuck = w->row_stuck[rows_row(w->lattice, site)];
+  return stuck == 0 || site < stuck;
 }
 
 void sweep_fields_set(sweep *w) {
@@ -315,9 +333,10 @@ void sweep_observe_motion(sweep *w, const sweep_block *b, int row) {
   w->row_pending[row] = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
-    w->row_kinetic[row] += 0.5 * w->mass[d] * mass_sum(w, row, v, next, false);
+    w->row_kinetic[row] += 0.5 * w->mass[d] * mass_sum(w, whole_row(w, row), v, next, false);
     if (w->decay < 1)
-      w->row_pending[row] += 0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, row, v, v, false);
+      w->row_pending[row] +=
+          0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, whole_row(w, row), v, v, false);
   }
 }
 

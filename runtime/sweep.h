@@ -15,6 +15,9 @@
 #include "runtime/rows.h"
 
 enum { SWEEP_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
+enum {
+  SWEEP_APART = 128
+}; /* B: nearer to what another thread writes, reading waits for that thread: pairs of lines go together */
 
 typedef struct sweep_block { /* what one thread works on */
   int first, last;           /* rows first .. last-1 */
@@ -23,8 +26,9 @@ typedef struct sweep_block { /* what one thread works on */
   int bad_component;
   double bad_velocity;
   /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law of families, and on
-     samples; only kept when `timed` */
-  double stepping, moving, passes[SWEEP_TIMED_PASSES], observing;
+     samples; only kept when `timed`. Putting loaded particles right is no part of a step. */
+  double stepping, moving, passes[SWEEP_TIMED_PASSES], loading, observing;
+  char apart[SWEEP_APART];
 } sweep_block;
 
 typedef struct sweep_totals { /* sums over all particles and bonds, J */
@@ -84,8 +88,9 @@ struct sweep {
                                 used); NULL when never asked */
   double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
   double *row_internal, *row_internal_pending;               /* [row_count] J */
-  unsigned char *row_stuck; /* [row_count] a velocity of the row was bad: it has not moved */
-  double *row_gravity;      /* [row_count] J: work of gravity since the start; NULL without */
+  long *
+      row_stuck; /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
+  double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
   long *begin,
       *count; /* [row_count] part of the row that holds sites: offset from its start, doubles */
   int block_count;
@@ -120,8 +125,10 @@ void sweep_leave(unsigned before);
 /* To be called when values of `field` have been set otherwise than by a step. */
 void sweep_fields_set(sweep *w);
 
-/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved. */
+/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there on. */
 int sweep_bad(const sweep *w);
+/* In the last step: false where a bad velocity keeps the site where it was. */
+bool sweep_has_moved(const sweep *w, long site);
 /* Ends a step in which nothing was bad, alone. */
 void sweep_turn(sweep *w);
 /* All stages and blocks of a step, one after the other: for tools and tests. False when it went

@@ -2,14 +2,13 @@
 
 #include <omp.h>
 #include <sched.h>
-#include <stdatomic.h>
-#include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
 
 #include "dsl/arena.h"
 
-enum { LINE = 64 }; /* B of memory that processors hand to each other at once */
+enum { LINE = 64 };       /* B of memory that processors hand to each other at once */
+enum { PATIENCE = 1000 }; /* looks at a number before others get the processor */
 
 typedef struct team_claim {
   _Alignas(LINE) atomic_long round; /* in which the block is next to be done */
@@ -61,6 +60,18 @@ static void do_block(team *t, const team_work *work, long round, int task, int b
   atomic_store(&t->round, round + 1);
 }
 
+bool team_is_first(team_errand *e, long round) {
+  long expected = round;
+  if (atomic_compare_exchange_strong(&e->begun, &expected, round + 1)) return true;
+  for (int looks = 0; atomic_load(&e->done) <= round; looks++)
+    if (looks > PATIENCE) sched_yield();
+  return false;
+}
+
+void team_did(team_errand *e, long round) {
+  atomic_store(&e->done, round + 1);
+}
+
 static bool is_over(team *t, long round) {
   return atomic_load(&t->round) != round;
 }
@@ -68,7 +79,6 @@ static bool is_over(team *t, long round) {
 /* Rounds are short, so that waiting is first a look at a number. Then what others have not begun is done for them, and at
    last the processor is left to them. */
 static void see_to_end(team *t, const team_work *work, long round, int task, int me) {
-  enum { PATIENCE = 1000 };
   for (int looks = 0; looks < PATIENCE; looks++)
     if (is_over(t, round)) return;
   for (int k = 1; k < t->blocks; k++)

@@ -256,7 +256,9 @@ static void reactions_balance_the_momentum(void **state) {
             w->mass[d] * (1 - w->decay) / w->time_step * w->velocity[d][g->particle_site[p]];
       }
     sweep_step(w);
-    loads_apply(l, w, n);
+    for (int block = 0; block < w->block_count; block++)
+      loads_apply(l, w, block, n);
+    loads_turn(l, w, n);
     for (long c = 0; c < l->constraint_count; c++)
       outside[l->constraints[c].component] += l->constraints[c].reaction;
     for (long p = 0; p < g->particle_count; p++)
