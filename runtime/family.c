@@ -41,33 +41,35 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->mass = g->site_mass + start;
 }
 
-pl_family family_run_of(const sweep *w, int block, int row) {
+void family_begin_runs(const sweep *w, int block, pl_family *run) {
   const family *f = family_of(w);
   family_block *b = &f->blocks[block];
+  *run = (pl_family){.row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
+                     .neighbours = f->neighbours,
+                     .plane = w->lattice->size,
+                     .shape = b->shape,
+                     .old_field = b->old_field,
+                     .new_field = b->new_field,
+                     .link = b->link,
+                     .bond_link = b->bond_link,
+                     .force = b->force,
+                     .observed = b->observed,
+                     .time_step = w->time_step};
+}
+
+void family_turn_to_row(const sweep *w, int block, int row, pl_family *run) {
   const long start = sweep_start(w, row);
-  point_at_fields(w, b, start);
-  pl_family run = {.count = w->count[row],
-                   .rows = 1,
-                   .row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
-                   .neighbours = f->neighbours,
-                   .plane = w->lattice->size,
-                   .new_plane = w->lattice->size,
-                   .bonds = w->lattice->bonds + start,
-                   .held = w->lattice->held + start,
-                   .shape = b->shape,
-                   .old_field = b->old_field,
-                   .new_field = b->new_field,
-                   .link = b->link,
-                   .bond_link = b->bond_link,
-                   .force = b->force,
-                   .observed = b->observed,
-                   .time_step = w->time_step};
-  point_at_neighbours(w->lattice, row, start, &run);
+  point_at_fields(w, &family_of(w)->blocks[block], start);
+  run->count = w->count[row];
+  run->rows = 1;
+  run->new_plane = w->lattice->size;
+  run->bonds = w->lattice->bonds + start;
+  run->held = w->lattice->held + start;
+  point_at_neighbours(w->lattice, row, start, run);
   for (int d = 0; d < w->dof; d++) {
-    run.displacement[d] = w->displacement[d] + start;
-    run.velocity[d] = w->velocity[d] + start;
+    run->displacement[d] = w->displacement[d] + start;
+    run->velocity[d] = w->velocity[d] + start;
   }
-  return run;
 }
 
 double family_pass_begins(const sweep *w) {

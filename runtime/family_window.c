@@ -281,24 +281,26 @@ static int end_of_run(const sweep *w, int block, int row, int last) {
 
 /* With `passing` forces are needed until the particles have moved. */
 static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
-                      bool passing) {
+                      bool passing, pl_family *run) {
   const sweep_block *b = &w->blocks[block];
-  pl_family run = family_run_of(w, block, row);
-  run.rows = (end - row) / family_of(w)->windows[block].step;
-  point_at_links(w, block, row, &run);
-  if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
+  family_turn_to_row(w, block, row, run);
+  run->rows = (end - row) / family_of(w)->windows[block].step;
+  point_at_links(w, block, row, run);
+  if (row < b->first || row >= b->last) write_nowhere(w, block, row, run);
   for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
     family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
-  pass(w->law, family_of(w)->uniforms, &run);
+  pass(w->law, family_of(w)->uniforms, run);
 }
 
 /* Rows first .. last-1. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
                      bool passing) {
+  pl_family run;
+  family_begin_runs(w, block, &run);
   for (int of_kind = first; of_kind < first + family_of(w)->windows[block].step; of_kind++)
     for (int row = of_kind, end; row < last; row = end) {
       end = end_of_run(w, block, row, last);
-      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing);
+      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing, &run);
     }
 }
 
