@@ -1,5 +1,6 @@
 /* Programs of families as C: one function for each pass; in it, for each chunk of particles, the segments one after the
    other. Loops over the particles of a chunk are innermost and vectorise; a neighbour is an offset. */
+#include <inttypes.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -206,27 +207,31 @@ static void write_outputs(emitter *e, const segment *a) {
   }
 }
 
-static void write_value_or(emitter *e, ir_node n, const char *otherwise) {
-  c_text_add(e->out, "present ? ");
-  emit_value(e, n);
-  c_text_add(e->out, " : %s;\n", otherwise);
+static void store_sum(emitter *e, const segment_root *r, const char *to) {
+  const char *asks = segment_asks(r) ? "present ? " : "", *otherwise = to;
+  if (segment_fuses(e->graph, r)) {
+    c_text_add(e->out, "= %spl_fma(", asks);
+    emit_value(e, ir_operand(e->graph, r->node, 0));
+    c_text_add(e->out, ", ");
+    emit_value(e, ir_operand(e->graph, r->node, 1));
+    c_text_add(e->out, ", %s)", to);
+  } else if (e->unrolled) {
+    c_text_add(e->out, "= %s%s + ", asks, to);
+    emit_value(e, r->node);
+  } else {
+    c_text_add(e->out, "+= %s", asks);
+    emit_value(e, r->node);
+    otherwise = "0.0"; /* an array is written in any case */
+  }
+  if (segment_asks(r)) c_text_add(e->out, " : %s", otherwise);
+  c_text_add(e->out, ";\n");
 }
 
 void emit_family_store(emitter *e, const segment_root *r, const char *to) {
   c_text_add(e->out, "        %s ", to);
   switch (r->target) {
   case TO_SUM:
-    if (segment_fuses(e->graph, r)) {
-      c_text_add(e->out, "= present ? pl_fma(");
-      emit_value(e, ir_operand(e->graph, r->node, 0));
-      c_text_add(e->out, ", ");
-      emit_value(e, ir_operand(e->graph, r->node, 1));
-      c_text_add(e->out, ", %s) : %s;\n", to, to);
-      break;
-    }
-    c_text_add(e->out, e->unrolled ? "= present ? %s + " : "+= present ? ", to);
-    emit_value(e, r->node);
-    c_text_add(e->out, " : %s;\n", e->unrolled ? to : "0.0"); /* an array is written in any case */
+    store_sum(e, r, to);
     break;
   case TO_LARGEST:
   case TO_SMALLEST:
@@ -234,15 +239,10 @@ void emit_family_store(emitter *e, const segment_root *r, const char *to) {
     emit_value(e, r->node);
     c_text_add(e->out, ") : %s;\n", to);
     break;
-  case TO_NEIGHBOUR_OBSERVED:
-  case TO_NEIGHBOUR_FIELD:
-    c_text_add(e->out, "= ");
-    write_value_or(e, r->node, "0.0");
-    break;
   default:
-    c_text_add(e->out, "= ");
+    c_text_add(e->out, segment_asks(r) ? "= present ? " : "= ");
     emit_value(e, r->node);
-    c_text_add(e->out, ";\n");
+    c_text_add(e->out, segment_asks(r) ? " : 0.0;\n" : ";\n");
   }
 }
 
@@ -303,8 +303,7 @@ void emit_family_starts(emitter *e, const segment *a) {
 bool emit_asks_for_presence(const segment *a) {
   bool asks = false;
   for (int k = 0; k < a->root_count; k++)
-    asks = asks || (a->roots[k].target != TO_PLANE && a->roots[k].target != TO_BOND_LINK &&
-                    a->roots[k].target != TO_SHARED);
+    asks = asks || segment_asks(&a->roots[k]);
   return asks;
 }
 
@@ -368,10 +367,9 @@ static int chunk_of(const family_pass *p) {
   return chunk;
 }
 
-const char emit_rows_begin[] =
-    "  for (long row = 0; row < family->rows; row++) {\n"
-    "  const long begin = row*family->row_stride,\n"
-    "    end = begin + family->count / PL_LANES * PL_LANES;\n";
+const char emit_rows_begin[] = "  for (long row = 0; row < family->rows; row++) {\n"
+                               "  const long begin = row*family->row_stride,\n"
+                               "    end = begin + family->count / PL_LANES * PL_LANES;\n";
 
 static void write_rolled_pass(emitter *e, const family_pass *p) {
   static const family_words rolled = {.first = " + first",
@@ -431,6 +429,10 @@ static void write_program(emitter *e, const family_program *q) {
   c_text_add(e->out, "static const pl_family_function %s_passes[] = {", q->name);
   for (int k = 0; k < q->pass_count; k++)
     c_text_add(e->out, "%s%s_%d", k ? ", " : "", q->name, k);
+  c_text_add(e->out, "};\nstatic const uint64_t %s_shared[] = {", q->name);
+  for (int k = 0; k < q->pass_count; k++)
+    c_text_add(e->out, "%sUINT64_C(0x%" PRIx64 ")", k ? ", " : "",
+               program_shared_by(&q->passes[k]));
   c_text_add(e->out, "};\n\n");
 }
 
@@ -442,9 +444,9 @@ void emit_programs(emitter *e) {
 }
 
 static void write_program_member(emitter *e, const family_program *p) {
-  c_text_add(e->out, "    .%s = {%d, %s_passes, %u, %u, %d},\n", p->name, p->pass_count, p->name,
-             program_at_hand(e->graph, p), program_upward(e->graph, p),
-             program_reaches_spared(e->graph, p));
+  c_text_add(e->out, "    .%s = {%d, %s_passes, %u, %u, %d, %s_shared},\n", p->name, p->pass_count,
+             p->name, program_at_hand(e->graph, p), program_upward(e->graph, p),
+             program_reaches_spared(e->graph, p), p->name);
 }
 
 void emit_program_members(emitter *e) {

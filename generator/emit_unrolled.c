@@ -147,6 +147,14 @@ static void turn_to(emitter *e, int bond, const family_words *words, const char 
   e->name = name;
 }
 
+static void write_stores(emitter *e, const segment *a) {
+  c_text_add(e->out, "      {\n");
+  if (emit_asks_for_presence(a)) write_presence(e);
+  for (int k = 0; k < a->root_count; k++)
+    emit_family_store(e, &a->roots[k], result_name(e, &a->roots[k]));
+  c_text_add(e->out, "      }\n");
+}
+
 static void write_abreast(emitter *e, const segment *a, int first, int count,
                           const family_words *words) {
   const char **plain = e->name, **name[ABREAST];
@@ -164,8 +172,7 @@ static void write_abreast(emitter *e, const segment *a, int first, int count,
     }
   for (int k = 0; k < count; k++) {
     turn_to(e, first + k, &words[k], name[k]);
-    for (int r = 0; r < a->root_count; r++)
-      emit_family_store(e, &a->roots[r], result_name(e, &a->roots[r]));
+    write_stores(e, a);
     free(name[k]);
   }
   c_text_add(e->out, "      }\n");
@@ -188,9 +195,7 @@ static void write_block(emitter *e, const segment *a, int neighbour, const famil
   c_text_add(e->out, "      {\n");
   write_uniforms(e);
   emit_lines(e);
-  if (neighbour >= 0 && emit_asks_for_presence(a)) write_presence(e);
-  for (int k = 0; k < a->root_count; k++)
-    emit_family_store(e, &a->roots[k], result_name(e, &a->roots[k]));
+  write_stores(e, a);
   c_text_add(e->out, "      }\n");
 }
 

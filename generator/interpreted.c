@@ -335,13 +335,17 @@ static const pl_field *describe_fields(arena *memory, const symbol_list *list) {
   return all;
 }
 
-static pl_program program_facts(const ir *g, const family_program *p,
+static pl_program program_facts(arena *memory, const ir *g, const family_program *p,
                                 const pl_family_function *passes) {
+  uint64_t *shared = arena_alloc(memory, ((size_t)p->pass_count + 1) * sizeof *shared);
+  for (int k = 0; k < p->pass_count; k++)
+    shared[k] = program_shared_by(&p->passes[k]);
   return (pl_program){.pass_count = p->pass_count,
                       .pass = passes,
                       .at_hand = program_at_hand(g, p),
                       .upward = program_upward(g, p),
-                      .spared = program_reaches_spared(g, p)};
+                      .spared = program_reaches_spared(g, p),
+                      .shared = shared};
 }
 
 static void describe(interpreted *p, const char *key) {
@@ -384,8 +388,8 @@ static void describe(interpreted *p, const char *key) {
   p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step = program_facts(plan->graph, &plan->step, step_passes);
-  p->law.observe = program_facts(plan->graph, &plan->observe, observe_passes);
+  p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
+  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */

@@ -324,10 +324,9 @@ static bool is_present(const pl_family *f, long first, long k, long q) {
 static void store(family_runner *r, const segment_root *root, const double *value,
                   const double *factor, const pl_family *f, long first, long k, long lanes) {
   double *to = target_of(r, root, f, first, k);
-  const bool plain = root->target < TO_SUM || root->target == TO_PLANE ||
-                     root->target == TO_BOND_LINK || root->target == TO_SHARED;
+  const bool asks = segment_asks(root);
   for (long q = 0; q < lanes; q++) {
-    const bool present = plain || is_present(f, first, k, q);
+    const bool present = !asks || is_present(f, first, k, q);
     switch (root->target) {
     case TO_SUM:
       if (factor)

@@ -231,6 +231,21 @@ static void clear_pieces(const body *b, uint64_t *seed) {
   }
 }
 
+/* Owners that no run comes to have left 0 for both ends of bonds that are absent (pl_program.shared). */
+static void clear_shared(const body *b) {
+  const pl_program *p = &b->law->step;
+  const long half = b->neighbours / 2;
+  uint64_t shared = 0;
+  for (int pass = 0; pass < p->pass_count && p->shared; pass++)
+    shared |= p->shared[pass];
+  for (int s = 0; shared >> s; s++)
+    for (long k = 0; k < half && (shared >> s & 1); k++)
+      for (long q = 0; q < SIZE; q++) {
+        const long at = (s % 2 * half + k) * SIZE + q;
+        if (!(b->bonds[q] >> k & 1)) b->bond_link[0][s / 2][at] = b->bond_link[1][s / 2][at] = 0;
+      }
+}
+
 static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
   const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
   draw_motion(b, bonds->s, seed);
@@ -254,6 +269,7 @@ static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
   for (int k = 0; k < b->law->bond_link_count; k++)
     for (long q = 0; q < (long)b->neighbours * SIZE; q++)
       b->bond_link[0][k][q] = b->bond_link[1][k][q] = draw_size(seed, -6, 0);
+  clear_shared(b);
 }
 
 static bool has_bond(const body *b, int k, long q) {

@@ -838,6 +838,8 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   memset(out->passes, 0, (size_t)out->pass_count * sizeof *out->passes);
   for (int p = last; p >= 0; p--) /* a pass may ask earlier ones for more links */
     build_pass(&b, &out->passes[p], p, own, root_count);
+  assert(b.first_shared + b.shared_count <= MOST_SHARED);
+  if (b.shared_count) program_find_vanishing(g, out);
   if (b.links.of_particles > links->of_particles) links->of_particles = b.links.of_particles;
   if (b.links.of_bonds > links->of_bonds) links->of_bonds = b.links.of_bonds;
   map_clear(&b.resolved);

@@ -47,7 +47,14 @@ typedef struct segment_root {
   int parity; /* what the other end of the bond computes: 1: the same; -1: the opposite; 0: something else */
   bool paired; /* of OVER_PAIRS */
   int sum;     /* of those: which pl_family.sum TO_SUM adds to at the far end */
+  bool vanishes; /* where the bond is absent: TO_SHARED writes 0; TO_SUM adds what is 0 by itself, and does not ask */
 } segment_root;
+
+/* Whether it matters for a root over neighbours or bonds that the bond exists. */
+static inline bool segment_asks(const segment_root *r) {
+  const bool plain = r->target == TO_PLANE || r->target == TO_BOND_LINK;
+  return r->target >= TO_SUM && !plain && (r->target == TO_SHARED ? r->vanishes : !r->vanishes);
+}
 
 typedef struct segment {
   segment_kind kind;
@@ -110,6 +117,8 @@ unsigned program_at_hand(const ir *g, const family_program *p);
 /* pl_program.upward, spared */
 unsigned program_upward(const ir *g, const family_program *p);
 int program_reaches_spared(const ir *g, const family_program *p);
+/* pl_program.shared of a pass */
+uint64_t program_shared_by(const family_pass *p);
 
 /* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the terms of lower.h; their
    targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...). IR_NEIGHBOUR(x) becomes what the neighbour computes for

@@ -33,7 +33,7 @@ static inline void map_clear(node_map *m) {
   *m = (node_map){0};
 }
 
-enum { MOST_LINKS = 4096 };
+enum { MOST_LINKS = 4096, MOST_SHARED = 64 };
 
 typedef struct builder {
   ir *g;
@@ -79,5 +79,9 @@ ir_node program_common_factor(builder *b, const segment_root *roots, int root_co
 /* Puts `input` in its place. */
 void program_put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
                         ir_node input);
+
+/* Finds the sums that need not ask for absent bonds, and the shared values that owners leave as 0 there
+   (segment_root.vanishes). */
+void program_find_vanishing(const ir *g, family_program *p);
 
 #endif

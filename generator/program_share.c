@@ -281,7 +281,8 @@ void program_choose_shared(builder *b, const segment_root *roots, int root_count
     find_shareable(b, b->link[k], &seen, &found);
   qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
   b->shared = arena_alloc(b->memory, ((size_t)found.count + 2) * sizeof *b->shared);
-  for (int k = 0; k < found.count; k++)
+  const int most = MOST_SHARED - 1 - 2 * b->links.of_bonds; /* one more: the force's factor */
+  for (int k = 0; k < found.count && b->shared_count < most; k++)
     if (is_worth_sharing(b, found.items[k])) {
       const ir_node dear = dear_part(b, found.items[k]);
       b->shared[b->shared_count++] = dear;

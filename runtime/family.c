@@ -41,33 +41,35 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->mass = g->site_mass + start;
 }
 
-pl_family family_run_of(const sweep *w, int block, int row) {
+void family_begin_runs(const sweep *w, int block, pl_family *run) {
   const family *f = family_of(w);
   family_block *b = &f->blocks[block];
+  *run = (pl_family){.row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
+                     .neighbours = f->neighbours,
+                     .plane = w->lattice->size,
+                     .shape = b->shape,
+                     .old_field = b->old_field,
+                     .new_field = b->new_field,
+                     .link = b->link,
+                     .bond_link = b->bond_link,
+                     .force = b->force,
+                     .observed = b->observed,
+                     .time_step = w->time_step};
+}
+
+void family_turn_to_row(const sweep *w, int block, int row, pl_family *run) {
   const long start = sweep_start(w, row);
-  point_at_fields(w, b, start);
-  pl_family run = {.count = w->count[row],
-                   .rows = 1,
-                   .row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
-                   .neighbours = f->neighbours,
-                   .plane = w->lattice->size,
-                   .new_plane = w->lattice->size,
-                   .bonds = w->lattice->bonds + start,
-                   .held = w->lattice->held + start,
-                   .shape = b->shape,
-                   .old_field = b->old_field,
-                   .new_field = b->new_field,
-                   .link = b->link,
-                   .bond_link = b->bond_link,
-                   .force = b->force,
-                   .observed = b->observed,
-                   .time_step = w->time_step};
-  point_at_neighbours(w->lattice, row, start, &run);
+  point_at_fields(w, &family_of(w)->blocks[block], start);
+  run->count = w->count[row];
+  run->rows = 1;
+  run->new_plane = w->lattice->size;
+  run->bonds = w->lattice->bonds + start;
+  run->held = w->lattice->held + start;
+  point_at_neighbours(w->lattice, row, start, run);
   for (int d = 0; d < w->dof; d++) {
-    run.displacement[d] = w->displacement[d] + start;
-    run.velocity[d] = w->velocity[d] + start;
+    run->displacement[d] = w->displacement[d] + start;
+    run->velocity[d] = w->velocity[d] + start;
   }
-  return run;
 }
 
 double family_pass_begins(const sweep *w) {
@@ -81,33 +83,6 @@ void family_pass_ends(const sweep *w, int block, int pass, double begun) {
 
 /* --- particles -------------------------------------------------------------------------------- */
 
-/* next = decay v + dt/m f. Not 0 when a velocity is not below the limit (NaN is not below anything). */
-static int64_t kick(long count, double factor, double decay, double limit,
-                    const double *restrict force, const double *restrict v, double *restrict next) {
-  int64_t bad = 0;
-  INDEPENDENT
-  for (long q = 0; q < count; q++) {
-    const double after = decay * v[q] + factor * force[q];
-    next[q] = after;
-    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
-  }
-  return bad;
-}
-
-/* The same for particles of different masses. */
-static int64_t kick_each(long count, double factor, double decay, double limit,
-                         const double *restrict mobility, const double *restrict force,
-                         const double *restrict v, double *restrict next) {
-  int64_t bad = 0;
-  INDEPENDENT
-  for (long q = 0; q < count; q++) {
-    const double after = decay * v[q] + factor * mobility[q] * force[q];
-    next[q] = after;
-    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
-  }
-  return bad;
-}
-
 static const double *force_of_row(const sweep *w, const sweep_block *b, int row, int component,
                                   bool moving) {
   if (moving && family_of(w)->windows)
@@ -115,19 +90,43 @@ static const double *force_of_row(const sweep *w, const sweep_block *b, int row,
   return w->force[component] + sweep_start(w, row);
 }
 
-/* `moving`: the forces are those of a step, and not of looking at the present state. */
-static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
-  const long start = sweep_start(w, row), count = w->count[row];
+/* `moving`: the forces are those of a step, and not of looking at the present state. All components in one loop, with a
+   literal number of them and what is the same for most bodies left out:
+
+     next = decay v + dt/m f
+
+   Not 0 when a velocity is not below the limit (NaN is not below anything). */
+static inline __attribute__((always_inline)) int64_t
+kick(const sweep *w, const sweep_block *b, int row, bool moving, int dof, bool each_mass) {
+  const long start = sweep_start(w, row), count = w->count[row], pitch = w->lattice->pitch;
+  const double decay = w->decay, *mobility = each_mass ? w->mobility + start : NULL;
+  const double *force[3], *v[3];
+  double factor[3], *restrict next = b->next;
   int64_t bad = 0;
-  for (int d = 0; d < w->dof; d++) {
-    double *next = b->next + d * w->lattice->pitch;
-    const double factor = w->time_step / w->mass[d], *f = force_of_row(w, b, row, d, moving);
-    const double *v = w->velocity[d] + start;
-    bad |= w->mobility
-               ? kick_each(count, factor, w->decay, w->limit[d], w->mobility + start, f, v, next)
-               : kick(count, factor, w->decay, w->limit[d], f, v, next);
-    bad |= sweep_push(w, whole_row(w, row), d, next);
+  for (int d = 0; d < dof; d++) {
+    force[d] = force_of_row(w, b, row, d, moving);
+    v[d] = w->velocity[d] + start;
+    factor[d] = w->time_step / w->mass[d];
   }
+  INDEPENDENT
+  for (long q = 0; q < count; q++)
+    for (int d = 0; d < dof; d++) {
+      const double push =
+          each_mass ? factor[d] * mobility[q] * force[d][q] : factor[d] * force[d][q];
+      const double after = decay * v[d][q] + push;
+      next[d * pitch + q] = after;
+      bad |= __builtin_fabs(after) < w->limit[d] ? INT64_C(0) : INT64_C(1);
+    }
+  return bad;
+}
+
+static int64_t kick_row(const sweep *w, sweep_block *b, int row, bool moving) {
+  const bool each = w->mobility != NULL;
+  int64_t bad = w->dof == 2
+                    ? (each ? kick(w, b, row, moving, 2, true) : kick(w, b, row, moving, 2, false))
+                    : (each ? kick(w, b, row, moving, 3, true) : kick(w, b, row, moving, 3, false));
+  for (int d = 0; d < w->dof; d++)
+    bad |= sweep_push(w, whole_row(w, row), d, b->next + d * w->lattice->pitch);
   return bad;
 }
 

@@ -45,18 +45,18 @@ static void point_at_constants(const sweep *w, const family_pairs *p, pairs_bloc
   run->unusual = p->unusual + start / PL_LANES;
 }
 
-static void run_row(const sweep *w, int pass, int block, int row, bool ahead_only) {
+static void run_row(const sweep *w, int pass, int block, int row, bool ahead_only, pl_family *run) {
   const family *f = family_of(w);
   pairs_block *b = &f->pairs->blocks[block];
   const long start = sweep_start(w, row);
   if (w->count[row] == 0) return;
-  pl_family run = family_run_with_links(w, block, row);
-  point_at_marks(w, f->pairs, b, start, &run);
-  point_at_constants(w, f->pairs, b, start, &run);
-  run.sum = pair_sums_at(w, &b->sums, start);
-  run.ahead_only = ahead_only;
-  run.held_near = f->pairs->held_near[row];
-  w->law->step.pass[pass](w->law, f->uniforms, &run);
+  family_turn_with_links(w, block, row, run);
+  point_at_marks(w, f->pairs, b, start, run);
+  point_at_constants(w, f->pairs, b, start, run);
+  run->sum = pair_sums_at(w, &b->sums, start);
+  run->ahead_only = ahead_only;
+  run->held_near = f->pairs->held_near[row];
+  w->law->step.pass[pass](w->law, f->uniforms, run);
 }
 
 /* Bonds of the rows before reach the block's own: they are done once more here, for these ends only, so that sums have the
@@ -65,8 +65,10 @@ void family_pairs_stage(const sweep *w, int pass, int block) {
   const sweep_block *b = &w->blocks[block];
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;
   const double begun = family_pass_begins(w);
+  pl_family run;
+  family_begin_runs(w, block, &run);
   for (int row = s->before; row < b->last; row++)
-    run_row(w, pass, block, row, row < b->first);
+    run_row(w, pass, block, row, row < b->first, &run);
   pair_sums_clear_ahead(w, s);
   family_pass_ends(w, block, pass, begun);
 }

@@ -42,11 +42,13 @@ static inline family *family_of(const sweep *w) {
   return w->engine.own;
 }
 
-/* What a pass reads and writes from the first site of a row on, all but links. */
-pl_family family_run_of(const sweep *w, int block, int row);
+/* What a pass reads and writes, all but links: what is the same for all rows, once before some runs, and from the first site
+   of a row on. A short row takes little longer than a fresh pl_family would. */
+void family_begin_runs(const sweep *w, int block, pl_family *run);
+void family_turn_to_row(const sweep *w, int block, int row, pl_family *run);
 
-/* The same, and links of the whole body. */
-pl_family family_run_with_links(const sweep *w, int block, int row);
+/* The latter, and links of the whole body. */
+void family_turn_with_links(const sweep *w, int block, int row, pl_family *run);
 
 /* The time that a pass takes, from its beginning on; only kept when the sweep is timed. */
 double family_pass_begins(const sweep *w);

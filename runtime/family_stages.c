@@ -11,12 +11,11 @@ static void point_at_links(const sweep *w, int block, int row) {
     f->blocks[block].bond_link[k] = f->bond_link[k] + start;
 }
 
-pl_family family_run_with_links(const sweep *w, int block, int row) {
-  pl_family run = family_run_of(w, block, row);
+void family_turn_with_links(const sweep *w, int block, int row, pl_family *run) {
+  family_turn_to_row(w, block, row, run);
   point_at_links(w, block, row);
-  run.link_plane = run.plane;
-  run.link_offset = run.offset;
-  return run;
+  run->link_plane = run->plane;
+  run->link_offset = run->offset;
 }
 
 /* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
@@ -31,10 +30,12 @@ static int end_of_alike(const sweep *w, int row, int last) {
 
 /* Rows first .. last-1. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
+  pl_family run;
+  family_begin_runs(w, block, &run);
   for (int row = first, end; row < last; row = end) {
     end = end_of_alike(w, row, last);
     if (w->count[row] == 0) continue;
-    pl_family run = family_run_with_links(w, block, row);
+    family_turn_with_links(w, block, row, &run);
     run.count = sweep_start(w, end - 1) + w->count[end - 1] - sweep_start(w, row);
     pass(w->law, family_of(w)->uniforms, &run);
   }

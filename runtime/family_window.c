@@ -1,5 +1,6 @@
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/arena.h"
 #include "runtime/family_parts.h"
@@ -7,6 +8,10 @@
 /* Each pass follows the one before as soon as that has done all rows in reach, some rows at a time; so links are needed
    of few rows, and stay in a cache. A block does the first passes on rows of its neighbours, too, as far as its own need
    them: that costs a few rows, and blocks wait for each other but once a step. */
+
+typedef struct sites {
+  long begin, end;
+} sites;
 
 struct family_window { /* row r stands in place r mod rows */
   int rows;
@@ -20,10 +25,20 @@ struct family_window { /* row r stands in place r mod rows */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
+  sites *
+      left; /* [passes of a step][rows] sites of a place where the pass has left what both ends share */
   int *straight; /* [rows] places from here on before a row, or one of a neighbour, is at place 0 */
 };
 
 static int most(int a, int b) {
+  return a > b ? a : b;
+}
+
+static long shorter(long a, long b) {
+  return a < b ? a : b;
+}
+
+static long longer(long a, long b) {
   return a > b ? a : b;
 }
 
@@ -133,6 +148,7 @@ static void open_window(sweep *w, const family *f, family_window *v) {
   v->observed = scratch_rows(w, law->outputs, law->output_count, 1);
   v->offset = must_calloc((size_t)f->neighbours, sizeof *v->offset);
   v->row_offset = must_calloc((size_t)f->neighbours, sizeof *v->row_offset);
+  v->left = must_calloc((size_t)(law->step.pass_count * v->rows), sizeof *v->left);
   for (int k = 0; k < f->neighbours; k++)
     v->row_offset[k] = (int)rint((double)g->offset[0][k] / (double)g->pitch);
   find_straight(v, f->neighbours);
@@ -154,9 +170,48 @@ void family_windows_free(const sweep *w, family_window *v) {
     free(v[k].bond_link);
     free(v[k].offset);
     free(v[k].row_offset);
+    free(v[k].left);
     free(v[k].straight);
   }
   free(v);
+}
+
+/* --- what stands where no run has come ----------------------------------------------------------- */
+
+/* The values of shared bit s. */
+static double *shared_planes(const sweep *w, const family_window *v, int s) {
+  return v->bond_link[s / 2] + (s % 2 ? family_of(w)->neighbours / 2 * v->plane : 0);
+}
+
+static void clear_sites(const sweep *w, const family_window *v, uint64_t shared, int here,
+                        sites of) {
+  const long first = here * w->lattice->pitch + of.begin;
+  if (of.begin >= of.end) return;
+  for (int s = 0; shared >> s; s++)
+    for (int k = 0; k < family_of(w)->neighbours / 2 && (shared >> s & 1); k++)
+      memset(shared_planes(w, v, s) + k * v->plane + first, 0,
+             (size_t)(of.end - of.begin) * sizeof(double));
+}
+
+/* Rows first .. last-1 take their places before a pass does them: beside their sites what it leaves for both ends is 0. Rows
+   below the body have no sites. */
+static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
+                        int last) {
+  const family_window *v = &family_of(w)->windows[block];
+  const uint64_t shared = program->shared ? program->shared[pass] : 0;
+  for (int row = first; row < last && shared; row++) {
+    const int here = (row % v->rows + v->rows) % v->rows;
+    sites *left = &v->left[pass * v->rows + here], was = *left;
+    *left = row < 0 ? (sites){0, 0} : (sites){w->begin[row], w->begin[row] + w->count[row]};
+    clear_sites(w, v, shared, here, (sites){was.begin, shorter(was.end, left->begin)});
+    clear_sites(w, v, shared, here, (sites){longer(was.begin, left->end), was.end});
+  }
+}
+
+/* Another program has used the planes. */
+static void forget_places(const sweep *w, family_window *v) {
+  for (int k = 0; k < w->law->step.pass_count * v->rows; k++)
+    v->left[k] = (sites){0, w->lattice->pitch};
 }
 
 /* --- running ---------------------------------------------------------------------------------- */
@@ -226,24 +281,26 @@ static int end_of_run(const sweep *w, int block, int row, int last) {
 
 /* With `passing` forces are needed until the particles have moved. */
 static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
-                      bool passing) {
+                      bool passing, pl_family *run) {
   const sweep_block *b = &w->blocks[block];
-  pl_family run = family_run_of(w, block, row);
-  run.rows = (end - row) / family_of(w)->windows[block].step;
-  point_at_links(w, block, row, &run);
-  if (row < b->first || row >= b->last) write_nowhere(w, block, row, &run);
+  family_turn_to_row(w, block, row, run);
+  run->rows = (end - row) / family_of(w)->windows[block].step;
+  point_at_links(w, block, row, run);
+  if (row < b->first || row >= b->last) write_nowhere(w, block, row, run);
   for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
     family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
-  pass(w->law, family_of(w)->uniforms, &run);
+  pass(w->law, family_of(w)->uniforms, run);
 }
 
 /* Rows first .. last-1. */
 static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
                      bool passing) {
+  pl_family run;
+  family_begin_runs(w, block, &run);
   for (int of_kind = first; of_kind < first + family_of(w)->windows[block].step; of_kind++)
     for (int row = of_kind, end; row < last; row = end) {
       end = end_of_run(w, block, row, last);
-      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing);
+      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing, &run);
     }
 }
 
@@ -272,11 +329,14 @@ void family_window_run(sweep *w, const pl_program *program, int block,
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES], moved, last_moved, end;
   find_spans(w, program, block, next, last);
   family_window_inner(w, block, &moved, &last_moved);
+  for (int p = 0; p < passes; p++)
+    take_places(w, program, p, block, next[p] - f->reach, next[p]);
   for (int ahead = next[0]; next[passes - 1] < last[passes - 1] || (move && moved < last_moved);) {
     ahead += at_a_time;
     for (int p = 0; p < passes; p++) {
       end = least(ahead - rows_behind(f, program, p), last[p]);
       if (end <= next[p]) continue;
+      take_places(w, program, p, block, next[p], end);
       const double begun = family_pass_begins(w);
       run_rows(w, program->pass[p], block, next[p], end, move != NULL);
       family_pass_ends(w, block, p, begun);
@@ -287,4 +347,5 @@ void family_window_run(sweep *w, const pl_program *program, int block,
     move(w, block, moved, end);
     moved = end;
   }
+  if (program != &w->law->step) forget_places(w, &f->windows[block]);
 }

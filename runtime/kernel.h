@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 9
+#define PL_KERNEL_ABI 10
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -167,6 +167,9 @@ typedef struct pl_program {
   /* On rows. While passes follow each other, each that is not at hand one reach of rows behind the one before, links must be
      kept of one reach more than the last is behind the first; or of so many reaches less. */
   int spared;
+  /* On rows, unless NULL. [pass_count] bit s: pass p leaves plane k, or k + neighbours/2 for odd s, of bond_link[s/2] for both
+     ends of its particles' bonds k < neighbours/2. Whoever runs the passes keeps these planes 0 where no run has come. */
+  const uint64_t *shared;
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end moments M_i, M_j of the
