@@ -179,35 +179,37 @@ const int64_t *pairwise_flags(const sweep *w, int row) {
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
-typedef struct gathered { /* bond forces that add up to the force on the particles of a row, by
-                             direction */
-  const double *own[DIRECTIONS], *incoming[DIRECTIONS];
+/* Where bond forces stand that add up to those on the particles of a row: in plane 0; those of direction k that the row
+   owns k strides further on, the other planes `plane` further on. */
+typedef struct gathered {
+  const double *own, *incoming[DIRECTIONS];
+  long stride, plane;
 } gathered;
 
-/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
- */
-static void gather(const sweep *w, int row, int component, const row_forces *here,
-                   const row_forces *below, gathered *from) {
+/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other. */
+static gathered gather(const sweep *w, int row, const row_forces *here, const row_forces *below) {
   const rows *g = w->lattice;
-  const int far_plane = component < 2 ? component : 3;
-  const long begin = w->begin[row];
+  const long begin = w->begin[row], stride = own(w)->stride;
+  gathered s = {
+      .own = plane(w, here, 0, 0) + begin, .stride = stride, .plane = DIRECTIONS * stride};
   for (int k = 0; k < DIRECTIONS; k++) {
     const long along = rows_offset(g, row, k), up = rows_offset(g, row - 1, k);
-    from->own[k] = plane(w, here, component, k) + begin;
-    from->incoming[k] = along < g->pitch / 2
-                            ? plane(w, here, far_plane, k) + begin - along
-                            : plane(w, below, far_plane, k) + begin - (up - g->pitch);
+    s.incoming[k] = along < g->pitch / 2 ? plane(w, here, 0, k) + begin - along
+                                         : plane(w, below, 0, k) + begin - (up - g->pitch);
   }
+  return s;
 }
 
 /* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are alike. */
-static inline __attribute__((always_inline)) double bond_sum(const gathered *s, double sign,
+static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int component,
                                                              long q) {
-  double f = s->own[0][q];
+  const long near = component * s->plane, far = (component < 2 ? component : 3) * s->plane;
+  const double sign = component < 2 ? -1 : 1;
+  double f = s->own[near + q];
   for (int k = 1; k < DIRECTIONS; k++)
-    f += s->own[k][q];
+    f += s->own[near + k * s->stride + q];
   for (int k = 0; k < DIRECTIONS; k++)
-    f += sign * s->incoming[k][q];
+    f += sign * s->incoming[k][far + q];
   return f;
 }
 
@@ -227,13 +229,13 @@ kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, do
   const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
   const double decay = w->decay, step = w->time_step;
   const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
+  const gathered s = *from;
   uint64_t largest[] = {0, 0, 0};
   INDEPENDENT
   for (long q = at.first; q < at.end; q++)
     for (int d = 0; d < dof; d++) {
       const double v = w->velocity[d][start + q];
-      const double after =
-          (decays ? decay * v : v) + factor[d] * bond_sum(&from[d], d < 2 ? -1 : 1, q);
+      const double after = (decays ? decay * v : v) + factor[d] * bond_sum(&s, d, q);
       const uint64_t size = size_bits(after);
       next[d * pitch + q] = after;
       largest[d] = largest[d] > size ? largest[d] : size;
@@ -256,7 +258,7 @@ static int64_t kick_part(const sweep *w, const gathered *from, row_part at, doub
 typedef struct moved_row {
   int row;
   bool known; /* the forces of its bonds are */
-  gathered from[PL_MAX_DOF];
+  gathered from;
   long moved; /* places that are, from the first on */
 } moved_row;
 
@@ -264,7 +266,7 @@ typedef struct moved_row {
    the state before the step can be reported. */
 static void move_part(sweep *w, sweep_block *b, moved_row *m, row_part at) {
   const double begun = w->timed ? monotonic_seconds() : 0;
-  int64_t bad = kick_part(w, m->from, at, b->next);
+  int64_t bad = kick_part(w, &m->from, at, b->next);
   for (int d = 0; d < w->dimensions && w->weight; d++)
     bad |= sweep_push(w, at, d, b->next + d * w->lattice->pitch);
   if (!bad && m->moved == at.first) {
@@ -329,8 +331,7 @@ static void step(sweep *w, int stage, int block) {
     moved_row m = {.row = r, .known = r == b->last - 1};
     row_forces *here = m.known ? &p->seam : &p->buffer[(r - b->first) & 1];
     if (!m.known) take_buffer_for_row(w, here, r);
-    for (int d = 0; d < w->dof; d++)
-      gather(w, r, d, here, below, &m.from[d]);
+    m.from = gather(w, r, here, below);
     advance_row(w, block, &m, here);
     below = here;
   }
@@ -381,14 +382,12 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   sweep_block *b = &w->blocks[block];
   const long start = sweep_start(w, row), count = w->count[row];
-  moved_row m = {.row = row};
-  for (int d = 0; d < w->dof; d++)
-    gather(w, row, d, here, below, &m.from[d]);
-  kick_part(w, m.from, whole_row(w, row), b->next);
+  const gathered from = gather(w, row, here, below);
+  kick_part(w, &from, whole_row(w, row), b->next);
   for (int d = 0; d < w->dof; d++) {
     sweep_push(w, whole_row(w, row), d, b->next + d * w->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = d < 2 ? bond_sum(&m.from[d], -1, q) : -bond_sum(&m.from[d], 1, q);
+      w->force[d][start + q] = d < 2 ? bond_sum(&from, d, q) : -bond_sum(&from, 2, q);
   }
   sweep_observe_motion(w, b, row);
   w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;

@@ -81,13 +81,33 @@ static void new_masses(sweep *w) {
   }
 }
 
+static long doubles_below(const sweep *w, int row) {
+  long sum = 0;
+  for (int r = 0; r < row; r++)
+    sum += w->count[r];
+  return sum;
+}
+
+/* Where a block that begins with row `first` ends. Laws of families share out rows, as blocks read some of those of their
+   neighbours; laws of bonds share out what stands on the rows, to the nearest row. */
+static int end_of_block(const sweep *w, int block, int first) {
+  const int n = w->lattice->row_count, most = n - (w->block_count - 1 - block);
+  if (w->law->kind == PL_STATE) return (int)((long)n * (block + 1) / w->block_count);
+  const long wanted = doubles_below(w, n) * (block + 1) / w->block_count;
+  long below = doubles_below(w, first + 1);
+  int end = first + 1;
+  while (end < most && below + w->count[end] / 2 <= wanted)
+    below += w->count[end++];
+  return end;
+}
+
 static void new_blocks(sweep *w, int threads) {
   const int n = w->lattice->row_count;
   w->block_count = threads < 1 ? 1 : threads < n ? threads : n;
   w->blocks = must_calloc((size_t)w->block_count, sizeof *w->blocks);
-  for (int k = 0; k < w->block_count; k++)
-    w->blocks[k] = (sweep_block){.first = (int)((long)n * k / w->block_count),
-                                 .last = (int)((long)n * (k + 1) / w->block_count),
+  for (int k = 0, first = 0; k < w->block_count; first = w->blocks[k++].last)
+    w->blocks[k] = (sweep_block){.first = first,
+                                 .last = end_of_block(w, k, first),
                                  .next = sweep_doubles(w, w->dof * w->lattice->pitch),
                                  .bad_site = -1};
 }

@@ -275,6 +275,52 @@ static void reactions_balance_the_momentum(void **state) {
   small_close(&r);
 }
 
+/* All kinds of loads, on rows that blocks share out one way or the other. */
+static void loads_keep_their_bits_on_many_threads(void **state) {
+  (void)state;
+  static const char text[] =
+      "&simulation end_time = 2e-4 step_safety = 0.5 threads = %d /\n"
+      "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+      "&material lattice = 'c' model = 'm' tau = 1e-7 /\n"
+      "&body lattice = 'c' shape = 'disc' centre = 0, 0 radius = 0.06 /\n"
+      "&region name = 'left' shape = 'rectangle' corner = -0.1, -0.1 size = 0.06, 0.2 /\n"
+      "&region name = 'right' shape = 'rectangle' corner = 0.04, -0.1 size = 0.06, 0.2 /\n"
+      "&region name = 'middle' shape = 'disc' centre = 0, 0 radius = 0.03 /\n"
+      "&support region = 'left' fix = 'x', 'rotation' /\n"
+      "&drive region = 'right' component = 'x' velocity = 0.1 start = 1e-5 rise = 1e-5 /\n"
+      "&force region = 'middle' component = 'y' force = -300 history = 'ramp and hold' rise = 1e-4 "
+      "/\n"
+      "&force region = 'right' component = 'x' force = 200 /\n"
+      "&end_moment region = 'middle' moment = 3 /\n"
+      "&gravity acceleration = 0, -9.81 /\n"
+      "&damping rate = 1000 until = 5e-5 /\n"
+      "&monitor name = 'reaction' kind = 'reaction' region = 'left' component = 'x' average = 1e-5 "
+      "/\n"
+      "&output frames = 0 sample = 1e-6 /\n";
+  small_run one;
+  char deck_text[sizeof text + 10];
+  snprintf(deck_text, sizeof deck_text, text, 1);
+  must_open(&one, &elastic_beam, deck_text);
+  assert_int_equal(small_go(&one), STEP_END);
+  const size_t bytes = (size_t)simulation_history(one.simulation, NULL) * sizeof(double);
+  assert_true(fabs(small_last(&one, "reaction")) > 100);
+  for (int threads = 2; threads <= 7; threads++) {
+    small_run many;
+    snprintf(deck_text, sizeof deck_text, text, threads);
+    must_open(&many, &elastic_beam, deck_text);
+    assert_int_equal(simulation_threads(many.simulation), threads);
+    assert_int_equal(small_go(&many), STEP_END);
+    for (int k = 0; k < simulation_series_count(one.simulation); k++) {
+      const double *a, *b;
+      simulation_series(one.simulation, k, NULL, &a);
+      simulation_series(many.simulation, k, NULL, &b);
+      assert_memory_equal(a, b, bytes);
+    }
+    small_close(&many);
+  }
+  small_close(&one);
+}
+
 /* --- energy ----------------------------------------------------------------------------------- */
 
 typedef struct balance {
@@ -713,6 +759,7 @@ int main(void) {
       cmocka_unit_test(an_end_moment_is_a_pure_moment),
       cmocka_unit_test(a_drive_is_followed_exactly_from_its_start),
       cmocka_unit_test(reactions_balance_the_momentum),
+      cmocka_unit_test(loads_keep_their_bits_on_many_threads),
       cmocka_unit_test(the_ledger_closes_for_an_elastic_block),
       cmocka_unit_test(the_ledger_closes_with_dissipation),
       cmocka_unit_test(means_zeros_and_scales_are_as_defined),

@@ -11,19 +11,24 @@
 #include "tests/runtime/small_run.h"
 
 /* A body with ragged rows: disc, rotated lattice, a notch. */
-static void open_ragged(small_run *r, const pl_law *law, double rotation, int threads) {
+static void open_disc(small_run *r, const pl_law *law, double radius, double rotation,
+                      int threads) {
   char text[1024];
   snprintf(text, sizeof text,
            "&simulation end_time = 1e-3 step = 1e-7 threads = %d /\n"
            "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 rotation = %g /\n"
            "&material lattice = 'c' model = 'm' S_t = 1e-3 tau = 1e-7 /\n"
-           "&body lattice = 'c' shape = 'disc' centre = 0.003, 0.001 radius = 0.07 /\n"
+           "&body lattice = 'c' shape = 'disc' centre = 0.003, 0.001 radius = %g /\n"
            "&notch lattice = 'c' shape = 'rectangle' corner = -0.001, -0.08 size = 0.002, 0.07 /\n"
            "&output energy = .true. fields = 'displacement', 'force' /\n",
-           threads, rotation);
+           threads, rotation, radius);
   small_open(r, law, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
+}
+
+static void open_ragged(small_run *r, const pl_law *law, double rotation, int threads) {
+  open_disc(r, law, 0.07, rotation, threads);
 }
 
 static uint64_t random_bits(uint64_t *state) { /* xorshift */
@@ -131,6 +136,32 @@ static void same_arrays(const sweep *a, const sweep *b) {
   assert_memory_equal(a->field[0], b->field[0], site * (size_t)a->lattice->directions);
   assert_memory_equal(a->dissipated_state, b->dissipated_state, site);
   assert_memory_equal(a->dissipated_rate, b->dissipated_rate, site);
+}
+
+/* The rows of a disc are of many lengths: blocks differ from their part by less than a row. */
+static void blocks_are_alike(void **state) {
+  (void)state;
+  for (int threads = 1; threads <= 8; threads++) {
+    small_run r;
+    open_disc(&r, &elastic_beam, 0.3, 0, threads);
+    const sweep *w = simulation_state(r.simulation);
+    long all = 0, longest = 0;
+    for (int row = 0; row < w->lattice->row_count; row++) {
+      all += w->count[row];
+      longest = w->count[row] > longest ? w->count[row] : longest;
+    }
+    assert_int_equal(w->block_count, threads);
+    assert_int_equal(w->blocks[0].first, 0);
+    assert_int_equal(w->blocks[threads - 1].last, w->lattice->row_count);
+    for (int k = 0; k < threads; k++) {
+      long here = 0;
+      if (k > 0) assert_int_equal(w->blocks[k].first, w->blocks[k - 1].last);
+      for (int row = w->blocks[k].first; row < w->blocks[k].last; row++)
+        here += w->count[row];
+      assert_true(here > 0 && labs(threads * here - all) <= threads * longest);
+    }
+    small_close(&r);
+  }
 }
 
 static void threads_do_not_change_a_bit(void **state) {
@@ -261,6 +292,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(sweep_gives_the_forces_of_the_bond_list),
       cmocka_unit_test(rows_alike_share_their_flags),
+      cmocka_unit_test(blocks_are_alike),
       cmocka_unit_test(threads_do_not_change_a_bit),
       cmocka_unit_test(observing_changes_no_state),
       cmocka_unit_test(absent_sites_stay_at_rest),
