@@ -1,5 +1,6 @@
 #include "generator/stages.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -18,11 +19,11 @@ enum {
   LOAD_LATENCY = 7,
   DIVIDER_CYCLES = 16,
   LOOP_CYCLES = 2, /* counting and addresses */
-  OPERATIONS_IN_FLIGHT = 300
+  OPERATIONS_IN_FLIGHT = 180
 };
 /* Two operations can begin each cycle, but long vectors are held back where all cores work. */
-#define OPERATION_CYCLES 0.6
-#define STORE_CYCLES     0.6 /* and the load that follows; what a buffer takes of the first cache */
+#define OPERATION_CYCLES 0.5
+#define STORE_CYCLES     0.3 /* and the load that follows; what a buffer takes of the first cache */
 
 /* clang-format off */
 static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
@@ -51,9 +52,39 @@ bool stages_is_held_choice(const emitter *e, ir_node n) {
          emit_asks_whether_protected(e, ir_operand(e->graph, n, 0));
 }
 
+expectation stages_expectation(const emitter *e, ir_node condition) {
+  const ir *g = e->graph;
+  assert(ir_operation(g, condition) == IR_LT);
+  const ir_node size = ir_operand(g, condition, 0), limit = ir_operand(g, condition, 1);
+  expectation x = {{size, IR_NONE}, 1, limit};
+  const bool is_two = ir_operation(g, limit) == IR_CONSTANT && ir_value(g, limit) == 2;
+  if (!is_two || ir_operation(g, size) != IR_MAX) return x;
+  for (int k = 0; k < 2; k++) {
+    const ir_node one = ir_operand(g, size, k);
+    if (ir_operation(g, one) != IR_ABS) return (expectation){{size, IR_NONE}, 1, limit};
+    x.size[k] = ir_operand(g, one, 0);
+  }
+  x.count = 2;
+  return x;
+}
+
+/* The value first. */
+static int operands_of_expected(const emitter *e, ir_node n, ir_node operand[3]) {
+  operand[0] = ir_operand(e->graph, n, 1);
+  if (e->scope != IN_ROWS) {
+    operand[1] = ir_operand(e->graph, n, 0);
+    return 2;
+  }
+  const expectation x = stages_expectation(e, ir_operand(e->graph, n, 0));
+  for (int k = 0; k < x.count; k++)
+    operand[1 + k] = x.size[k];
+  return 1 + x.count;
+}
+
 int stages_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]) {
   int count = emit_is_uniform(e, n) ? 0 : ir_arity(ir_operation(e->graph, n));
-  if ((relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n)) count = 2;
+  if ((relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n))
+    return operands_of_expected(e, n, operand);
   if ((relies & SURE_OF_UNHELD) && stages_is_held_choice(e, n)) {
     operand[0] = ir_operand(e->graph, n, 2);
     return 1;
@@ -390,12 +421,6 @@ void stages_free(stages *s) {
 
 /* --- one loop --------------------------------------------------------------------------------- */
 
-bool stages_has_conditions(const emitter *e, const stages *s, int stage) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (s->of[n] == stage && stages_is_expected_choice(e, n)) return true;
-  return false;
-}
-
 bool stages_has_held_choices(const emitter *e, const stages *s, int stage) {
   for (ir_node n = 0; n < e->node_count; n++)
     if (s->of[n] == stage && stages_is_held_choice(e, n)) return true;
@@ -413,10 +438,9 @@ bool stages_asks(const emitter *e, const stages *s, ir_node n) {
   return true;
 }
 
-bool stages_relies_on(const emitter *e, const stages *s, int stage) {
+void stages_mark_kept(const emitter *e, const stages *s, unsigned char *mask) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (s->of[n] >= stage && stages_is_expected_choice(e, n) && !stages_asks(e, s, n)) return true;
-  return false;
+    mask[n] = s->buffer[n] >= 0 && s->of[n] < stages_last(s) && s->until[n] >= stages_last(s);
 }
 
 int stages_last(const stages *s) {
@@ -468,7 +492,7 @@ void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, 
     const int count = stages_operands(e, n, relies, operand);
     const bool answered =
         (relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
-    for (int k = answered; k < count; k++)
+    for (int k = 0; k < (answered ? 1 : count); k++)
       mask[operand[k]] = 1;
   }
 }
