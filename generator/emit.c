@@ -88,7 +88,7 @@ static const char *extreme_function(const emitter *e, ir_node n) {
 }
 
 /* May be part of a longer expression. A select goes into the last place of another one, as a chain
-   of cases. Values that a select chooses from are computed on lines of their own when they divide,
+   of cases; not in strips, where gcc would ask more questions than there are. Values that a select chooses from are computed on lines of their own when they divide,
    so that no compiler thinks of branching. */
 static bool is_inline(const emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
@@ -111,7 +111,7 @@ static bool is_inline(const emitter *e, ir_node n) {
   case IR_DIV:
     return !chosen;
   case IR_SELECT:
-    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n &&
+    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n && e->scope != IN_ROWS &&
            !extreme_function(e, n);
   default:
     return ir_is_logical(e->graph, n) && is_inline_condition(e, n, user);
