@@ -147,7 +147,7 @@ static void write_kept_store(emitter *e, const stages *s, ir_node n) {
 
 static void write_kept_stores(emitter *e, const stages *s, int stage) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (s->of[n] == stage && s->buffer[n] >= 0) write_kept_store(e, s, n);
+    if (stages_stores(s, n, stage)) write_kept_store(e, s, n);
 }
 
 /* What is expected, of all loops, in the order of the graph; [EXPECTATIONS], the number returned. */

@@ -276,8 +276,18 @@ static int lent_results(const emitter *e) {
   return lent;
 }
 
-/* A buffer is free again behind the last stage that reads it. The first ones are the arrays of results that the last stage
-   writes anew: up to there they cost no place in the cache. */
+/* The buffer that holds a value of the last stage anyway: the array of a result; -1: none does. */
+static int buffer_of_result(const emitter *e, ir_node n) {
+  for (int k = 0, lent = 0; k < e->root_count; k++) {
+    const bool is_lent = stages_is_lent(&e->roots[k]);
+    if (is_lent && e->roots[k].node == n) return lent;
+    lent += is_lent;
+  }
+  return -1;
+}
+
+/* A buffer is free again in the last stage that reads it, whose lines load before they store. The first ones are the arrays
+   of results that the last stage writes anew: up to there they cost no place in the cache. */
 static void give_buffers(planner *p) {
   const emitter *e = p->e;
   const size_t size = ((size_t)e->node_count + 1) * sizeof(int);
@@ -290,12 +300,14 @@ static void give_buffers(planner *p) {
   for (int stage = 0; stage < p->s->count; stage++)
     for (ir_node n = 0; n < e->node_count; n++) {
       if (p->s->of[n] != stage || last[n] <= stage) continue;
+      const int result = stage == stages_last(p->s) ? buffer_of_result(e, n) : -1;
       int b = last[n] > stages_last(p->s) ? lent : 0;
-      while (b < given && until[b] >= stage)
+      while (result < 0 && b < given && until[b] > stage)
         b++;
       if (b == given) given++;
-      until[b] = p->s->until[n] = last[n];
-      p->s->buffer[n] = b;
+      if (result < 0) until[b] = last[n];
+      p->s->until[n] = last[n];
+      p->s->buffer[n] = result < 0 ? b : result;
     }
   p->s->lent = lent;
   p->s->buffers = given - lent;
@@ -310,13 +322,18 @@ static double most(double a, double b) {
   return a > b ? a : b;
 }
 
+bool stages_stores(const stages *s, ir_node n, int stage) {
+  const bool result = stage == stages_last(s) && s->buffer[n] < s->lent;
+  return s->of[n] == stage && s->buffer[n] >= 0 && !result;
+}
+
 static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned char *taken) {
   const emitter *e = p->e;
   stage_cost c = {0};
   stages_mark(e, p->s, stage, SURE_OF_ALL, mask, taken);
   for (ir_node n = 0; n < e->node_count; n++) {
     c.loads += taken[n] || (mask[n] && is_loaded(e, n));
-    c.stores += p->s->of[n] == stage && p->s->buffer[n] >= 0;
+    c.stores += stages_stores(p->s, n, stage);
     if (!mask[n] || emit_is_uniform(e, n)) continue;
     const price of = prices[ir_operation(e->graph, n)];
     c.operations += of.operations;

@@ -76,6 +76,8 @@ int stages_last(const stages *s);
 bool stages_is_of_change(const emitter *e, const pass_root *r);
 /* A choice by a condition that is expected to hold, the first to ask for it: later ones rely on the answer. */
 bool stages_asks(const emitter *e, const stages *s, ir_node n);
+/* Whether a stage stores a line in a buffer; what is in the array of a result is a result. */
+bool stages_stores(const stages *s, ir_node n, int stage);
 /* What the last stage, or that behind it, takes from a buffer: marks. */
 void stages_mark_kept(const emitter *e, const stages *s, unsigned char *mask);
 /* A result whose array is a buffer until the last stage writes it. */
