@@ -371,7 +371,8 @@ static void write_search(emitter *e, const stages *s, unsigned char *mask) {
     emit_condition(e, ir_operand(e->graph, choice[k], 0));
     c_text_add(e->out, ")");
   }
-  c_text_add(e->out, ") ? 0 : present;\n  }\n  if (unusual != 0) {\n");
+  c_text_add(e->out, ") ? 0 : present;\n  }\n  if (unusual != 0) { "
+                     "/* both sides of what was expected */\n");
 }
 
 static void write_both_sides(emitter *e, const stages *s, const unsigned char *kept,
