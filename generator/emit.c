@@ -88,7 +88,7 @@ static const char *extreme_function(const emitter *e, ir_node n) {
 }
 
 /* May be part of a longer expression. A select goes into the last place of another one, as a chain
-   of cases. Values that a select chooses from are computed on lines of their own when they divide,
+   of cases; not in strips, where gcc would ask more questions than there are. Values that a select chooses from are computed on lines of their own when they divide,
    so that no compiler thinks of branching. */
 static bool is_inline(const emitter *e, ir_node n) {
   ir_op op = ir_operation(e->graph, n);
@@ -111,7 +111,7 @@ static bool is_inline(const emitter *e, ir_node n) {
   case IR_DIV:
     return !chosen;
   case IR_SELECT:
-    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n &&
+    return user != IR_NONE && chosen && ir_operand(e->graph, user, 2) == n && e->scope != IN_ROWS &&
            !extreme_function(e, n);
   default:
     return ir_is_logical(e->graph, n) && is_inline_condition(e, n, user);
@@ -163,7 +163,8 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
       "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
       "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
       "owner",      "sign",        "zeros",         "got",    "link_to", "changed",  "constant",
-      "above",      "bits",        "told",          "before"};
+      "above",      "large",       "told",          "before", "group",   "lent",     "size_0",
+      "size_1",     "largest_0",   "largest_1"};
   size_t n = (size_t)e->node_count + 1;
   e->scope = scope;
   e->roots = NULL;
@@ -171,6 +172,9 @@ void emit_open_nodes(emitter *e, scope_kind scope, const ir_node *nodes, int cou
   e->names = (c_names){0};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(&e->names, own[k]);
+#define X(pass, member, task) c_names_reserve(&e->names, #member "_unusual");
+  STRIP_PASSES(X)
+#undef X
   for (int k = 0; k < count && scope >= IN_PARTICLES; k++)
     reserve_numbered(&e->names, k);
   e->needed = must_calloc(n, 1);
@@ -468,6 +472,13 @@ static void write_body_input(emitter *e, ir_node n) {
 
 /* --- lines ------------------------------------------------------------------------------------ */
 
+static void write_dropped(emitter *e, ir_node n) {
+  const bool loose = level_of(ir_operation(e->graph, n)) < LEVEL_SUM;
+  c_text_add(e->out, loose ? "present != 0 ? (" : "present != 0 ? ");
+  write_expression(e, n);
+  c_text_add(e->out, loose ? ") : 0.0" : " : 0.0");
+}
+
 void emit_line(emitter *e, ir_node n) {
   const char *indent = e->scope == IN_NEIGHBOURS  ? "        "
                        : e->scope == IN_PARTICLES ? "      "
@@ -476,7 +487,9 @@ void emit_line(emitter *e, ir_node n) {
   if (!e->needed[n] || !e->name[n] || emit_is_uniform(e, n) || is_ends_input(e, n, ENDS_TIME_STEP))
     return;
   c_text_add(e->out, "%sconst double %s = ", indent, e->name[n]);
-  if (!emit_is_input(e, n))
+  if (e->dropped && e->dropped[n])
+    write_dropped(e, n);
+  else if (!emit_is_input(e, n))
     write_expression(e, n);
   else if (e->scope >= IN_PARTICLES)
     emit_segment_input(e, n);
@@ -711,6 +724,7 @@ static const char own_macros[] =
     "#define PL_AGAIN(value, array) (value)\n"
     "#endif\n"
     "#define PL_RARE __attribute__((cold)) /* not worth the compiler's time */\n"
+    "#define PL_APART __attribute__((noinline)) /* leaves its caller the registers */\n"
     "#if defined(PL_PART) /* one of the parts that are compiled at the same time */\n"
     "#define PL_PASS __attribute__((visibility(\"hidden\")))\n"
     "#define PL_IN_PART(part) (PL_PART == (part))\n"

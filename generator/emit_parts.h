@@ -45,6 +45,7 @@ typedef struct emitter {
   unsigned relies; /* reliance, together */
   c_names names;
   unsigned char *needed;     /* [node_count] */
+  unsigned char *dropped;    /* [node_count] lines that are 0 where the bond is absent; or NULL */
   int *uses;                 /* [node_count] by needed nodes and roots */
   ir_node *user;             /* [node_count] the last of them; IR_NONE: a root */
   int *size;                 /* [node_count] operations written in place of the node */

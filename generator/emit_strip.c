@@ -1,4 +1,5 @@
 /* Passes over strips of bonds as C: one loop, or stages (stages.h). */
+#include <assert.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -63,11 +64,15 @@ static void write_output_arrays(emitter *e) {
     write_target_array(e, e->roots[k].target, e->roots[k].index, "");
 }
 
-/* Absent bonds are evaluated too (no branch), and what they gave is dropped here. */
+/* Absent bonds are evaluated too (no branch), and what they gave is dropped here, unless it has been (drop_early). */
 static void write_store(emitter *e, const pass_root *r) {
   const strip_target *target = &strip_targets[r->target];
   c_text_add(e->out, "    ");
   write_indexed(e, target->array, r->index);
+  if (e->dropped && e->dropped[r->node]) {
+    c_text_add(e->out, "[q] = %s;\n", e->name[r->node]);
+    return;
+  }
   c_text_add(e->out, target->store == ADD ? "[q] += present != 0 ? " : "[q] = present != 0 ? ");
   emit_value(e, r->node);
   c_text_add(e->out, " : ");
@@ -76,6 +81,11 @@ static void write_store(emitter *e, const pass_root *r) {
     c_text_add(e->out, "[q];\n");
   } else
     c_text_add(e->out, "0.0;\n");
+}
+
+static void write_protected_bit(emitter *e) {
+  if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
+    c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
 }
 
 /* `present` has 32 bits on purpose: gcc then takes twice as many bonds at a time, as pairs of
@@ -90,8 +100,7 @@ static void write_strip_head(emitter *e, const char *name, bool cut) {
              "  const int64_t *restrict flags = strip->flags;\n"
              "  const int%d_t present_bit = (int%d_t)PL_PRESENT(strip->direction);\n",
              bits, bits);
-  if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
-    c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
+  write_protected_bit(e);
   if (!e->root_count) c_text_add(e->out, "  (void)flags, (void)present_bit;\n");
   emit_inputs_before_loop(e);
   write_output_arrays(e);
@@ -130,27 +139,96 @@ static void write_kept_loads(emitter *e, const stages *s, const unsigned char *k
     }
 }
 
-static void write_kept_stores(emitter *e, const stages *s, int stage) {
-  for (ir_node n = 0; n < e->node_count; n++)
-    if (s->of[n] == stage && s->buffer[n] >= 0) {
-      c_text_add(e->out, "    ");
-      write_buffer(e, s, s->buffer[n]);
-      c_text_add(e->out, " = %s;\n", e->name[n]);
-    }
+static void write_kept_store(emitter *e, const stages *s, ir_node n) {
+  c_text_add(e->out, "    ");
+  write_buffer(e, s, s->buffer[n]);
+  c_text_add(e->out, " = %s;\n", e->name[n]);
 }
 
-/* Bonds that are not as expected leave their flags, so that it is seen whether they exist. One line for all conditions: gcc
-   does not vectorise two; and flags that are loaded in any case are one masked load. */
-static void write_expectations(emitter *e, const stages *s, int stage) {
-  const char *const begin = "    const int64_t bits = flags[q];\n    unusual |= (", *joined = begin;
+static void write_kept_stores(emitter *e, const stages *s, int stage) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (stages_stores(s, n, stage)) write_kept_store(e, s, n);
+}
+
+/* What is expected, of all loops, in the order of the graph; [EXPECTATIONS], the number returned. */
+enum { EXPECTATIONS = 2 };
+
+static int find_expectations(const emitter *e, const stages *s, ir_node choice[EXPECTATIONS]) {
+  int count = 0;
   for (ir_node n = 0; n < e->node_count; n++) {
-    if (s->of[n] != stage || !stages_asks(e, s, n)) continue;
-    c_text_add(e->out, "%s(", joined);
-    emit_condition(e, ir_operand(e->graph, n, 0));
-    c_text_add(e->out, ")");
-    joined = " && ";
+    if (s->of[n] < 0 || !stages_asks(e, s, n)) continue;
+    assert(count < EXPECTATIONS);
+    choice[count++] = n;
   }
-  if (joined != begin) c_text_add(e->out, ") ? 0 : bits;\n");
+  return count;
+}
+
+static expectation expectation_of(const emitter *e, ir_node choice) {
+  return stages_expectation(e, ir_operand(e->graph, choice, 0));
+}
+
+static void write_bits(emitter *e, ir_node n) {
+  c_text_add(e->out, "pl_to_bits(");
+  emit_value(e, n);
+  c_text_add(e->out, ")");
+}
+
+/* The largest sizes so far, of absent bonds too, as bits, which are in the order of sizes, those of NaN above all; a size
+   of 2 or more has a bit that smaller ones have not. */
+static void write_sizes(emitter *e, const stages *s, int stage) {
+  ir_node choice[EXPECTATIONS];
+  const int count = find_expectations(e, s, choice);
+  for (int k = 0; k < count; k++) {
+    const expectation x = expectation_of(e, choice[k]);
+    if (s->of[choice[k]] != stage) continue;
+    c_text_add(e->out, x.count == 2 ? "    large |= " : "    const uint64_t size_%d = ", k);
+    write_bits(e, x.size[0]);
+    if (x.count == 2) {
+      c_text_add(e->out, " | ");
+      write_bits(e, x.size[1]);
+      c_text_add(e->out, ";\n");
+    } else
+      c_text_add(e->out, ";\n    largest_%d = size_%d > largest_%d ? size_%d : largest_%d;\n", k, k,
+                 k, k, k);
+  }
+}
+
+static void write_no_sizes(emitter *e, const stages *s) {
+  ir_node choice[EXPECTATIONS];
+  const int count = find_expectations(e, s, choice);
+  for (int k = 0; k < count; k++)
+    if (expectation_of(e, choice[k]).count == 2)
+      c_text_add(e->out, "  uint64_t large = 0;\n");
+    else
+      c_text_add(e->out, "  uint64_t largest_%d = 0;\n", k);
+}
+
+/* Asks the function for what is not as expected, where something may be. */
+static void write_question(emitter *e, const stages *s, const char *name) {
+  const char *joined = "  if (";
+  ir_node choice[EXPECTATIONS];
+  const int count = find_expectations(e, s, choice);
+  for (int k = 0; k < count; k++) {
+    const expectation x = expectation_of(e, choice[k]);
+    c_text_add(e->out, "%s", joined);
+    joined = " || ";
+    if (x.count == 2)
+      c_text_add(e->out, "(large >> 62 & 1) != 0");
+    else {
+      c_text_add(e->out, "largest_%d >= ", k);
+      write_bits(e, x.limit);
+    }
+  }
+  if (!count) return;
+  c_text_add(e->out, ")\n    %s_unusual(law, uniforms, strip, first, last, (double *[]){", name);
+  const char *comma = "";
+  for (int k = 0; k < e->root_count; k++) {
+    if (!stages_is_lent(&e->roots[k])) continue;
+    c_text_add(e->out, "%s", comma);
+    write_indexed(e, strip_targets[e->roots[k].target].array, e->roots[k].index);
+    comma = ", ";
+  }
+  c_text_add(e->out, "}, %s);\n", s->buffers ? "kept" : "(void *)0");
 }
 
 /* Not 0 when a bond that exists has new damage. One line for all, as above. */
@@ -171,7 +249,6 @@ static void write_changes(emitter *e) {
 static void write_results(emitter *e, const stages *s, int stage) {
   const bool of_change = stage > stages_last(s);
   if (stage < stages_last(s)) return;
-  c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
   for (int k = 0; k < e->root_count; k++)
     if (!s->changes || stages_is_of_change(e, &e->roots[k]) == of_change)
       write_store(e, &e->roots[k]);
@@ -179,36 +256,54 @@ static void write_results(emitter *e, const stages *s, int stage) {
 }
 
 /* Whether the loop of a stage looks at arrays of the strip, not at buffers alone. */
-static bool reads_bonds(const emitter *e, const stages *s, int stage, unsigned relies,
-                        const unsigned char *mask, const unsigned char *kept_loads) {
+static bool reads_bonds(const emitter *e, const stages *s, int stage, const unsigned char *mask,
+                        const unsigned char *kept_loads) {
   bool reads = stage >= stages_last(s);
   for (ir_node n = 0; n < e->node_count && !reads; n++) {
     const bool lent = s->buffer[n] >= 0 && s->buffer[n] < s->lent;
-    const bool asks = (relies & SURE_OF_EXPECTED) && s->of[n] == stage && stages_asks(e, s, n);
-    reads = asks || (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
+    reads = (mask[n] && emit_is_input(e, n) && !emit_is_uniform(e, n)) ||
             (lent && (kept_loads[n] || s->of[n] == stage));
   }
   return reads;
 }
 
-static void write_stage(emitter *e, const stages *s, int stage, unsigned relies) {
-  const size_t size = (size_t)e->node_count + 1;
-  unsigned char *mask = must_alloc(size), *kept_loads = must_alloc(size), *whole = e->needed;
-  stages_mark(e, s, stage, relies, mask, kept_loads);
-  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
-  if (reads_bonds(e, s, stage, relies, mask, kept_loads))
-    c_text_add(e->out, "    const long q = first + k;\n");
-  write_kept_loads(e, s, kept_loads);
+/* Forces that are computed in the last loop are dropped with the operation that makes them: where other lines need them,
+   too, dropping them behind it would be an operation of its own. NULL in other loops. */
+static unsigned char *drop_early(const emitter *e, const stages *s, int stage) {
+  if (stage != stages_last(s)) return NULL;
+  unsigned char *dropped = must_calloc((size_t)e->node_count + 1, 1);
+  for (int k = 0; k < e->root_count; k++)
+    dropped[e->roots[k].node] |= e->roots[k].target == TO_FORCE && s->of[e->roots[k].node] == stage;
+  return dropped;
+}
+
+static void write_lines_of(emitter *e, unsigned relies, unsigned char *mask) {
+  unsigned char *whole = e->needed;
   e->needed = mask;
   e->relies = relies;
   emit_lines(e);
-  if ((relies & SURE_OF_EXPECTED) && stages_has_conditions(e, s, stage))
-    write_expectations(e, s, stage);
   e->relies = SURE_OF_NOTHING;
   e->needed = whole;
+}
+
+static void write_stage(emitter *e, const stages *s, int stage, unsigned relies) {
+  const size_t size = (size_t)e->node_count + 1;
+  unsigned char *mask = must_alloc(size), *kept_loads = must_alloc(size);
+  stages_mark(e, s, stage, relies, mask, kept_loads);
+  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = 0; k < last; k++) {\n");
+  if (reads_bonds(e, s, stage, mask, kept_loads))
+    c_text_add(e->out, "    const long q = first + k;\n");
+  if (stage >= stages_last(s))
+    c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
+  write_kept_loads(e, s, kept_loads);
+  e->dropped = drop_early(e, s, stage);
+  write_lines_of(e, relies, mask);
+  if (relies & SURE_OF_EXPECTED) write_sizes(e, s, stage);
   write_kept_stores(e, s, stage);
   write_results(e, s, stage);
   c_text_add(e->out, "  }\n");
+  free(e->dropped);
+  e->dropped = NULL;
   free(mask);
   free(kept_loads);
 }
@@ -224,23 +319,18 @@ static void write_stage_for_strip(emitter *e, const stages *s, int stage) {
   c_text_add(e->out, "  }\n");
 }
 
-static void write_stages(emitter *e, const stages *s) {
+static void write_stages(emitter *e, const stages *s, const char *name) {
   if (s->buffers)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double kept[%d][%d];\n", s->buffers, STAGES_PITCH);
   c_text_add(e->out,
              "  for (long first = 0; first < count; first += %d) {\n"
              "  const long last = count - first < %d ? count - first : %d;\n",
              STAGES_PART, STAGES_PART, STAGES_PART);
-  if (s->conditions) c_text_add(e->out, "  int64_t unusual = 0;\n");
+  write_no_sizes(e, s);
   if (s->changes) c_text_add(e->out, "  uint64_t changed = 0;\n");
   for (int stage = 0; stage <= stages_last(s); stage++) {
+    if (stage == stages_last(s)) write_question(e, s, name);
     write_stage_for_strip(e, s, stage);
-    if (!stages_has_conditions(e, s, stage)) continue;
-    c_text_add(e->out,
-               "  if ((unusual & present_bit) != 0) { /* both sides of what was expected */\n");
-    write_stage(e, s, stage, SURE_OF_NOTHING);
-    c_text_add(e->out, "  }\n");
-    if (!stages_relies_on(e, s, stage + 1)) c_text_add(e->out, "  unusual = 0;\n");
   }
   if (s->changes) {
     c_text_add(e->out, "  if (changed != 0) {\n");
@@ -248,6 +338,116 @@ static void write_stages(emitter *e, const stages *s) {
     c_text_add(e->out, "  }\n");
   }
   c_text_add(e->out, "  }\n");
+}
+
+/* --- what is not as expected ------------------------------------------------------------------ */
+
+#define TEXT_OF(number) #number
+#define TEXT(macro)     TEXT_OF(macro)
+static const char unusual_over[] = "const pl_strip *strip, long first, long last,\n    "
+                                   "double *const *lent, double (*kept)[" TEXT(STAGES_PITCH) "]";
+
+/* Marks what the marked nodes need, too; all of both sides, or what is expected. */
+static void mark_below(const emitter *e, unsigned relies, unsigned char *mask) {
+  for (ir_node n = e->node_count - 1; n >= 0; n--) {
+    ir_node operand[3];
+    const int count = mask[n] ? stages_operands(e, n, relies, operand) : 0;
+    for (int k = 0; k < count; k++)
+      mask[operand[k]] = 1;
+  }
+}
+
+/* One line for all conditions: gcc does not vectorise two. */
+static void write_search(emitter *e, const stages *s, unsigned char *mask) {
+  ir_node choice[EXPECTATIONS];
+  const int count = find_expectations(e, s, choice);
+  c_text_add(e->out, "  int64_t unusual = 0;\n  PL_INDEPENDENT\n"
+                     "  for (long k = group; k < group + PL_LANES; k++) {\n"
+                     "    const long q = first + k;\n");
+  write_lines_of(e, SURE_OF_EXPECTED, mask);
+  c_text_add(e->out, "    const int64_t present = flags[q] & present_bit;\n");
+  for (int k = 0; k < count; k++) {
+    c_text_add(e->out, k ? " && (" : "    unusual |= ((");
+    emit_condition(e, ir_operand(e->graph, choice[k], 0));
+    c_text_add(e->out, ")");
+  }
+  c_text_add(e->out, ") ? 0 : present;\n  }\n  if (unusual != 0) { "
+                     "/* both sides of what was expected */\n");
+}
+
+static void write_both_sides(emitter *e, const stages *s, const unsigned char *kept,
+                             unsigned char *mask) {
+  c_text_add(e->out, "  PL_INDEPENDENT\n  for (long k = group; k < group + PL_LANES; k++) {\n"
+                     "    const long q = first + k;\n");
+  write_lines_of(e, SURE_OF_NOTHING, mask);
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (kept[n]) write_kept_store(e, s, n);
+  c_text_add(e->out, "  }\n  }\n  }\n");
+}
+
+static void write_lent_arrays(emitter *e, const stages *s, const unsigned char *kept) {
+  for (int k = 0, lent = 0; k < e->root_count; k++) {
+    const pass_root *r = &e->roots[k];
+    if (!stages_is_lent(r)) continue;
+    bool used = false;
+    for (ir_node n = 0; n < e->node_count; n++)
+      used |= kept[n] && s->buffer[n] == lent;
+    if (used) {
+      c_text_add(e->out, "  double *restrict ");
+      write_indexed(e, strip_targets[r->target].array, r->index);
+      c_text_add(e->out, " = lent[%d];\n", lent);
+    }
+    lent++;
+  }
+}
+
+static void write_read_fields(emitter *e) {
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    if (reads(e, IR_FROM_FIELD, f)) write_target_array(e, TO_FIELD, f, "const ");
+}
+
+static void write_unusual_head(emitter *e, const stages *s, const char *name,
+                               const unsigned char *kept) {
+  c_text function = {0};
+  c_text_add(&function, "%s_unusual", name);
+  emit_function_begin(e, "PL_APART PL_PASS", function.text, unusual_over);
+  free(function.text);
+  c_text_add(e->out, "  (void)law, (void)lent, (void)kept;\n"
+                     "  const int64_t *restrict flags = strip->flags;\n"
+                     "  const int64_t present_bit = (int64_t)PL_PRESENT(strip->direction);\n");
+  write_protected_bit(e);
+  emit_inputs_before_loop(e);
+  write_read_fields(e);
+  write_lent_arrays(e, s, kept);
+  c_text_add(e->out, "  for (long group = 0; group < last; group += PL_LANES) {\n");
+}
+
+/* A function for the vectors that hold a bond that exists and is not as expected: computes again, with both sides, what the
+   last loop takes from the buffers. */
+static void write_unusual(emitter *e, const stages *s, const char *name) {
+  const size_t size = (size_t)e->node_count + 1;
+  unsigned char *asked = must_calloc(size, 1), *kept = must_calloc(size, 1),
+                *both = must_calloc(size, 1), *whole = e->needed;
+  ir_node choice[EXPECTATIONS];
+  const int count = find_expectations(e, s, choice);
+  for (int k = 0; k < count; k++)
+    asked[ir_operand(e->graph, choice[k], 0)] = 1;
+  mark_below(e, SURE_OF_EXPECTED, asked);
+  stages_mark_kept(e, s, kept);
+  memcpy(both, kept, size);
+  mark_below(e, SURE_OF_NOTHING, both);
+  e->needed = must_calloc(size, 1);
+  for (ir_node n = 0; n < e->node_count; n++)
+    e->needed[n] = asked[n] | both[n];
+  write_unusual_head(e, s, name, kept);
+  write_search(e, s, asked);
+  write_both_sides(e, s, kept, both);
+  emit_function_end(e);
+  free(e->needed);
+  e->needed = whole;
+  free(asked);
+  free(kept);
+  free(both);
 }
 
 /* --- a pass ----------------------------------------------------------------------------------- */
@@ -266,34 +466,58 @@ static void describe(const stages *s, c_text *out) {
   if (s->changes) c_text_add(out, ", one more loop where damage changed");
 }
 
+/* What the loops of a pass need where all is as expected; without cuts, what the pass needs. The caller frees it. */
+static unsigned char *usually_needed(const emitter *e, const stages *s) {
+  const size_t size = (size_t)e->node_count + 1;
+  unsigned char *usual = must_calloc(size, 1), *mask = must_alloc(size), *loads = must_alloc(size);
+  if (s->count == 1) memcpy(usual, e->needed, size);
+  for (int stage = 0; stage < s->count && s->count > 1; stage++) {
+    stages_mark(e, s, stage, stage > stages_last(s) ? SURE_OF_NOTHING : SURE_OF_EXPECTED, mask,
+                loads);
+    for (ir_node n = 0; n < e->node_count; n++)
+      usual[n] |= mask[n];
+  }
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (s->of[n] >= 0 && stages_asks(e, s, n)) usual[expectation_of(e, n).limit] = 1;
+  free(mask);
+  free(loads);
+  return usual;
+}
+
 void emit_strip_pass(emitter *e, const pass *p, const char *name) {
   emit_open_roots(e, IN_ROWS, p->roots, p->root_count);
   stages *s = stages_plan(e, e->plan->cutting);
+  unsigned char *whole = e->needed, *usual = usually_needed(e, s);
   c_text_add(e->out, "/* ");
   describe(s, e->out);
   c_text_add(e->out, " */\n");
+  if (s->conditions)
+    c_text_add(e->out, "PL_APART PL_PASS void %s_unusual(const pl_law *, const double *, %s);\n",
+               name, unusual_over);
+  e->needed = usual;
   write_strip_head(e, name, s->count > 1);
+  e->needed = whole;
   if (s->count > 1)
-    write_stages(e, s);
+    write_stages(e, s, name);
   else
     write_one_loop(e);
   emit_function_end(e);
+  if (s->conditions) write_unusual(e, s, name);
+  free(usual);
   stages_free(s);
   emit_close(e);
 }
 
 /* --- what --dump=passes says ------------------------------------------------------------------ */
 
-static void describe_stages(const emitter *e, const stages *s, FILE *out) {
+static void describe_stages(const stages *s, FILE *out) {
   for (int k = 0; k < s->count; k++) {
     const stage_cost *c = &s->cost[k];
     fprintf(out,
             "    loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
             "%.0f cycles for eight bonds%s\n",
             k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
-            stages_has_conditions(e, s, k) ? "; once more where bonds are not as expected"
-            : k > stages_last(s)           ? "; only where damage changed"
-                                           : "");
+            k > stages_last(s) ? "; only where damage changed" : "");
   }
 }
 
@@ -312,7 +536,7 @@ void emit_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out) {
   stages *s = stages_plan(&e, p->cutting);
   describe(s, &text);
   fprintf(out, "  loops  %s\n", text.text);
-  describe_stages(&e, s, out);
+  describe_stages(s, out);
   stages_free(s);
   emit_close(&e);
   free(e.uniform_of);

@@ -14,7 +14,8 @@ enum {
   SITES = 1024,
   MOTIONS = 12, /* planes: displacement of i, of j, velocity of i, of j; 3 each */
   DIRECTION = 5,
-  CALM = 256
+  RUN = 256, /* bonds of one kind: a part of a strip (stages.h) */
+  SPINNING_EACH = 64
 };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
@@ -61,20 +62,26 @@ static void arrays_free(strip_arrays *a) {
 
 /* --- random bonds ----------------------------------------------------------------------------- */
 
-/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or large amount. In
-   every second run of CALM bonds all turn little, as loops that rely on it expect (stages.h). */
+/* What loops that rely on what is expected find in a part: anything; bonds that turn little, but may stretch; that do
+   neither, but some of whose ends spin; that are all as expected. */
+enum { ANY, TURN_LITTLE, SOME_SPIN, AS_EXPECTED, KINDS };
+
+/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or large amount, as far as
+   its run is of the kind. */
 static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed) {
   for (int q = 0; q < SITES; q++) {
-    const bool calm = q / CALM % 2;
-    double turn = calm    ? draw_size(seed, -9, -2)
-                  : q % 3 ? draw_uniform(seed, -14, 14)
-                          : draw_size(seed, -9, 0);
-    double stretched = 1 + fmax(draw_size(seed, -8, 0), -0.9);
+    const int kind = q / RUN % KINDS;
+    double turn = kind != ANY ? draw_size(seed, -9, -2)
+                  : q % 3     ? draw_uniform(seed, -14, 14)
+                              : draw_size(seed, -9, 0);
+    double stretched = 1 + fmax(draw_size(seed, -8, kind < SOME_SPIN ? 0 : -2), -0.9);
     double across = stretched * (cos(turn) * b->chord[0] - sin(turn) * b->chord[1]) - b->chord[0];
     double along = stretched * (sin(turn) * b->chord[0] + cos(turn) * b->chord[1]) - b->chord[1];
     double x = b->s * draw_size(seed, -7, 0), y = b->s * draw_size(seed, -7, 0);
     double near[3] = {x, y, turn + draw_size(seed, -9, 0)};
     double far[3] = {x + across, y + along, turn + draw_size(seed, -9, 0)};
+    if (kind == SOME_SPIN && q % SPINNING_EACH == 0)
+      *(q & SPINNING_EACH ? &near[2] : &far[2]) += draw_uniform(seed, -14, 14);
     for (int k = 0; k < 3; k++) {
       a->motion[k][q] = near[k];
       a->motion[3 + k][q + 1] = far[k];

@@ -90,20 +90,26 @@ static ir_node chord_rotation(ir *g, const bond_kinematics *k, const chord_motio
   return named(g, ir_select(g, m->near, near, far), "chord_rotation");
 }
 
-/* Rotations of the ends less the chord's. Up to half a turn wrapping changes nothing, so that one question serves both:
-   whether the squares of the two add up to less than that of half a turn. */
+/* An end's rotation less the chord's, within half a turn. */
+static ir_node end_rotation(ir *g, const chord_motion *m, ir_node small, ir_node end,
+                            ir_node of_chord, const char *name) {
+  const ir_node turned = ir_sub(g, end, of_chord);
+  const ir_node wrapped = ir_make(g, IR_WRAP_ANGLE, turned, IR_NONE, IR_NONE);
+  const ir_node near = ir_select(g, small, turned, wrapped);
+  return named(g, ir_select(g, m->near, near, wrapped), name);
+}
+
+/* Up to half a turn wrapping changes nothing. The chord of a bond that is near turns by little, so that one question about
+   both ends is left; emit_strip.c asks for sizes of 2 or more of many bonds at once. */
 static void end_rotations(ir *g, bond_kinematics *k, const chord_motion *m) {
-  const double square_of_half_turn = 9.8;
   const ir_node of_chord = chord_rotation(g, k, m);
-  const ir_node i = ir_sub(g, kinematics_input(g, ENDS_PHI_I), of_chord);
-  const ir_node j = ir_sub(g, kinematics_input(g, ENDS_PHI_J), of_chord);
-  const ir_node both = dot(g, (vector){i, j}, (vector){i, j});
-  const ir_node limit = ir_constant(g, square_of_half_turn);
-  const ir_node inside = ir_expect(g, ir_make(g, IR_LE, both, limit, IR_NONE));
-  const ir_node wrapped_i = ir_make(g, IR_WRAP_ANGLE, i, IR_NONE, IR_NONE);
-  const ir_node wrapped_j = ir_make(g, IR_WRAP_ANGLE, j, IR_NONE, IR_NONE);
-  k->theta_i = named(g, ir_select(g, inside, i, wrapped_i), "theta_i");
-  k->theta_j = named(g, ir_select(g, inside, j, wrapped_j), "theta_j");
+  const ir_node i = kinematics_input(g, ENDS_PHI_I), j = kinematics_input(g, ENDS_PHI_J);
+  const ir_node size_i = ir_make(g, IR_ABS, i, IR_NONE, IR_NONE);
+  const ir_node size_j = ir_make(g, IR_ABS, j, IR_NONE, IR_NONE);
+  const ir_node larger = ir_make(g, IR_MAX, size_i, size_j, IR_NONE);
+  const ir_node small = ir_expect(g, ir_make(g, IR_LT, larger, ir_constant(g, 2), IR_NONE));
+  k->theta_i = end_rotation(g, m, small, i, of_chord, "theta_i");
+  k->theta_j = end_rotation(g, m, small, j, of_chord, "theta_j");
 }
 
 static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {

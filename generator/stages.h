@@ -4,10 +4,11 @@
 
    Why: a processor keeps some hundred operations in flight. Where those of one bond wait for each other in a long chain,
    few bonds are in flight at once, and the processor waits with them; of short chains it overlaps many. And where a value
-   is chosen by a condition that is expected to hold (ir_expect), a stage computes what is expected for all bonds and looks
-   once, at its end, whether all were as expected; if not, the stage is done again, with both sides, and so are later ones
-   that rely on the same. Where a strip says that none of its bonds is protected, what protected ones keep is not looked
-   at. The last stage, which overwrites fields, is never done twice.
+   is chosen by a condition that is expected to hold (ir_expect), stages compute what is expected for all bonds and gather
+   the largest of the sizes that the conditions ask about. Before the last stage, which overwrites fields, it is looked
+   whether all were as expected; if not, bonds that exist and are not are looked for, vector by vector, and theirs is
+   computed again with both sides, all that the last stage takes from buffers. Where a strip says that none of its bonds
+   is protected, what protected ones keep is not looked at.
 
    What follows from new damage alone is left to one more stage, done only where a bond has some: most steps leave nearly
    all damage as it is, which need not be written then, and whose energy need not be computed.
@@ -18,10 +19,9 @@
 
 #include "generator/emit_parts.h"
 
-enum {
-  STAGES_PART = 256, /* bonds */
-  STAGES_PITCH = 280 /* doubles of a buffer; not near a part of 4 KiB: stores would hold up loads */
-};
+enum { STAGES_PART = 256 /* bonds */ };
+/* Doubles of a buffer; not near a part of 4 KiB: stores would hold up loads. */
+#define STAGES_PITCH 280
 
 typedef struct stage_cost {
   int operations, divisions, loads, stores;
@@ -47,9 +47,18 @@ typedef struct stages {
 stages *stages_plan(const emitter *e, loop_cutting cutting);
 void stages_free(stages *s);
 
+/* A condition that is expected of the bonds of a strip: that a size is below a positive limit. */
+typedef struct expectation {
+  ir_node size[2]; /* [count]; of two the larger absolute value is meant */
+  int count;
+  ir_node limit;
+} expectation;
+
+/* Two sizes are asked for together where the limit is 2: the highest bit of the exponent tells. */
+expectation stages_expectation(const emitter *e, ir_node condition);
 /* Operands of node n, operand[3]; in a loop that relies on what is expected, of a choice by an expected condition only
-   the condition and the value it is expected to choose, and where no bond is protected, only what others get. Returns their
-   number. */
+   the value it is expected to choose and what the condition asks about, and where no bond is protected, only what others
+   get. Returns their number. */
 int stages_operands(const emitter *e, ir_node n, unsigned relies, ir_node operand[3]);
 /* Marks what the loop of a stage computes or loads, and `kept_loads`, what it takes from the buffers; mask and kept_loads:
    [node_count], zeroed here. `relies`: on what (reliance). */
@@ -65,11 +74,12 @@ int stages_last(const stages *s);
 /* A result of the stage behind that, which most steps leave as it is nearly everywhere: damage, and energy that nothing but
    damage takes. */
 bool stages_is_of_change(const emitter *e, const pass_root *r);
-bool stages_has_conditions(const emitter *e, const stages *s, int stage);
 /* A choice by a condition that is expected to hold, the first to ask for it: later ones rely on the answer. */
 bool stages_asks(const emitter *e, const stages *s, ir_node n);
-/* Whether this stage or a later one relies on what another choice asked. */
-bool stages_relies_on(const emitter *e, const stages *s, int stage);
+/* Whether a stage stores a line in a buffer; what is in the array of a result is a result. */
+bool stages_stores(const stages *s, ir_node n, int stage);
+/* What the last stage, or that behind it, takes from a buffer: marks. */
+void stages_mark_kept(const emitter *e, const stages *s, unsigned char *mask);
 /* A result whose array is a buffer until the last stage writes it. */
 bool stages_is_lent(const pass_root *r);
 

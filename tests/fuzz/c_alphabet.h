@@ -52,6 +52,7 @@ static const char *const c_own_words[] = {"static",
                                           "PL_PROTECTED",
                                           "PL_RARE",
                                           "PL_PASS",
+                                          "PL_APART",
                                           "PL_INDEPENDENT",
                                           "pl_abs",
                                           "pl_fma",
@@ -84,7 +85,8 @@ static const char *const c_own_functions[] = {
     "prepare",   "bounds",         "rows",      "rows_ledger", "rows_observe", "states",
     "tangent",   "perilat_kernel", "step_0",    "step_1",      "step_2",       "step_3",
     "step_4",    "step_5",         "step_6",    "step_7",      "observe_0",    "observe_1",
-    "observe_2", "observe_3",      "observe_4", "observe_5",   "observe_6",    "observe_7"};
+    "observe_2", "observe_3",      "observe_4", "observe_5",   "observe_6",    "observe_7",
+    "rows_unusual", "rows_ledger_unusual", "rows_observe_unusual"};
 
 static inline bool c_word_in(const char *const *words, size_t count, const char *at,
                              size_t length) {

@@ -443,7 +443,7 @@ static void the_same_law_gives_the_same_text(void **state) {
   hand_free(second);
 }
 
-/* No call, in any of the code; a call in a loop is what makes it slow without a word. */
+/* No call, in any of the code, but for what is not as expected; a call in a loop is what makes it slow without a word. */
 static void the_assembly_calls_nothing(void **state) {
   (void)state;
   hand_made *h = beam_new();
@@ -451,7 +451,10 @@ static void the_assembly_calls_nothing(void **state) {
   const char *const compilers[] = {"gcc", "clang"};
   for (int k = 0; k < 2; k++) {
     char *assembly = compiler_says(text, compilers[k], "-S -o -");
-    if (assembly && strstr(assembly, "\tcall")) fail_msg("%.60s", strstr(assembly, "\tcall"));
+    for (const char *at = assembly; at && (at = strstr(at, "\tcall")); at++) {
+      const char *apart = strstr(at, "_unusual");
+      if (!apart || apart > at + strcspn(at, "\n")) fail_msg("%.60s", at);
+    }
     free(assembly);
   }
   free(text);

@@ -107,7 +107,7 @@ static const char *const hostile_names[] = {
     "at_field_0", "at_out_0", "u_ix", "d_x", "e_x", "shared", "per_length", "chord_x",
     "class_chord_x", "v1", "v12", "v2_2", "old_x", "old_omega", "omega_2", "time_step", "f_x",
     "moment_i", "changed", "unusual", "owned", "owner", "half", "back", "int32_t", "int64_t",
-    "uint8_t",
+    "uint8_t", "large", "largest_0", "rows_unusual",
     /* functions that compilers know by name */
     "main", "printf", "memcpy", "malloc", "system", "exit", "fabs", "fma", "pow", "floor", "round",
     "isnan", "signbit", "gamma", "y0", "j1", "abort", "_exit", "alloca", "cold", "vectorize",
@@ -183,13 +183,13 @@ static void names_stay_names(void **state) {
       if (is_taken(hostile_names[k]))
         fprintf(out, "  %s = max(previous(%s), 0.001*abs(stretch))\n", hostile_names[k],
                 hostile_names[k]);
-    fprintf(out, "  force N = 1 [N]*stretch*(1");
+    fprintf(out, "  force N = 1 [N]*stretch*((1");
     for (int k = 0, written = 0; k < NAMES; k += step)
       if (is_taken(hostile_names[k]) && *roles[r].used) {
         put(out, roles[r].used, hostile_names[k]);
-        if (++written % 20 == 0) fprintf(out, " &\n    ");
+        if (++written % 20 == 0) fprintf(out, written % 100 ? " &\n    " : ") &\n    + (1");
       }
-    fprintf(out, ")\nend model\n");
+    fprintf(out, "))\nend model\n");
     fclose(out);
     through_the_compiler(text);
     free(text);

@@ -103,11 +103,11 @@ static char *compiler_says(const model *m, const char *compiler, const char *mor
   return said;
 }
 
-static void assert_clean_and_vectorised(const model *m) {
-  const char *text = m->c_text, *at = strstr(text, "PL_PASS void rows(const pl_law *law"),
-             *end = strstr(at, "\n}\n");
-  char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
-  while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
+static void assert_vectorised(const model *m, const char *gcc, const char *function) {
+  const char *text = m->c_text, *at = strstr(text, function),
+             *end = at ? strstr(at, "\n}\n") : NULL;
+  while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) &&
+         at < end) { /* all loops of the function */
     char expected[64];
     int line = 2;
     for (const char *c = text; c < at; c++)
@@ -117,6 +117,14 @@ static void assert_clean_and_vectorised(const model *m) {
       fail_msg("line %d of the kernel of %s does not vectorise: %s", line, m->path, gcc);
     at++;
   }
+}
+
+static void assert_clean_and_vectorised(const model *m) {
+  char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
+  assert_non_null(strstr(m->c_text, "PL_PASS void rows(const pl_law *law"));
+  assert_vectorised(m, gcc, "PL_PASS void rows(const pl_law *law");
+  assert_vectorised(
+      m, gcc, "PL_PASS void rows_unusual(const pl_law *law"); /* where something is expected */
   free(gcc);
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }
