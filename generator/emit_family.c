@@ -388,7 +388,7 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
   for (int k = 0; k < p->plane_count; k++)
     c_text_add(e->out, "  _Alignas(PL_ALIGNMENT) double plane_%d[2*PL_MAX_DIRECTIONS][CHUNK];\n",
                k);
-  const bool rows = plan_is_of_small_family(e->plan);
+  const bool rows = e->plan->form == FAMILY_WRITTEN_OUT;
   c_text_add(e->out, rows ? emit_rows_begin : "  const long begin = 0, end = family->count;\n");
   c_text_add(e->out, "  for (long first = begin; first < end; first += CHUNK) {\n"
                      "    const long left = end - first;\n"
@@ -408,7 +408,7 @@ static void write_rolled_pass(emitter *e, const family_pass *p) {
 }
 
 static void write_pass(emitter *e, const family_program *q, int number) {
-  const bool unrolled = q == &e->plan->step && plan_is_of_small_family(e->plan);
+  const bool unrolled = q == &e->plan->step && e->plan->form == FAMILY_WRITTEN_OUT;
   char name[40];
   if (unrolled)
     c_text_add(e->out, "/* one loop, %d neighbours written out */\n", e->plan->law->neighbours);
@@ -455,7 +455,7 @@ void emit_program_members(emitter *e) {
              ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
              ".reads_shape = %d,\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
-             plan_is_of_small_family(e->plan) ? e->plan->law->neighbours : 0,
+             e->plan->form == FAMILY_WRITTEN_OUT ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
              program_sum_count(&e->plan->step),
              program_constant_sums(e->graph, &e->plan->step, NULL), e->plan->reads_shape);

@@ -390,10 +390,31 @@ kernel_plan *plan_kernel(const law *l, diagnostics *d) {
   return plan_kernel_varying(l, NULL, 0, d);
 }
 
-kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d) {
   kernel_plan *plan = plan_begin(l);
   plan->kind = PL_STATE;
+  plan->form = form;
   return finish(plan, plan_programs(plan, d), d);
+}
+
+/* Fields on bonds are worth adding to both ends in small families already: these write them only where they change. */
+static bool is_for_pairs(const law *l) {
+  enum { WRITTEN_OUT_FASTER = 12 };
+  bool on_bonds = false;
+  for (int k = 0; k < l->fields.count; k++)
+    on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
+  return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
+}
+
+kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+  enum { MOST_WRITTEN_OUT = 18 };
+  if (l->irregular || l->neighbours == 0) return plan_families(l, FAMILY_LOOPS, d);
+  if (is_for_pairs(l)) {
+    kernel_plan *plan = plan_families(l, FAMILY_PAIRS, d);
+    if (!plan || program_sum_count(&plan->step) > 0) return plan;
+    plan_free(plan); /* nothing is the same or opposite at both ends */
+  }
+  return plan_families(l, l->neighbours <= MOST_WRITTEN_OUT ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
 }
 
 kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,

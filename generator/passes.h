@@ -68,6 +68,13 @@ typedef enum loop_cutting {
   CUT_ALWAYS /* into stages as short as they can be */
 } loop_cutting;
 
+/* How the passes of a law of families go over the neighbours. */
+typedef enum family_form {
+  FAMILY_LOOPS,       /* by loops, of any number of neighbours */
+  FAMILY_WRITTEN_OUT, /* one loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
+  FAMILY_PAIRS        /* by loops over bonds that add to both ends (SHARE_PAIRS) */
+} family_form;
+
 typedef struct kernel_plan {
   const law *law;
   const int *varying; /* [varying_count] parameters that differ from bond to bond */
@@ -83,24 +90,12 @@ typedef struct kernel_plan {
   int uniform_count;
   double flops_per_bond, divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
+  family_form form; /* of `step`, and of how chords and forces are written */
   family_program step, observe;
   program_links links;
   bool reads_shape; /* inverse shape matrices */
   arena *memory;
 } kernel_plan;
-
-/* Families that a kernel is written for neighbour by neighbour (law->neighbours): a pass is one loop over the particles,
-   without loops over their neighbours. */
-static inline bool plan_is_of_small_family(const kernel_plan *p) {
-  enum { SMALL = 18 };
-  return !p->law->irregular && p->law->neighbours > 0 && p->law->neighbours <= SMALL;
-}
-
-/* Families in which evaluating a bond twice costs more than adding to a far end (SHARE_PAIRS). */
-static inline bool plan_is_of_large_family(const kernel_plan *p) {
-  enum { LARGE = 40 };
-  return !p->law->irregular && p->law->neighbours >= LARGE;
-}
 
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
    when it cannot be compiled. */

@@ -162,7 +162,7 @@ static void dump_program(const kernel_plan *p, const family_program *q, FILE *ou
     const family_pass *now = &q->passes[k];
     fprintf(out, "pass %s %d: %d slots, %d planes\n", q->name, k, now->slot_count,
             now->plane_count);
-    if (q == &p->step && plan_is_of_small_family(p))
+    if (q == &p->step && p->form == FAMILY_WRITTEN_OUT)
       fprintf(out, "  loops  one over the particles, %d neighbours written out\n",
               p->law->neighbours);
     for (int s = 0; s < now->segment_count; s++)

@@ -47,8 +47,8 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = plan_is_of_large_family(plan) ? in_parts(plan, of)
-                                      : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
+    f = plan->form == FAMILY_PAIRS ? in_parts(plan, of)
+                                   : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
@@ -57,11 +57,11 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots) {
   ir *g = plan->graph;
   ir_node f = bond_force(plan, of);
-  const bool large = plan_is_of_large_family(plan);
-  if (large) f = ir_mul(g, f, present(g, PER_LENGTH));
+  const bool pairs = plan->form == FAMILY_PAIRS;
+  if (pairs) f = ir_mul(g, f, present(g, PER_LENGTH));
   for (int d = 0; d < plan->dimensions; d++)
     roots[d] = (segment_root){
-        .node = family_sum(g, ir_mul(g, f, present(g, (large ? CHORD : DIRECTION) + d))),
+        .node = family_sum(g, ir_mul(g, f, present(g, (pairs ? CHORD : DIRECTION) + d))),
         .target = TO_PARTICLE_FORCE,
         .index = d};
 }
@@ -134,7 +134,7 @@ enum { MOST_MOTION = 10 };
 
 program_motion plan_motion(const kernel_plan *plan, bool reference) {
   ir *g = plan->graph;
-  family_kinematics k = kinematics_family(g, plan->dimensions, plan_is_of_large_family(plan));
+  family_kinematics k = kinematics_family(g, plan->dimensions, plan->form == FAMILY_PAIRS);
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;
@@ -277,8 +277,9 @@ static program_sharing sharing(const family_planner *p) {
   bool on_bonds = false;
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
-  if (plan_is_of_small_family(p->plan)) return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
-  if (plan_is_of_large_family(p->plan)) return SHARE_PAIRS;
+  if (p->plan->form == FAMILY_PAIRS) return SHARE_PAIRS;
+  if (p->plan->form == FAMILY_WRITTEN_OUT)
+    return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
 

@@ -1,6 +1,7 @@
 /* --profile: where the time of a run went. */
 #include <math.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 #include "dsl/arena.h"
 #include "generator/run_parts.h"
@@ -93,6 +94,18 @@ static void print_parts(const run *r, double seconds) {
   print_part("rest", seconds - known, seconds);
 }
 
+/* Whether what the run holds stays in the second caches of its threads, as far as the system tells how large these are. */
+static bool stays_in_caches(const run *r) {
+#ifdef _SC_LEVEL2_CACHE_SIZE
+  const long cache = sysconf(_SC_LEVEL2_CACHE_SIZE);
+  return cache > 0 &&
+         simulation_memory(r->simulation) < (double)cache * simulation_threads(r->simulation);
+#else
+  (void)r;
+  return false;
+#endif
+}
+
 static const char *limit_of(const run *r, double share_of_triad) {
   const double *part = r->profile.part, steps = part[PROFILE_LAW] + part[PROFILE_PARTICLES];
   if (part[PROFILE_WAITING] > 0.5 * steps)
@@ -101,7 +114,7 @@ static const char *limit_of(const run *r, double share_of_triad) {
     return "sampling: samples can be further apart (output.sample)";
   if (part[PROFILE_WRITING] > steps) return "writing: frames can be fewer (output.frames)";
   if (part[PROFILE_LOADS] > steps) return "loads and monitors";
-  return share_of_triad > 0.6 ? "memory" : "the operations of the law";
+  return share_of_triad > 0.6 && !stays_in_caches(r) ? "memory" : "the operations of the law";
 }
 
 void print_profile(const run *r, double seconds, long steps) {

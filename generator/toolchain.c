@@ -1,5 +1,6 @@
 #include "generator/toolchain.h"
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -11,6 +12,7 @@
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "dsl/arena.h"
@@ -248,6 +250,29 @@ static bool put_file(const char *path, const char *text) {
   if (write_file(temporary, "wb", text, strlen(text)) && rename(temporary, path) == 0) return true;
   unlink(temporary);
   return false;
+}
+
+/* A file that a compilation makes beside KEY.so or KEY.c and takes away at its end: KEY.so.XXXXXX.tmp and the like. */
+static bool is_passing(const char *name) {
+  const size_t key = strspn(name, "0123456789abcdef");
+  return key == 2 * SHA256_SIZE && name[key] == '.' && strchr(name + key + 1, '.');
+}
+
+/* Takes away what compilations that were killed have left in the cache; none takes a day. */
+static void clear_remains(const char *folder) {
+  enum { DAY = 24 * 60 * 60 };
+  const time_t now = time(NULL);
+  DIR *all = opendir(folder);
+  for (const struct dirent *e; all && (e = readdir(all));) {
+    char path[LONGEST_PATH];
+    struct stat about;
+    if (!is_passing(e->d_name) ||
+        snprintf(path, sizeof path, "%s/%s", folder, e->d_name) >= (int)sizeof path)
+      continue;
+    if (lstat(path, &about) == 0 && S_ISREG(about.st_mode) && now - about.st_mtime > DAY)
+      unlink(path);
+  }
+  if (all) closedir(all);
 }
 
 /* --- the seal: a digest behind the end of a cached object, where the loader does not look ----- */
@@ -576,6 +601,7 @@ bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, cha
     return true;
   }
   *out = (loaded_kernel){0};
+  clear_remains(cache);
   if (!put_file(source, c_text)) {
     snprintf(error, size, "cannot write `%s`: %s", source, strerror(errno));
     return false;

@@ -44,7 +44,7 @@ const double *damage_of_all_bonds(const sweep *w) {
   const double *only = NULL;
   for (int f = 0; f < w->law->field_count; f++) {
     if (!counts(&w->law->fields[f], false)) continue;
-    if (only || w->law->kind == PL_STATE) return NULL;
+    if (only || w->law->fields[f].place != PL_ON_BOND) return NULL;
     only = w->field[f];
   }
   return only;

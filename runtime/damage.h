@@ -13,7 +13,7 @@ bool damage_on_particles(const pl_law *law);
 
 /* 0 without. */
 double damage_of_bond(const sweep *w, const rows_bond *bond);
-/* [directions][size] that of every bond, where a law of bonds has one damage; NULL otherwise. */
+/* [directions][size] that of every bond, at its owner, where one damage is all and the same from either end; NULL otherwise. */
 const double *damage_of_all_bonds(const sweep *w);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);

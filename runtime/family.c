@@ -215,7 +215,7 @@ static double stored_in_row(const sweep *w, int row) {
   const long start = sweep_start(w, row);
   double sum = 0;
   for (long q = start; q < start + w->count[row]; q++)
-    if (w->lattice->present[q] && rows_degree(w->lattice, q) > 0)
+    if (w->lattice->present[q] && (w->lattice->bonds[q] || rows_degree(w->lattice, q) > 0))
       sum += family_of(w)->observed[0][q];
   return sum;
 }
@@ -246,13 +246,16 @@ static void observe(sweep *w, int stage, int block) {
     observe_rows(w, block);
 }
 
-static void output_values(sweep *w, int output, double *values) {
-  const family *f = family_of(w);
-  const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
-  for (int stage = 0; stage < program_stages(f, &w->law->observe); stage++)
+static void find_outputs(sweep *w) {
+  for (int stage = 0; stage < program_stages(family_of(w), &w->law->observe); stage++)
     for (int b = 0; b < w->block_count; b++)
       run_program(w, &w->law->observe, stage, b);
-  memcpy(values, f->observed[1 + output], count * (size_t)w->lattice->size * sizeof *values);
+}
+
+static void output_values(sweep *w, int output, double *values) {
+  const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
+  memcpy(values, family_of(w)->observed[1 + output],
+         count * (size_t)w->lattice->size * sizeof *values);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -364,6 +367,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
                         .turn = turn,
                         .fields_set = fields_set,
                         .observe = observe,
+                        .find_outputs = find_outputs,
                         .output = output_values,
                         .free = free_own,
                         .keeps_links = f->windows == NULL,

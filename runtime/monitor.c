@@ -227,17 +227,22 @@ static double count_damaged(const monitors *all, const monitor *m) {
   return (double)count;
 }
 
-static double field_mean(const monitors *all, const monitor *m) {
-  const pl_law *law = all->state->law;
-  const double *values = all->values;
-  if (m->field < law->field_count)
-    values = all->state->field[m->field];
-  else
-    sweep_output(all->state, m->field - law->field_count, all->values);
+/* All outputs are found together, once for a state. */
+static const double *output_now(monitors *all, int output) {
+  if (!all->outputs_found) sweep_find_outputs(all->state);
+  all->outputs_found = true;
+  sweep_output(all->state, output, all->values);
+  return all->values;
+}
+
+static double field_mean(monitors *all, const monitor *m) {
+  const int fields = all->state->law->field_count;
+  const double *values =
+      m->field < fields ? all->state->field[m->field] : output_now(all, m->field - fields);
   return mean_at(values, m->indices[0], m->index_count[0]);
 }
 
-static double value_now(const monitors *all, const monitor *m) {
+static double value_now(monitors *all, const monitor *m) {
   const int c = m->deck->component;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
@@ -269,11 +274,12 @@ static double mean_of_ring(const monitor *m) {
   return count ? sum / (double)count : 0;
 }
 
-static double averaged(const monitors *all, const monitor *m) {
+static double averaged(monitors *all, const monitor *m) {
   return m->window > 1 ? mean_of_ring(m) : value_now(all, m);
 }
 
 void monitors_step(monitors *all, long step) {
+  all->outputs_found = false;
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
     if (m->window > 1) m->ring[m->state.filled++ % m->window] = value_now(all, m);
@@ -281,7 +287,8 @@ void monitors_step(monitors *all, long step) {
   }
 }
 
-void monitors_sample(monitors *all, double time, double *values) {
+void monitors_sample(monitors *all, double time, bool observed, double *values) {
+  all->outputs_found |= observed;
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
     values[i] = m->deck->scale * (averaged(all, m) - m->state.zero);

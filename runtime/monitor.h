@@ -40,6 +40,7 @@ typedef struct monitors {
   const loads *loads;
   const rows_bond *bonds; /* [lattice->bond_count], not owned */
   double *values;         /* [size] an output while it is looked at */
+  bool outputs_found;     /* those of the present state */
   double *ring_memory;    /* all rings in one */
   long ring_size;
 } monitors;
@@ -51,8 +52,8 @@ void monitors_free(monitors *m);
 /* After every step, of quasi-static runs after every increment (and once at the start): rings and
    zeros. */
 void monitors_step(monitors *m, long step);
-/* Values of all monitors now; remembers peaks. */
-void monitors_sample(monitors *m, double time, double *values);
+/* Values of all monitors now; remembers peaks. `observed`: the present state was (sweep_observe). */
+void monitors_sample(monitors *m, double time, bool observed, double *values);
 /* The first &stop of the deck that applies to values just sampled, or NULL. */
 const deck_stop *monitors_stop(const monitors *m, double time, const double *values);
 

@@ -366,10 +366,10 @@ static int64_t next_sample(const simulation *s) {
 
 /* Values of the present state into the history. The end is sampled also when it lies between two
  * samples. */
-static void take_sample(simulation *s) {
+static void take_sample(simulation *s, bool observed) {
   const double time = simulation_time(s);
   const int watched = s->monitors->count;
-  monitors_sample(s->monitors, time, s->sampled);
+  monitors_sample(s->monitors, time, observed, s->sampled);
   if (s->deck->output.energy)
     ledger_sample(&s->ledger, s->state, s->loads, (long)s->at.step, s->sampled + watched);
   if (s->relaxation) {
@@ -389,9 +389,9 @@ static void take_sample(simulation *s) {
   }
 }
 
-static void record_sample(simulation *s) {
+static void record_sample(simulation *s, bool observed) {
   const double begun = s->profile ? monotonic_seconds() : 0;
-  take_sample(s);
+  take_sample(s, observed);
   if (s->profile) s->profile->sampled += monotonic_seconds() - begun;
 }
 
@@ -445,14 +445,14 @@ static void after_step(simulation *s) {
   }
   monitors_step(s->monitors, (long)s->at.step);
   s->observe = sample_due(s) && s->deck->output.energy;
-  if (sample_due(s) && !s->observe) record_sample(s);
+  if (sample_due(s) && !s->observe) record_sample(s, false);
 }
 
 /* Quasi-static runs observe to see whether the body has come to rest. */
 static void end_increment(simulation *s) {
   if (!relaxation_look(s->relaxation, s->at.step)) return;
   monitors_step(s->monitors, (long)simulation_position(s));
-  record_sample(s);
+  record_sample(s, true);
   if (simulation_position(s) == simulation_end(s))
     s->at.status = s->at.status == STEP_OK ? STEP_END : s->at.status;
   else
@@ -465,7 +465,7 @@ static void after_observing(simulation *s) {
   if (s->relaxation && s->at.step > 0)
     end_increment(s);
   else
-    record_sample(s);
+    record_sample(s, true);
 }
 
 void simulation_measure(simulation *s, profile *p) {
@@ -522,7 +522,7 @@ static void begin(simulation *s) {
   loads_begin(s->loads, s->state);
   monitors_step(s->monitors, 0);
   s->observe = s->deck->output.energy;
-  if (!s->observe) record_sample(s);
+  if (!s->observe) record_sample(s, false);
 }
 
 static void run_team(simulation *s) {

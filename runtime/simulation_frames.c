@@ -200,6 +200,7 @@ static void output_values(simulation *s, int output, double *values) {
   const pl_field *field = &s->law->outputs[output];
   const size_t planes = (size_t)sweep_planes(s->state, field->place);
   double *array = must_calloc(planes * (size_t)s->lattice->size, sizeof *array);
+  sweep_find_outputs(s->state);
   sweep_output(s->state, output, array);
   law_values(s, field, array, values);
   free(array);

@@ -327,6 +327,10 @@ void sweep_observe(sweep *w) {
       w->engine.observe(w, stage, b);
 }
 
+void sweep_find_outputs(sweep *w) {
+  if (w->engine.find_outputs) w->engine.find_outputs(w);
+}
+
 void sweep_output(sweep *w, int output, double *values) {
   w->engine.output(w, output, values);
 }

@@ -48,6 +48,7 @@ typedef struct sweep_engine {
       sweep *w);          /* after values of fields were set from outside; NULL: nothing to do */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
   void (*observe)(sweep *w, int stage, int block);
+  void (*find_outputs)(sweep *w); /* NULL: `output` does */
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
   bool
@@ -139,7 +140,9 @@ sweep_totals sweep_sum(const sweep *w);
 /* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a law
    of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
-/* An output of the law in the present state: values[sweep_planes * size], defined where bonds or
+/* Finds the outputs of the law in the present state; sweep_observe has found them, too. */
+void sweep_find_outputs(sweep *w);
+/* An output in the state for which they were found: values[sweep_planes * size], defined where bonds or
  * particles are. */
 void sweep_output(sweep *w, int output, double *values);
 

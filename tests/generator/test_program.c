@@ -141,11 +141,40 @@ static const segment *pairs_of(const family_pass *p) {
   return NULL;
 }
 
+static void assert_form(int neighbours, const char *lines, family_form expected) {
+  tested_law *t = open_family(neighbours, lines);
+  if (t->plan->form != expected)
+    fail_msg("form %d, not %d, for %d neighbours:\n%s", t->plan->form, expected, neighbours, lines);
+  assert_int_equal(program_sum_count(&t->plan->step) > 0, expected == FAMILY_PAIRS);
+  close_law(t);
+}
+
+/* Small families are written out, unless bonds have fields that their ends would both write; in larger ones bonds add to both
+   ends, unless these compute nothing alike. */
+static void families_have_the_form_that_suits(void **state) {
+  (void)state;
+  static const char *const plain = "  force state F[j] = a*stretch[j]\n";
+  static const char *const broken = "  damage w on bond\n  w[j] = | 1 when stretch[j] >= 1 jump\n"
+                                    "         | 0 otherwise\n"
+                                    "  force state F[j] = (1 - w[j])*a*stretch[j]\n";
+  static const char *const of_ends = "  state p on neighbour = 0\n  p[j] = previous(p[j])\n"
+                                     "  force state F[j] = (1 - p[j])*a*stretch[j]\n";
+  assert_form(0, plain, FAMILY_LOOPS);
+  assert_form(0, broken, FAMILY_LOOPS);
+  assert_form(12, plain, FAMILY_WRITTEN_OUT);
+  assert_form(14, plain, FAMILY_PAIRS);
+  assert_form(6, broken, FAMILY_PAIRS);
+  assert_form(122, broken, FAMILY_PAIRS);
+  assert_form(12, of_ends, FAMILY_WRITTEN_OUT);
+  assert_form(18, of_ends, FAMILY_WRITTEN_OUT);
+  assert_form(26, of_ends, FAMILY_LOOPS);
+}
+
 /* Where many bonds meet in space, one end computes the force over the length, when both sums are known, and both read it. Links
    are kept of one reach of rows only. */
 static void one_end_computes_the_force_of_a_bond(void **state) {
   (void)state;
-  tested_law *t = open_family(18, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
+  tested_law *t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
   const family_program *step = &t->plan->step;
   assert_int_equal(step->pass_count, 4);
   assert_int_equal(step->passes[2].segment_count, 1);
@@ -156,7 +185,7 @@ static void one_end_computes_the_force_of_a_bond(void **state) {
   assert_int_equal(program_at_hand(t->plan->graph, step), 1 + 2 + 8);
   assert_int_equal(program_reaches_spared(t->plan->graph, step), 1);
   close_law(t);
-  t = open_family(18, "  force state F[j] = a*stretch[j]\n"); /* nothing that passes would add */
+  t = open_family(12, "  force state F[j] = a*stretch[j]\n"); /* nothing that passes would add */
   assert_int_equal(t->plan->step.pass_count, 2);
   close_law(t);
 }
@@ -872,6 +901,7 @@ int main(void) {
       cmocka_unit_test(one_sum_needs_one_pass_and_one_loop),
       cmocka_unit_test(ends_share_what_is_the_same_for_both),
       cmocka_unit_test(long_horizons_share_nothing),
+      cmocka_unit_test(families_have_the_form_that_suits),
       cmocka_unit_test(one_end_computes_the_force_of_a_bond),
       cmocka_unit_test(bonds_of_large_families_add_to_both_ends),
       cmocka_unit_test(particles_of_large_families_give_their_parts),

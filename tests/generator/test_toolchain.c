@@ -12,9 +12,11 @@
 
 #include <cmocka.h>
 
+#include <fcntl.h>
 #include <ftw.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "generator/prelude.h"
@@ -216,6 +218,46 @@ static void runs_at_once_do_not_disturb_each_other(void **state) {
   }
   assert_int_equal(count_files(p->folder, "so"), 1);
   assert_int_equal(count_files(p->folder, "tmp"), 0);
+  free(text);
+  free(key);
+}
+
+/* A file in the cache as a killed compilation, or somebody else, left it so many hours ago. */
+static void leave_file(const char *folder, const char *name, int hours) {
+  char path[1200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fclose(out);
+  const struct timespec then = {.tv_sec = time(NULL) - 3600L * hours}, both[] = {then, then};
+  assert_int_equal(utimensat(AT_FDCWD, path, both, 0), 0);
+}
+
+static bool is_there(const char *folder, const char *name) {
+  char path[1200];
+  snprintf(path, sizeof path, "%s/%s", folder, name);
+  return access(path, F_OK) == 0;
+}
+
+static void what_killed_compilations_left_is_taken_away_after_a_day(void **state) {
+  place_of_test *p = *state;
+  char *key, *text = keyed_text(6, &key), name[8][100];
+  static const char *const endings[] = {".so.abcdef.tmp", ".so.abcdef.tmp.1.o", ".c.abcdef.log",
+                                        ".c.abcdef.tmp"};
+  for (int k = 0; k < 4; k++) {
+    snprintf(name[k], sizeof name[k], "%064d%s", k, endings[k]);
+    leave_file(p->folder, name[k], 25);
+    snprintf(name[4 + k], sizeof name[4 + k], "%064d%s", 4 + k, endings[k]);
+    leave_file(p->folder, name[4 + k], 23); /* perhaps still at work */
+  }
+  const char *others[] = {"my.own.tmp", "0123.c.abcdef.log"};
+  for (int k = 0; k < 2; k++)
+    leave_file(p->folder, others[k], 1000);
+  assert_loads(text, key, false, 6);
+  for (int k = 0; k < 8; k++)
+    assert_int_equal(is_there(p->folder, name[k]), k >= 4);
+  for (int k = 0; k < 2; k++)
+    assert_true(is_there(p->folder, others[k]));
   free(text);
   free(key);
 }
@@ -449,6 +491,7 @@ int main(void) {
       IN_OWN_CACHE(a_cached_object_with_another_key_is_rebuilt),
       IN_OWN_CACHE(a_damaged_object_is_rebuilt),
       IN_OWN_CACHE(runs_at_once_do_not_disturb_each_other),
+      IN_OWN_CACHE(what_killed_compilations_left_is_taken_away_after_a_day),
       IN_OWN_CACHE(refused_source_is_kept_and_named),
       IN_OWN_CACHE(foreign_objects_are_refused_with_the_reason),
       IN_OWN_CACHE(a_text_file_is_no_kernel),

@@ -234,6 +234,34 @@ static void monitors_watch_fields_and_outputs(void **state) {
   small_close(&r);
 }
 
+/* Outputs are found once for a state: with the energies, or else by the first monitor that asks, in a step or in a sample. */
+static void watched_outputs_are_of_the_present_state(void **state) {
+  (void)state;
+  static const char mean[] = "/\n&monitor name = 'mean' kind = 'field' field = 'xx' region = 'mid' "
+                             "average = 1e-5 /\n&monitor name = 'W' kind = 'field' field = "
+                             "'energy' region = 'mid' /";
+  static const char *const watched[] = {"strain", "mean", "W"};
+  char without[400];
+  small_run r[2];
+  snprintf(without, sizeof without, "energy = .false. %s", mean);
+  open_busy(&r[0], 2, broken, mean);
+  open_busy(&r[1], 2, broken, without);
+  for (int k = 0; k < 2; k++)
+    assert_int_equal(small_go(&r[k]), STEP_END);
+  const long samples = simulation_history(r[0].simulation, NULL);
+  assert_int_equal(simulation_history(r[1].simulation, NULL), samples);
+  for (int m = 0; m < 3; m++) {
+    const double *values[2];
+    for (int k = 0; k < 2; k++)
+      simulation_series(r[k].simulation, small_series(&r[k], watched[m]), NULL, &values[k]);
+    assert_memory_equal(values[0], values[1], (size_t)samples * sizeof(double));
+    assert_true(values[0][samples - 1] != 0);
+    assert_true(values[0][samples - 1] != values[0][samples - 2]);
+  }
+  small_close(&r[0]);
+  small_close(&r[1]);
+}
+
 static void unknown_fields_are_refused(void **state) {
   (void)state;
   small_run r;
@@ -374,6 +402,7 @@ int main(void) {
       cmocka_unit_test(a_resumed_run_gives_the_same_bits),
       cmocka_unit_test(frames_hold_fields_where_they_stand),
       cmocka_unit_test(monitors_watch_fields_and_outputs),
+      cmocka_unit_test(watched_outputs_are_of_the_present_state),
       cmocka_unit_test(unknown_fields_are_refused),
       cmocka_unit_test(protection_holds_damage),
       cmocka_unit_test(a_state_gone_bad_is_named_with_its_family),
