@@ -148,11 +148,9 @@ static void turn_to(emitter *e, int bond, const family_words *words, const char 
 }
 
 static void write_stores(emitter *e, const segment *a) {
-  c_text_add(e->out, "      {\n");
   if (emit_asks_for_presence(a)) write_presence(e);
   for (int k = 0; k < a->root_count; k++)
     emit_family_store(e, &a->roots[k], result_name(e, &a->roots[k]));
-  c_text_add(e->out, "      }\n");
 }
 
 static void write_abreast(emitter *e, const segment *a, int first, int count,
@@ -172,7 +170,9 @@ static void write_abreast(emitter *e, const segment *a, int first, int count,
     }
   for (int k = 0; k < count; k++) {
     turn_to(e, first + k, &words[k], name[k]);
+    c_text_add(e->out, "      {\n");
     write_stores(e, a);
+    c_text_add(e->out, "      }\n");
     free(name[k]);
   }
   c_text_add(e->out, "      }\n");

@@ -47,8 +47,8 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = plan->form == FAMILY_PAIRS ? in_parts(plan, of)
-                                   : ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other));
+    f = plan->form == FAMILY_LOOPS ? ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other))
+                                   : in_parts(plan, of);
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;

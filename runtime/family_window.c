@@ -17,6 +17,7 @@ struct family_window { /* row r stands in place r mod rows */
   int rows;
   int at_a_time;              /* rows */
   int step;                   /* to the next row of a run */
+  int inner, inner_end;       /* rows of the block whose present state no other block needs */
   long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   double
@@ -138,9 +139,16 @@ static void find_straight(family_window *v, int neighbours) {
   free(turns);
 }
 
-static void open_window(sweep *w, const family *f, family_window *v) {
+static void find_inner(const sweep *w, const family *f, const sweep_block *b, family_window *v) {
+  const int lost = halo(f, &w->law->step);
+  v->inner = b->first == 0 ? 0 : b->first + lost;
+  v->inner_end = b->last == w->lattice->row_count ? b->last : b->last - lost;
+}
+
+static void open_window(sweep *w, const family *f, const sweep_block *b, family_window *v) {
   const pl_law *law = w->law;
   const rows *g = w->lattice;
+  find_inner(w, f, b, v);
   choose_runs(v, law, g->pitch);
   v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
   open_planes(w, f, v);
@@ -158,7 +166,7 @@ family_window *family_windows(sweep *w, const family *f) {
   if (!suits(w, f)) return NULL;
   family_window *v = must_calloc((size_t)w->block_count, sizeof *v);
   for (int k = 0; k < w->block_count; k++)
-    open_window(w, f, &v[k]);
+    open_window(w, f, &w->blocks[k], &v[k]);
   return v;
 }
 
@@ -245,20 +253,18 @@ static void write_nowhere(const sweep *w, int block, int row, pl_family *run) {
   run->new_plane = w->lattice->pitch;
 }
 
-static bool moves_at_once(const sweep *w, int block, int row) {
-  int first, last;
-  family_window_inner(w, block, &first, &last);
-  return row >= first && row < last;
+static bool moves_at_once(const family_window *v, int row) {
+  return row >= v->inner && row < v->inner_end;
 }
 
-static double *force_place(const sweep *w, int block, int row, int component) {
-  const family_window *v = &family_of(w)->windows[block];
+static double *force_place(const sweep *w, const family_window *v, int row, int component) {
   return v->force[component] + (row % v->rows) * w->lattice->pitch + w->begin[row];
 }
 
 const double *family_window_force(const sweep *w, int block, int row, int component) {
-  return w->forces || !moves_at_once(w, block, row) ? w->force[component] + sweep_start(w, row)
-                                                    : force_place(w, block, row, component);
+  const family_window *v = &family_of(w)->windows[block];
+  return w->forces || !moves_at_once(v, row) ? w->force[component] + sweep_start(w, row)
+                                             : force_place(w, v, row, component);
 }
 
 /* The end of the rows that a run may take from `row` on, step by step: as many as need no other links, fields or forces than
@@ -267,10 +273,9 @@ static int end_of_run(const sweep *w, int block, int row, int last) {
   const sweep_block *b = &w->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
   const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
-  int inner[2], next = row + v->step;
+  int next = row + v->step;
   if (v->step == 1 || row < b->first || row >= b->last) return next;
-  family_window_inner(w, block, &inner[0], &inner[1]);
-  const int edges[] = {b->last, inner[0], inner[1], row + v->straight[row % v->rows]};
+  const int edges[] = {b->last, v->inner, v->inner_end, row + v->straight[row % v->rows]};
   for (int k = 0; k < 4; k++)
     if (edges[k] > row) last = least(last, edges[k]);
   while (next < last && w->begin[next] == w->begin[row] && w->count[next] == w->count[row] &&
@@ -283,12 +288,13 @@ static int end_of_run(const sweep *w, int block, int row, int last) {
 static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
                       bool passing, pl_family *run) {
   const sweep_block *b = &w->blocks[block];
+  const family_window *v = &family_of(w)->windows[block];
   family_turn_to_row(w, block, row, run);
-  run->rows = (end - row) / family_of(w)->windows[block].step;
+  run->rows = (end - row) / v->step;
   point_at_links(w, block, row, run);
   if (row < b->first || row >= b->last) write_nowhere(w, block, row, run);
-  for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(w, block, row); d++)
-    family_of(w)->blocks[block].force[d] = force_place(w, block, row, d);
+  for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(v, row); d++)
+    family_of(w)->blocks[block].force[d] = force_place(w, v, row, d);
   pass(w->law, family_of(w)->uniforms, run);
 }
 
@@ -305,10 +311,8 @@ static void run_rows(const sweep *w, pl_family_function pass, int block, int fir
 }
 
 void family_window_inner(const sweep *w, int block, int *first, int *last) {
-  const sweep_block *b = &w->blocks[block];
-  const int lost = halo(family_of(w), &w->law->step);
-  *first = b->first == 0 ? 0 : b->first + lost;
-  *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
+  *first = family_of(w)->windows[block].inner;
+  *last = family_of(w)->windows[block].inner_end;
 }
 
 /* Where each pass begins and ends: where those after it need what it finds. */

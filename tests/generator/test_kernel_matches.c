@@ -106,8 +106,8 @@ static char *compiler_says(const model *m, const char *compiler, const char *mor
 static void assert_vectorised(const model *m, const char *gcc, const char *function) {
   const char *text = m->c_text, *at = strstr(text, function),
              *end = at ? strstr(at, "\n}\n") : NULL;
-  while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) &&
-         at < end) { /* all loops of the function */
+  /* All loops of the function: */
+  while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) {
     char expected[64];
     int line = 2;
     for (const char *c = text; c < at; c++)
@@ -123,8 +123,8 @@ static void assert_clean_and_vectorised(const model *m) {
   char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
   assert_non_null(strstr(m->c_text, "PL_PASS void rows(const pl_law *law"));
   assert_vectorised(m, gcc, "PL_PASS void rows(const pl_law *law");
-  assert_vectorised(
-      m, gcc, "PL_PASS void rows_unusual(const pl_law *law"); /* where something is expected */
+  /* Where something is expected: */
+  assert_vectorised(m, gcc, "PL_PASS void rows_unusual(const pl_law *law");
   free(gcc);
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }

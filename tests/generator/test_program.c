@@ -174,7 +174,8 @@ static void families_have_the_form_that_suits(void **state) {
    are kept of one reach of rows only. */
 static void one_end_computes_the_force_of_a_bond(void **state) {
   (void)state;
-  tested_law *t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
+  tested_law *t =
+      open_family(12, "  force state F[j] = a*stretch[j]/(1 + sum(stretch[j])*stretch[j])\n");
   const family_program *step = &t->plan->step;
   assert_int_equal(step->pass_count, 4);
   assert_int_equal(step->passes[2].segment_count, 1);
@@ -187,6 +188,10 @@ static void one_end_computes_the_force_of_a_bond(void **state) {
   close_law(t);
   t = open_family(12, "  force state F[j] = a*stretch[j]\n"); /* nothing that passes would add */
   assert_int_equal(t->plan->step.pass_count, 2);
+  close_law(t);
+  /* each end has its part; what is left costs less than to share it */
+  t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
+  assert_int_equal(t->plan->step.pass_count, 3);
   close_law(t);
 }
 
@@ -264,6 +269,30 @@ static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **
   assert_int_equal(loops_of(&t->plan->step.passes[1]), 1);
   assert_int_equal(loops_of(&t->plan->step.passes[2]), 1);
   assert_int_equal(t->plan->links.of_particles, 1);
+  close_law(t);
+}
+
+static int count_asking(const family_program *p, segment_target target) {
+  int count = 0;
+  for (int k = 0; k < p->pass_count; k++)
+    for (int s = 0; s < p->passes[k].segment_count; s++)
+      for (int r = 0; r < p->passes[k].segments[s].root_count; r++) {
+        const segment_root *root = &p->passes[k].segments[s].roots[r];
+        count += root->target == target && segment_asks(root);
+      }
+  return count;
+}
+
+/* Sums of products with shared values ask for no absent bonds: owners ask once. What is not 0 there is asked for. */
+static void owners_leave_zeros_for_absent_bonds(void **state) {
+  (void)state;
+  tested_law *t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
+  assert_int_equal(count_asking(&t->plan->step, TO_SUM), 0);
+  assert_int_equal(count_asking(&t->plan->step, TO_SHARED), 2); /* stretch, 1/length */
+  close_law(t);
+  t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(exp(stretch[j]))\n");
+  assert_int_equal(count_asking(&t->plan->step, TO_SUM),
+                   1 + 3); /* exp may be no number in forces, too */
   close_law(t);
 }
 
@@ -903,6 +932,7 @@ int main(void) {
       cmocka_unit_test(long_horizons_share_nothing),
       cmocka_unit_test(families_have_the_form_that_suits),
       cmocka_unit_test(one_end_computes_the_force_of_a_bond),
+      cmocka_unit_test(owners_leave_zeros_for_absent_bonds),
       cmocka_unit_test(bonds_of_large_families_add_to_both_ends),
       cmocka_unit_test(particles_of_large_families_give_their_parts),
       cmocka_unit_test(forces_that_are_not_linear_stay_whole),

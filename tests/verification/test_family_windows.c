@@ -23,9 +23,9 @@ typedef struct round_body {
   "&lattice name = 'l' kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm' rotation = 11 /\n" \
   "&body lattice = 'l' shape = 'disc' centre = 0, 0 radius = '260 mm' inner_radius = '90 mm' /\n"  \
   "&material lattice = 'l' model = 'x' /\n"
-#define SHELL(shells)                                                                              \
+#define SHELL                                                                                      \
   "&simulation end_time = 1 /\n"                                                                   \
-  "&lattice name = 'l' kind = 'fcc' shells = " shells " spacing = '10 mm' /\n"                     \
+  "&lattice name = 'l' kind = 'fcc' shells = 1 spacing = '10 mm' /\n"                              \
   "&body lattice = 'l' shape = 'sphere' centre = 0, 0, 0 radius = '71 mm' inner_radius = '30 mm' " \
   "/\n"                                                                                            \
   "&material lattice = 'l' model = 'x' /\n"
@@ -55,8 +55,7 @@ static void assert_same_motion(const sweep *a, const sweep *b) {
 static void windows_of_round_bodies_give_the_same_bits(void **state) {
   static const round_body bodies[] = {{"splm_elastic", RING, SETTING_PLANE_STRESS},
                                       {"splm_concrete", RING, SETTING_PLANE_STRESS},
-                                      {"splm_elastic", SHELL("1"), SETTING_SPACE},
-                                      {"splm_elastic", SHELL("2"), SETTING_SPACE}};
+                                      {"splm_elastic", SHELL, SETTING_SPACE}};
   (void)state;
   for (size_t n = 0; n < sizeof bodies / sizeof *bodies; n++) {
     law_case c;
