@@ -431,8 +431,7 @@ static void write_program(emitter *e, const family_program *q) {
     c_text_add(e->out, "%s%s_%d", k ? ", " : "", q->name, k);
   c_text_add(e->out, "};\nstatic const uint64_t %s_shared[] = {", q->name);
   for (int k = 0; k < q->pass_count; k++)
-    c_text_add(e->out, "%sUINT64_C(0x%" PRIx64 ")", k ? ", " : "",
-               program_shared_by(&q->passes[k]));
+    c_text_add(e->out, "%sUINT64_C(%" PRIu64 ")", k ? ", " : "", program_shared_by(&q->passes[k]));
   c_text_add(e->out, "};\n\n");
 }
 
