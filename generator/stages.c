@@ -345,7 +345,7 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
   const double busy =
       most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
-  /* neither hides all of the other; up to a fifth more than measured where chains are short, but in the same order */
+  /* neither hides all of the other; up to two fifths more than measured where chains are short, but in the same order */
   c.cycles = hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
   return c;
 }
