@@ -135,7 +135,7 @@ bool emit_pairs_is_zero(const emitter *e, ir_node n);
 
 /* --- emit_unrolled.c --- */
 
-/* A pass over small families as one loop over the particles of a run, without loops over neighbours: what segments leave
+/* A pass as one loop over the particles of a run, with neighbours written out instead of loops over them: what segments leave
    for each other stays in registers. */
 void emit_unrolled_pass(emitter *e, const family_pass *p);
 void emit_unrolled_input(emitter *e, ir_node n);

@@ -1,4 +1,4 @@
-/* Passes over small families (emit_parts.h). Arrays and the values of bond classes are named before the loop, each once,
+/* Passes with neighbours written out (FAMILY_WRITTEN_OUT). Arrays and the values of bond classes are named before the loop, each once,
    by a number; slots and planes are variables, and so is what an array holds, read once: compilers do not see that it is
    still the same behind what was written in between. */
 #include <stdlib.h>

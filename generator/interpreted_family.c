@@ -202,7 +202,7 @@ static double *shared_plane(const pl_family *f, int index, long owned) {
   return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->link_plane;
 }
 
-/* What the owner of the bond has left. */
+/* What the owner of the bond has left. At the end of a block another one may be writing zeros over zeros where no site is. */
 static void point_at_shared(family_runner *r, const pl_family *f, long first, long k) {
   const long half = f->neighbours / 2;
   for (int n = 0; n < 2 * r->plan->links.of_bonds; n++) {

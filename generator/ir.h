@@ -104,7 +104,8 @@ placement ir_place(const ir *g, ir_node n);        /* the most local of its oper
    length, say); so does what is made of it, except sums over the family. Returns the input. */
 ir_node ir_mark_class(ir *g, ir_node input);
 bool ir_is_of_class(const ir *g, ir_node n);
-/* Says that a condition holds nearly always, so that what is chosen where it does not need not be fast. Returns it. */
+/* Says that a condition holds nearly always, so that what is chosen where it does not need not be fast. Returns it. Of laws of
+   bonds: that a size, at least 0, is below a positive limit (stages_expectation), two such conditions at most. */
 ir_node ir_expect(ir *g, ir_node condition);
 bool ir_is_expected(const ir *g, ir_node n);
 /* Chooses by such a condition. */

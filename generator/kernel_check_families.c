@@ -238,7 +238,7 @@ static void clear_shared(const body *b) {
   uint64_t shared = 0;
   for (int pass = 0; pass < p->pass_count && p->shared; pass++)
     shared |= p->shared[pass];
-  for (int s = 0; shared >> s; s++)
+  for (int s = 0; s < 64; s++)
     for (long k = 0; k < half && (shared >> s & 1); k++)
       for (long q = 0; q < SIZE; q++) {
         const long at = (s % 2 * half + k) * SIZE + q;

@@ -762,6 +762,7 @@ static ir_node shared_input(builder *b, int k) {
 /* What follows from links and is the same from either end, too: its owner computes it in a pass of its own. In the plane
    that pass costs more than the few bonds spare. */
 static void share_factor(builder *b, segment_root *roots, int root_count) {
+  if (b->first_shared + b->shared_count >= MOST_SHARED) return;
   const ir_node factor = program_common_factor(b, roots, root_count);
   if (factor == IR_NONE) return;
   b->shared[b->shared_count++] = factor;
@@ -818,7 +819,8 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
                    program_sharing sharing, program_links *links) {
-  builder b = {.g = g, .memory = memory, .sharing = sharing};
+  /* What other programs leave stays as it is, so that what a pass may rely on where no run comes stays true. */
+  builder b = {.g = g, .memory = memory, .sharing = sharing, .links = *links};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
   b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);
   segment_root *own = arena_alloc(memory, ((size_t)root_count + 1) * sizeof *own);
@@ -838,7 +840,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   memset(out->passes, 0, (size_t)out->pass_count * sizeof *out->passes);
   for (int p = last; p >= 0; p--) /* a pass may ask earlier ones for more links */
     build_pass(&b, &out->passes[p], p, own, root_count);
-  assert(b.first_shared + b.shared_count <= MOST_SHARED);
+  assert(!b.shared_count || b.first_shared + b.shared_count <= MOST_SHARED);
   if (b.shared_count) program_find_vanishing(g, out);
   if (b.links.of_particles > links->of_particles) links->of_particles = b.links.of_particles;
   if (b.links.of_bonds > links->of_bonds) links->of_bonds = b.links.of_bonds;

@@ -1,7 +1,7 @@
 /* A law of families as programs. A program is a row of passes over all particles: what a pass needs of a neighbour's
    present step, an earlier pass has left as a link, a value of the particle. A pass is a row of segments over a chunk
    of particles: particle by particle, neighbour by neighbour with sums into slots, or bond by bond, which is over the
-   neighbours whose bonds the particle owns; in large families such a loop also adds to sums of both ends. Values of particles that later segments need stand in slots; values toward
+   neighbours whose bonds the particle owns; such a loop may also add to sums of both ends (SHARE_PAIRS). Values of particles that later segments need stand in slots; values toward
    neighbours that are too dear to be computed twice stand in planes. What is dear and the same from either end of a bond
    is computed once, by the owner in the first pass, and shared by both ends from then on; so, later, is the force of a bond
    (SHARE_MORE). The emitter writes segments as
@@ -92,9 +92,9 @@ typedef struct program_motion {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MORE, /* also what costs less, and forces of bonds: of small families in space, whose values stay in caches */
+  SHARE_MORE, /* also what costs less, and forces of bonds: of few neighbours in space, whose values stay in caches */
   SHARE_MOST, /* the same, and less is left to be computed from it: in the plane, where a few rows of values are enough */
-  SHARE_PAIRS /* all: of large families, where a bond is evaluated once and adds to both ends (OVER_PAIRS) */
+  SHARE_PAIRS /* all: a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
 
 /* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the

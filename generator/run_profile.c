@@ -36,7 +36,7 @@ static double triad(int threads) {
 
 /* What a step must move for a particle: displacements, velocities and fields are read and written once, and so is what one
    pass leaves to another, unless it stays in windows of rows; marks of bonds and what is known of the reference are read.
-   Rows of bonds share marks; where bonds of large families add to both ends, their fields are hardly touched. */
+   Rows of bonds share marks; where bonds add to both ends, their fields are hardly touched. */
 static double bytes_of_step(const run *r) {
   const pl_law *kernel = r->laws[0].law;
   const sweep *w = simulation_state(r->simulation);

@@ -6,7 +6,7 @@
    each other at that distance, some rows at a time, so that what one leaves the next finds in a cache. Where rows reach
    little far, links stand in a window of rows (family_window.c): a block does what it needs of its neighbours' rows itself,
    and its rows move as soon as nothing needs where they are. Otherwise (family_stages.c) links of the whole body are kept, and
-   what is left of a block at its ends is done pass by pass when all blocks have come so far. Bonds of large families may add
+   what is left of a block at its ends is done pass by pass when all blocks have come so far. Bonds may add
    to both of their ends (family_pairs.c). Results do not depend on the blocks.
 
    Fields on particles have one plane of [size], all others one for each neighbour, neighbour

@@ -195,18 +195,18 @@ static void clear_sites(const sweep *w, const family_window *v, uint64_t shared,
                         sites of) {
   const long first = here * w->lattice->pitch + of.begin;
   if (of.begin >= of.end) return;
-  for (int s = 0; shared >> s; s++)
+  for (int s = 0; s < 64; s++)
     for (int k = 0; k < family_of(w)->neighbours / 2 && (shared >> s & 1); k++)
       memset(shared_planes(w, v, s) + k * v->plane + first, 0,
              (size_t)(of.end - of.begin) * sizeof(double));
 }
 
-/* Rows first .. last-1 take their places before a pass does them: beside their sites what it leaves for both ends is 0. Rows
-   below the body have no sites. */
+/* Rows first .. last-1 take their places before a pass of a step does them: beside their sites what it leaves for both ends is
+   0. Rows below the body have no sites; observing shares nothing. */
 static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
                         int last) {
   const family_window *v = &family_of(w)->windows[block];
-  const uint64_t shared = program->shared ? program->shared[pass] : 0;
+  const uint64_t shared = program == &w->law->step && program->shared ? program->shared[pass] : 0;
   for (int row = first; row < last && shared; row++) {
     const int here = (row % v->rows + v->rows) % v->rows;
     sites *left = &v->left[pass * v->rows + here], was = *left;
@@ -214,12 +214,6 @@ static void take_places(const sweep *w, const pl_program *program, int pass, int
     clear_sites(w, v, shared, here, (sites){was.begin, shorter(was.end, left->begin)});
     clear_sites(w, v, shared, here, (sites){longer(was.begin, left->end), was.end});
   }
-}
-
-/* Another program has used the planes. */
-static void forget_places(const sweep *w, family_window *v) {
-  for (int k = 0; k < w->law->step.pass_count * v->rows; k++)
-    v->left[k] = (sites){0, w->lattice->pitch};
 }
 
 /* --- running ---------------------------------------------------------------------------------- */
@@ -351,5 +345,4 @@ void family_window_run(sweep *w, const pl_program *program, int block,
     move(w, block, moved, end);
     moved = end;
   }
-  if (program != &w->law->step) forget_places(w, &f->windows[block]);
 }
