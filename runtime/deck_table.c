@@ -668,7 +668,7 @@ static const deck_key_info output_keys[] = {
      .type = DECK_REAL,
      .unit = "s",
      .bound = BOUND_POSITIVE,
-     .fallback = "= end_time/2000",
+     .fallback = "= end_time/2000, at least 200 steps",
      AT(output, sample),
      .doc = "interval of the history"},
     {.name = "fields",
