@@ -237,7 +237,8 @@ static void report_bad_energy(const run *r, const bad_state *b) {
   char when[MOMENT_TEXT];
   fprintf(stderr,
           "perilat: error: %s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
-          "  no stable step does that: the step is too long for this body, or the law's stored energy is "
+          "  no stable step does that: the step is too long for this body, or the law's stored "
+          "energy is "
           "not that of its forces\n"
           "  what was computed until then is in the result; a smaller `step_safety` tells which\n",
           b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),

@@ -11,8 +11,10 @@ const char *const ledger_names[LEDGER_COUNT] = {
 const char *ledger_unchecked(const pl_law *law) {
   if (!law->stores) return "the law has no stored energy";
   if (law->kind != PL_STATE) return NULL;
-  if (law->field_count > 0) return "what the states and the damage of a law of families take is not counted by itself";
-  return law->reads_rates ? "what the rate terms of a law of families take is not counted by itself" : NULL;
+  if (law->field_count > 0)
+    return "what the states and the damage of a law of families take is not counted by itself";
+  return law->reads_rates ? "what the rate terms of a law of families take is not counted by itself"
+                          : NULL;
 }
 
 /* What the law has taken by states, damage and, in families, rate terms. */
@@ -25,7 +27,8 @@ static bool is_sound(const ledger *g, const sweep *state, const sweep_totals *t,
   const pl_law *law = state->law;
   const double part = fmin(2 * pow(0.5 * state->time_step * omega, 2), 1);
   if (!law->stores || (law->kind == PL_STATE && law->reads_rates)) return true;
-  return !(t->free + part * t->stored < -1e-6 * g->largest); /* numbers that are none are found by the next step */
+  return !(t->free + part * t->stored <
+           -1e-6 * g->largest); /* numbers that are none are found by the next step */
 }
 
 bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_look *look,
@@ -41,11 +44,12 @@ bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_loo
   terms[LEDGER_EXTERNAL] = s.work + look->work + t.gravity;
   terms[LEDGER_DISSIPATED_DAMPING] = damping - g->pending;
   terms[LEDGER_DISSIPATED_DAMAGE] = taken(g, state->law, &t, lost);
-  terms[LEDGER_IMBALANCE] =
-      ledger_unchecked(state->law)
-          ? NAN
-          : terms[LEDGER_EXTERNAL] - (held - g->initial) - terms[LEDGER_DISSIPATED_DAMAGE] -
-                terms[LEDGER_DISSIPATED_DAMPING];
-  g->largest = fmax(fmax(g->largest, fabs(kinetic)), fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
+  terms[LEDGER_IMBALANCE] = ledger_unchecked(state->law)
+                                ? NAN
+                                : terms[LEDGER_EXTERNAL] - (held - g->initial) -
+                                      terms[LEDGER_DISSIPATED_DAMAGE] -
+                                      terms[LEDGER_DISSIPATED_DAMPING];
+  g->largest =
+      fmax(fmax(g->largest, fabs(kinetic)), fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
   return is_sound(g, state, &t, omega);
 }

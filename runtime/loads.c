@@ -786,7 +786,8 @@ load_look loads_observe(loads *l, const sweep *w, long step) {
     c->reaction = 0;
     if (!c->active) continue;
     const double mass = sweep_mass(w, c->component, c->site);
-    const double change = prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
+    const double change =
+        prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
     const double force = force_for(w, c, change);
     c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
     sum.kinetic += 0.5 * mass * c->velocity * change;

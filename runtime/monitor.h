@@ -21,8 +21,8 @@ typedef struct monitor_state { /* what a later step depends on */
 
 /* When a value for the window is known. */
 typedef enum monitor_time {
-  KNOWN_AFTER_STEP,  /* places, and velocities over the step */
-  KNOWN_ONE_LATE,    /* of the state that a step has left: reactions, fields */
+  KNOWN_AFTER_STEP,   /* places, and velocities over the step */
+  KNOWN_ONE_LATE,     /* of the state that a step has left: reactions, fields */
   KNOWN_WHEN_OBSERVED /* outputs; in quasi-static runs all */
 } monitor_time;
 
@@ -32,9 +32,9 @@ typedef struct monitor {
   monitor_state state;
   int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
   long index_count[2];
-  int field;      /* of a field monitor: the law's field, or field_count + output */
-  double *ring;   /* [window] the last values, value of push k at k % window */
-  long window;    /* steps; 1: no averaging */
+  int field;    /* of a field monitor: the law's field, or field_count + output */
+  double *ring; /* [window] the last values, value of push k at k % window */
+  long window;  /* steps; 1: no averaging */
   monitor_time known;
   long zero_step; /* -1: never */
 } monitor;

@@ -23,10 +23,10 @@ typedef struct row_forces {
 
 typedef struct pairwise_block { /* what one thread works with */
   row_forces buffer[2];
-  row_forces seam;       /* of the last row: the block above needs them, too */
-  team_errand seam_done; /* once a step */
-  double *fields;   /* [fields][pitch] copy of those of another block's row */
-  double *observed; /* [1 + outputs][pitch] */
+  row_forces seam;           /* of the last row: the block above needs them, too */
+  team_errand seam_done;     /* once a step */
+  double *fields;            /* [fields][pitch] copy of those of another block's row */
+  double *observed;          /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
   const double **parameters; /* [varying] for strips */
   char apart[SWEEP_APART];
