@@ -36,7 +36,4 @@ void json_integer(json *j, long number);
 void json_bool(json *j, bool value);
 void json_null(json *j);
 
-/* Length of the UTF-8 character at `text` (1 to 4), or 0 when the bytes there are none. */
-size_t utf8_length(const char *text, size_t available);
-
 #endif

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
 #include "generator/commands.h"
 #include "generator/result_table.h"
 
@@ -60,7 +61,7 @@ static bool report(comparison_run *c, const char *name, const char *unit, const 
   const double r = relative(g);
   const bool over = r > c->request->tolerance;
   char title[128];
-  snprintf(title, sizeof title, "%s [%s]", name, *unit ? unit : "1");
+  snprintf(title, sizeof title, "%s [%s]", name_shown(name), *unit ? name_shown(unit) : "1");
   c->compared++;
   c->different += over;
   printf("%c %-34s %12.4g %12.4g", over ? '*' : ' ', title, g->largest, r);
@@ -68,7 +69,7 @@ static bool report(comparison_run *c, const char *name, const char *unit, const 
 }
 
 static bool only_in_one(comparison_run *c, const char *name, int here) {
-  printf("* %-34s only in %s\n", name, c->request->results[here]);
+  printf("* %-34s only in %s\n", name_shown(name), c->request->results[here]);
   c->compared++;
   c->different++;
   return false;
@@ -157,7 +158,8 @@ static void compare_history(comparison_run *c, const time_axis *x, const char *n
             good ? "a history has not as many values as times" : error);
     c->wrong = true;
   } else if (strcmp(a.unit, b.unit) != 0) {
-    printf("* %-34s [%s] and [%s]: not the same unit\n", name, a.unit, b.unit);
+    printf("* %-34s [%s] and [%s]: not the same unit\n", name_shown(name), name_shown(a.unit),
+           name_shown(b.unit));
     c->compared++;
     c->different++;
   } else {
@@ -211,9 +213,7 @@ static void each_asked(comparison_run *c, const char *group, const char *const *
 }
 
 static bool has_name(const result_names *n, const char *name) {
-  for (int k = 0; k < n->count; k++)
-    if (strcmp(n->items[k], name) == 0) return true;
-  return false;
+  return name_index_at(&n->whole, name) != NULL;
 }
 
 /* Names that both have; what only one has is reported. */
@@ -321,7 +321,7 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
     free(b.values);
     if (fit) continue;
     if (good) {
-      printf("* %-34s not of the same size and unit\n", name);
+      printf("* %-34s not of the same size and unit\n", name_shown(name));
       c->compared++;
       c->different++;
     } else {

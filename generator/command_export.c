@@ -6,6 +6,8 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
+#include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/model.h"
 #include "generator/result_table.h"
@@ -36,16 +38,27 @@ static void write_number(FILE *out, double value) {
   fputs(text, out);
 }
 
-/* A name with its unit; quoted as CSV wants it when a name holds what separates. */
-static void write_title(FILE *out, const table_values *v, int component) {
-  bool quoted = strpbrk(v->name, ",\"\n") != NULL;
-  if (quoted) putc('"', out);
-  for (const char *c = v->name; *c; c++) {
-    if (*c == '"') putc('"', out);
-    putc(*c, out);
+/* As RFC 4180 wants a text in quotes. */
+static void write_quoted(FILE *out, const char *text) {
+  for (; *text; text++) {
+    if (*text == '"') putc('"', out);
+    putc(*text, out);
   }
-  fprintf(out, "%s [%s]%s", table_component(v->components, component), *v->unit ? v->unit : "1",
-          quoted ? "\"" : "");
+}
+
+/* A name with its unit; quoted when one of them holds what separates. */
+static void write_title(FILE *out, const table_values *v, int component) {
+  static const char separates[] = ",\"\r\n";
+  const char *part = table_component(v->components, component), *in = *v->unit ? v->unit : "1";
+  if (!strpbrk(v->name, separates) && !strpbrk(in, separates)) {
+    fprintf(out, "%s%s [%s]", v->name, part, in);
+    return;
+  }
+  putc('"', out);
+  write_quoted(out, v->name);
+  fprintf(out, "%s [", part);
+  write_quoted(out, in);
+  fputs("]\"", out);
 }
 
 static void write_titles(FILE *out, const table_values *columns, int count) {
@@ -96,8 +109,8 @@ static bool add_column(table *t, result_file *f, const char *name) {
   if (!good)
     fprintf(stderr, "perilat: error: %s\n", error);
   else if (v->count != t->rows)
-    fprintf(stderr, "perilat: error: `%s` has %ld values where %ld are expected\n", v->name,
-            v->count, t->rows);
+    fprintf(stderr, "perilat: error: `%s` has %ld values where %ld are expected\n",
+            name_shown(v->name), v->count, t->rows);
   return good && v->count == t->rows;
 }
 
@@ -116,7 +129,7 @@ static bool add_asked(table *t, result_file *f, const export_request *q) {
     const int n = result_names_find(&t->names, q->names[k]);
     const char *name = n < 0 ? q->names[k] : t->names.items[n];
     if (n >= 0 && t->frame >= 0 && table_on_bonds(name) != q->bonds) {
-      fprintf(stderr, "perilat: error: `%s` is a field of %s; %s --bonds\n", name,
+      fprintf(stderr, "perilat: error: `%s` is a field of %s; %s --bonds\n", name_shown(name),
               q->bonds ? "particles" : "bonds", q->bonds ? "leave out" : "add");
       good = false;
     } else
@@ -268,7 +281,10 @@ static bool complete(const export_request *q) {
 
 /* 0, or the exit status 2 after a message. */
 static int write_table(const char *text, size_t length, const char *path) {
-  if (!path) return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
+  if (!path) {
+    terminal_expect_data();
+    return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
+  }
   whole_file file;
   bool good = whole_file_begin(&file, path);
   if (good) {

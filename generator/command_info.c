@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/characters.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/info_law.h"
@@ -55,12 +56,13 @@ static void print_history(result_file *f, const char *name) {
   char why[256];
   result_read_unchecked(f, name, why, sizeof why);
   if (*why) {
-    printf("  %-26s %-6s not checked: %s\n", name, unit_text, why);
+    printf("  %-26s %-6s not checked: %s\n", name_shown(name), name_shown(unit_text),
+           name_shown(why));
     free(v);
     return;
   }
-  printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
-         v[count - 1] + 0.0); /* no minus before zeros */
+  printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name_shown(name), name_shown(unit_text),
+         low + 0.0, high + 0.0, v[count - 1] + 0.0); /* no minus before zeros */
   free(v);
 }
 
@@ -88,7 +90,7 @@ static int info_result(const char *path) {
     print_history(f, histories.items[k]);
   printf("Frames hold:");
   for (int k = 0; k < fields.count; k++)
-    printf("%s %s", k ? "," : "", fields.items[k]);
+    printf("%s %s", k ? "," : "", name_shown(fields.items[k]));
   puts(fields.count ? "" : " nothing");
   result_names_free(&histories);
   result_names_free(&fields);

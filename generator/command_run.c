@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/interval.h"
@@ -250,6 +251,7 @@ static int check_to_json(run_options *o) {
   diag_json_begin(&report, o->deck_path, perilat_version);
   o->report = &report;
   int status = check_file(o, NULL);
+  terminal_expect_data();
   diag_json_end(&report, status == 0, stdout);
   return status;
 }
@@ -290,6 +292,7 @@ int perilat_solver_main(int argc, char **argv, const char *deck_name, const char
                    .laws = laws,
                    .law_count = law_count};
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
+  terminal_begin();
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
       printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",

@@ -9,6 +9,7 @@
 #include "dsl/explain.h"
 #include "dsl/format.h"
 #include "dsl/help.h"
+#include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/model.h"
@@ -47,7 +48,10 @@ static int put_formatted(const char *path, const char *before, const char *after
                          format_mode mode) {
   char error[ERROR_LENGTH];
   bool same = strcmp(before, after) == 0;
-  if (mode == FORMAT_PRINT) fputs(after, stdout);
+  if (mode == FORMAT_PRINT) {
+    terminal_expect_data();
+    fputs(after, stdout);
+  }
   if (mode == FORMAT_CHECK && !same)
     fprintf(stderr, "%s: not laid out as `perilat format` does\n", path);
   if (mode != FORMAT_IN_PLACE) return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
@@ -253,7 +257,9 @@ static int unknown_topic(const char *topic) {
 }
 
 int command_help(int argc, char **argv) {
-  if (argc == 1) return show_topic(argv[0]) ? 0 : unknown_topic(argv[0]);
-  fputs("perilat: error: `perilat help` takes one topic, e.g. `perilat help damage`\n", stderr);
-  return INPUT_WRONG;
+  for (int k = 0; k < argc; k++) {
+    if (k > 0) putchar('\n');
+    if (!show_topic(argv[k])) return unknown_topic(argv[k]);
+  }
+  return 0; /* main() answers `perilat help` alone */
 }

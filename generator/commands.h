@@ -25,7 +25,7 @@
   X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5", "what a law implies, what a file holds", COMMAND_STATUS) \
   X(explain, "law.plm", "plm", "a law as equations with a table of its symbols", COMMAND_STATUS)                       \
   X(format, "law.plm ...", "plm", "lay out laws", "0 done, 1 the input is wrong; with --check also when a file would change") \
-  X(help, "TOPIC", "", "what a message's code, a word of the language, a deck group or a command means", COMMAND_STATUS)
+  X(help, "TOPIC ...", "", "what a message's code, a word of the language, a deck group or a command means", COMMAND_STATUS)
 
 /* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells offer files, a|b|c for one
    of these words, else what it stands for. Texts of --help, suggestions, manual and completion. */

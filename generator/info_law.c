@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "dsl/json.h"
+#include "dsl/terminal.h"
 #include "generator/model.h"
 #include "generator/run.h"
 #include "generator/settings.h"
@@ -557,6 +558,7 @@ static void put_implied(json *j, const facts *f) {
 static void print_json(const facts *f) {
   const law *l = f->model.law;
   json j;
+  terminal_expect_data();
   json_begin(&j, stdout);
   json_object(&j);
   put_text(&j, "model", l->tree->name);

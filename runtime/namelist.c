@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "dsl/json.h"
+#include "dsl/characters.h"
 #include "dsl/units.h"
 
 typedef struct reader {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
 #include "dsl/units.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
@@ -67,7 +68,8 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
   if (!unit_parse(wanted, strlen(wanted), &shown, &bad, &bad_length) ||
       !unit_parse(si_unit, strlen(si_unit), &si, &bad, &bad_length) ||
       !dim_equal(shown.dim, si.dim)) {
-    snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name, si_unit, wanted);
+    snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name,
+             name_shown(si_unit), wanted);
     return false;
   }
   snprintf(a->unit_text, sizeof a->unit_text, "%s", wanted);
@@ -316,13 +318,14 @@ static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit,
   }
   if (strcmp(s->x_unit, x_unit) != 0)
     snprintf(error, size, "`%s` holds `%s` in another unit (%s) than `%s` (%s)", s->results[from],
-             s->o->x, x_unit, s->results[0], s->x_unit);
+             s->o->x, name_shown(x_unit), s->results[0], name_shown(s->x_unit));
   else if (strcmp(s->y_unit, y_unit) != 0)
     snprintf(error, size,
              "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit",
              y, s->results[from], is_pure(y_unit) ? "" : "in ",
-             is_pure(y_unit) ? "a pure number" : y_unit, s->o->ys[0], s->results[0],
-             is_pure(s->y_unit) ? "" : "in ", is_pure(s->y_unit) ? "a pure number" : s->y_unit);
+             is_pure(y_unit) ? "a pure number" : name_shown(y_unit), s->o->ys[0], s->results[0],
+             is_pure(s->y_unit) ? "" : "in ",
+             is_pure(s->y_unit) ? "a pure number" : name_shown(s->y_unit));
   else
     return true;
   return false;

@@ -17,6 +17,8 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "dsl/name_index.h"
+
 typedef struct result_text {
   const char *name, *text;
 } result_text;
@@ -88,6 +90,7 @@ bool result_is_quasi_static(result_file *f);
 typedef struct result_names {
   char **items;
   int count;
+  name_index whole, last; /* where a name is; where its last part is, -1 where several have it */
 } result_names;
 /* Names of what a group holds ("/history", "/bonds"), in alphabetical order. Empty where there is no such group. */
 result_names result_list(result_file *f, const char *group);

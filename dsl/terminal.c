@@ -1,0 +1,140 @@
+#define _GNU_SOURCE /* fopencookie */
+#include "dsl/terminal.h"
+
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include "dsl/arena.h"
+#include "dsl/characters.h"
+
+/* --- what gets through ------------------------------------------------------------------------ */
+
+/* A stream that shows what is written to it (characters.h) on a file descriptor. */
+typedef struct guard {
+  FILE *stream; /* NULL: not begun */
+  int descriptor;
+  bool open; /* all gets through */
+  char begun[4];
+  size_t begun_length; /* bytes of a character whose last ones are still to come */
+} guard;
+
+static guard guards[] = {{.descriptor = STDOUT_FILENO}, {.descriptor = STDERR_FILENO}};
+enum { GUARDS = sizeof guards / sizeof *guards };
+
+static bool write_all(int descriptor, const char *data, size_t size) {
+  while (size > 0) {
+    const ssize_t n = write(descriptor, data, size);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return false;
+    data += n;
+    size -= (size_t)n;
+  }
+  return true;
+}
+
+/* Bytes at the end of a text that may be the beginning of a character. */
+static size_t unfinished(const char *text, size_t length) {
+  for (size_t n = 1; n <= 3 && n <= length; n++) {
+    const unsigned char byte = (unsigned char)text[length - n];
+    if (byte >= 0xC0) return byte >= (n == 1 ? 0xC0 : n == 2 ? 0xE0 : 0xF0) ? n : 0;
+    if (byte < 0x80) return 0;
+  }
+  return 0;
+}
+
+static bool show(guard *g, const char *data, size_t size) {
+  char *joined = must_alloc(g->begun_length + size), *shown = NULL;
+  size_t length = g->begun_length + size, shown_length;
+  memcpy(joined, g->begun, g->begun_length);
+  memcpy(joined + g->begun_length, data, size);
+  g->begun_length = unfinished(joined, length);
+  length -= g->begun_length;
+  memcpy(g->begun, joined + length, g->begun_length);
+  FILE *out = open_memstream(&shown, &shown_length);
+  if (out) characters_show(out, joined, length);
+  const bool good = out && fclose(out) == 0 && write_all(g->descriptor, shown, shown_length);
+  free(shown);
+  free(joined);
+  return good;
+}
+
+static ssize_t guarded_write(void *cookie, const char *data, size_t size) {
+  guard *g = cookie;
+  const bool good = g->open ? write_all(g->descriptor, data, size) : show(g, data, size);
+  return good ? (ssize_t)size : -1;
+}
+
+static FILE *guarded(guard *g, FILE *plain, int buffering) {
+  fflush(plain);
+  g->stream = fopencookie(g, "w", (cookie_io_functions_t){.write = guarded_write});
+  if (!g->stream) return plain;
+  setvbuf(g->stream, NULL, buffering, buffering == _IONBF ? 0 : BUFSIZ);
+  return g->stream;
+}
+
+/* The GNU C library lets a program set its streams. */
+void terminal_begin(void) {
+  if (guards[0].stream) return;
+  stdout = guarded(&guards[0], stdout, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF);
+  stderr = guarded(&guards[1], stderr, _IONBF);
+}
+
+void terminal_expect_data(void) {
+  fflush(stdout);
+  guards[0].open = !isatty(STDOUT_FILENO);
+}
+
+/* --- what the terminal is --------------------------------------------------------------------- */
+
+static int descriptor_of(FILE *out) {
+  for (int k = 0; k < GUARDS; k++)
+    if (out == guards[k].stream) return guards[k].descriptor;
+  return fileno(out);
+}
+
+int terminal_columns(FILE *out) {
+  enum { USUAL = 80 };
+  const int descriptor = descriptor_of(out);
+  if (!isatty(descriptor)) return 0;
+  const char *set = getenv("COLUMNS");
+  const long columns = set ? strtol(set, NULL, 10) : 0;
+  if (columns > 0 && columns < 10000) return (int)columns;
+  struct winsize size;
+  return ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : USUAL;
+}
+
+bool terminal_is_able(FILE *out) {
+  const char *kind = getenv("TERM");
+  return isatty(descriptor_of(out)) && kind && *kind && strcmp(kind, "dumb") != 0;
+}
+
+/* --- own sequences ---------------------------------------------------------------------------- */
+
+void terminal_control(FILE *out, const char *sequence) {
+  guard *g = NULL;
+  for (int k = 0; k < GUARDS; k++)
+    if (out == guards[k].stream) g = &guards[k];
+  if (!g) {
+    fputs(sequence, out);
+    return;
+  }
+  fflush(out);
+  const bool open = g->open;
+  g->open = true;
+  fputs(sequence, out);
+  fflush(out);
+  g->open = open;
+}
+
+void terminal_paint_with(FILE *out, terminal_paint paint) {
+  static const char *const sequences[] = {
+#define X(what, sequence) sequence,
+      TERMINAL_PAINTS(X)
+#undef X
+  };
+  const char *forbidden = getenv("NO_COLOR");
+  if (terminal_is_able(out) && !(forbidden && *forbidden)) terminal_control(out, sequences[paint]);
+}
