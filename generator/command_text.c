@@ -16,7 +16,6 @@
 #include "runtime/deck_table.h"
 
 enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
-#define LAW_LIMIT ((size_t)1 << 20)
 
 /* --- format ----------------------------------------------------------------------------------- */
 
@@ -75,7 +74,7 @@ static int format_file(const char *path, format_mode mode) {
   if (!file_suits(path, FILES(LAW), "perilat format", "a law") ||
       (mode == FORMAT_IN_PLACE && !is_law(path)))
     return INPUT_WRONG;
-  char *text = read_text_file(path, LAW_LIMIT, &length, error, sizeof error);
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
   if (!text) {
     fprintf(stderr, "perilat: error: %s\n", error);
     return INPUT_WRONG;

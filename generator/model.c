@@ -10,7 +10,6 @@
 #include "generator/emit.h"
 #include "runtime/clock.h"
 
-#define MODEL_LIMIT ((size_t)1 << 20)
 #define PATH_LIMIT  4096
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
@@ -289,6 +288,8 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
   double begun = monotonic_seconds();
   if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size)) return NULL;
   m->seconds_kernel = monotonic_seconds() - begun;
+  const char *trouble = toolchain_cache_trouble();
+  if (trouble) *note = arena_printf(m->memory, "%s", trouble);
   return m->loaded.law;
 }
 

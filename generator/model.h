@@ -40,6 +40,8 @@ bool file_suits(const char *path, unsigned kinds, const char *command, const cha
 /* True when both name one existing file, by whatever path or link. */
 bool same_file(const char *a, const char *b);
 
+#define MODEL_LIMIT ((size_t)1 << 20) /* B: the longest law */
+
 /* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */
@@ -61,7 +63,8 @@ bool model_plan(model *m);
 bool model_plan_varying(model *m, const int *varying, int varying_count);
 /* The same for a central law of bonds as a law of families. */
 bool model_plan_of_families(model *m);
-/* Kernel for the runtime: compiled; without a C compiler interpreted, and *note says so. NULL with `error`. */
+/* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or that the cache is another
+   one than was to be. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);
 

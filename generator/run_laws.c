@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/parse.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
 #include "runtime/bravais.h"
@@ -171,6 +172,23 @@ static bool needs_families(const deck_lattice *l, const law *of) {
   return of->tree->law == LAW_CENTRAL_BOND && !hexagon;
 }
 
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of laws are shown. */
+static bool named_law_is_one(const deck_material *m, const char *path, diagnostics *said) {
+  char error[4 * ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  const bool good = text && parse_begins_law(text);
+  const span where = deck_where(&m->item, "model");
+  if (!text)
+    diag_report(said, DIAG_FILE, where, "%s", error);
+  else if (!good) {
+    diag_report(said, DIAG_FILE, where, "`%s` is not a law", path);
+    diag_hint(said, "the first word of a law is `model`");
+  }
+  free(text);
+  return good;
+}
+
 bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
                        diagnostics *said) {
   char *path = model_find(m->model, deck_path);
@@ -180,7 +198,8 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
                     "`models`; PERILAT_MODELS may name another folder");
     return false;
   }
-  bool good = run_open_law(m, path, out, said) && take_setting(m, l, out, said);
+  bool good = named_law_is_one(m, path, said) && run_open_law(m, path, out, said) &&
+              take_setting(m, l, out, said);
   if (good && l && needs_families(l, out->law) && m->varying_count == 0)
     good = model_plan_of_families(out);
   else

@@ -26,8 +26,10 @@ const char *toolchain_no_compiler(void);
 /* Flags of every kernel: -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off ... */
 const char *toolchain_flags(void);
 /* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
-   $TMPDIR. Created; never fails (an unwritable one gives a temporary folder). */
+   $TMPDIR. Created; never fails (an unwritable one gives that private folder, too). */
 const char *toolchain_cache(void);
+/* A sentence that says why the cache is not where it was to be; NULL where it is. */
+const char *toolchain_cache_trouble(void);
 
 /* Hash (hex, malloc'ed) of everything that decides a kernel: text, compiler and its version, flags, processor, ABI. */
 char *toolchain_key(const char *text);

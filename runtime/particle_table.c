@@ -194,12 +194,28 @@ static bool read_column(reader *r, field f, int position) {
   return false;
 }
 
-static bool lacks(const reader *r, span where, const char *name) {
-  diag_report(r->d, DIAG_MISSING_KEY, where, "the table has no column `%s`", name);
+static bool hint_at_header(const reader *r) {
   diag_hint(r->d, "its first line names the columns, e.g. %s",
             r->table->dimensions == 2 ? "x [mm], y [mm], volume [mm^3]"
                                       : "x [mm], y [mm], z [mm], volume [mm^3]");
   return false;
+}
+
+static bool lacks(const reader *r, span where, const char *name) {
+  diag_report(r->d, DIAG_MISSING_KEY, where, "the table has no column `%s`", name);
+  return hint_at_header(r);
+}
+
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of tables are shown. */
+static bool is_header(const reader *r, const char *line) {
+  static const char between[] = ",; \t\r\n[\"";
+  for (const char *end = line_end(line), *p = line; p < end;) {
+    const char *word = p + strspn(p, between);
+    p = word + strcspn(word, between);
+    if (column_of(word, p) >= 0) return true;
+  }
+  diag_report(r->d, DIAG_FILE, r->where, "`%s` is not a table of particles", r->table->path);
+  return hint_at_header(r);
 }
 
 static bool columns_suit(const reader *r, span where) {
@@ -231,7 +247,7 @@ static bool has_commas(const reader *r, const char *line) {
 }
 
 static bool read_header(reader *r, const char *line) {
-  if (!has_commas(r, line)) return false;
+  if (!is_header(r, line) || !has_commas(r, line)) return false;
   const char *end = line_end(line), *p = line;
   for (int k = 0; k < COLUMNS; k++) {
     r->place_of[k] = -1;
