@@ -90,8 +90,7 @@ shown_character character_shown(const char *text, size_t available) {
   return c;
 }
 
-/* Characters of ASCII that are shown as they are. */
-static size_t plain_length(const char *text, size_t available) {
+size_t characters_plain(const char *text, size_t available) {
   size_t n = 0;
   while (n < available && ((text[n] >= 32 && text[n] < 127) || text[n] == '\n' || text[n] == '\t'))
     n++;
@@ -100,7 +99,7 @@ static size_t plain_length(const char *text, size_t available) {
 
 void characters_show(FILE *out, const char *text, size_t length) {
   for (size_t i = 0; i < length;) {
-    const size_t plain = plain_length(text + i, length - i);
+    const size_t plain = characters_plain(text + i, length - i);
     fwrite(text + i, 1, plain, out);
     i += plain;
     if (i == length) break;

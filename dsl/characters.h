@@ -18,6 +18,8 @@ typedef struct shown_character {
 
 /* Of a text that is not empty. Tabs and line ends stay. */
 shown_character character_shown(const char *text, size_t available);
+/* How many bytes at the beginning of a text are characters of ASCII that are shown as they are. */
+size_t characters_plain(const char *text, size_t available);
 /* Writes a text so. */
 void characters_show(FILE *out, const char *text, size_t length);
 /* A name on one line: line ends and tabs are written out, too. Good until the thread's fourth next call. */

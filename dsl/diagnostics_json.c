@@ -2,10 +2,11 @@
 
 #include <stdlib.h>
 
+#include "dsl/arena.h"
+
 void diag_json_begin(diag_json *j, const char *checked, const char *version) {
   *j = (diag_json){.text = NULL};
-  FILE *memory = open_memstream(&j->text, &j->length);
-  if (!memory) abort();
+  FILE *memory = must_open_text(&j->text, &j->length);
   json *w = &j->writer;
   json_begin(w, memory);
   json_object(w);
@@ -90,7 +91,7 @@ void diag_json_end(diag_json *j, bool accepted, FILE *out) {
   json_bool(w, accepted);
   json_object_end(w);
   json_end(w);
-  fclose(w->out);
+  must_close_text(w->out);
   fwrite(j->text, 1, j->length, out);
   free(j->text);
   *j = (diag_json){.text = NULL};

@@ -7,7 +7,6 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-#include "dsl/arena.h"
 #include "dsl/characters.h"
 
 /* --- what gets through ------------------------------------------------------------------------ */
@@ -45,19 +44,41 @@ static size_t unfinished(const char *text, size_t length) {
   return 0;
 }
 
+enum { PART = 1024 };
+
+/* Of at most PART bytes. */
+static bool show_part(int descriptor, const char *text, size_t length) {
+  char shown[PART * sizeof((shown_character){0}).text];
+  size_t used = 0;
+  for (size_t i = 0; i < length;) {
+    const size_t plain = characters_plain(text + i, length - i);
+    memcpy(shown + used, text + i, plain);
+    used += plain;
+    i += plain;
+    if (i == length) break;
+    const shown_character c = character_shown(text + i, length - i);
+    used += (size_t)sprintf(shown + used, "%s", c.text);
+    i += c.length;
+  }
+  return write_all(descriptor, shown, used);
+}
+
+/* Takes no memory: it also says that there is none. */
 static bool show(guard *g, const char *data, size_t size) {
-  char *joined = must_alloc(g->begun_length + size), *shown = NULL;
-  size_t length = g->begun_length + size, shown_length;
-  memcpy(joined, g->begun, g->begun_length);
-  memcpy(joined + g->begun_length, data, size);
-  g->begun_length = unfinished(joined, length);
-  length -= g->begun_length;
-  memcpy(g->begun, joined + length, g->begun_length);
-  FILE *out = open_memstream(&shown, &shown_length);
-  if (out) characters_show(out, joined, length);
-  const bool good = out && fclose(out) == 0 && write_all(g->descriptor, shown, shown_length);
-  free(shown);
-  free(joined);
+  char text[PART];
+  bool good = true;
+  while (good && size > 0) {
+    const size_t room = sizeof text - g->begun_length, taken = size < room ? size : room;
+    size_t length = g->begun_length + taken;
+    memcpy(text, g->begun, g->begun_length);
+    memcpy(text + g->begun_length, data, taken);
+    data += taken;
+    size -= taken;
+    g->begun_length = unfinished(text, length);
+    length -= g->begun_length;
+    memcpy(g->begun, text + length, g->begun_length);
+    good = show_part(g->descriptor, text, length);
+  }
   return good;
 }
 

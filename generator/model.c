@@ -116,7 +116,7 @@ static char *try_path(const char *folder, const char *name) {
   char path[PATH_LIMIT];
   int n = snprintf(path, sizeof path, "%s%s%s%s", folder, *folder ? "/" : "", name,
                    ends_in(name, ".plm") ? "" : ".plm");
-  return n > 0 && (size_t)n < sizeof path && is_file(path) ? strdup(path) : NULL;
+  return n > 0 && (size_t)n < sizeof path && is_file(path) ? must_copy(path) : NULL;
 }
 
 static void folder_of(const char *path, char *folder, size_t size) {
@@ -160,7 +160,7 @@ static char *try_program_tree(const char *name) {
 
 char *model_find(const char *name, const char *beside) {
   char *found = NULL;
-  if (name[0] == '/') found = is_file(name) ? strdup(name) : NULL;
+  if (name[0] == '/') found = is_file(name) ? must_copy(name) : NULL;
   if (!found && beside) {
     char folder[PATH_LIMIT];
     folder_of(beside, folder, sizeof folder);
@@ -193,7 +193,7 @@ static char *read_include(void *context, const char *name, const char *from, cha
 static void begin_model(model *m, const char *path) {
   memset(m, 0, sizeof *m);
   m->memory = arena_new();
-  m->path = strdup(path);
+  m->path = must_copy(path);
   diag_begin(&m->said, &m->sources);
 }
 

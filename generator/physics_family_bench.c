@@ -332,7 +332,7 @@ double family_bench_value(const family_bench *b, watched w, int where) {
 static char *found_at(const family_bench *b, double size) {
   char *text;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
+  FILE *out = must_open_text(&text, &length);
   fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
           b->lattice->spacing);
   if (size > 0) fprintf(out, ", strained by %.3g", size);
@@ -344,7 +344,7 @@ static char *found_at(const family_bench *b, double size) {
     fprintf(out, ", %s = %.6g%s%s", s->name, b->parameters[k], strcmp(si, "1") ? " " : "",
             strcmp(si, "1") ? si : "");
   }
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 

@@ -59,7 +59,7 @@ static bool load_deck(run *r) {
   char error[ERROR_LENGTH];
   size_t length = o->deck_text ? strlen(o->deck_text) : 0;
   char *text = o->deck_text
-                   ? strdup(o->deck_text)
+                   ? must_copy(o->deck_text)
                    : read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
   if (!text) {
     if (o->report)

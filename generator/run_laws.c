@@ -53,7 +53,7 @@ static bool take_choices(deck_material *m, const law *l, law_choice *choices, in
     }
     const char *choice = find_choice(option, a, said);
     good = good && choice;
-    if (choice) choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
+    if (choice) choices[(*count)++] = (law_choice){must_copy(option->name), must_copy(choice)};
   }
   m->assignment_count = kept;
   return good;

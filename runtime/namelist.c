@@ -648,8 +648,7 @@ char *namelist_text(arena *a, const namelist *n,
                     bool (*leave_out)(const char *group, const char *key)) {
   char *text = NULL;
   size_t length = 0;
-  FILE *out = open_memstream(&text, &length);
-  if (!out) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  FILE *out = must_open_text(&text, &length);
   for (int g = 0; g < n->group_count; g++) {
     const namelist_group *group = &n->groups[g];
     if (leave_out(group->name, NULL)) continue;
@@ -664,7 +663,7 @@ char *namelist_text(arena *a, const namelist *n,
     }
     fputs(" /\n", out);
   }
-  fclose(out);
+  must_close_text(out);
   char *kept = arena_text(a, text, length);
   free(text);
   return kept;
