@@ -206,9 +206,11 @@ static bool lacks(const reader *r, span where, const char *name) {
   return hint_at_header(r);
 }
 
-/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of tables are shown. */
-static bool is_header(const reader *r, const char *line) {
-  static const char between[] = ",; \t\r\n[\"";
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of tables are shown, which
+   begin with the name of a column or, wrongly, with numbers. */
+static bool is_table(const reader *r, const char *line) {
+  static const char between[] = ",; \t\r\n[\"", numbers[] = "0123456789+-.eE,; \t\r";
+  if (strspn(line, numbers) == strcspn(line, "\n")) return true;
   for (const char *end = line_end(line), *p = line; p < end;) {
     const char *word = p + strspn(p, between);
     p = word + strcspn(word, between);
@@ -247,7 +249,7 @@ static bool has_commas(const reader *r, const char *line) {
 }
 
 static bool read_header(reader *r, const char *line) {
-  if (!is_header(r, line) || !has_commas(r, line)) return false;
+  if (!is_table(r, line) || !has_commas(r, line)) return false;
   const char *end = line_end(line), *p = line;
   for (int k = 0; k < COLUMNS; k++) {
     r->place_of[k] = -1;

@@ -100,8 +100,10 @@ static bool choose_step(simulation *s, diagnostics *d) {
               k->step_safety * limit);
     return false;
   }
-  s->limit.step = k->step > 0 ? k->step : k->step_safety * limit;
-  if (isfinite(s->limit.step) && s->limit.step > 0) return true;
+  const double step = k->step > 0 ? k->step : k->step_safety * limit;
+  const bool dynamic = s->deck->relaxation.increments == 0;
+  s->limit.step = dynamic ? fmin(step, k->end_time) : step;
+  if (isfinite(step) && step > 0) return true;
   diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
               "the law `%s` has no stiffness to choose a step from", s->law->name);
   diag_hint(d, "give `step` in &simulation");
