@@ -193,9 +193,9 @@ static void write_hostile_result(const workplace *w) {
   double u[2 * PARTICLES], omega[BONDS], t[] = {0, 1, 2};
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, (const double *const[]){u, omega}, error, sizeof error));
-  const result_series series[] = {{"load\x1b[31m", "N\x1b[32m", t},
-                                  {"two\nperilat: error: lines", "m", t},
-                                  {"\xe2\x80\xae\xc2\x9b", "a,\"b\"\n", t}};
+  const result_series series[] = {{"load\x1b[31m", "N\x1b[32m", t, false, NULL},
+                                  {"two\nperilat: error: lines", "m", t, false, NULL},
+                                  {"\xe2\x80\xae\xc2\x9b", "a,\"b\"\n", t, true, "\x1b[35mwhy\n"}};
   assert_true(result_finish(r, 0.1, 3, t, 3, series, 3, false, error, sizeof error));
   result_close(r);
 }
