@@ -107,7 +107,7 @@ static void print_caret(const quotation *q, FILE *out) {
 
 void quote_line(const source_set *sources, span where, FILE *out) {
   quotation q = find_line(sources, where);
-  const int digits = fprintf(out, "  %d", source_place(sources, where.file, where.begin).line);
+  const int digits = fprintf(out, "  %d", source_line_number(sources, where.file, where.begin));
   q.first_column = digits + (int)strlen(" | ");
   const int columns = terminal_columns(out), left = columns - q.first_column;
   if (columns == 0)
