@@ -482,7 +482,7 @@ static stages *new_plan(const emitter *e) {
 enum {
   MOST_STAGES = 63 /* a bit each, and one that follows */,
   MOST_BUFFERS = 200,
-  MOST_LINES = 4000
+  MOST_LINES = 1000
 };
 
 /* NULL where the cuts are too many. */
