@@ -213,7 +213,7 @@ static bool imply(facts *f) {
   if (!is_of_families(f)) imply_bonds(f, w);
   if (i->has_mass) {
     implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
-    stability_limit(f->law, f->values, w, &i->step);
+    stability_limit(f->law, f->values, NULL, w, &i->step);
   }
   rows_free(w);
   return true;
@@ -362,8 +362,13 @@ static void print_dynamics(const implied *i, bool rotations) {
     printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
   printf(", transverse %.6g m/s", i->waves.transverse);
   if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
-  printf("\n  stable step           %.6g us (%s mode rules, %.6g rad/s", 1e6 * i->step.limit,
-         i->step.mode, i->step.omega_max);
+  if (i->step.least < STABILITY_LEAST) {
+    printf("\n  stable step           none: the virgin body is unstable at rest\n");
+    return;
+  }
+  printf("\n  stable step           %.6g us (%s mode%s rules, %.6g rad/s", 1e6 * i->step.limit,
+         i->step.mode, i->step.at_surface ? " at the surface of a small block" : "",
+         i->step.omega_max);
   if (i->step.damping_ratio > 0) printf(", damping ratio %.3g", i->step.damping_ratio);
   printf(")\n");
 }

@@ -137,8 +137,9 @@ void announce(const run *r) {
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode rules)\n", 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s rules)\n", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);

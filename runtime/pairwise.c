@@ -501,8 +501,10 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   }
   list_streams(w, p);
   return (sweep_engine){.step_stages = 1,
+                        .force_stages = 1,
                         .observe_stages = 1,
                         .step = step,
+                        .forces = observe,
                         .turn = turn,
                         .observe = observe,
                         .output = output_values,

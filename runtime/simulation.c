@@ -33,42 +33,6 @@ static bool set_mass(simulation *s, diagnostics *d) {
   return true;
 }
 
-static bool are_allowed(const pl_law *law, const double *values) {
-  const size_t n = (size_t)law->parameter_count + 1;
-  double *lower = must_calloc(2 * n, sizeof *lower), *upper = lower + n;
-  unsigned char *open = must_calloc(2 * n, 1);
-  law->bounds(law, values, lower, upper, open, open + n);
-  bool good = true;
-  for (int p = 0; p < law->parameter_count; p++)
-    good &= values[p] >= lower[p] && values[p] <= upper[p];
-  free(lower);
-  free(open);
-  return good;
-}
-
-/* Where parameters differ from bond to bond, the smallest limit of lattices that have the smallest
-   or largest value of each in all bonds (with many fields: of all, or of one of them). */
-static void limit_with_fields(simulation *s) {
-  enum { MOST_AT_ONCE = 5 };
-  const random_fields *f = s->fields;
-  const size_t n = (size_t)s->law->parameter_count + 1;
-  double *values = must_calloc(n, sizeof *values);
-  const int corners = f->count <= MOST_AT_ONCE ? 1 << f->count : 2 * f->count + 2;
-  for (int c = 0; c < corners; c++) {
-    memcpy(values, s->parameters, (n - 1) * sizeof *values);
-    for (int k = 0; k < f->count; k++) {
-      const bool all = f->count <= MOST_AT_ONCE, one = !all && c < 2 * f->count;
-      const bool high = all ? c >> k & 1 : c & 1;
-      if (!one || c / 2 == k) values[s->law->varying[k]] = high ? f->largest[k] : f->smallest[k];
-    }
-    step_limit limit = {0};
-    if (!are_allowed(s->law, values)) continue;
-    stability_limit(s->law, values, s->lattice, &limit);
-    if (limit.limit < s->limit.limit) s->limit = limit;
-  }
-  free(values);
-}
-
 /* Protection keeps damage as it is: a law that softens through a plain state is not held back by it. */
 static void warn_of_protection(const simulation *s, diagnostics *d) {
   for (int f = 0; f < s->law->field_count; f++)
@@ -80,11 +44,39 @@ static void warn_of_protection(const simulation *s, diagnostics *d) {
         s->law->name);
 }
 
+/* Below it stands which law it is. */
+static span where_of_law(const simulation *s) {
+  const int m = deck_find_material(s->deck, s->deck->lattices[0].name);
+  return m < 0 ? s->deck->lattices[0].item.where : deck_where(&s->deck->materials[m].item, "model");
+}
+
+static bool is_stable_at_rest(const simulation *s, diagnostics *d) {
+  if (s->limit.least >= STABILITY_LEAST) return true;
+  diag_report(d, DIAG_STIFFNESS, where_of_law(s),
+              "the virgin body is unstable at rest: by the law `%s` a small motion pushes its "
+              "particles on (smallest eigenvalue of its stiffness %.3g of the largest)",
+              s->law->name, s->limit.least);
+  diag_hint(d, "a bond that is longer pulls its ends together: look at the signs, and at what the "
+               "law takes for lengths and volumes of this lattice");
+  return false;
+}
+
+/* Of a dynamic run: the time of others is only an order. */
+static bool ends_after_a_step(const simulation *s, diagnostics *d) {
+  const double end = s->deck->simulation.end_time;
+  if (s->deck->relaxation.increments > 0 || s->limit.step <= end) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&s->deck->simulation.item, "end_time"),
+              "the run of %.4g s is shorter than one step of %.4g s", end, s->limit.step);
+  diag_hint(d, "give a later `end_time`, a shorter `step`, or look at the units of stiffness and "
+               "density");
+  return false;
+}
+
 static bool choose_step(simulation *s, diagnostics *d) {
   const deck_simulation *k = &s->deck->simulation;
-  stability_limit(s->law, s->parameters, s->lattice, &s->limit);
-  if (s->fields) limit_with_fields(s);
+  stability_limit(s->law, s->parameters, s->fields, s->lattice, &s->limit);
   const double limit = s->limit.limit;
+  if (!is_stable_at_rest(s, d)) return false;
   if (!(limit > 0)) {
     diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
                 "the law `%s` has no finite stiffness at rest, so that no step is stable",
@@ -101,7 +93,7 @@ static bool choose_step(simulation *s, diagnostics *d) {
     return false;
   }
   s->limit.step = k->step > 0 ? k->step : k->step_safety * limit;
-  if (isfinite(s->limit.step) && s->limit.step > 0) return true;
+  if (isfinite(s->limit.step) && s->limit.step > 0) return ends_after_a_step(s, d);
   diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
               "the law `%s` has no stiffness to choose a step from", s->law->name);
   diag_hint(d, "give `step` in &simulation");

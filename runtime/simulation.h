@@ -37,6 +37,8 @@ typedef struct step_limit {
   double omega_max;     /* rad/s */
   double damping_ratio; /* of the ruling mode */
   const char *mode;     /* "translation" or "rotation" */
+  bool at_surface;      /* the body as it stands has a faster mode than any wave of its lattice */
+  double least; /* smallest eigenvalue of the virgin body over the largest; 0: none is negative */
 } step_limit;
 
 /* NULL with diagnostics when the deck does not fit its lattices or the given step is unstable.
