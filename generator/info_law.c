@@ -13,6 +13,7 @@
 #include "generator/settings.h"
 #include "runtime/deck_value.h"
 #include "runtime/implied.h"
+#include "runtime/simulation.h"
 #include "runtime/stability.h"
 
 static const char *const law_kinds[] = {"central bond", "micropolar bond", "state"};
@@ -170,12 +171,6 @@ static bool take_values(facts *f) {
   return material_parameters(&f->material, f->law, f->values, &f->said);
 }
 
-static double rho_of(const facts *f) {
-  for (int p = 0; p < f->law->parameter_count; p++)
-    if (strcmp(f->law->parameters[p].name, "rho") == 0) return f->values[p];
-  return 0;
-}
-
 /* What single bonds tell; laws of families have none. */
 static void imply_bonds(facts *f, const rows *w) {
   implied *i = &f->implied;
@@ -192,15 +187,13 @@ static bool is_of_families(const facts *f) {
 
 static bool imply(facts *f) {
   implied *i = &f->implied;
-  const bool hexagon = strcmp(f->lattice.kind, "hexagonal") == 0 && f->lattice.horizon <= 1 &&
-                       f->lattice.shells <= 1;
-  if (f->law->kind == PL_MICROPOLAR && !hexagon) {
+  if (f->law->kind == PL_MICROPOLAR && !bravais_is_hexagon(&f->lattice)) {
     fputs("perilat: error: a micropolar law runs on the hexagonal lattice of nearest neighbours "
           "only\n",
           stderr);
     return false;
   }
-  rows *w = implied_lattice_like(&f->lattice, rho_of(f));
+  rows *w = implied_lattice_like(&f->lattice, material_density(f->law, f->values));
   if (!w) {
     fprintf(stderr,
             "perilat: error: a particle of this lattice has no neighbours, or more than %d\n",

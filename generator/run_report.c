@@ -225,8 +225,8 @@ void report_bad(const run *r) {
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
             "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
-    if (r->open_models > 0)
-      explain_bad(r->models[0].plan, b.parameters, simulation_rows(r->simulation, 0), &b, stderr);
+    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, 0), 0);
+    if (r->open_models > 0) explain_bad(r->models[0].plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
   fprintf(stderr,
