@@ -250,15 +250,15 @@ static bool is_damped(body *b, double omega) {
 }
 
 /* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all is where the largest
-   eigenvalue of K + p C is p^2; each round begins with the p of the last one's mode. */
-static bool find_damped(lanczos *l, double omega, step_limit *out) {
-  double p = omega, *x = vector_of(l->body);
+   eigenvalue of K + p C is p^2; each round begins with the p of the last one's mode, the first with one that waves have. */
+static bool find_damped(lanczos *l, double omega, double known, step_limit *out) {
+  double p = known > 0 ? fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
   bool good = true;
   for (int round = 0; round < MOST_ROUNDS && good; round++) {
     const double last = p;
     l->rate = p;
     good = find_largest(l);
-    if (!good) break;
+    if (!good || (known > 0 && l->value <= p * p)) break;
     find_vector(l, x);
     const double k = fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
     p = fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
@@ -284,6 +284,7 @@ static double turning_share(lanczos *l) {
 static bool find_limit(lanczos *l, step_limit *out) {
   start_vector(l->body, l->now);
   find_kink(l->body, l->now);
+  const double known = out->limit;
   if (!find_largest(l)) return false;
   const double size = size_of(l);
   out->least = size > 0 ? l->least / size : 0;
@@ -291,7 +292,7 @@ static bool find_limit(lanczos *l, step_limit *out) {
   out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
   if (l->body->sweep->dof > l->body->sweep->dimensions && turning_share(l) > 0.5)
     out->mode = "rotation";
-  return !is_damped(l->body, out->omega_max) || find_damped(l, out->omega_max, out);
+  return !is_damped(l->body, out->omega_max) || find_damped(l, out->omega_max, known, out);
 }
 
 void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,

@@ -12,7 +12,8 @@
 /* Of the largest eigenvalue, a frequency's square. */
 #define BODY_ACCURACY 1e-3
 
-/* Fills limit, omega_max, damping_ratio and mode as waves_limit does, and `least`. The masses of w must be set; `varying`
+/* Fills limit, omega_max, damping_ratio and mode as waves_limit does, and `least`. A limit that out has already, that of waves
+   inside (0: none), is where the search for a damped one begins and may end. The masses of w must be set; `varying`
    [law->varying_count][directions * size] are parameters that differ from bond to bond (NULL: none). omega_max is at most 0.05 %
    too large, and the limit as much too small; rate terms count with their slope at rest. With any number of threads the result
    is the same. A law that gives no finite forces has limit 0. */

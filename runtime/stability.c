@@ -129,6 +129,7 @@ static void find_limit(const pl_law *law, const double *parameters, const random
   out->at_surface = false;
   out->least = 0;
   if (w->list) {
+    out->limit = 0;
     body_limit(law, parameters, NULL, w, out);
     return;
   }
