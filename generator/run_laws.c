@@ -334,6 +334,13 @@ static bool take_built_in(run *r, deck_material *m, int lattice) {
   return true;
 }
 
+/* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of families: of a small body that
+   takes the interpreter less time than the compiler. */
+static bool is_worth_compiling(const run *r, const model *opened) {
+  enum { MANY_BONDS = 200000 };
+  return r->lattice && r->lattice->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;
+}
+
 /* 0, or an exit status. */
 static int take_model(run *r, deck_material *m, int lattice) {
   char error[4 * ERROR_LENGTH];
@@ -343,8 +350,9 @@ static int take_model(run *r, deck_material *m, int lattice) {
       run_open_material(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;
   if (!good) return INPUT_WRONG;
-  r->laws[lattice].law = model_kernel(opened, r->options->interpret || r->options->check_only,
-                                      &note, error, sizeof error);
+  const bool interpret = r->options->interpret ||
+                         (r->options->check_only && !is_worth_compiling(r, opened));
+  r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->laws[lattice].law) return 0;
   fprintf(stderr, "perilat: error: %s\n", error);
