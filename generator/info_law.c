@@ -544,7 +544,8 @@ static void put_implied(json *j, const facts *f) {
     put_number(j, "transverse_speed", i->waves.transverse);
     put_number(j, "rotation_cutoff",
                f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
-    put_number(j, "stable_step", i->step.limit);
+    put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
+    put_bool(j, "at_surface", i->step.at_surface);
     put_text(j, "ruling_mode", i->step.mode);
     put_number(j, "omega_max", i->step.omega_max);
     put_number(j, "damping_ratio", i->step.damping_ratio);

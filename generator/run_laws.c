@@ -350,8 +350,8 @@ static int take_model(run *r, deck_material *m, int lattice) {
       run_open_material(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;
   if (!good) return INPUT_WRONG;
-  const bool interpret = r->options->interpret ||
-                         (r->options->check_only && !is_worth_compiling(r, opened));
+  const bool interpret =
+      r->options->interpret || (r->options->check_only && !is_worth_compiling(r, opened));
   r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->laws[lattice].law) return 0;

@@ -32,11 +32,11 @@ static bool eigen(int order, double *a, double *values) {
   return info == 0;
 }
 
-bool form_is_definite(int order, const double *a) {
+bool form_is_definite(int order, const double *a, double tolerance) {
   double copy[MOST_ORDER * MOST_ORDER], values[MOST_ORDER];
   memcpy(copy, a, (size_t)(order * order) * sizeof *copy);
   if (!eigen(order, copy, values)) return false;
-  return values[0] >= -rounding * fabs(values[order - 1]);
+  return values[0] >= -tolerance * fabs(values[order - 1]);
 }
 
 void bond_form_raise(bond_form a, bond_form b) {
@@ -160,13 +160,13 @@ static bool stiffness_at(bond_probe *b, bond_motion m, bond_form out) {
 static void add_stiffness(bond_probe *b, bond_forms *out) {
   const int sides = b->law->kind == PL_MICROPOLAR ? 8 : 2;
   out->finite = stiffness_at(b, (bond_motion){0, 0, 0, 0}, out->stiffness);
-  out->definite = form_is_definite(BOND_MOTIONS, &out->stiffness[0][0]);
+  out->definite = form_is_definite(BOND_MOTIONS, &out->stiffness[0][0], rounding);
   for (int k = 0; k < sides && out->finite; k++) {
     bond_form side;
     const double sign[] = {k & 1 ? -beside : beside, k & 2 ? -beside : beside,
                            k & 4 ? -beside : beside};
     if (!stiffness_at(b, (bond_motion){sign[0], 0, sign[1], 0.7 * sign[2]}, side)) continue;
-    out->definite = out->definite && form_is_definite(BOND_MOTIONS, &side[0][0]);
+    out->definite = out->definite && form_is_definite(BOND_MOTIONS, &side[0][0], rounding);
     bond_form_raise(out->stiffness, side);
   }
 }
@@ -187,7 +187,7 @@ static bond_forms forms_at(const pl_law *law, const double *parameters, const pl
   add_stiffness(b, &f);
   if (dampers) add_damping(b, &f);
   bond_probe_free(b);
-  f.definite = f.finite && f.definite && form_is_definite(BOND_MOTIONS, &f.damping[0][0]);
+  f.definite = f.finite && f.definite && form_is_definite(BOND_MOTIONS, &f.damping[0][0], rounding);
   return f;
 }
 

@@ -30,8 +30,8 @@ bond_forms bond_forms_of(const pl_law *law, const double *parameters, const pl_b
 bond_forms bond_forms_between(const pl_law *law, const double *parameters,
                               const pl_bond_class *bonds, const random_fields *fields);
 
-/* No eigenvalue below 0, but for rounding; of a symmetric matrix of that order, row by row. */
-bool form_is_definite(int order, const double *a);
+/* No eigenvalue of a symmetric matrix, row by row, is below 0 by more than `tolerance` times the largest. */
+bool form_is_definite(int order, const double *a, double tolerance);
 /* a becomes as little larger as makes a - b positive semidefinite; what is less than a millionth leaves a as it is. */
 void bond_form_raise(bond_form a, bond_form b);
 

@@ -81,8 +81,9 @@ static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
   return c;
 }
 
-/* Of a law of bonds as one of families: every block is that of a bond. */
+/* Of a law of bonds as one of families: every block is that of a bond, from differences of forces. */
 static bool blocks_are_definite(const crystal *c) {
+  const double tolerance = -STABILITY_LEAST;
   for (int n = 1; n < c->term_count; n++) {
     double stiffness[MOST_DOF * MOST_DOF], damping[MOST_DOF * MOST_DOF];
     for (int p = 0; p < c->dof; p++)
@@ -90,7 +91,9 @@ static bool blocks_are_definite(const crystal *c) {
         stiffness[p * c->dof + q] = -c->terms[n].stiffness.forward[p][q];
         damping[p * c->dof + q] = -c->terms[n].damping.forward[p][q];
       }
-    if (!form_is_definite(c->dof, stiffness) || !form_is_definite(c->dof, damping)) return false;
+    if (!form_is_definite(c->dof, stiffness, tolerance) ||
+        !form_is_definite(c->dof, damping, tolerance))
+      return false;
   }
   return true;
 }

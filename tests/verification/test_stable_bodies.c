@@ -132,6 +132,22 @@ static void bodies_bear_the_step(void **state) {
   }
 }
 
+/* Bodies of sound bonds need no search, however they are turned: they keep the limit of their lattice. */
+static void sound_bonds_are_not_searched(void **state) {
+  (void)state;
+  static const char *const texts[] = {
+      START SPACE("fcc", "shells = 2 rotation = 17 axis = 1, 2, 3", "25 mm") LAW("cohesive"),
+      START PLANE("square", "horizon = 3.015 rotation = 33") LAW("elastic_central"),
+      START PLANE("hexagonal", "rotation = 5") LAW("mplm_linear")};
+  for (size_t k = 0; k < sizeof texts / sizeof *texts; k++) {
+    deck_case c;
+    open_case(&c, texts[k]);
+    const step_limit *limit = simulation_step_limit(c.simulation);
+    assert_true(limit->least == 0 && !limit->at_surface);
+    deck_case_close(&c);
+  }
+}
+
 /* A bond that is a hundred times as stiff when it shortens, as one of two and as one of families. */
 static void kinks_at_rest_count(void **state) {
   (void)state;
@@ -186,10 +202,11 @@ static void forms_are_raised_no_more_than_needed(void **state) {
   assert_memory_equal(a, same, sizeof a); /* it is larger already: to the bit */
   bond_form_raise(a, b);
   assert_true(fabs(a[0][0] - 5) < 1e-14 && fabs(a[1][1] - 3) < 1e-14 && fabs(a[1][2] - 1) < 1e-14);
-  assert_true(form_is_definite(3, &a[0][0]));
-  assert_true(form_is_definite(3, &(bond_form){{1, 0, 0}, {0, 1, 1}, {0, 1, 1}}[0][0]));
-  assert_false(form_is_definite(3, &(bond_form){{1, 0, 0}, {0, 1, 1.001}, {0, 1.001, 1}}[0][0]));
-  assert_true(form_is_definite(3, &(bond_form){{0}}[0][0]));
+  assert_true(form_is_definite(3, &a[0][0], 1e-12));
+  assert_true(form_is_definite(3, &(bond_form){{1, 0, 0}, {0, 1, 1}, {0, 1, 1}}[0][0], 1e-12));
+  assert_false(
+      form_is_definite(3, &(bond_form){{1, 0, 0}, {0, 1, 1.001}, {0, 1.001, 1}}[0][0], 1e-12));
+  assert_true(form_is_definite(3, &(bond_form){{0}}[0][0], 1e-12));
 }
 
 /* --- unstable at rest ------------------------------------------------------------------------- */
@@ -248,6 +265,7 @@ static void limits_are_decimal_numbers(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bodies_bear_the_step),
+      cmocka_unit_test(sound_bonds_are_not_searched),
       cmocka_unit_test(kinks_at_rest_count),
       cmocka_unit_test(no_body_of_random_bonds_is_faster),
       cmocka_unit_test(forms_are_raised_no_more_than_needed),
