@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "dsl/check.h"
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "dsl/unit_hint.h"
 
 /* --- units ------------------------------------------------------------------------------------ */
@@ -47,19 +49,19 @@ static double call_value(const expr *e, const double *parameters) {
   case FUNCTION_SQRT:
     return sqrt(x);
   case FUNCTION_CBRT:
-    return cbrt(x);
+    return pl_cbrt(x);
   case FUNCTION_EXP:
-    return exp(x);
+    return pl_exp(x);
   case FUNCTION_LOG:
-    return log(x);
+    return pl_log(x);
   case FUNCTION_SIN:
-    return sin(x);
+    return pl_sin(x);
   case FUNCTION_COS:
-    return cos(x);
+    return pl_cos(x);
   case FUNCTION_TAN:
-    return tan(x);
+    return pl_tan(x);
   case FUNCTION_TANH:
-    return tanh(x);
+    return pl_tanh(x);
   case FUNCTION_SIGN:
     return (x > 0) - (x < 0);
   case FUNCTION_MACAULAY:
@@ -90,7 +92,7 @@ static double binary_value(const expr *e, const double *parameters) {
   case OP_DIV:
     return a / b;
   case OP_POW:
-    return pow(a, b);
+    return power_of(a, b);
   default:
     return NAN;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
@@ -715,7 +716,7 @@ static double wave_at(const drive_piece *p, double since, bool slope) {
   if (since < 0 || cycle >= p->cycles) return 0;
   switch (p->wave) {
   case WAVE_SINE:
-    return slope ? a * 2 * M_PI / p->period * cos(2 * M_PI * x) : a * sin(2 * M_PI * x);
+    return slope ? a * 2 * M_PI / p->period * pl_cos(2 * M_PI * x) : a * pl_sin(2 * M_PI * x);
   case WAVE_PULSE:
     if (slope) return (x < 0.5 ? 2 : -2) * a / p->period;
     return a * (x < 0.5 ? 2 * x : 2 - 2 * x);
@@ -747,7 +748,7 @@ static double function_slope(const time_function *f, double time) {
   case TIME_RAMP_HOLD:
     return since < f->rise ? f->value / f->rise : 0;
   case TIME_COSINE:
-    return since < f->rise ? f->value * M_PI / (2 * f->rise) * sin(M_PI * since / f->rise) : 0;
+    return since < f->rise ? f->value * M_PI / (2 * f->rise) * pl_sin(M_PI * since / f->rise) : 0;
   case TIME_TABLE:
     return table_slope(f, since);
   default:

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/interval_parts.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
@@ -29,7 +30,7 @@ static double draw_between(bench *b, double low, double high, double usual) {
   if (choice == 1 && isfinite(high)) return high;
   if (choice < 5 && isfinite(low) && isfinite(high)) return draw_uniform(&b->seed, low, high);
   double drawn =
-      usual != 0 ? usual * pow(10, draw_uniform(&b->seed, -2, 2)) : draw_size(&b->seed, -3, 3);
+      usual != 0 ? usual * pl_pow(10, draw_uniform(&b->seed, -2, 2)) : draw_size(&b->seed, -3, 3);
   if (!isfinite(low) && draw_bits(&b->seed) % 2) drawn = -drawn;
   return fmin(fmax(drawn, low), high);
 }

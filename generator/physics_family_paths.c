@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_family_parts.h"
 #include "generator/random_values.h"
 
@@ -388,8 +389,8 @@ static void begin_leg(family_bench *b, leg *l, bool slow, bool far) {
   double *from = l->from;
   l->from = l->to;
   l->to = from;
-  l->strain = pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -3.5, -0.7));
-  l->speed = slow ? 0 : pow(10, draw_uniform(&b->seed, -3, 5));
+  l->strain = pl_pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -3.5, -0.7));
+  l->speed = slow ? 0 : pl_pow(10, draw_uniform(&b->seed, -3, 5));
   family_bench_deform(b, l->strain, l->to);
   for (long k = 0; k < b->values; k++)
     l->rate[k] = l->speed * (l->to[k] - l->from[k]);
@@ -401,7 +402,7 @@ static void rest_leg(family_bench *b, leg *l) {
 
 /* Steps grow: what a law begins with happens at small strains. */
 static double way_at(int step, int steps) {
-  return pow(10, 3.0 * (step - steps) / steps);
+  return pl_pow(10, 3.0 * (step - steps) / steps);
 }
 
 /* Jumps are looked for on slow legs: a damper may begin with a case. */
@@ -509,8 +510,8 @@ static bool stays_negative(family_bench *b, cycle *c) {
 
 /* Out and back through another corner; some twice the same way. */
 static void draw_cycle(family_bench *b, cycle *c, int kind) {
-  c->strain = pow(10, draw_uniform(&b->seed, -5, -1));
-  c->speed = pow(10, draw_uniform(&b->seed, -3, 4));
+  c->strain = pl_pow(10, draw_uniform(&b->seed, -5, -1));
+  c->speed = pl_pow(10, draw_uniform(&b->seed, -3, 4));
   for (int k = 1; k + 1 < CORNERS; k++)
     family_bench_deform(b, c->strain, c->corner[k]);
   if (kind % 2) memset(c->corner[2], 0, (size_t)b->values * sizeof(double));

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -17,7 +19,7 @@ enum { LEVELS = 12, LOOKS = 16 };
 
 /* How far a state is from its initial value: 0, then over nine decades, for it may count openings or shares. */
 static double level_at(int k) {
-  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : pow(10, k - 10);
+  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : power_of(10, k - 10);
 }
 
 typedef double level_forces[FORCE_COUNT][LEVELS];
@@ -102,7 +104,7 @@ typedef struct tour {
 
 static tour draw_tour(physics *p) {
   motion amplitude = physics_draw_motion(p);
-  double speed = pow(10, draw_uniform(&p->b.seed, -3, 5));
+  double speed = pl_pow(10, draw_uniform(&p->b.seed, -3, 5));
   tour t = {0};
   for (int k = 1; k < CORNERS; k += 2) {
     t.corner[k] = physics_draw_corner(p, amplitude);

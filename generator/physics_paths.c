@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -293,10 +294,10 @@ static void draw_corners(physics *p, loop *o, int kind) {
 
 /* Each leg at its own speed, within a decade of the others. */
 static void draw_rates(physics *p, loop *o) {
-  double speed = pow(10, draw_uniform(&p->b.seed, -3, 5));
+  double speed = pl_pow(10, draw_uniform(&p->b.seed, -3, 5));
   for (int leg = 0; leg < LEGS; leg++) {
     double way = o->corner[leg + 1].at[AXIS_STRETCH] - o->corner[leg].at[AXIS_STRETCH];
-    double rate = speed * pow(10, draw_uniform(&p->b.seed, -1, 0));
+    double rate = speed * pl_pow(10, draw_uniform(&p->b.seed, -1, 0));
     o->rate[leg] = way == 0 ? 0 : copysign(rate, way);
   }
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -32,7 +33,7 @@ motion physics_draw_motion(physics *p) {
   motion m = draw_anywhere(b);
   if (!p->scale_count || draw_bits(&b->seed) % 4 == 0) return m;
   const motion *near = &p->scales[draw_bits(&b->seed) % (uint64_t)p->scale_count];
-  double factor = pow(10, draw_uniform(&b->seed, -0.5, 0.7));
+  double factor = pl_pow(10, draw_uniform(&b->seed, -0.5, 0.7));
   for (int k = 0; k < AXIS_COUNT; k++)
     if (near->at[k] != 0 && isfinite(near->at[k]))
       m.at[k] = near->at[k] * factor * (draw_bits(&b->seed) % 4 ? 1 : -1) *
@@ -44,7 +45,8 @@ motion physics_draw_motion(physics *p) {
 motion physics_draw_corner(physics *p, motion amplitude) {
   bench *b = &p->b;
   for (int k = 0; k < AXIS_COUNT; k++)
-    amplitude.at[k] *= pow(10, draw_uniform(&b->seed, -1, 0)) * (draw_bits(&b->seed) % 2 ? 1 : -1);
+    amplitude.at[k] *=
+        pl_pow(10, draw_uniform(&b->seed, -1, 0)) * (draw_bits(&b->seed) % 2 ? 1 : -1);
   amplitude.at[AXIS_STRETCH] = limited_stretch(amplitude.at[AXIS_STRETCH]);
   amplitude.at[AXIS_RATE] = 0;
   return amplitude;
@@ -92,7 +94,7 @@ static void put_on_ray(physics *p, const ray *r, int lane, double way) {
 static double way_at(int k) {
   enum { HALF = BENCH_LANES / 2 };
   int size = k < HALF ? HALF - 1 - k : k - HALF;
-  double way = pow(10, -9 + 9.0 * size / (HALF - 1));
+  double way = pl_pow(10, -9 + 9.0 * size / (HALF - 1));
   return k < HALF ? -way : way;
 }
 

@@ -7,6 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/powers.h"
+
 static bool ends_in(const char *text, const char *tail) {
   size_t n = strlen(text), m = strlen(tail);
   return n > m && strcmp(text + n - m, tail) == 0;
@@ -116,7 +118,7 @@ void canvas_line(canvas *c, double x1, double y1, double x2, double y2, double w
 }
 
 double nice_step(double range, int least) {
-  double raw = range / least, power = pow(10, floor(log10(raw)));
+  double raw = range / least, power = power_of(10, decade_of(raw));
   double lead = raw / power;
   return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power;
 }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/bond_probe.h"
 #include "runtime/stability.h"
 #include "runtime/stencil.h"
@@ -198,7 +199,7 @@ double implied_strength(const pl_law *law, const double *parameters, const rows 
   if (strain) *strain = NAN;
   if (law->kind == PL_STATE || w->list) return INFINITY;
   const int coarse = 1600, fine = 400;
-  double factor = pow(last / first, 1.0 / (coarse - 1)), at;
+  double factor = pl_pow(last / first, 1.0 / (coarse - 1)), at;
   scan_strength(law, parameters, w, component, first, factor, 0, coarse, &at);
   bool found = at > 0 && at < 0.99 * last;
   double strength = INFINITY;
@@ -250,14 +251,14 @@ static const double first_stretch = 1e-9, last_stretch = 1e3;
 
 /* Ways of the curve over the bond's length: evenly spaced logarithms. */
 static double curve_stretch(int k) {
-  return first_stretch * pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
+  return first_stretch * pl_pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
 }
 
 /* Stretch of a bond whose far end has gone `way` lengths along the unit vector e; *turn: of its chord. */
 static double drawn_stretch(const lattice_bond *b, const double e[2], double way, double *turn) {
   double along = b->n[0] * e[0] + b->n[1] * e[1], across = b->n[0] * e[1] - b->n[1] * e[0];
-  double length = hypot(1 + way * along, way * across);
-  *turn = atan2(way * across, 1 + way * along);
+  double length = pl_hypot(1 + way * along, way * across);
+  *turn = pl_atan2(way * across, 1 + way * along);
   return way * (2 * along + way) / (1 + length); /* length - 1, of a small way too */
 }
 

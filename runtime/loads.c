@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* --- regions ---------------------------------------------------------------------------------- */
 
@@ -237,9 +238,11 @@ static void add_end_moment(loads *l, int index, diagnostics *d) {
   double mean = 0, square = 0;
   for (long p = 0; p < at->count; p++)
     mean += y[l->lattice->particle_site[at->particles[p]]] / (double)at->count;
-  for (long p = 0; p < at->count; p++)
-    square += pow(y[l->lattice->particle_site[at->particles[p]]] - mean, 2);
-  if (square < pow(1e-6 * l->lattice->spacing, 2)) {
+  for (long p = 0; p < at->count; p++) {
+    const double arm = y[l->lattice->particle_site[at->particles[p]]] - mean;
+    square += arm * arm;
+  }
+  if (sqrt(square) < 1e-6 * l->lattice->spacing) {
     diag_report(
         d, DIAG_BAD_VALUE, deck_where(&e->item, "region"),
         "the particles of region `%s` lie at one height: horizontal forces on them make no moment",
@@ -413,7 +416,7 @@ static double decay_of(const loads *l, const sweep *w, long step) {
   for (int i = 0; i < l->deck->damping_count; i++)
     if (t >= l->deck->dampings[i].from && t < l->deck->dampings[i].until)
       rate += l->deck->dampings[i].rate;
-  return rate > 0 ? exp(-rate * w->time_step) : 1;
+  return rate > 0 ? pl_exp(-rate * w->time_step) : 1;
 }
 
 /* Motion prescribed after `step` steps since the drive's start: m, rad. */

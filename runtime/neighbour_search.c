@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bins.h"
 
 enum { POINTS_A_CELL = 2, MOST_CELLS = 1 << 20 /* along an axis */ };
@@ -53,7 +54,7 @@ static void choose_cells(cell_grid *g, const double extent[3]) {
       measure *= extent[a];
       axes++;
     }
-    if (axes > 0) g->side = pow(measure * POINTS_A_CELL / (double)g->points->count, 1.0 / axes);
+    if (axes > 0) g->side = pl_pow(measure * POINTS_A_CELL / (double)g->points->count, 1.0 / axes);
   }
   if (!(g->side > 0)) g->side = 1; /* all points are one */
   for (int a = 0; a < 3; a++) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/powers.h"
 #include "dsl/units.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
@@ -79,13 +80,13 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
 static void shorten_numbers(axis *a, double largest) {
   double shown = largest * a->factor;
   if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2)) return;
-  int power = 3 * (int)floor(log10(shown) / 3);
+  int power = 3 * (int)floor(decade_of(shown) / 3.0);
   char symbol[sizeof a->unit_text];
   memcpy(symbol, a->unit_text, sizeof symbol);
   bool pure = strcmp(symbol, "1") == 0;
   snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
            pure ? "" : symbol);
-  a->factor /= pow(10, power);
+  a->factor /= power_of(10, power);
 }
 
 static void range_of(const curve *curves, int count, bool of_x, double *low, double *high) {

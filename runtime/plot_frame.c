@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/result.h"
 
@@ -22,8 +23,8 @@ void plot_frame_free(plot_frame *m) {
 static double bond_length(const plot_frame *m, long b) {
   const int n = m->dimensions;
   const double *i = &m->reference[n * m->pairs[2 * b]], *j = &m->reference[n * m->pairs[2 * b + 1]];
-  const double plane = hypot(j[0] - i[0], j[1] - i[1]);
-  return n == 2 ? plane : hypot(plane, j[2] - i[2]);
+  const double plane = pl_hypot(j[0] - i[0], j[1] - i[1]);
+  return n == 2 ? plane : pl_hypot(plane, j[2] - i[2]);
 }
 
 /* Mean over the particles of the distance to the nearest bonded one: on a lattice its spacing. */
@@ -356,10 +357,10 @@ static int farthest_first(const void *p, const void *q) {
 
 /* Sides toward +x, -y and +z are seen; parallel lines stay parallel. */
 static void take_surface(plot_frame *m, int component) {
-  const double turn = acos(-1) / 6, tilt = acos(-1) / 7;
-  const double across[3] = {cos(turn), sin(turn), 0};
-  const double up[3] = {-sin(turn) * sin(tilt), cos(turn) * sin(tilt), cos(tilt)};
-  const double away[3] = {-sin(turn) * cos(tilt), cos(turn) * cos(tilt), -sin(tilt)};
+  const double turn = M_PI / 6, tilt = M_PI / 7;
+  const double across[3] = {pl_cos(turn), pl_sin(turn), 0};
+  const double up[3] = {-pl_sin(turn) * pl_sin(tilt), pl_cos(turn) * pl_sin(tilt), pl_cos(tilt)};
+  const double away[3] = {-pl_sin(turn) * pl_cos(tilt), pl_cos(turn) * pl_cos(tilt), -pl_sin(tilt)};
   long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order);
   show_on_particles(m, component);
   const long count = surface_particles(m, order);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/plot_frame.h"
 
@@ -88,7 +89,7 @@ static void stroke_crack(canvas *c, const map *m, long b) {
   const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
                *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
   double x = (i[0] + j[0]) / 2, y = (i[1] + j[1]) / 2, dx = j[0] - i[0], dy = j[1] - i[1];
-  double half = 0.5 / sqrt(3) * m->frame.spacing / fmax(hypot(dx, dy), 1e-300);
+  double half = 0.5 / sqrt(3) * m->frame.spacing / fmax(pl_hypot(dx, dy), 1e-300);
   cairo_move_to(c->cr, at_x(m, x - dy * half), at_y(m, y + dx * half));
   cairo_line_to(c->cr, at_x(m, x + dy * half), at_y(m, y - dx * half));
 }
@@ -209,7 +210,7 @@ static void draw_axes(canvas *c, const map *m) {
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   for (int k = 0; k < 3; k++) {
     const double across = m->frame.axes[k][0], up = m->frame.axes[k][1];
-    if (hypot(across, up) < 0.1) continue;
+    if (pl_hypot(across, up) < 0.1) continue;
     canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
     canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
                 (char[]){"xyz"[k], 0});

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
@@ -63,7 +64,7 @@ static bool is_loading(const relaxation *r, int64_t step) {
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->sweep->decay = fmax(exp(-rate * r->sweep->time_step), r->least_decay);
+  r->sweep->decay = fmax(pl_exp(-rate * r->sweep->time_step), r->least_decay);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -79,7 +80,7 @@ void relaxation_next(relaxation *r, int64_t step) {
 }
 
 void relaxation_begin(relaxation *r) {
-  r->state.rate = 2 * acos(-1) / ((double)r->ramp * r->sweep->time_step);
+  r->state.rate = 2 * M_PI / ((double)r->ramp * r->sweep->time_step);
   relaxation_next(r, 0);
 }
 
@@ -105,6 +106,10 @@ static void adapt(relaxation *r) {
   if (work > 0 && motion > 0) r->state.rate = 2 * sqrt(work / motion);
 }
 
+static double square_of(double x) {
+  return x * x;
+}
+
 typedef struct squares { /* N^2 */
   double free, held, applied;
 } squares;
@@ -123,16 +128,16 @@ static void add_component(const relaxation *r, int d, squares *sum) {
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
     r->total[l->forces[i].site] += l->forces[i].now;
-    sum->applied += pow(l->forces[i].now / arm, 2);
+    sum->applied += square_of(l->forces[i].now / arm);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
     if (c->component != d || !c->active) continue;
-    sum->held += pow(r->total[c->site] / arm, 2);
+    sum->held += square_of(r->total[c->site] / arm);
     r->total[c->site] = 0;
   }
   for (long p = 0; p < w->lattice->particle_count; p++)
-    sum->free += pow(r->total[w->lattice->particle_site[p]] / arm, 2);
+    sum->free += square_of(r->total[w->lattice->particle_site[p]] / arm);
 }
 
 static double unbalance_of(relaxation *r) {

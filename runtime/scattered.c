@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bond_numbers.h"
 #include "runtime/hilbert.h"
 #include "runtime/particle_set.h"
@@ -65,7 +66,7 @@ static double mean_measure(const builder *b) {
 
 /* Of a disc or a sphere of so many particles. */
 static double radius_of(int dimensions, double measure) {
-  return dimensions == 2 ? sqrt(measure / acos(-1)) : cbrt(0.75 * measure / acos(-1));
+  return dimensions == 2 ? sqrt(measure / M_PI) : pl_cbrt(0.75 * measure / M_PI);
 }
 
 static double horizon_of(const builder *b) {

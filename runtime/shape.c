@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/outline.h"
 
 enum { NEAR_CUTS = 32 }; /* places where a chord meets an outline that need no allocation */
@@ -16,7 +17,7 @@ static double dot(const double *a, const double *b) {
 }
 
 static double size_of(const double *a) {
-  return hypot(hypot(a[0], a[1]), a[2]);
+  return pl_hypot(pl_hypot(a[0], a[1]), a[2]);
 }
 
 static void subtract(const double *a, const double *b, double out[3]) {
@@ -34,7 +35,7 @@ typedef struct shape_outline {
 
 /* Corners given about `centre` before a turn. */
 static void turn_corners(shape_outline *s, const double centre[2], double angle) {
-  const double c = cos(angle), d = sin(angle);
+  const double c = pl_cos(angle), d = pl_sin(angle);
   for (int k = 0; k < s->line.count; k++) {
     double *p = s->points + 2 * k;
     const double x = p[0], y = p[1];
@@ -206,7 +207,7 @@ static void cylinder_box(const deck_shape *shape, double lower[3], double upper[
   cylinder_axis(shape, axis);
   box_of_ends(shape->from, shape->to, 3, lower, upper);
   for (int c = 0; c < 3; c++) {
-    const double reach = shape->radius * hypot(axis[(c + 1) % 3], axis[(c + 2) % 3]);
+    const double reach = shape->radius * pl_hypot(axis[(c + 1) % 3], axis[(c + 2) % 3]);
     lower[c] -= reach;
     upper[c] += reach;
   }
@@ -266,7 +267,7 @@ void shape_box(const deck_shape *shape, double lower[3], double upper[3]) {
 
 /* Of a shape that is bounded in two directions at right angles, each with its distance. */
 static double both(double a, double b) {
-  return a <= 0 && b <= 0 ? fmax(a, b) : hypot(fmax(a, 0), fmax(b, 0));
+  return a <= 0 && b <= 0 ? fmax(a, b) : pl_hypot(fmax(a, 0), fmax(b, 0));
 }
 
 static double round_distance(const deck_shape *shape, double from_centre) {
@@ -301,7 +302,7 @@ static double shape_distance(const deck_shape *shape, const double *p) {
     subtract(p, shape->at, from);
     return size_of(from);
   case SHAPE_DISC:
-    return round_distance(shape, hypot(p[0] - shape->centre[0], p[1] - shape->centre[1]));
+    return round_distance(shape, pl_hypot(p[0] - shape->centre[0], p[1] - shape->centre[1]));
   case SHAPE_SPHERE:
     subtract(p, shape->centre, from);
     return round_distance(shape, size_of(from));
@@ -529,12 +530,12 @@ static bool deep_between_cuts(cuts *c, const deck_shape *shape, const double *a,
 /* Distance of p from the line a-b, positive to its left. */
 static double left_of(const double *p, const double *a, const double *b) {
   const double ex = b[0] - a[0], ey = b[1] - a[1];
-  return (ex * (p[1] - a[1]) - ey * (p[0] - a[0])) / hypot(ex, ey);
+  return (ex * (p[1] - a[1]) - ey * (p[0] - a[0])) / pl_hypot(ex, ey);
 }
 
 static bool crosses_slit(const double *a, const double *b, const double *p, const double *q,
                          double tolerance) {
-  if (hypot(q[0] - p[0], q[1] - p[1]) <= tolerance) return false;
+  if (pl_hypot(q[0] - p[0], q[1] - p[1]) <= tolerance) return false;
   const double side_a = left_of(a, p, q), side_b = left_of(b, p, q);
   if (fmin(side_a, side_b) >= -tolerance || fmax(side_a, side_b) <= tolerance) return false;
   const double side_p = left_of(p, a, b), side_q = left_of(q, a, b);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape.h"
 
 #define FARTHEST 1e8 /* spacings from the origin: positions keep 1e-8 spacings */
@@ -124,7 +125,8 @@ bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
               "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
               l->name, sites, SITE_MOST);
   diag_hint(d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : cbrt(part)) * 1.01);
+            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : pl_cbrt(part)) *
+                1.01);
   return true;
 }
 

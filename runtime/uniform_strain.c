@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
@@ -93,7 +94,7 @@ static double momentum_of(const probe *p) {
 /* The face of a particle: of the square or cube that has its volume. */
 static double face_of(const rows *w, long site) {
   const double V = volume_of(w, site), t = w->stiffness_thickness;
-  return w->dimensions == 2 ? sqrt(V * t) : cbrt(V * V);
+  return w->dimensions == 2 ? sqrt(V * t) : pl_cbrt(V * V);
 }
 
 static void note_left(const probe *p, int strain, const double stress[MOST_STRAINS]) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bins.h"
 
 #define FIRST_REACH 2.5 /* spacings: half the side of the box that a cell begins with */
@@ -313,7 +314,7 @@ static long near_partner(const voronoi_points *p, const bins *b, long k, double 
       const long m = b->point[from];
       place_of(p, m, other);
       if (m > k && (found < 0 || m < found) &&
-          hypot(hypot(other[0] - at[0], other[1] - at[1]), other[2] - at[2]) < distance)
+          pl_hypot(pl_hypot(other[0] - at[0], other[1] - at[1]), other[2] - at[2]) < distance)
         found = m;
     }
   }
