@@ -84,7 +84,17 @@ PL_ELEMENTARY double pl_max(double a, double b) {
   return a != a ? a : most;
 }
 
-/* The same, but b where either is NaN. */
+/* The other where one is NaN, as C's fmin and fmax; the first of 0 and -0, which these leave to the
+ * compiler. */
+PL_ELEMENTARY double pl_fmin(double a, double b) {
+  return ((a <= b) | (b != b)) ? a : b;
+}
+
+PL_ELEMENTARY double pl_fmax(double a, double b) {
+  return ((a >= b) | (b != b)) ? a : b;
+}
+
+/* Smaller and larger, but b where either is NaN. */
 PL_ELEMENTARY double pl_smaller(double a, double b) {
   return a < b ? a : b;
 }

@@ -65,14 +65,14 @@ static double call_value(const expr *e, const double *parameters) {
   case FUNCTION_SIGN:
     return (x > 0) - (x < 0);
   case FUNCTION_MACAULAY:
-    return fmax(x, 0);
+    return pl_max(x, 0);
   case FUNCTION_SOFT_SIGN:
     return x / (1 + fabs(x));
   case FUNCTION_MIN:
   case FUNCTION_MAX:
     for (int i = 1; i < e->argument_count; i++) {
       double y = law_constant_value(e->arguments[i].value, parameters);
-      x = e->builtin == FUNCTION_MIN ? fmin(x, y) : fmax(x, y);
+      x = e->builtin == FUNCTION_MIN ? pl_min(x, y) : pl_max(x, y);
     }
     return x;
   default:

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/info_law.h"
@@ -49,8 +50,8 @@ static void print_history(result_file *f, const char *name) {
   }
   double low = v[0], high = v[0];
   for (long k = 0; k < count; k++) {
-    low = fmin(low, v[k]);
-    high = fmax(high, v[k]);
+    low = pl_fmin(low, v[k]);
+    high = pl_fmax(high, v[k]);
   }
   printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
          v[count - 1] + 0.0); /* no minus before zeros */

@@ -798,7 +798,7 @@ double drive_end(const drive_input *in) {
   double end = 0;
   if (in->simulation.end_time >= 0) return in->simulation.end_time;
   for (int k = 0; k < in->piece_count; k++)
-    end = fmax(end, corner(&in->pieces[k], corner_count(&in->pieces[k]) - 1));
+    end = pl_fmax(end, corner(&in->pieces[k], corner_count(&in->pieces[k]) - 1));
   return end;
 }
 
@@ -855,7 +855,7 @@ double drive_time_of_stretch(const drive_input *in, double stretch, double after
   plain.expect_count = 0;
   double *t = drive_times(&plain, &count), found = NAN;
   for (long k = 0; k < count && isnan(found); k++) {
-    double high = t[k], low = k ? fmax(t[k - 1], after) : high;
+    double high = t[k], low = k ? pl_fmax(t[k - 1], after) : high;
     if (high < after) continue;
     double a = drive_at(in, DRIVE_STRETCH, low) - stretch,
            b = drive_at(in, DRIVE_STRETCH, high) - stretch;

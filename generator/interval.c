@@ -63,7 +63,7 @@ static bool is_empty(range a) {
 }
 
 range range_meet(range a, range b) {
-  range c = {fmax(a.low, b.low), fmin(a.high, b.high), false, false};
+  range c = {pl_fmax(a.low, b.low), pl_fmin(a.high, b.high), false, false};
   c.low_open = (a.low == c.low && a.low_open) || (b.low == c.low && b.low_open);
   c.high_open = (a.high == c.high && a.high_open) || (b.high == c.high && b.high_open);
   return is_empty(c) ? a : c;
@@ -132,7 +132,8 @@ static range rising(range a, double (*f)(double), double limit_low, double limit
 }
 
 static range root_of(range a) {
-  range b = range_between(fmax(a.low, 0), fmax(a.high, 0), a.low_open && a.low >= 0, a.high_open);
+  range b =
+      range_between(pl_fmax(a.low, 0), pl_fmax(a.high, 0), a.low_open && a.low >= 0, a.high_open);
   return range_between(sqrt(b.low), sqrt(b.high), b.low_open, b.high_open);
 }
 
@@ -151,8 +152,8 @@ static range power_of(range a, range b) {
   }
   const double p[] = {pl_pow(a.low, b.low), pl_pow(a.low, b.high), pl_pow(a.high, b.low),
                       pl_pow(a.high, b.high)};
-  double low = fmin(fmin(p[0], p[1]), fmin(p[2], p[3])),
-         high = fmax(fmax(p[0], p[1]), fmax(p[2], p[3]));
+  double low = pl_fmin(pl_fmin(p[0], p[1]), pl_fmin(p[2], p[3])),
+         high = pl_fmax(pl_fmax(p[0], p[1]), pl_fmax(p[2], p[3]));
   return range_between(low, high, low == 0 && positive, false);
 }
 

@@ -75,7 +75,7 @@ static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed)
     double turn = kind != ANY ? draw_size(seed, -9, -2)
                   : q % 3     ? draw_uniform(seed, -14, 14)
                               : draw_size(seed, -9, 0);
-    double stretched = 1 + fmax(draw_size(seed, -8, kind < SOME_SPIN ? 0 : -2), -0.9);
+    double stretched = 1 + pl_fmax(draw_size(seed, -8, kind < SOME_SPIN ? 0 : -2), -0.9);
     double across =
         stretched * (pl_cos(turn) * b->chord[0] - pl_sin(turn) * b->chord[1]) - b->chord[0];
     double along =

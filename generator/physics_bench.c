@@ -194,7 +194,7 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
                 {QUANTITY_V, c->V},
                 {QUANTITY_M_END_I, c->mass_i},
                 {QUANTITY_M_END_J, c->mass_j},
-                {QUANTITY_M_BOND, fmin(c->mass_i, c->mass_j)},
+                {QUANTITY_M_BOND, pl_fmin(c->mass_i, c->mass_j)},
                 {QUANTITY_AREA, c->area},
                 {QUANTITY_SHELL, c->shell},
                 {QUANTITY_N_FAMILY, c->n}};

@@ -69,7 +69,7 @@ void family_check_rest(family_bench *b) {
     family_bench_forces(b, b->frozen, force);
     double scale = largest(force, b->values);
     family_bench_forces(b, b->whole, force); /* a law may carry its strain in states */
-    scale = fmax(scale, largest(force, b->values));
+    scale = pl_fmax(scale, largest(force, b->values));
     turn(b, round % 2 ? draw_uniform(&b->seed, -3, 3) : 0, u);
     family_bench_move(b, u, NULL);
     family_bench_forces(b, b->whole, force);
@@ -191,7 +191,7 @@ static void go_round(family_bench *b, triangle *t, int panels) {
   for (int leg = 0; leg < 3; leg++) {
     t->work[leg] = leg_work(b, corner[leg], corner[leg + 1], panels, &t->size);
     sum += t->work[leg];
-    t->peak = fmax(t->peak, fabs(sum));
+    t->peak = pl_fmax(t->peak, fabs(sum));
   }
 }
 

@@ -123,7 +123,7 @@ static both_sides worst_sides(const patch *p, int field, double *size) {
       if (!patch_has_bond(p, site, k)) continue;
       const double *v = p->new_field[field] + k * p->size, *back = v + half * p->size;
       const both_sides now = {v[site], back[patch_neighbour(p, site, k)]};
-      *size = fmax(*size, fmax(fabs(now.mine), fabs(now.other)));
+      *size = pl_fmax(*size, pl_fmax(fabs(now.mine), fabs(now.other)));
       if (fabs(now.mine - now.other) > fabs(worst.mine - worst.other)) worst = now;
     }
   return worst;
@@ -221,7 +221,7 @@ static double largest_force(family_bench *b, leg *l, double way, double *force) 
   move_on_leg(b, l, way);
   family_bench_forces(b, b->whole, force);
   for (long k = 0; k < b->values; k++)
-    most = fmax(most, fabs(force[k]));
+    most = pl_fmax(most, fabs(force[k]));
   return most;
 }
 
@@ -232,9 +232,9 @@ static void check_continuity(family_bench *b, leg *l, double before, double afte
   if (!line || meant || b->failed[DIAG_CONTINUITY]) return;
   const double reached = largest_force(b, l, 1, l->force);
   const double size =
-      fmax(largest_force(b, l, before, l->force), largest_force(b, l, after, l->other));
+      pl_fmax(largest_force(b, l, before, l->force), largest_force(b, l, after, l->other));
   for (long k = 0; k < b->values; k++)
-    jump = fmax(jump, fabs(l->force[k] - l->other[k]));
+    jump = pl_fmax(jump, fabs(l->force[k] - l->other[k]));
   const double smooth = (1e-9 + 1e3 * (after - before)) * reached;
   if (!(jump > JUMP_TOLERANCE * size + smooth)) return;
   family_bench_say(b, DIAG_CONTINUITY, line->where, l->strain,
@@ -477,7 +477,7 @@ static void go_round(family_bench *b, cycle *c, int steps) {
       family_bench_move(b, u, v);
       family_bench_forces(b, b->whole, force);
       c->work += family_work(force, way, p->law->dimensions * p->inside_count, &size);
-      c->peak = fmax(c->peak, fabs(c->work));
+      c->peak = pl_fmax(c->peak, fabs(c->work));
       family_bench_accept(b);
     }
   }

@@ -130,7 +130,7 @@ static bool is_stronger(physics *p, double *const *states, int lane, int field, 
   bench *b = &p->b;
   double *column = must_alloc((size_t)b->width * sizeof *column);
   motion m = without_rate(bench_motion(b, states, lane)), back = m;
-  back.at[AXIS_STRETCH] = fmax(-m.at[AXIS_STRETCH], -0.5);
+  back.at[AXIS_STRETCH] = pl_fmax(-m.at[AXIS_STRETCH], -0.5);
   bench_get(b, states, lane, column);
   for (int k = 0; k < LANES; k++) {
     bench_put(b, few, k, column);
@@ -188,7 +188,7 @@ static void look_at_step(physics *p, healing *h, int leg) {
                *now = b->step.out[FORCE_COUNT + h->field];
   for (int lane = 0; lane < BENCH_LANES && !p->failed[DIAG_HEALING]; lane++) {
     double back = (before[lane] - now[lane]) * h->way,
-           size = fmax(fabs(before[lane]), fabs(now[lane]));
+           size = pl_fmax(fabs(before[lane]), fabs(now[lane]));
     h->moved = h->moved || before[lane] != now[lane];
     bool weakened = (before[lane] - b->law->fields.items[h->field]->initial) * h->way > 0;
     if (weakened && back > LEAST_RETURN * size &&

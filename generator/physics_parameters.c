@@ -47,7 +47,7 @@ static double vary(uint64_t *seed, double value, double low, double high) {
     drawn = draw_uniform(seed, isfinite(low) ? low : -high, high);
   else if (value == 0)
     drawn = pl_pow(10, draw_uniform(seed, -3, 0));
-  return fmin(fmax(drawn, low), high);
+  return pl_fmin(pl_fmax(drawn, low), high);
 }
 
 static bool all_within(const law *l, const double *values) {

@@ -66,7 +66,7 @@ static void add_leg_work(physics *p, loops *l, const probe *from, int lane, int 
     l->work[lane] += part;
     l->by_force[k][lane] += part;
   }
-  l->peak[lane] = fmax(l->peak[lane], fabs(l->work[lane]));
+  l->peak[lane] = pl_fmax(l->peak[lane], fabs(l->work[lane]));
 }
 
 static int force_at_fault(const loops *l, int lane) {
@@ -131,7 +131,7 @@ static double damage_of(const bench *b, double *const *states, int lane) {
   double largest = -1;
   for (int k = 0; k < b->field_count; k++)
     if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE && bench_field(b, states, k)[lane] > 0)
-      largest = fmax(largest, bench_field(b, states, k)[lane]);
+      largest = pl_fmax(largest, bench_field(b, states, k)[lane]);
   return largest;
 }
 

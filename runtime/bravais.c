@@ -128,7 +128,7 @@ int bravais_family(const bravais *b, double horizon, int shells,
   const double reach = horizon > 0 ? horizon * (1 + BRAVAIS_REACH_TOLERANCE) : FARTHEST_NEIGHBOUR;
   const int last = horizon > 0 ? INT32_MAX : shells > 0 ? shells : 1;
   int found, count = 0, shell = 0;
-  bravais_neighbour *all = collect(b, fmin(reach, FARTHEST_NEIGHBOUR), &found);
+  bravais_neighbour *all = collect(b, pl_fmin(reach, FARTHEST_NEIGHBOUR), &found);
   for (int k = 0; k < found; k++) {
     shell += k == 0 || all[k].square > all[k - 1].square;
     if (shell > last) break;

@@ -122,7 +122,7 @@ static void pairwise_stiffness(const pl_law *law, const double *parameters, cons
     linear_stress(bonds, tangents, w->directions, e, stress);
     for (int r = 0; r < 3; r++)
       out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / site_volume(w);
-    out->asymmetry = fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
+    out->asymmetry = pl_fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
   }
   for (int k = 0; k < w->directions; k++)
     bond_probe_free(bonds[k].probe);
@@ -282,8 +282,8 @@ static void find_peak(lattice_bond *b, double from, double to, implied_bond *out
     double at = from, step = (to - from) / PEAK_POINTS;
     out->peak_force = peak_between(b, from, to, &at);
     out->stretch_at_peak = at;
-    from = fmax(at - step, from);
-    to = fmin(at + step, to);
+    from = pl_fmax(at - step, from);
+    to = pl_fmin(at + step, to);
   }
 }
 
@@ -307,7 +307,7 @@ static curve trace_curve(lattice_bond *b, const double e[2]) {
     if (!isfinite(N) || !isfinite(M)) return (curve){0};
     c.work += 0.5 * (force + N) * (next - stretch) * b->s - 0.5 * (moment + M) * (next_turn - turn);
     stretch = next, turn = next_turn, force = N, moment = M;
-    size = fmax(size, fabs(N) + fabs(M) / b->s);
+    size = pl_fmax(size, fabs(N) + fabs(M) / b->s);
     if (N > c.largest) {
       c.largest = N;
       c.peak = k;

@@ -33,8 +33,8 @@ static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
     double at[3];
     rows_place(w, w->particle_site[p], at);
     for (int c = 0; c < 3; c++) {
-      low[c] = fmin(low[c], at[c]);
-      high[c] = fmax(high[c], at[c]);
+      low[c] = pl_fmin(low[c], at[c]);
+      high[c] = pl_fmax(high[c], at[c]);
     }
   }
   if (w->dimensions == 3)
@@ -176,7 +176,7 @@ static void add_motions(loads *l, motions *m) {
 
 /* Part of the increment's loads that is there after `step` steps of a quasi-static run. */
 static double part_of(const load_clock *c, long step) {
-  return fmin(1, (double)(step - c->first) / (double)c->ramp);
+  return pl_fmin(1, (double)(step - c->first) / (double)c->ramp);
 }
 
 static double time_of(const loads *l, const sweep *w, long step) {

@@ -168,11 +168,11 @@ static double seen_to(const walk *w) {
   double least = INFINITY;
   for (int a = 0; a < w->grid->points->dimensions; a++) {
     const double low = w->grid->low[a], side = w->grid->side;
-    if (w->low[a] > 0) least = fmin(least, w->from[a] - (low + (double)w->low[a] * side));
+    if (w->low[a] > 0) least = pl_fmin(least, w->from[a] - (low + (double)w->low[a] * side));
     if (w->high[a] < w->grid->cells[a] - 1)
-      least = fmin(least, low + (double)(w->high[a] + 1) * side - w->from[a]);
+      least = pl_fmin(least, low + (double)(w->high[a] + 1) * side - w->from[a]);
   }
-  return fmax(least, 0) * (1 - 1e-12); /* cells were found to rounding */
+  return pl_fmax(least, 0) * (1 - 1e-12); /* cells were found to rounding */
 }
 
 /* --- the nearest ------------------------------------------------------------------------------ */

@@ -54,8 +54,8 @@ static bool on_arc(const arc *e, double x, double y) {
 static void widen(double lower[2], double upper[2], double x, double y) {
   const double p[2] = {x, y};
   for (int c = 0; c < 2; c++) {
-    lower[c] = isnan(lower[c]) || isnan(p[c]) ? NAN : fmin(lower[c], p[c]);
-    upper[c] = isnan(upper[c]) || isnan(p[c]) ? NAN : fmax(upper[c], p[c]);
+    lower[c] = isnan(lower[c]) || isnan(p[c]) ? NAN : pl_fmin(lower[c], p[c]);
+    upper[c] = isnan(upper[c]) || isnan(p[c]) ? NAN : pl_fmax(upper[c], p[c]);
   }
 }
 
@@ -82,7 +82,7 @@ static double distance_to_straight(const double p[2], const double a[2], const d
   const double ex = b[0] - a[0], ey = b[1] - a[1];
   const double square = ex * ex + ey * ey;
   const double along = (p[0] - a[0]) * ex + (p[1] - a[1]) * ey;
-  const double u = square > 0 ? fmin(fmax(along / square, 0), 1) : 0;
+  const double u = square > 0 ? pl_fmin(pl_fmax(along / square, 0), 1) : 0;
   return pl_hypot(p[0] - a[0] - u * ex, p[1] - a[1] - u * ey);
 }
 
@@ -92,7 +92,7 @@ static double distance_to_arc(const double p[2], const arc *e, const double a[2]
   const double factor = e->radius / from_centre; /* at the centre all points are equally far */
   if (from_centre > 0 && on_arc(e, e->centre[0] + factor * x, e->centre[1] + factor * y))
     return fabs(from_centre - e->radius);
-  return fmin(pl_hypot(p[0] - a[0], p[1] - a[1]), pl_hypot(p[0] - b[0], p[1] - b[1]));
+  return pl_fmin(pl_hypot(p[0] - a[0], p[1] - a[1]), pl_hypot(p[0] - b[0], p[1] - b[1]));
 }
 
 /* Does the ray from p toward +x cross a-b? Half open in y, so that a corner counts once. */
@@ -133,10 +133,10 @@ double outline_distance(const outline *o, const double p[2]) {
     const double *a = outline_corner(o, k), *b = outline_corner(o, k + 1);
     arc edge;
     if (arc_of(o, k, &edge)) {
-      nearest = fmin(nearest, distance_to_arc(p, &edge, a, b));
+      nearest = pl_fmin(nearest, distance_to_arc(p, &edge, a, b));
       crossings += ray_crossings(p, &edge, a, b);
     } else {
-      nearest = fmin(nearest, distance_to_straight(p, a, b));
+      nearest = pl_fmin(nearest, distance_to_straight(p, a, b));
       crossings += ray_crosses(p, a, b);
     }
   }

@@ -104,7 +104,7 @@ static bool has_body(const maker *m) {
 static bool few_enough(const maker *m, double measure) {
   double box = 1;
   for (int c = 0; c < m->solid.dimensions; c++)
-    box *= fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
+    box *= pl_fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
   return !site_too_many(m->lattice, box / measure, m->d);
 }
 

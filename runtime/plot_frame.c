@@ -52,18 +52,18 @@ static void move_particles(plot_frame *m, const double *displacement, double wan
   double mean[3] = {0, 0, 0}, largest = 0, extent = 0;
   for (long p = 0; p < m->particles; p++)
     for (int c = 0; c < n; c++) {
-      low[c] = fmin(low[c], m->reference[n * p + c]);
-      high[c] = fmax(high[c], m->reference[n * p + c]);
+      low[c] = pl_fmin(low[c], m->reference[n * p + c]);
+      high[c] = pl_fmax(high[c], m->reference[n * p + c]);
       mean[c] += displacement[n * p + c] / (double)m->particles;
     }
   for (long p = 0; p < n * m->particles; p++)
-    largest = fmax(largest, fabs(displacement[p] - mean[p % n]));
+    largest = pl_fmax(largest, fabs(displacement[p] - mean[p % n]));
   for (int c = 0; c < n; c++)
-    extent = fmax(extent, high[c] - low[c]);
+    extent = pl_fmax(extent, high[c] - low[c]);
   m->factor = wanted;
   if (wanted < 0) {
     double raw = largest > 0 ? 0.05 * extent / largest : 1;
-    m->factor = raw < 1 ? 1 : fmin(nice_step(raw, 1), 1e4);
+    m->factor = raw < 1 ? 1 : pl_fmin(nice_step(raw, 1), 1e4);
   }
   m->moved = must_calloc((size_t)(m->particles * n) + 1, sizeof *m->moved);
   for (long p = 0; p < n * m->particles; p++)
@@ -272,8 +272,8 @@ static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, si
   double low = INFINITY, high = -INFINITY;
   for (long p = 0; p < m->particles; p++) {
     const double at = m->reference[3 * p + o->slice_axis];
-    low = fmin(low, at);
-    high = fmax(high, at);
+    low = pl_fmin(low, at);
+    high = pl_fmax(high, at);
     if (at > o->slice_at - half + rounding && at <= o->slice_at + half + rounding)
       order[count++] = p;
   }
@@ -386,8 +386,8 @@ static void describe_extents(plot_frame *m) {
   for (int c = 0; c < 3; c++) {
     double low = INFINITY, high = -INFINITY;
     for (long p = 0; p < m->particles; p++) {
-      low = fmin(low, m->reference[3 * p + c]);
-      high = fmax(high, m->reference[3 * p + c]);
+      low = pl_fmin(low, m->reference[3 * p + c]);
+      high = pl_fmax(high, m->reference[3 * p + c]);
     }
     used += (size_t)snprintf(m->extents + used, sizeof m->extents - used, "%s%c %.4g to %.4g mm",
                              c ? ", " : "", "xyz"[c], 1e3 * low, 1e3 * high);

@@ -7,6 +7,7 @@
 #include <strings.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/random_number.h"
 #include "runtime/special_functions.h"
 
@@ -354,8 +355,8 @@ static void find_extremes(random_fields *r, const rows *w, const rows_bond *bond
   for (int k = 0; k < r->count; k++) {
     double low = INFINITY, high = -INFINITY;
     for (long m = 0; m < w->bond_count; m++) {
-      low = fmin(low, r->value[k][bonds[m].slot]);
-      high = fmax(high, r->value[k][bonds[m].slot]);
+      low = pl_fmin(low, r->value[k][bonds[m].slot]);
+      high = pl_fmax(high, r->value[k][bonds[m].slot]);
     }
     r->smallest[k] = w->bond_count ? low : parameters[law->varying[k]];
     r->largest[k] = w->bond_count ? high : parameters[law->varying[k]];

@@ -20,12 +20,12 @@ static long ramp_of(const rows *g, double part) {
     double at[3];
     rows_place(g, g->particle_site[p], at);
     for (int c = 0; c < g->dimensions; c++) {
-      lower[c] = fmin(lower[c], at[c]);
-      upper[c] = fmax(upper[c], at[c]);
+      lower[c] = pl_fmin(lower[c], at[c]);
+      upper[c] = pl_fmax(upper[c], at[c]);
     }
   }
   for (int c = 0; c < g->dimensions; c++)
-    longest = fmax(longest, upper[c] - lower[c]);
+    longest = pl_fmax(longest, upper[c] - lower[c]);
   return (long)ceil(4 * (longest / g->spacing + 1) / part);
 }
 
@@ -39,7 +39,7 @@ relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part) {
   r->interval = k->simulation.end_time / k->relaxation.increments;
   r->ramp = ramp_of(w->lattice, part);
   /* v+ = d v + dt a is stable while (dt omega)^2 <= 2 (1 + d), and dt omega <= 2 part */
-  r->least_decay = fmin(fmax(2 * part * part - 1 + margin, 0), 1);
+  r->least_decay = pl_fmin(pl_fmax(2 * part * part - 1 + margin, 0), 1);
   for (int d = 0; d < w->dof; d++) {
     r->displacement[d] = must_calloc(size, sizeof(double));
     r->force[d] = must_calloc(size, sizeof(double));
@@ -64,7 +64,7 @@ static bool is_loading(const relaxation *r, int64_t step) {
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->sweep->decay = fmax(pl_exp(-rate * r->sweep->time_step), r->least_decay);
+  r->sweep->decay = pl_fmax(pl_exp(-rate * r->sweep->time_step), r->least_decay);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -144,9 +144,9 @@ static double unbalance_of(relaxation *r) {
   squares sum = {0, 0, 0};
   for (int d = 0; d < r->sweep->dof; d++)
     add_component(r, d, &sum);
-  const double needed = sqrt(fmax(sum.held, sum.applied));
-  r->state.largest = fmax(r->state.largest, needed);
-  const double against = fmax(needed, forgotten * r->state.largest);
+  const double needed = sqrt(pl_fmax(sum.held, sum.applied));
+  r->state.largest = pl_fmax(r->state.largest, needed);
+  const double against = pl_fmax(needed, forgotten * r->state.largest);
   return sum.free == 0 ? 0 : sqrt(sum.free) / against;
 }
 

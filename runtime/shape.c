@@ -57,7 +57,7 @@ static void rectangle_outline(const deck_shape *shape, shape_outline *s) {
 /* Arcs of the given radius, one on either side, end on the straight sides half a chord from the middle. */
 static void dog_bone_outline(const deck_shape *shape, shape_outline *s) {
   const double w = shape->width / 2, h = shape->height / 2, rise = w - shape->neck / 2;
-  const double chord = sqrt(fmax(rise * (2 * shape->radius - rise), 0));
+  const double chord = sqrt(pl_fmax(rise * (2 * shape->radius - rise), 0));
   const double corners[16] = {-w, -h, w,  -h, w,  -chord, w,  chord,
                               w,  h,  -w, h,  -w, chord,  -w, -chord};
   memcpy(s->points, corners, sizeof corners);
@@ -111,8 +111,8 @@ double shape_unevenness(const deck_shape *face) {
   for (int k = 0; k < face->point_count; k++) {
     double from[3];
     subtract(face_corner(face, k), face->points, from);
-    extent = fmax(extent, size_of(from));
-    away = isnan(n[0]) ? NAN : fmax(away, fabs(dot(n, from)));
+    extent = pl_fmax(extent, size_of(from));
+    away = isnan(n[0]) ? NAN : pl_fmax(away, fabs(dot(n, from)));
   }
   return away / extent;
 }
@@ -122,7 +122,7 @@ static double distance_to_segment(const double *p, const double *a, const double
   subtract(b, a, along);
   subtract(p, a, from);
   const double square = dot(along, along);
-  const double u = square > 0 ? fmin(fmax(dot(from, along) / square, 0), 1) : 0;
+  const double u = square > 0 ? pl_fmin(pl_fmax(dot(from, along) / square, 0), 1) : 0;
   for (int c = 0; c < 3; c++)
     from[c] -= u * along[c];
   return size_of(from);
@@ -151,7 +151,7 @@ static double face_distance(const deck_shape *shape, const double *p) {
   if (over_face(shape, n, p)) return fabs(above_face(shape, n, p));
   for (int k = 0; k < shape->point_count; k++)
     nearest =
-        fmin(nearest, distance_to_segment(p, face_corner(shape, k), face_corner(shape, k + 1)));
+        pl_fmin(nearest, distance_to_segment(p, face_corner(shape, k), face_corner(shape, k + 1)));
   return nearest;
 }
 
@@ -187,11 +187,11 @@ static void box_about(const double *centre, double reach, int dimensions, double
 
 /* fmin and fmax pass over what is not a number; a box must not. */
 static double smaller(double a, double b) {
-  return isnan(a) || isnan(b) ? NAN : fmin(a, b);
+  return isnan(a) || isnan(b) ? NAN : pl_fmin(a, b);
 }
 
 static double larger(double a, double b) {
-  return isnan(a) || isnan(b) ? NAN : fmax(a, b);
+  return isnan(a) || isnan(b) ? NAN : pl_fmax(a, b);
 }
 
 static void box_of_ends(const double *a, const double *b, int dimensions, double lower[3],
@@ -267,16 +267,16 @@ void shape_box(const deck_shape *shape, double lower[3], double upper[3]) {
 
 /* Of a shape that is bounded in two directions at right angles, each with its distance. */
 static double both(double a, double b) {
-  return a <= 0 && b <= 0 ? fmax(a, b) : pl_hypot(fmax(a, 0), fmax(b, 0));
+  return a <= 0 && b <= 0 ? pl_fmax(a, b) : pl_hypot(pl_fmax(a, 0), pl_fmax(b, 0));
 }
 
 static double round_distance(const deck_shape *shape, double from_centre) {
   const double outside = from_centre - shape->radius;
-  return shape->inner_radius > 0 ? fmax(outside, shape->inner_radius - from_centre) : outside;
+  return shape->inner_radius > 0 ? pl_fmax(outside, shape->inner_radius - from_centre) : outside;
 }
 
 static double between(double x, double low, double high) {
-  return fmax(low - x, x - high);
+  return pl_fmax(low - x, x - high);
 }
 
 static double cylinder_distance(const deck_shape *shape, const double *p) {
@@ -537,9 +537,9 @@ static bool crosses_slit(const double *a, const double *b, const double *p, cons
                          double tolerance) {
   if (pl_hypot(q[0] - p[0], q[1] - p[1]) <= tolerance) return false;
   const double side_a = left_of(a, p, q), side_b = left_of(b, p, q);
-  if (fmin(side_a, side_b) >= -tolerance || fmax(side_a, side_b) <= tolerance) return false;
+  if (pl_fmin(side_a, side_b) >= -tolerance || pl_fmax(side_a, side_b) <= tolerance) return false;
   const double side_p = left_of(p, a, b), side_q = left_of(q, a, b);
-  return fmin(side_p, side_q) <= tolerance && fmax(side_p, side_q) >= -tolerance;
+  return pl_fmin(side_p, side_q) <= tolerance && pl_fmax(side_p, side_q) >= -tolerance;
 }
 
 static bool crosses_face(const deck_shape *shape, const double *a, const double *b,
@@ -547,7 +547,7 @@ static bool crosses_face(const deck_shape *shape, const double *a, const double 
   double n[3], at[3];
   face_normal(shape, n);
   const double side_a = above_face(shape, n, a), side_b = above_face(shape, n, b);
-  if (fmin(side_a, side_b) >= -tolerance || fmax(side_a, side_b) <= tolerance) return false;
+  if (pl_fmin(side_a, side_b) >= -tolerance || pl_fmax(side_a, side_b) <= tolerance) return false;
   for (int c = 0; c < 3; c++)
     at[c] = a[c] + side_a / (side_a - side_b) * (b[c] - a[c]);
   return face_distance(shape, at) <= tolerance;
@@ -570,8 +570,8 @@ static bool boxes_apart(const deck_shape *shape, const double *a, const double *
   double lower[3], upper[3];
   shape_box(shape, lower, upper);
   for (int c = 0; c < (is_of_space(shape) ? 3 : 2); c++) {
-    if (fmin(a[c], b[c]) > upper[c] + tolerance) return true;
-    if (fmax(a[c], b[c]) < lower[c] - tolerance) return true;
+    if (pl_fmin(a[c], b[c]) > upper[c] + tolerance) return true;
+    if (pl_fmax(a[c], b[c]) < lower[c] - tolerance) return true;
   }
   return false;
 }

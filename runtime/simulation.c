@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "runtime/clock.h"
 #include "runtime/stability.h"
 
@@ -129,8 +130,8 @@ static bool count_steps(simulation *s, diagnostics *d) {
   s->step_count = steps < 1 ? 1 : (int64_t)steps;
   s->sample_interval = s->deck->output.sample > 0 ? s->deck->output.sample : end / 2000;
   s->sample_interval =
-      fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
-  const double samples = fmin(ceil(end / s->sample_interval), steps);
+      pl_fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
+  const double samples = pl_fmin(ceil(end / s->sample_interval), steps);
   s->history_capacity = (int64_t)samples + 3;
   return true;
 }

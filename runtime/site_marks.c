@@ -55,8 +55,8 @@ bool site_range_of(const bravais *b, const deck_shape *shape, site_range *out) {
     bravais_coordinates(b, p, q);
     for (int c = 0; c < 3; c++) {
       if (!(fabs(q[c]) < FARTHEST)) return false;
-      least[c] = fmin(least[c], q[c]);
-      most[c] = fmax(most[c], q[c]);
+      least[c] = pl_fmin(least[c], q[c]);
+      most[c] = pl_fmax(most[c], q[c]);
     }
   }
   const double margin = 2 * SITE_OUTLINE_TOLERANCE;

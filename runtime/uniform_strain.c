@@ -174,7 +174,7 @@ bool uniform_strain_response(const pl_law *law, const double *parameters, const 
     find_slopes(&p, c);
     mean_stress(&p, stress);
     note_left(&p, c, stress);
-    out->momentum = fmax(out->momentum, momentum_of(&p));
+    out->momentum = pl_fmax(out->momentum, momentum_of(&p));
     for (int r = 0; r < p.strains; r++)
       C[r][c] = stress[r];
   }

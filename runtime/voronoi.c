@@ -50,7 +50,7 @@ static vicinity vicinity_of(const bins *b, double reach) {
   int most[3];
   long count = 1;
   for (int c = 0; c < 3; c++) {
-    most[c] = least((int)fmin(ceil(reach) + 1, 1e6), b->count[c] - 1);
+    most[c] = least((int)pl_fmin(ceil(reach) + 1, 1e6), b->count[c] - 1);
     count *= 2 * most[c] + 1;
   }
   vicinity v = {.boxes = must_alloc((size_t)count * sizeof *v.boxes)};
@@ -160,8 +160,8 @@ static void begin_cell(cutter *w, const solid *s, const double at[3], double rea
   for (int c = 0; c < s->dimensions; c++) {
     lower[c] = -reach;
     upper[c] = reach;
-    if (at[c] > s->lower[c]) lower[c] = fmax(lower[c], s->lower[c] - at[c]);
-    if (at[c] < s->upper[c]) upper[c] = fmin(upper[c], s->upper[c] - at[c]);
+    if (at[c] > s->lower[c]) lower[c] = pl_fmax(lower[c], s->lower[c] - at[c]);
+    if (at[c] < s->upper[c]) upper[c] = pl_fmin(upper[c], s->upper[c] - at[c]);
   }
   cell_set_box(&w->cell, lower, upper);
 }
@@ -271,8 +271,8 @@ static double farthest(const diagram *g) {
   for (int c = 0; c < g->points->dimensions; c++) {
     double low = g->solid->lower[c], high = g->solid->upper[c];
     for (long k = 0; k < g->points->count; k++) {
-      low = fmin(low, g->points->at[c][k]);
-      high = fmax(high, g->points->at[c][k]);
+      low = pl_fmin(low, g->points->at[c][k]);
+      high = pl_fmax(high, g->points->at[c][k]);
     }
     square += (high - low) * (high - low);
   }

@@ -135,7 +135,7 @@ static bool modes(const crystal *c, matrix stiffness, double *omega, matrix vect
       a[q * n + p] = stiffness[p][q];
   if (!eigen(n, a, omega)) return false;
   for (int m = 0; m < n; m++) {
-    omega[m] = sqrt(fmax(omega[m], 0));
+    omega[m] = sqrt(pl_fmax(omega[m], 0));
     for (int p = 0; p < n; p++)
       vectors[m][p] = a[m * n + p];
   }

@@ -253,6 +253,11 @@ static void selects(void **unused) {
   assert_true(isnan(pl_min(NAN, 1.0)) && isnan(pl_min(1.0, NAN)));
   assert_true(isnan(pl_max(NAN, 1.0)) && isnan(pl_max(1.0, NAN)));
   assert_true(pl_max(-INFINITY, 3.0) == 3.0 && pl_min(INFINITY, 3.0) == 3.0);
+  assert_true(pl_fmin(1.0, 2.0) == 1.0 && pl_fmin(2.0, 1.0) == 1.0 && pl_fmax(1.0, 2.0) == 2.0);
+  assert_true(pl_fmax(2.0, 1.0) == 2.0 && pl_fmin(NAN, 1.0) == 1.0 && pl_fmin(1.0, NAN) == 1.0);
+  assert_true(pl_fmax(NAN, 1.0) == 1.0 && pl_fmax(1.0, NAN) == 1.0 && isnan(pl_fmax(NAN, NAN)));
+  assert_true(signbit(pl_fmin(-0.0, 0.0)) && !signbit(pl_fmin(0.0, -0.0)));
+  assert_true(signbit(pl_fmax(-0.0, 0.0)) && !signbit(pl_fmax(0.0, -0.0)));
   assert_true(pl_sign(-3.0) == -1.0 && pl_sign(0.0) == 0.0 && pl_sign(1e-320) == 1.0);
   assert_true(isnan(pl_sign(NAN)));
   assert_true(pl_abs(-0.0) == 0.0 && !signbit(pl_abs(-0.0)) && pl_abs(-3.5) == 3.5);
