@@ -53,6 +53,13 @@ static void print_history(result_file *f, const char *name) {
     low = pl_fmin(low, v[k]);
     high = pl_fmax(high, v[k]);
   }
+  char why[256];
+  result_read_unchecked(f, name, why, sizeof why);
+  if (*why) {
+    printf("  %-26s %-6s not checked: %s\n", name, unit_text, why);
+    free(v);
+    return;
+  }
   printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
          v[count - 1] + 0.0); /* no minus before zeros */
   free(v);
