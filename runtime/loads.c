@@ -468,7 +468,7 @@ static bool is_held(const loads *l, const sweep *w, const constraint *c, long st
 /* Velocity prescribed just after the instant of a step, which rounding may have put before the start. */
 static double velocity_at(const loads *l, const sweep *w, const constraint *c, long step) {
   const deck_drive *drive = &l->deck->drives[c->drive];
-  const double t = fmax(time_of(l, w, step), drive->motion.start);
+  const double t = pl_fmax(time_of(l, w, step), drive->motion.start);
   return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
 }
 
