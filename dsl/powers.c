@@ -30,7 +30,8 @@ double power_of(double x, double y) {
   return fabs(y) <= MOST_FACTORS && y == floor(y) ? whole_power(x, (int)y) : pl_pow(x, y);
 }
 
-/* 18 digits tell all doubles from a power of ten but the one that stands for it, which may be a little below. */
+/* 18 digits tell all doubles from a power of ten but the one that stands for it, which may be a
+   little below. */
 int decade_of(double x) {
   char digits[40];
   snprintf(digits, sizeof digits, "%.17e", x);

@@ -1,5 +1,5 @@
-/* Powers of numbers as people write them, such as (1e-3)^3 and 10^-4: the nearest double but for rare cases, where
-   dsl/elementary.h may be one off. */
+/* Powers of numbers as people write them, such as (1e-3)^3 and 10^-4: the nearest double but for
+   rare cases, where dsl/elementary.h may be one off. */
 #ifndef PERILAT_DSL_POWERS_H
 #define PERILAT_DSL_POWERS_H
 

@@ -14,7 +14,8 @@ static double size_of(int order, double a[EIGEN_MOST][EIGEN_MOST]) {
   return sqrt(square);
 }
 
-/* The rotation by the smaller of the two angles that make a[p][q] vanish, of rows, columns and vectors. */
+/* The rotation by the smaller of the two angles that make a[p][q] vanish, of rows, columns and
+   vectors. */
 static void rotate(int order, double a[EIGEN_MOST][EIGEN_MOST],
                    double vectors[EIGEN_MOST][EIGEN_MOST], int p, int q) {
   const double ratio = (a[q][q] - a[p][p]) / (2 * a[p][q]);

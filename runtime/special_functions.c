@@ -25,7 +25,8 @@ double special_log1p(double x) {
   return u == 1 || u == INFINITY ? x : pl_log(u) * (x / (u - 1));
 }
 
-/* log Gamma(1 + x), 0 <= x <= 1, over its zeros x (x - 1): interpolation at Chebyshev's points, in x - 1/2. */
+/* log Gamma(1 + x), 0 <= x <= 1, over its zeros x (x - 1): interpolation at Chebyshev's points, in
+   x - 1/2. */
 static double log_gamma_near(double x) {
   static const double fit[] = {
       0x1.8ca55ab6b8718p-17, -0x1.36d84fee907ffp-16, 0x1.c7d009a4fae3ap-17, -0x1.6880fac68f031p-16,
@@ -69,8 +70,8 @@ static double normal_between(double z) {
   return POLYNOMIAL(fit, z * z);
 }
 
-/* Q(z) = exp(-z^2/2) g/(1 + sqrt(2 pi) z) for z >= 1; g in (z - 5)/(z + 5) (after Shepherd and Laframboise 1981),
-   interpolated at Chebyshev's points. */
+/* Q(z) = exp(-z^2/2) g/(1 + sqrt(2 pi) z) for z >= 1; g in (z - 5)/(z + 5) (after Shepherd and
+   Laframboise 1981), interpolated at Chebyshev's points. */
 static double normal_tail(double z) {
   static const double fit[] = {
       -0x1.7fe12e134e65dp-25, -0x1.93bbd82c691c8p-24, 0x1.bd6490cc9ff6bp-22, 0x1.716527795fc11p-21,

@@ -1,6 +1,6 @@
-/* Functions of distributions and random fields beyond dsl/elementary.h, with the same bits on every processor. Largest
-   errors measured, in ulp of the result: expm1 1.8, log1p 1.9, log_gamma 3.7, gamma 6.2, normal_above 5.0; cosine_of_turns
-   2.7e-16. */
+/* Functions of distributions and random fields beyond dsl/elementary.h, with the same bits on every
+   processor. Largest errors measured, in ulp of the result: expm1 1.8, log1p 1.9, log_gamma 3.7,
+   gamma 6.2, normal_above 5.0; cosine_of_turns 2.7e-16. */
 #ifndef PERILAT_RUNTIME_SPECIAL_FUNCTIONS_H
 #define PERILAT_RUNTIME_SPECIAL_FUNCTIONS_H
 
@@ -17,8 +17,8 @@ double special_log_gamma(double x);
 /* Probability that a standard normal number is more than z. */
 double special_normal_above(double z);
 
-/* cos(2 pi x), |x| < 2^51. Without fused multiply-adds, so that loops over it are fast on every processor. Fit of
-   sin(2 pi h)/h in h^2, |h| <= 1/4. */
+/* cos(2 pi x), |x| < 2^51. Without fused multiply-adds, so that loops over it are fast on every
+   processor. Fit of sin(2 pi h)/h in h^2, |h| <= 1/4. */
 PL_ELEMENTARY double special_cosine_of_turns(double x) {
   const double turn = x - ((x + PL_ROUNDER) - PL_ROUNDER);
   const double h = 0.25 - pl_abs(turn), z = h * h;

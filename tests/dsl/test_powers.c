@@ -1,4 +1,5 @@
-/* Whole powers are the nearest doubles, decades are exact, and the factors of units are made from them. */
+/* Whole powers are the nearest doubles, decades are exact, and the factors of units are made from
+   them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

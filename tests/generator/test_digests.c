@@ -1,10 +1,12 @@
-/* The histories of four short runs have the same bits on any x86-64 processor, with any C compiler and C library: the first
-   16 digits of the SHA-256 of their names and bytes stand in digests/digests.txt, run by run and series by series. When the
-   program is meant to compute something else,
+/* The histories of four short runs have the same bits on any x86-64 processor, with any C compiler
+   and C library: the first 16 digits of the SHA-256 of their names and bytes stand in
+   digests/digests.txt, run by run and series by series. When the program is meant to compute
+   something else,
 
        PERILAT_BLESS=1 ctest --test-dir build -R generator.digests
 
-   writes them anew. A run that has its digest leaves digest_NAME.h5 in the build folder; one that has not is compared with it. */
+   writes them anew. A run that has its digest leaves digest_NAME.h5 in the build folder; one that
+   has not is compared with it. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -112,8 +114,7 @@ static void put_digests(FILE *out, const char *run, const history *h) {
 
 /* --- runs ------------------------------------------------------------------------------------- */
 
-static void run_deck(const char *settings, const char *run, const char *options,
-                     const char *path) {
+static void run_deck(const char *settings, const char *run, const char *options, const char *path) {
   char command[2000];
   snprintf(command, sizeof command,
            "env %s '" PERILAT_PROGRAM "' run '" FOLDER "%s.nml' %s --set output.result=%s > "

@@ -1,4 +1,4 @@
-/* Eigenvalues and vectors of symmetric matrices: A V = V diag, V orthogonal, values that are known. */
+/* Eigenvalues and vectors of symmetric matrices: A V = V diag, V orthogonal, known values. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
