@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/comparison.h"
 #include "generator/law_inputs.h"
 #include "generator/physics_parameters.h"
@@ -109,8 +110,8 @@ static bool open_lattices(bench *b) {
     b->lattices[k] = implied_lattice_like(given ? given : &usual, 1);
     if (!b->lattices[k]) return false;
     b->lattice_count++;
-    usual.spacing = spacing * exp2(draw_uniform(&b->seed, -2, 2));
-    usual.thickness = thickness * exp2(draw_uniform(&b->seed, -2, 2));
+    usual.spacing = spacing * pl_pow(2, draw_uniform(&b->seed, -2, 2));
+    usual.thickness = thickness * pl_pow(2, draw_uniform(&b->seed, -2, 2));
     usual.stiffness_thickness = usual.mass_thickness = usual.thickness;
   }
   return true;
@@ -219,7 +220,7 @@ static pl_bond_class draw_class(bench *b, int lane, double density) {
   pl_bond_class c = rows_bond_class(w, direction);
   if (b->options->lattice) return c;
   c.area = c.V / c.s;
-  if (lane) c.mass_j *= exp2(draw_uniform(&b->seed, -1, 1));
+  if (lane) c.mass_j *= pl_pow(2, draw_uniform(&b->seed, -1, 1));
   return c;
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_family_parts.h"
 #include "generator/random_values.h"
 
@@ -41,7 +42,7 @@ enum { LEVELS = 8, LOOKS = 6 };
 
 /* How far a state is from its initial value: 0, then over six decades, for it may count openings or shares. */
 static double level_at(int k) {
-  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : pow(10, k - 7);
+  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : pl_pow(10, k - 7);
 }
 
 typedef enum answer { NOTHING, WEAKENS, NO_FACTOR } answer;
@@ -153,7 +154,7 @@ static void look_at_step(family_bench *b, healing *h) {
       const long at = k * p->size + p->inside[q];
       if (k > 0 && !patch_has_bond(p, p->inside[q], (int)k)) continue;
       const double before = p->field[h->field][at], now = p->new_field[h->field][at];
-      const double back = (before - now) * h->way, size = fmax(fabs(before), fabs(now));
+      const double back = (before - now) * h->way, size = pl_fmax(fabs(before), fabs(now));
       h->moved = h->moved || before != now;
       if (!((before - initial) * h->way > 0) || !(back > LEAST_RETURN * size)) continue;
       family_bench_share_fields(b);
@@ -164,8 +165,8 @@ static void look_at_step(family_bench *b, healing *h) {
 /* From rest to a corner and back, twice. */
 static void go_tour(family_bench *b, healing *h) {
   double *rate = values_new(b);
-  h->strain = pow(10, draw_uniform(&b->seed, -5, -0.7));
-  const double speed = pow(10, draw_uniform(&b->seed, -3, 4));
+  h->strain = pl_pow(10, draw_uniform(&b->seed, -5, -0.7));
+  const double speed = pl_pow(10, draw_uniform(&b->seed, -3, 4));
   family_bench_deform(b, h->strain, h->corner);
   for (int leg = 0; leg < 4; leg++)
     for (int step = 1; step <= STEPS && !b->failed[DIAG_HEALING]; step++) {

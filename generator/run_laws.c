@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
 #include "runtime/bravais.h"
@@ -267,7 +268,7 @@ static double nearest_distance(const rows *w) {
     const long site = w->particle_site[p];
     double nearest = INFINITY;
     for (int k = 0; k < 2 * w->directions; k++)
-      if (rows_has_neighbour(w, site, k)) nearest = fmin(nearest, rows_chord(w, site, k, chord));
+      if (rows_has_neighbour(w, site, k)) nearest = pl_fmin(nearest, rows_chord(w, site, k, chord));
     sum += isfinite(nearest) ? nearest : 0;
     count += isfinite(nearest);
   }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/stencil.h"
 #include "runtime/sweep_parts.h"
 
@@ -59,7 +60,7 @@ static void body_free(body *b) {
 static double largest_of(const double *x, long count) {
   double most = 0;
   for (long k = 0; k < count; k++)
-    most = fmax(most, fabs(x[k]));
+    most = pl_fmax(most, fabs(x[k]));
   return most;
 }
 
@@ -197,7 +198,7 @@ static void look(lanczos *l) {
 }
 
 static double size_of(const lanczos *l) {
-  return fmax(fabs(l->value), fabs(l->least));
+  return pl_fmax(fabs(l->value), fabs(l->least));
 }
 
 /* False when forces are not finite. */
@@ -252,7 +253,7 @@ static bool is_damped(body *b, double omega) {
 /* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all is where the largest
    eigenvalue of K + p C is p^2; each round begins with the p of the last one's mode, the first with one that waves have. */
 static bool find_damped(lanczos *l, double omega, double known, step_limit *out) {
-  double p = known > 0 ? fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
+  double p = known > 0 ? pl_fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
   bool good = true;
   for (int round = 0; round < MOST_ROUNDS && good; round++) {
     const double last = p;
@@ -260,8 +261,8 @@ static bool find_damped(lanczos *l, double omega, double known, step_limit *out)
     good = find_largest(l);
     if (!good || (known > 0 && l->value <= p * p)) break;
     find_vector(l, x);
-    const double k = fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
-    p = fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
+    const double k = pl_fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
+    p = pl_fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
     out->damping_ratio = k > 0 ? c / (2 * sqrt(k)) : INFINITY;
     if (p <= last * (1 + accuracy / 4)) break;
   }
@@ -288,7 +289,7 @@ static bool find_limit(lanczos *l, step_limit *out) {
   if (!find_largest(l)) return false;
   const double size = size_of(l);
   out->least = size > 0 ? l->least / size : 0;
-  out->omega_max = l->value > 0 ? sqrt(l->value + fmin(l->error, accuracy * l->value)) : 0;
+  out->omega_max = l->value > 0 ? sqrt(l->value + pl_fmin(l->error, accuracy * l->value)) : 0;
   out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
   if (l->body->sweep->dof > l->body->sweep->dimensions && turning_share(l) > 0.5)
     out->mode = "rotation";

@@ -5,12 +5,9 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bond_probe.h"
-
-/* LAPACK: eigenvalues, ascending, and eigenvectors of a symmetric matrix. The last two arguments are the hidden text lengths. */
-void dsyev_(const char *job, const char *triangle, const int *n, double *a, const int *lda,
-            double *values, double *work, const int *work_size, int *info, size_t job_length,
-            size_t triangle_length);
+#include "runtime/eigen.h"
 
 /* Rate terms are judged up to here when nothing is damaged earlier. */
 static const double largest_stretch = 0.01;
@@ -21,36 +18,33 @@ static const double beside =
 
 /* --- forms ------------------------------------------------------------------------------------ */
 
-enum { MOST_ORDER = BOND_MOTIONS };
-
-/* The eigenvectors take the place of a, one a row. */
-static bool eigen(int order, double *a, double *values) {
-  double work[8 * MOST_ORDER];
-  const int size = 8 * MOST_ORDER;
-  int info = 0;
-  dsyev_("V", "U", &order, a, &order, values, work, &size, &info, 1, 1);
-  return info == 0;
-}
-
 bool form_is_definite(int order, const double *a, double tolerance) {
-  double copy[MOST_ORDER * MOST_ORDER], values[MOST_ORDER];
-  memcpy(copy, a, (size_t)(order * order) * sizeof *copy);
-  if (!eigen(order, copy, values)) return false;
-  return values[0] >= -tolerance * fabs(values[order - 1]);
+  double copy[EIGEN_MOST][EIGEN_MOST], values[EIGEN_MOST], vectors[EIGEN_MOST][EIGEN_MOST];
+  double least = INFINITY, most = -INFINITY;
+  for (int p = 0; p < order; p++)
+    for (int q = 0; q < order; q++)
+      copy[p][q] = a[p * order + q];
+  eigen_symmetric(order, copy, values, vectors);
+  for (int k = 0; k < order; k++) {
+    least = pl_fmin(least, values[k]);
+    most = pl_fmax(most, values[k]);
+  }
+  return least >= -tolerance * fabs(most);
 }
 
 void bond_form_raise(bond_form a, bond_form b) {
-  double more[BOND_MOTIONS][BOND_MOTIONS], values[BOND_MOTIONS], size = 0;
+  double more[EIGEN_MOST][EIGEN_MOST], values[EIGEN_MOST], vectors[EIGEN_MOST][EIGEN_MOST];
+  double size = 0;
   for (int p = 0; p < BOND_MOTIONS; p++)
     for (int q = 0; q < BOND_MOTIONS; q++) {
       more[p][q] = b[p][q] - a[p][q];
-      size = fmax(size, fabs(a[p][q]) + fabs(b[p][q]));
+      size = pl_fmax(size, fabs(a[p][q]) + fabs(b[p][q]));
     }
-  if (!eigen(BOND_MOTIONS, &more[0][0], values)) return;
+  eigen_symmetric(BOND_MOTIONS, more, values, vectors);
   for (int k = 0; k < BOND_MOTIONS; k++)
     for (int p = 0; p < BOND_MOTIONS && values[k] > no_matter * size; p++)
       for (int q = 0; q < BOND_MOTIONS; q++)
-        a[p][q] += values[k] * more[k][p] * more[k][q];
+        a[p][q] += values[k] * vectors[k][p] * vectors[k][q];
 }
 
 /* --- rate terms ------------------------------------------------------------------------------- */
@@ -175,7 +169,7 @@ static void add_damping(bond_probe *b, bond_forms *out) {
   const rate_scan rates = scan_rates(b);
   if (rates.bounded || rates.size == 0) return;
   double viscous[BOND_MOTIONS][BOND_MOTIONS] = {
-      {fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
+      {pl_fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
   symmetric(b->s, viscous, out->damping);
   out->damped = true;
 }

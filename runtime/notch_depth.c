@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/shape.h"
 
 /* --- the notch's own box ---------------------------------------------------------------------- */
@@ -28,7 +29,7 @@ static void turn_in_plane(box *b, double cosine, double sine) {
 
 static void take_segment(const deck_shape *s, box *b) {
   const double way[2] = {s->to[0] - s->from[0], s->to[1] - s->from[1]},
-               length = hypot(way[0], way[1]);
+               length = pl_hypot(way[0], way[1]);
   turn_in_plane(b, way[0] / length, way[1] / length);
   for (int c = 0; c < 2; c++)
     b->centre[c] = 0.5 * (s->from[c] + s->to[c]);
@@ -37,7 +38,7 @@ static void take_segment(const deck_shape *s, box *b) {
 }
 
 static void take_rectangle(const deck_shape *s, box *b) {
-  turn_in_plane(b, cos(s->rotation), sin(s->rotation));
+  turn_in_plane(b, pl_cos(s->rotation), pl_sin(s->rotation));
   for (int c = 0; c < 2; c++) {
     b->half[c] = 0.5 * s->size[c];
     b->centre[c] = s->corner[c];
@@ -84,8 +85,8 @@ static void take_face(const deck_shape *s, box *b) {
   for (int a = 0; a < 2; a++) {
     double low = INFINITY, high = -INFINITY;
     for (int k = 0; k < s->point_count; k++) {
-      low = fmin(low, along(b, a, s->points + 3 * k));
-      high = fmax(high, along(b, a, s->points + 3 * k));
+      low = pl_fmin(low, along(b, a, s->points + 3 * k));
+      high = pl_fmax(high, along(b, a, s->points + 3 * k));
     }
     b->half[a] = 0.5 * (high - low);
     middle[a] = 0.5 * (high + low);
@@ -150,8 +151,8 @@ static extent extent_of(const rows *w, const box *b, int axis, bool within) {
     if (fabs(along(b, NORMAL, at)) > reach ||
         (within && fabs(along(b, WIDTH, at)) > b->half[WIDTH] + 0.5 * w->spacing))
       continue;
-    e.low = fmin(e.low, along(b, axis, at));
-    e.high = fmax(e.high, along(b, axis, at));
+    e.low = pl_fmin(e.low, along(b, axis, at));
+    e.high = pl_fmax(e.high, along(b, axis, at));
   }
   return e;
 }
@@ -182,9 +183,9 @@ typedef struct crossings {
 static void note(crossings *c, double depth, double width, double touch) {
   if (fabs(width) > c->box->half[WIDTH] + touch) return;
   if (depth < c->inside)
-    c->below = fmax(c->below, depth);
+    c->below = pl_fmax(c->below, depth);
   else
-    c->above = fmin(c->above, depth);
+    c->above = pl_fmin(c->above, depth);
 }
 
 /* Where the bonds that a site owns cross the middle plane, or the site itself when it stands in it. */
@@ -215,7 +216,7 @@ notch_depth notch_depth_of(const rows *w, const deck_shape *notch) {
   if (!box_of(notch, w->dimensions, &b)) return out;
   put_in_order(w, &b);
   const extent body = extent_of(w, &b, DEPTH, true);
-  const double low = fmax(body.low, -b.half[DEPTH]), high = fmin(body.high, b.half[DEPTH]);
+  const double low = pl_fmax(body.low, -b.half[DEPTH]), high = pl_fmin(body.high, b.half[DEPTH]);
   if (!(high > low)) return out;
   crossings c = {.box = &b, .inside = 0.5 * (low + high), .below = -INFINITY, .above = INFINITY};
   for (long p = 0; p < w->particle_count; p++)
@@ -224,7 +225,7 @@ notch_depth notch_depth_of(const rows *w, const deck_shape *notch) {
   if (below && above && b.half[DEPTH] < SLENDER * b.half[NORMAL]) return out;
   out.kind = below && above ? NOTCH_INSIDE : below || above ? NOTCH_AT_EDGE : NOTCH_THROUGH;
   out.drawn = high - low;
-  out.cut = fmin(c.above, body.high) - fmax(c.below, body.low);
+  out.cut = pl_fmin(c.above, body.high) - pl_fmax(c.below, body.low);
   if (below) out.ligament[0] = c.below - body.low;
   if (above) out.ligament[below ? 1 : 0] = body.high - c.above;
   return out;

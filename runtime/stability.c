@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/body_limit.h"
 #include "runtime/bond_forms.h"
 #include "runtime/stencil.h"

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/patch.h"
 
 /* Small against any strain that a law makes a difference at; with central differences what is left
@@ -60,11 +61,11 @@ static void note_kink(stencil *out, double (*up)[3], double (*down)[3]) {
   const double matters = 1e-3;
   double largest = 0;
   for (int k = 0; k < 3 * out->count; k++)
-    largest = fmax(largest, fabs(up[k / 3][k % 3] - down[k / 3][k % 3]));
+    largest = pl_fmax(largest, fabs(up[k / 3][k % 3] - down[k / 3][k % 3]));
   for (int k = 0; k < 3 * out->count; k++) {
     const double odd = fabs(up[k / 3][k % 3] - down[k / 3][k % 3]),
                  even = fabs(up[k / 3][k % 3] + down[k / 3][k % 3]);
-    if (odd > matters * largest) out->kink = fmax(out->kink, even / odd);
+    if (odd > matters * largest) out->kink = pl_fmax(out->kink, even / odd);
   }
 }
 

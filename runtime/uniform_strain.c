@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
@@ -97,7 +98,7 @@ static double momentum_of(const probe *p) {
 /* The face of a particle: of the square or cube that has its volume. */
 static double face_of(const rows *w, long site) {
   const double V = volume_of(w, site), t = w->stiffness_thickness;
-  return w->dimensions == 2 ? sqrt(V * t) : cbrt(V * V);
+  return w->dimensions == 2 ? sqrt(V * t) : pl_cbrt(V * V);
 }
 
 static void note_left(const probe *p, int strain, const double stress[MOST_STRAINS]) {
@@ -178,12 +179,12 @@ typedef struct window {
 
 static double weight_at(const window *v, double x) {
   const double part = (x - v->from) / v->length;
-  return part <= 0 || part >= 1 ? 0 : 1 - cos(2 * acos(-1) * part);
+  return part <= 0 || part >= 1 ? 0 : 1 - pl_cos(2 * M_PI * part);
 }
 
 static double integral_at(const window *v, double x) {
-  const double part = fmin(fmax((x - v->from) / v->length, 0), 1), turn = 2 * acos(-1);
-  return v->length * (part - sin(turn * part) / turn);
+  const double part = pl_fmin(pl_fmax((x - v->from) / v->length, 0), 1), turn = 2 * M_PI;
+  return v->length * (part - pl_sin(turn * part) / turn);
 }
 
 /* Bonds that a section farther from an end cuts are all as they are inside: as far as the passes reach. */
@@ -193,8 +194,8 @@ static bool window_of(const pl_law *law, const rows *w, int axis, window *v) {
   double low = INFINITY, high = -INFINITY, at[3];
   for (long p = 0; p < w->particle_count; p++) {
     rows_place(w, w->particle_site[p], at);
-    low = fmin(low, at[axis]);
-    high = fmax(high, at[axis]);
+    low = pl_fmin(low, at[axis]);
+    high = pl_fmax(high, at[axis]);
   }
   const double margin = passes * w->horizon, half = 0.5 * w->spacing;
   const bool has_middle = high - low - 2 * margin >= FEWEST * w->spacing;
@@ -267,7 +268,7 @@ bool uniform_strain_response(const pl_law *law, const double *parameters, const 
     find_slopes(&p, c);
     mean_stress(&p, stress);
     note_left(&p, c, stress);
-    out->momentum = fmax(out->momentum, momentum_of(&p));
+    out->momentum = pl_fmax(out->momentum, momentum_of(&p));
     for (int r = 0; r < p.strains; r++)
       C[r][c] = stress[r];
   }
