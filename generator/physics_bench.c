@@ -212,7 +212,8 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
       bench_quantity(b, states, (builtin_quantity)q)[lane] = values[q];
 }
 
-/* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ, and it may be a bar. */
+/* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ, and it
+   may be a bar. */
 static pl_bond_class draw_class(bench *b, int lane, double density) {
   rows *w = b->lattices[lane ? draw_bits(&b->seed) % (uint64_t)b->lattice_count : 0];
   const int direction = lane ? (int)(draw_bits(&b->seed) % (uint64_t)(2 * w->directions)) : 0;

@@ -79,8 +79,8 @@ void bench_move(const bench *b, double *const *states, int lane, motion m);
 motion bench_motion(const bench *b, double *const *states, int lane);
 void bench_virgin(const bench *b, double *const *states, int lane);
 /* Parameters and bond class of one lane: those of the options; without them a log-uniform factor of
-   0.5 to 2 on every default, kept within the bounds. The first lane of a batch has the defaults, and the first bond of the first
-   lattice. */
+   0.5 to 2 on every default, kept within the bounds. The first lane of a batch has the defaults,
+   and the first bond of the first lattice. */
 void bench_draw(bench *b, double *const *states, int lane);
 /* New fields into the fields. */
 void bench_accept(const bench *b, double *const *states, int count);

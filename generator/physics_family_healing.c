@@ -40,7 +40,8 @@ static void set_field(family_bench *b, int field, double value) {
 
 enum { LEVELS = 8, LOOKS = 6 };
 
-/* How far a state is from its initial value: 0, then over six decades, for it may count openings or shares. */
+/* How far a state is from its initial value: 0, then over six decades, for it may count openings or
+   shares. */
 static double level_at(int k) {
   return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : pl_pow(10, k - 7);
 }
@@ -73,7 +74,8 @@ static double factor_of(family_bench *b, const healing *h, const double *u, doub
   return left <= FACTOR_TOLERANCE * FACTOR_TOLERANCE * size ? factor : NAN;
 }
 
-/* Whether the levels multiply all forces by ever smaller factors, the same at a motion and half of it. */
+/* Whether the levels multiply all forces by ever smaller factors, the same at a motion and half of
+   it. */
 static answer factors_of(family_bench *b, healing *h) {
   answer found = NOTHING;
   double before = 1;

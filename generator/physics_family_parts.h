@@ -1,6 +1,6 @@
-/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c drives the law,
-   physics_family_energy.c judges work with states held, physics_family_paths.c histories, physics_family_healing.c states that go
-   back. */
+/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c
+   drives the law, physics_family_energy.c judges work with states held, physics_family_paths.c
+   histories, physics_family_healing.c states that go back. */
 #ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
 

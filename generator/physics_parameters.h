@@ -14,8 +14,8 @@ void physics_draw_parameters(const law *l, uint64_t *seed, double *values);
 /* Behind what was found with parameters that were drawn. */
 #define PHYSICS_OTHER_VALUES " (a deck is judged with its own values)"
 
-/* The lattice that such laws are written for, without a deck: hexagonal in the plane; in space fcc with its second
-   neighbours. */
+/* The lattice that such laws are written for, without a deck: hexagonal in the plane; in space fcc
+   with its second neighbours. */
 deck_lattice physics_usual_lattice(const law *l);
 
 #endif

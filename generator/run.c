@@ -108,7 +108,8 @@ static void build_lattice(run *r) {
     r->lattice = rows_build(k, 0, &r->said);
 }
 
-/* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is wrong elsewhere. */
+/* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is
+   wrong elsewhere. */
 static int set_up(run *r) {
   if (!load_deck(r)) return INPUT_WRONG;
   const size_t lattices = (size_t)r->deck->lattice_count + 1;

@@ -275,8 +275,8 @@ static double nearest_distance(const rows *w) {
   return count ? sum / (double)count : 0;
 }
 
-/* Laws are checked on perfect lattices: for particles `w` that stand on none, on one whose particles are as far from each
-   other, with the neighbours that the law counts on there. */
+/* Laws are checked on perfect lattices: for particles `w` that stand on none, on one whose
+   particles are as far from each other, with the neighbours that the law counts on there. */
 static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   deck_lattice like = *d;
   if (!deck_lattice_is_irregular(d)) return like;
@@ -335,8 +335,8 @@ static bool take_built_in(run *r, deck_material *m, int lattice) {
   return true;
 }
 
-/* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of families: of a small body that
-   takes the interpreter less time than the compiler. */
+/* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of
+   families: of a small body that takes the interpreter less time than the compiler. */
 static bool is_worth_compiling(const run *r, const model *opened) {
   enum { MANY_BONDS = 200000 };
   return r->lattice && r->lattice->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;

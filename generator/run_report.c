@@ -71,7 +71,8 @@ static double lost_bonds(const rows *w) {
   return 100 * (1 - (double)w->bond_count / ((double)w->particle_count * w->directions));
 }
 
-/* Where edges lack bonds, the body is softer than its lattice: said from 1 % on. With few bonds lost it cannot be. */
+/* Where edges lack bonds, the body is softer than its lattice: said from 1 % on. With few bonds
+   lost it cannot be. */
 static void announce_body(const run *r, int lattice) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);

@@ -78,7 +78,8 @@ static void add_forces(const body *b, double factor, double *result) {
     }
 }
 
-/* Of the start vector, which pushes and pulls all bonds: forces that do not change their sign with the motion. */
+/* Of the start vector, which pushes and pulls all bonds: forces that do not change their sign with
+   the motion. */
 static void find_kink(body *b, const double *x) {
   double *sum = vector_of(b), *difference = vector_of(b);
   for (long k = 0; k < b->length; k++)
@@ -250,8 +251,9 @@ static bool is_damped(body *b, double omega) {
   return rates > nothing * omega;
 }
 
-/* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all is where the largest
-   eigenvalue of K + p C is p^2; each round begins with the p of the last one's mode, the first with one that waves have. */
+/* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all
+   is where the largest eigenvalue of K + p C is p^2; each round begins with the p of the last one's
+   mode, the first with one that waves have. */
 static bool find_damped(lanczos *l, double omega, double known, step_limit *out) {
   double p = known > 0 ? pl_fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
   bool good = true;

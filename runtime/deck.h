@@ -311,8 +311,8 @@ typedef struct deck_override {
    "--set", so that errors in them point at their text. */
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d);
-/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it. Faulty items are left out, but
-   for materials whose law is known. */
+/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
+   Faulty items are left out, but for materials whose law is known. */
 deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
                               const deck_override *overrides, int override_count, diagnostics *d);
 /* Some item of that group ("body") may have been left out; NULL: of any group. */

@@ -141,7 +141,8 @@ typedef struct extent {
   double low, high;
 } extent;
 
-/* Of the particles beside the middle plane, as far as bonds across it reach; `within`: those beside the notch only. */
+/* Of the particles beside the middle plane, as far as bonds across it reach; `within`: those beside
+   the notch only. */
 static extent extent_of(const rows *w, const box *b, int axis, bool within) {
   const double reach = b->half[NORMAL] + w->horizon + w->spacing;
   extent e = {INFINITY, -INFINITY};
@@ -188,7 +189,8 @@ static void note(crossings *c, double depth, double width, double touch) {
     c->above = pl_fmin(c->above, depth);
 }
 
-/* Where the bonds that a site owns cross the middle plane, or the site itself when it stands in it. */
+/* Where the bonds that a site owns cross the middle plane, or the site itself when it stands in
+   it. */
 static void note_bonds(const rows *w, crossings *c, long site) {
   const double touch = 1e-6 * w->spacing;
   double here[3], there[3];

@@ -128,13 +128,14 @@ static inline double rows_chord(const rows *w, long site, int direction, double 
 /* Number of bonds of a site. */
 int rows_degree(const rows *w, long site);
 
-/* Masses of all particles of a density (kg/m^3); a particle turns as a ball of half a spacing does, I = 2/5 m (s/2)^2
-   (Asadollahi 2014). */
+/* Masses of all particles of a density (kg/m^3); a particle turns as a ball of half a spacing does,
+   I = 2/5 m (s/2)^2 (Asadollahi 2014). */
 void rows_set_density(rows *w, double rho);
 
-/* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked: in runs, in checks, by `drive`
-   and `info`. Masses as `mass` says. `area` is 0: no bars here. On lists all are told the same, a bond of a spacing along x between particles of mean size, with the mean number
-   of bonds, rounded. */
+/* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:
+   in runs, in checks, by `drive` and `info`. Masses as `mass` says. `area` is 0: no bars here. On
+   lists all are told the same, a bond of a spacing along x between particles of mean size, with the
+   mean number of bonds, rounded. */
 pl_bond_class rows_bond_class(const rows *w, int direction);
 
 /* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between

@@ -224,8 +224,8 @@ static bool open_material(simulation *s, diagnostics *d) {
   return fields && mass && choose_step(s, d) && count_steps(s, d);
 }
 
-/* Everything that can be said of the deck with this lattice, or nothing and true. Laws and parameters may be missing, when they
-   are wrong themselves. */
+/* Everything that can be said of the deck with this lattice, or nothing and true. Laws and
+   parameters may be missing, when they are wrong themselves. */
 static bool is_sound(simulation *s, diagnostics *d) {
   enum { ANY_DOF = 3 };
   const deck *k = s->deck;

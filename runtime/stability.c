@@ -82,7 +82,8 @@ static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
   return c;
 }
 
-/* Of a law of bonds as one of families: every block is that of a bond, from differences of forces. */
+/* Of a law of bonds as one of families: every block is that of a bond, from differences of
+   forces. */
 static bool blocks_are_definite(const crystal *c) {
   const double tolerance = -STABILITY_LEAST;
   for (int n = 1; n < c->term_count; n++) {

@@ -56,7 +56,8 @@ static void push(const neighbourhood *n, double *moved, double by, const stencil
       force[k][a] = n->p->force[a][site_of(n, &out->blocks[k])];
 }
 
-/* Part by which either side of a kink at rest is stiffer than the mean of both, of blocks that matter. */
+/* Part by which either side of a kink at rest is stiffer than the mean of both, of blocks that
+   matter. */
 static void note_kink(stencil *out, double (*up)[3], double (*down)[3]) {
   const double matters = 1e-3;
   double largest = 0;

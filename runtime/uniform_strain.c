@@ -171,7 +171,8 @@ static void probe_free(probe *p) {
 
 /* --- moduli of a body on a lattice ------------------------------------------------------------ */
 
-/* A weight of the sections across one axis that is smooth and 0 at both ends of the middle part, and its integral. */
+/* A weight of the sections across one axis that is smooth and 0 at both ends of the middle part,
+   and its integral. */
 typedef struct window {
   int axis;
   double from, length; /* m */
@@ -187,7 +188,8 @@ static double integral_at(const window *v, double x) {
   return v->length * (part - pl_sin(turn * part) / turn);
 }
 
-/* Bonds that a section farther from an end cuts are all as they are inside: as far as the passes reach. */
+/* Bonds that a section farther from an end cuts are all as they are inside: as far as the passes
+   reach. */
 static bool window_of(const pl_law *law, const rows *w, int axis, window *v) {
   enum { FEWEST = 3 }; /* spacings that are a middle */
   const int passes = law->kind == PL_STATE && !law->pairwise ? law->step.pass_count : 1;
@@ -204,8 +206,8 @@ static bool window_of(const pl_law *law, const rows *w, int axis, window *v) {
   return has_middle;
 }
 
-/* Mean over the sections of the force in direction b that they carry, over their area: a section carries minus the forces on
-   all beyond it. */
+/* Mean over the sections of the force in direction b that they carry, over their area: a section
+   carries minus the forces on all beyond it. */
 static double section_stress(const probe *p, const window *v, int b) {
   double force = 0, area = 0, at[3];
   for (long n = 0; n < p->lattice->particle_count; n++) {

@@ -283,7 +283,8 @@ static void all_that_is_wrong_is_said_at_once(void **state) {
   assert_string_equal(lines_named(w, "many.nml", text), "4 5 8 9 11 12 13");
   expect(w, "run many.nml", 1, "given two initial velocities in x");
   assert_string_equal(lines_named(w, "many.nml", text), "4 5 8 9 11 12 13");
-  /* what follows from something wrong is not said: bodies that are not known, a law that is not there */
+  /* what follows from something wrong is not said: bodies that are not known, a law that is not
+     there */
   shell(w, "sed 's/[&]body /\\&bodyy /' many.nml > body.nml");
   expect(w, "check body.nml", 1, "there is no group `&bodyy`");
   assert_string_equal(lines_named(w, "body.nml", text), "3 4 5 9");

@@ -113,7 +113,8 @@ static void maps_of_space_have_axes(void **state) {
   expect(w, "plot block.h5 --map displacement", 0, "written block_displacement.png");
 }
 
-/* Five rows of D3 are cut, nine are left (runtime/README.md); edges that lack bonds are named, others are not. */
+/* Five rows of D3 are cut, nine are left (runtime/README.md); edges that lack bonds are named,
+   others are not. */
 static void what_sites_make_of_shapes(void **state) {
   workplace *w = *state;
   expect(

@@ -11,7 +11,8 @@
 
 #include "runtime/notch_depth.h"
 
-/* Depths of the notches of a deck that has these groups besides its lattice's name and thickness. */
+/* Depths of the notches of a deck that has these groups besides its lattice's name and
+   thickness. */
 static notch_depth depth_of(const char *lattice, const char *body, const char *notch) {
   char text[1000];
   source_set sources = {NULL, 0};
@@ -67,7 +68,8 @@ static void slits_end_at_bonds(void **state) {
   assert_depth(depth_of(SQUARE, PLATE, slit), NOTCH_AT_EDGE, MM(7.3), MM(8), MM(12), 0);
 }
 
-/* A saw cut of some width, between columns and through one; with longer bonds the first one left leans over the tip. */
+/* A saw cut of some width, between columns and through one; with longer bonds the first one left
+   leans over the tip. */
 static void cuts_of_some_width(void **state) {
   (void)state;
   const char *cut = "shape = 'rectangle' corner = '9.2 mm', '-1 mm' size = '0.6 mm', '4.2 mm'";

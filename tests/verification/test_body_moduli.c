@@ -1,6 +1,7 @@
-/* Moduli of bodies cut from lattices, held in a uniform strain: strips whose edges lack bonds. Theory: bonds k of a strip that is
-   held in the strain of a bar, with the sections of its middle; perfect edges leave the lattice's modulus, those of a hexagon that
-   is turned by 30 degrees leave the share of the inclined bonds that the strip still has. */
+/* Moduli of bodies cut from lattices, held in a uniform strain: strips whose edges lack bonds.
+   Theory: bonds k of a strip that is held in the strain of a bar, with the sections of its middle;
+   perfect edges leave the lattice's modulus, those of a hexagon that is turned by 30 degrees leave
+   the share of the inclined bonds that the strip still has. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -42,7 +43,8 @@ static void rows_along_the_load_have_the_modulus_of_the_lattice(void **state) {
   assert_true(fabs(found[0] / (sqrt(3) / 2 * E) - 1) < 1e-6);
 }
 
-/* Columns of seven and six sites by turns: 24 inclined bonds for two of them, where 13 whole sites have 26. */
+/* Columns of seven and six sites by turns: 24 inclined bonds for two of them, where 13 whole sites
+   have 26. */
 static void turned_strips_are_softer(void **state) {
   (void)state;
   double found[3];

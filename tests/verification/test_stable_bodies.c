@@ -1,6 +1,7 @@
-/* The stable step of bodies: what bears 0.98 of it and, where a surface rules, no more than 1.03 of it; bodies that fly apart at
-   rest. Theory: leapfrog is stable up to dt = 2/omega_max of the body at hand (Hughes 1987, section 9.1); bodies cut from a lattice
-   of positive semidefinite bonds are not faster than the lattice (Weyl's inequality). */
+/* The stable step of bodies: what bears 0.98 of it and, where a surface rules, no more than 1.03 of
+   it; bodies that fly apart at rest. Theory: leapfrog is stable up to dt = 2/omega_max of the body
+   at hand (Hughes 1987, section 9.1); bodies cut from a lattice of positive semidefinite bonds are
+   not faster than the lattice (Weyl's inequality). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -51,8 +52,8 @@ static double largest_velocity(const sweep *w) {
   return most;
 }
 
-/* Growth of the largest velocity in so many steps from velocities that stretch bonds by about 1e-9, or as soon as it passes
-   1e5. */
+/* Growth of the largest velocity in so many steps from velocities that stretch bonds by about 1e-9,
+   or as soon as it passes 1e5. */
 static double growth(const deck_case *c, double part, int steps) {
   const step_limit *limit = simulation_step_limit(c->simulation);
   const rows *g = simulation_rows(c->simulation, 0);
@@ -132,7 +133,8 @@ static void bodies_bear_the_step(void **state) {
   }
 }
 
-/* Bodies of sound bonds need no search, however they are turned: they keep the limit of their lattice. */
+/* Bodies of sound bonds need no search, however they are turned: they keep the limit of their
+   lattice. */
 static void sound_bonds_are_not_searched(void **state) {
   (void)state;
   static const char *const texts[] = {
@@ -148,7 +150,8 @@ static void sound_bonds_are_not_searched(void **state) {
   }
 }
 
-/* A bond that is a hundred times as stiff when it shortens, as one of two and as one of families. */
+/* A bond that is a hundred times as stiff when it shortens, as one of two and as one of
+   families. */
 static void kinks_at_rest_count(void **state) {
   (void)state;
   static const char *const texts[] = {START PLANE("hexagonal", "") LAW("kink.plm"),
@@ -170,7 +173,8 @@ static void kinks_at_rest_count(void **state) {
 
 /* --- random fields ---------------------------------------------------------------------------- */
 
-/* EA grows with nu, EI falls: bonds of small and of large nu side by side are stiffer than lattices of either. */
+/* EA grows with nu, EI falls: bonds of small and of large nu side by side are stiffer than lattices
+   of either. */
 static void no_body_of_random_bonds_is_faster(void **state) {
   (void)state;
   for (int n = 1; n <= 4; n++) {
