@@ -8,8 +8,8 @@
 #include "generator/drive.h"
 #include "generator/info_law.h"
 #include "generator/model.h"
+#include "generator/result_table.h"
 #include "generator/run.h"
-#include "runtime/result.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 
@@ -39,10 +39,10 @@ static int info_builtins(void) {
 /* --- results ---------------------------------------------------------------------------------- */
 
 static void print_history(result_file *f, const char *name) {
-  char unit_text[64] = "", error[1024];
+  char unit_text[64] = "", unsaid[1024]; /* at the end */
   long count = 0;
-  double *v = result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
-  if (!v) fprintf(stderr, "perilat: warning: %s\n", error);
+  double *v =
+      result_read_series(f, name, &count, unit_text, sizeof unit_text, unsaid, sizeof unsaid);
   if (!v || count == 0) {
     free(v);
     return;
@@ -58,12 +58,8 @@ static void print_history(result_file *f, const char *name) {
 }
 
 static int info_result(const char *path) {
-  char error[1024];
-  result_file *f = result_read(path, error, sizeof error);
-  if (!f) {
-    fprintf(stderr, "perilat: error: %s\n", error);
-    return 1;
-  }
+  result_file *f = table_open("perilat info", path);
+  if (!f) return 1;
   long particles = 0, bonds = 0, frames = 0;
   int dimensions;
   free(result_read_reference(f, &particles, &dimensions));
@@ -85,8 +81,7 @@ static int info_result(const char *path) {
   puts(fields.count ? "" : " nothing");
   result_names_free(&histories);
   result_names_free(&fields);
-  result_read_close(f);
-  return 0;
+  return table_close(f, true) ? 0 : 1;
 }
 
 typedef struct info_options {

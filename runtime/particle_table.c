@@ -368,7 +368,9 @@ static bool take_result(const reader *r, result_file *f) {
   double *reference = result_read_reference(f, &t->count, &dimensions);
   t->volume = result_read_volume(f, &volumes);
   bool good = false;
-  if (!reference || (t->volume && volumes != t->count))
+  if (result_trouble(f))
+    diag_report(r->d, DIAG_FILE, r->where, "%s", result_trouble(f));
+  else if (!reference || (t->volume && volumes != t->count))
     refuse_file(r, "its particles are damaged");
   else if (dimensions != t->dimensions)
     diag_report(r->d, DIAG_CONFLICT, r->where,

@@ -109,7 +109,7 @@ static void files_of_the_wrong_kind_are_refused(void **state) {
       {"info folder", 1, "it is a folder"},
       {"plot beam.nml", 1, "`beam.nml` is a deck; `perilat plot` needs a result"},
       {"plot noise.plm", 1, "`noise.plm` is a law"},
-      {"plot folder", 1, "it is not a file"},
+      {"plot folder", 1, "it is a folder"},
       {"plot noise.h5", 1, "is not a whole HDF5 file"},
       {"plot table.csv", 1, "`table.csv` is a table of comma-separated values; `perilat plot`"},
       {"info table.csv", 1, "needs a law, a deck or a result"},
