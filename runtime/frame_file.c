@@ -18,14 +18,15 @@ static const char magic[24] = "perilat frames 2"; /* the digit is the version of
 /* Magic, size of a record, length of the fingerprint; the fingerprint; then the records. */
 typedef struct file_head {
   char magic[sizeof magic];
-  uint64_t record, length;
+  uint64_t bytes, length;
 } file_head;
 
 struct frame_file {
   char *path, *fingerprint;
   int file;
-  size_t record;
-  off_t first; /* where the records begin */
+  double *record;
+  size_t numbers, bytes; /* of a record */
+  off_t first;           /* where the records begin */
   frame_mark mark;
 };
 
@@ -35,7 +36,7 @@ static bool fail(const frame_file *f, const char *what, char *error, size_t size
 }
 
 static off_t end_of(const frame_file *f, int64_t frames) {
-  return f->first + (off_t)f->record * (off_t)frames;
+  return f->first + (off_t)f->bytes * (off_t)frames;
 }
 
 static bool write_all(int file, const void *data, size_t bytes) {
@@ -95,14 +96,16 @@ static int open_locked(const char *path, const char *result, bool there, char *e
   }
 }
 
-frame_file *frame_file_open(const char *result, const char *fingerprint, size_t record, bool there,
+frame_file *frame_file_open(const char *result, const char *fingerprint, size_t numbers, bool there,
                             char *error, size_t size) {
   frame_file *f = must_calloc(1, sizeof *f);
   f->path = must_alloc(strlen(result) + sizeof ".frames");
   sprintf(f->path, "%s.frames", result);
   f->fingerprint = must_alloc(strlen(fingerprint) + 1);
   strcpy(f->fingerprint, fingerprint);
-  f->record = record;
+  f->numbers = numbers;
+  f->bytes = numbers * sizeof *f->record;
+  f->record = must_alloc(f->bytes + 1);
   f->first = (off_t)(sizeof(file_head) + strlen(fingerprint));
   f->file = open_locked(f->path, result, there, error, size);
   if (f->file >= 0) return f;
@@ -116,6 +119,7 @@ void frame_file_remove(frame_file *f) {
 
 void frame_file_close(frame_file *f) {
   if (f->file >= 0) close(f->file);
+  free(f->record);
   free(f->path);
   free(f->fingerprint);
   free(f);
@@ -124,7 +128,7 @@ void frame_file_close(frame_file *f) {
 /* --- beginning, resuming ---------------------------------------------------------------------- */
 
 static file_head head_of(const frame_file *f) {
-  file_head h = {.record = f->record, .length = strlen(f->fingerprint)};
+  file_head h = {.bytes = f->bytes, .length = strlen(f->fingerprint)};
   memcpy(h.magic, magic, sizeof magic);
   return h;
 }
@@ -175,19 +179,18 @@ bool frame_file_resume(frame_file *f, const frame_mark *mark, char *error, size_
 
 /* --- frames ----------------------------------------------------------------------------------- */
 
-bool frame_file_add(frame_file *f, const struct iovec *parts, int count, char *error, size_t size) {
-  frame_mark now = {f->mark.count + 1, f->mark.sum};
-  bool good = true;
-  for (int k = 0; good && k < count; k++) {
-    now.sum = hash_more(now.sum, parts[k].iov_base, parts[k].iov_len);
-    good = write_all(f->file, parts[k].iov_base, parts[k].iov_len);
-  }
-  if (good) {
-    f->mark = now;
+double *frame_file_record(frame_file *f) {
+  return f->record;
+}
+
+bool frame_file_add(frame_file *f, char *error, size_t size) {
+  const off_t end = end_of(f, f->mark.count);
+  if (write_all(f->file, f->record, f->bytes)) {
+    f->mark.count++;
+    f->mark.sum = hash_words(f->mark.sum, f->record, f->numbers);
     return true;
   }
   fail(f, "write a frame to", error, size);
-  const off_t end = end_of(f, f->mark.count);
   if (ftruncate(f->file, end) == 0) lseek(f->file, end, SEEK_SET); /* drop what was written */
   return false;
 }
@@ -201,16 +204,13 @@ bool frame_file_sync(frame_file *f, char *error, size_t size) {
 }
 
 bool frame_file_each(frame_file *f, frame_taker *take, void *context, char *error, size_t size) {
-  double *record = must_alloc(f->record + 1);
   uint64_t sum = mark_of_none(f).sum;
-  bool read = true, taken = true;
-  for (int64_t k = 0; read && taken && k < f->mark.count; k++) {
-    read = read_all(f->file, record, f->record, end_of(f, k));
-    if (read) sum = hash_more(sum, record, f->record);
-    taken = read && (!take || take(context, k, record));
+  bool read = true;
+  for (int64_t k = 0; read && k < f->mark.count; k++) {
+    read = read_all(f->file, f->record, f->bytes, end_of(f, k));
+    if (read) sum = hash_words(sum, f->record, f->numbers);
+    if (read && take && !take(context, k, f->record)) return false;
   }
-  free(record);
-  if (!taken && read) return false;
   if (read && sum == f->mark.sum) return true;
   snprintf(error, size, "the frames in `%s` are damaged, or were changed since they were written",
            f->path);

@@ -18,16 +18,16 @@ struct result {
 
 /* --- frames while the run goes on ------------------------------------------------------------- */
 
-static size_t bytes_of(const result_field *f) {
-  return sizeof(double) * (size_t)f->count * (size_t)f->components;
+static size_t numbers_of(const result_field *f) {
+  return (size_t)f->count * (size_t)f->components;
 }
 
 result *result_open(const result_header *header, bool resume, char *error, size_t size) {
-  size_t record = sizeof(double);
+  size_t numbers = 1; /* the time */
   for (int k = 0; k < header->field_count; k++)
-    record += bytes_of(&header->fields[k]);
+    numbers += numbers_of(&header->fields[k]);
   frame_file *frames =
-      frame_file_open(header->path, header->fingerprint, record, resume, error, size);
+      frame_file_open(header->path, header->fingerprint, numbers, resume, error, size);
   if (!frames) return NULL;
   whole_file_clear(header->path);
   result *r = must_calloc(1, sizeof *r);
@@ -45,14 +45,14 @@ bool result_resume(result *r, const frame_mark *mark, char *error, size_t size) 
 }
 
 bool result_frame(result *r, double time, const double *const *values, char *error, size_t size) {
-  const int count = r->header.field_count;
-  struct iovec *parts = must_alloc(((size_t)count + 1) * sizeof *parts);
-  parts[0] = (struct iovec){&time, sizeof time};
-  for (int k = 0; k < count; k++)
-    parts[k + 1] = (struct iovec){(void *)values[k], bytes_of(&r->header.fields[k])};
-  const bool good = frame_file_add(r->frames, parts, count + 1, error, size);
-  free(parts);
-  return good;
+  double *at = frame_file_record(r->frames);
+  *at++ = time;
+  for (int k = 0; k < r->header.field_count; k++) {
+    const size_t numbers = numbers_of(&r->header.fields[k]);
+    if (numbers) memcpy(at, values[k], numbers * sizeof *at);
+    at += numbers;
+  }
+  return frame_file_add(r->frames, error, size);
 }
 
 frame_mark result_mark(const result *r) {
@@ -164,7 +164,7 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
     hsize_t shape[3];
     const int rank = shape_of(f, s->count, shape);
     good = s->sets[k] >= 0 && h5_write_frame(s->sets[k], (long)frame, rank, shape, values);
-    values += f->count * f->components;
+    values += numbers_of(f);
   }
   return good;
 }

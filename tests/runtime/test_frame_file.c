@@ -29,15 +29,14 @@ static int clean(void **state) {
 }
 
 static frame_file *open_frames(const char *fingerprint, bool there) {
-  return frame_file_open(result, fingerprint, RECORD, there, error, sizeof error);
+  return frame_file_open(result, fingerprint, VALUES, there, error, sizeof error);
 }
 
 static void add(frame_file *f, int k) {
-  double values[VALUES];
+  double *values = frame_file_record(f);
   for (int v = 0; v < VALUES; v++)
     values[v] = k + 0.1 * v;
-  const struct iovec parts[] = {{values, sizeof *values}, {values + 1, RECORD - sizeof *values}};
-  assert_true(frame_file_add(f, parts, 2, error, sizeof error));
+  assert_true(frame_file_add(f, error, sizeof error));
 }
 
 /* Frames on the disk, the mark after each of them. */
