@@ -29,7 +29,10 @@ result *result_open(const result_header *header, bool resume, char *error, size_
   frame_file *frames =
       frame_file_open(header->path, header->fingerprint, numbers, resume, error, size);
   if (!frames) return NULL;
+  char sidecar[WHOLE_FILE_PATH];
+  result_sidecar(header->path, sidecar, sizeof sidecar);
   whole_file_clear(header->path);
+  whole_file_clear(sidecar);
   result *r = must_calloc(1, sizeof *r);
   *r = (result){*header, frames, must_alloc(strlen(header->path) + 1)};
   r->header.path = strcpy(r->path, header->path);
