@@ -148,28 +148,27 @@ static void leave_out(byte_ranges *r, uint64_t from, uint64_t to) {
   r->items[r->count++] = (byte_range){from, to};
 }
 
-/* The bit of a chunk's mask that says its sum, the last thing that the filters add, is not there; 0: none is added. */
-static unsigned bit_of_sum(hid_t plist) {
-  const int filters = H5Pget_nfilters(plist);
+/* The last that is done to a chunk is that its sum is added. */
+static bool has_sums(hid_t plist) {
+  const int filters = H5Pget_layout(plist) == H5D_CHUNKED ? H5Pget_nfilters(plist) : 0;
   unsigned flags, config;
   size_t none = 0;
-  const bool summed =
-      filters > 0 && H5Pget_filter2(plist, (unsigned)filters - 1, &flags, &none, NULL, 0, NULL,
-                                    &config) == H5Z_FILTER_FLETCHER32;
-  return summed ? 1u << (filters - 1) : 0;
+  return filters > 0 && H5Pget_filter2(plist, (unsigned)filters - 1, &flags, &none, NULL, 0, NULL,
+                                       &config) == H5Z_FILTER_FLETCHER32;
 }
 
-/* The inside of each large chunk: all but its sum. */
+/* The inside of each large chunk, all but its sum; not of those that could not be compressed: they lack the second sum, the
+   compression's own. */
 static bool leave_out_chunks(hid_t set, void *ranges) {
   const hid_t plist = H5Dget_create_plist(set), space = H5Dget_space(set);
-  const unsigned bit = H5Pget_layout(plist) == H5D_CHUNKED ? bit_of_sum(plist) : 0;
+  const bool summed = has_sums(plist);
   hsize_t count = 0, place[H5S_MAX_RANK], bytes;
-  unsigned without;
+  unsigned filters_left_out;
   haddr_t at;
-  bool good = !bit || H5Dget_num_chunks(set, space, &count) >= 0;
+  bool good = !summed || H5Dget_num_chunks(set, space, &count) >= 0;
   for (hsize_t k = 0; good && k < count; k++) {
-    good = H5Dget_chunk_info(set, space, k, place, &without, &at, &bytes) >= 0;
-    if (good && bytes > SMALL && !(without & bit)) leave_out(ranges, at, at + bytes - SUM);
+    good = H5Dget_chunk_info(set, space, k, place, &filters_left_out, &at, &bytes) >= 0;
+    if (good && bytes > SMALL && !filters_left_out) leave_out(ranges, at, at + bytes - SUM);
   }
   H5Sclose(space);
   H5Pclose(plist);

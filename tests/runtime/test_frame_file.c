@@ -8,7 +8,6 @@
 #include <cmocka.h>
 
 #include <fcntl.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -16,6 +15,7 @@
 #include <unistd.h>
 
 #include "runtime/frame_file.h"
+#include "tests/runtime/file_tools.h"
 
 enum { VALUES = 5, RECORD = VALUES * sizeof(double), FRAMES = 4 };
 static const char result[] = "frames_of.h5", path[] = "frames_of.h5.frames", other[] = "other.txt";
@@ -58,24 +58,6 @@ static bool resumes(const char *fingerprint, const frame_mark *mark) {
   const bool good = frame_file_resume(f, mark, error, sizeof error);
   frame_file_close(f);
   return good;
-}
-
-static unsigned char *read_file(const char *name, size_t *size) {
-  struct stat about;
-  FILE *in = fopen(name, "rb");
-  assert_non_null(in);
-  assert_int_equal(fstat(fileno(in), &about), 0);
-  unsigned char *bytes = malloc((size_t)about.st_size + 1);
-  *size = fread(bytes, 1, (size_t)about.st_size, in);
-  fclose(in);
-  return bytes;
-}
-
-static void write_file(const char *name, const void *bytes, size_t size) {
-  FILE *out = fopen(name, "wb");
-  assert_non_null(out);
-  assert_int_equal(fwrite(bytes, 1, size, out), size);
-  assert_int_equal(fclose(out), 0);
 }
 
 static bool takes_frame(void *seen, int64_t frame, const double *record) {

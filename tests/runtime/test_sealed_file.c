@@ -16,6 +16,7 @@
 #include "dsl/hash.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/sealed_file.h"
+#include "tests/runtime/file_tools.h"
 #include "tests/runtime/small_result.h"
 
 static char error[2048];
@@ -28,24 +29,6 @@ static int clean(void **state) {
   unlink("elsewhere.h5");
   unlink("elsewhere.bin");
   return 0;
-}
-
-static unsigned char *read_file(const char *path, size_t *size) {
-  struct stat about;
-  FILE *in = fopen(path, "rb");
-  assert_non_null(in);
-  assert_int_equal(fstat(fileno(in), &about), 0);
-  unsigned char *bytes = malloc((size_t)about.st_size + 1);
-  *size = fread(bytes, 1, (size_t)about.st_size, in);
-  fclose(in);
-  return bytes;
-}
-
-static void write_file(const char *path, const void *bytes, size_t size) {
-  FILE *out = fopen(path, "wb");
-  assert_non_null(out);
-  assert_int_equal(fwrite(bytes, 1, size, out), size);
-  assert_int_equal(fclose(out), 0);
 }
 
 static uint32_t random_number(uint32_t *seed) {
