@@ -224,7 +224,7 @@ static char *answer(workplace *w, const char *command, int *status, size_t *size
 }
 
 static void damaged_results_answer_right_or_not_at_all(void **state) {
-  enum { TRIES = 16 };
+  enum { TRIES = 12 };
   workplace *w = *state;
   static const char *const commands[] = {"info x.h5",
                                          "export x.h5",
@@ -264,7 +264,7 @@ static void damaged_results_answer_right_or_not_at_all(void **state) {
 }
 
 static void damaged_frames_are_not_gone_on_from(void **state) {
-  enum { TRIES = 20 };
+  enum { TRIES = 14 };
   workplace *w = *state;
   size_t size, checkpoint_size, now;
   uint32_t seed = 3;
