@@ -53,8 +53,13 @@ static bool print_history(result_file *f, const char *name) {
     low = fmin(low, v[k]);
     high = fmax(high, v[k]);
   }
-  printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
-         v[count - 1] + 0.0); /* no minus before zeros */
+  char why[256];
+  result_read_unchecked(f, name, why, sizeof why);
+  if (*why)
+    printf("  %-26s %-6s not checked: %s\n", name, unit_text, why);
+  else /* no minus before zeros */
+    printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
+           v[count - 1] + 0.0);
   free(v);
   return true;
 }

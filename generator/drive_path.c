@@ -725,36 +725,6 @@ static double wave_at(const drive_piece *p, double since, bool slope) {
   }
 }
 
-static double table_slope(const time_function *f, double since) {
-  int low = 0, high = f->count;
-  while (high - low > 1) {
-    int middle = low + (high - low) / 2;
-    if (f->times[middle] <= since)
-      low = middle;
-    else
-      high = middle;
-  }
-  if (since < f->times[0] || low == f->count - 1) return 0;
-  return (f->values[low + 1] - f->values[low]) / (f->times[low + 1] - f->times[low]);
-}
-
-static double function_slope(const time_function *f, double time) {
-  double since = time - f->start;
-  if (since < 0) return 0;
-  switch (f->shape) {
-  case TIME_RAMP:
-    return f->value / f->rise;
-  case TIME_RAMP_HOLD:
-    return since < f->rise ? f->value / f->rise : 0;
-  case TIME_COSINE:
-    return since < f->rise ? f->value * M_PI / (2 * f->rise) * sin(M_PI * since / f->rise) : 0;
-  case TIME_TABLE:
-    return table_slope(f, since);
-  default:
-    return 0;
-  }
-}
-
 double drive_at(const drive_input *in, drive_quantity q, double time) {
   double sum = 0;
   for (int k = 0; k < in->piece_count; k++) {
@@ -770,7 +740,7 @@ double drive_slope(const drive_input *in, drive_quantity q, double time) {
   for (int k = 0; k < in->piece_count; k++) {
     const drive_piece *p = &in->pieces[k];
     if (p->quantity == q)
-      sum += p->cyclic ? wave_at(p, time - p->start, true) : function_slope(&p->f, time);
+      sum += p->cyclic ? wave_at(p, time - p->start, true) : time_function_slope(&p->f, time);
   }
   return sum;
 }

@@ -689,7 +689,10 @@ static void write_descriptor(emitter *e, const char *key) {
     c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
   write_table(e, "field", "law_fields", p->law->fields.count);
   write_table(e, "output", "law_outputs", p->law->outputs.count);
-  c_text_add(e->out, "    .uniform_count = %d,\n    .flops_per_bond = ", p->uniform_count);
+  c_text_add(e->out,
+             "    .stores = %d,\n    .reads_rates = %d,\n    .uniform_count = %d,\n"
+             "    .flops_per_bond = ",
+             p->stores, p->reads_rates, p->uniform_count);
   c_text_number(e->out, p->flops_per_bond);
   c_text_add(e->out, ",\n    .divisions_per_bond = ");
   c_text_number(e->out, p->divisions_per_bond);

@@ -367,6 +367,8 @@ static void describe(interpreted *p, const char *key) {
       .fields = describe_fields(p->memory, &l->fields),
       .output_count = l->outputs.count,
       .outputs = describe_fields(p->memory, &l->outputs),
+      .stores = plan->stores,
+      .reads_rates = plan->reads_rates,
       .uniform_count = plan->uniform_count,
       .flops_per_bond = plan->flops_per_bond,
       .divisions_per_bond = plan->divisions_per_bond,

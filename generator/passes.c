@@ -362,6 +362,15 @@ kernel_plan *plan_begin(const law *l) {
   return plan;
 }
 
+bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
+  ir_node rate = lower_quantity(plan->graph, QUANTITY_STRETCH_RATE);
+  const ir_node results[] = {step->N, step->M_i, step->M_j, step->F};
+  for (int k = 0; k < 4; k++)
+    if (results[k] != IR_NONE && rewrite_depends(plan->graph, &results[k], 1, &rate, 1))
+      return true;
+  return rewrite_depends(plan->graph, step->fields, plan->law->fields.count, &rate, 1);
+}
+
 static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
   if (!lower_both(&p, d)) return false;
@@ -372,6 +381,8 @@ static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   STRIP_PASSES(X)
 #undef X
   lowered_law bare = unprotected_step(&p);
+  plan->stores = plan->law->nonconservative == NULL;
+  plan->reads_rates = plan_reads_rates(plan, &bare);
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);
   return true;

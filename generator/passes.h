@@ -94,6 +94,7 @@ typedef struct kernel_plan {
   family_program step, observe;
   program_links links;
   bool reads_shape; /* inverse shape matrices */
+  bool stores, reads_rates; /* pl_law */
   arena *memory;
 } kernel_plan;
 

@@ -67,7 +67,7 @@ void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *r
 }
 
 /* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are
-   homogeneous of degree one, else 0. */
+   homogeneous of degree one, else IR_NONE. */
 static ir_node stored_energy(family_planner *p) {
   const law *l = p->plan->law;
   ir *g = p->g;
@@ -83,7 +83,7 @@ static ir_node stored_energy(family_planner *p) {
   rewrite_zero(g, &p->frozen.F, 1, &rate, 1, &F);
   ir_node length = lower_quantity(g, QUANTITY_LENGTH); /* s (1 + stretch) is not homogeneous */
   if (rewrite_depends(g, &F, 1, &length, 1) || rewrite_degree(g, F, &stretch, 1) != 1)
-    return ir_constant(g, 0);
+    return IR_NONE;
   ir_node work = ir_mul(g, ir_mul(g, F, stretch), s);
   return ir_mul(g, ir_constant(g, 0.25), family_sum(g, work));
 }
@@ -121,7 +121,9 @@ static root_list step_roots(family_planner *p) {
 static root_list observe_roots(family_planner *p) {
   const law *l = p->plan->law;
   root_list r = new_roots(p->plan, l->outputs.count + 1);
-  want(&r, stored_energy(p), TO_PARTICLE_OBSERVED, 0);
+  const ir_node stored = stored_energy(p);
+  p->plan->stores = stored != IR_NONE && l->nonconservative == NULL;
+  want(&r, stored != IR_NONE ? stored : ir_constant(p->g, 0), TO_PARTICLE_OBSERVED, 0);
   for (int k = 0; k < l->outputs.count; k++)
     want(&r, p->frozen.outputs[k],
          is_of_particle(l->outputs.items[k]) ? TO_PARTICLE_OBSERVED : TO_NEIGHBOUR_OBSERVED, 1 + k);
@@ -312,6 +314,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   }
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
+  plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(p.g, &step, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);

@@ -19,6 +19,9 @@ bool plan_programs(kernel_plan *p, diagnostics *d);
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
 program_motion plan_motion(const kernel_plan *plan, bool along_reference);
 
+/* Whether forces or new fields depend on the stretch rate. */
+bool plan_reads_rates(const kernel_plan *p, const lowered_law *step);
+
 /* What the roots of a pass cost for each bond. */
 ir_cost plan_cost(const kernel_plan *p, const pass *a);
 

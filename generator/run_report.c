@@ -212,9 +212,46 @@ static void print_family(const run *r, const bad_state *b) {
   }
 }
 
+/* Samples of a series; NULL where there is none of that name. */
+static const double *series_of(const run *r, const char *name) {
+  for (int k = 0; k < simulation_series_count(r->simulation); k++) {
+    const double *values;
+    if (strcmp(simulation_series(r->simulation, k, NULL, &values), name) == 0) return values;
+  }
+  return NULL;
+}
+
+/* The first or the last sample; NaN where there is none. */
+static double sample_of(const run *r, const char *name, bool last) {
+  const double *time, *values = series_of(r, name);
+  const long samples = simulation_history(r->simulation, &time);
+  return values && samples > 0 ? values[last ? samples - 1 : 0] : NAN;
+}
+
+static double last_value(const run *r, const char *name) {
+  return sample_of(r, name, true);
+}
+
+/* Where no particle is at fault. */
+static void report_bad_energy(const run *r, const bad_state *b) {
+  char when[MOMENT_TEXT];
+  fprintf(stderr,
+          "perilat: error: %s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
+          "  no stable step does that: the step is too long for this body, or the law's stored "
+          "energy is "
+          "not that of its forces\n"
+          "  what was computed until then is in the result; a smaller `step_safety` tells which\n",
+          b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
+          last_value(r, "energy/stored"));
+}
+
 void report_bad(const run *r) {
   bad_state b = simulation_bad(r->simulation);
   char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
+  if (b.particle < 0) {
+    report_bad_energy(r, &b);
+    return;
+  }
   fprintf(stderr, "perilat: error: %s in step %ld (%s%s) at particle %ld, %s\n", b.what, b.step,
           r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
           rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
@@ -292,26 +329,6 @@ void print_misfit(const run *r) {
 
 /* --- after the run ---------------------------------------------------------------------------- */
 
-/* Samples of a series; NULL where there is none of that name. */
-static const double *series_of(const run *r, const char *name) {
-  for (int k = 0; k < simulation_series_count(r->simulation); k++) {
-    const double *values;
-    if (strcmp(simulation_series(r->simulation, k, NULL, &values), name) == 0) return values;
-  }
-  return NULL;
-}
-
-/* The first or the last sample; NaN where there is none. */
-static double sample_of(const run *r, const char *name, bool last) {
-  const double *time, *values = series_of(r, name);
-  const long samples = simulation_history(r->simulation, &time);
-  return values && samples > 0 ? values[last ? samples - 1 : 0] : NAN;
-}
-
-static double last_value(const run *r, const char *name) {
-  return sample_of(r, name, true);
-}
-
 /* What is lost in rounding and in the integration's own wave is nothing. */
 static double unless_nothing(double energy, double external) {
   return fabs(energy) < 1e-7 * fabs(external) ? 0 : energy;
@@ -321,12 +338,17 @@ static void conclude_energy(const run *r) {
   double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
   if (!isfinite(external)) return;
   printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, "
-         "by damping %.3g; "
-         "imbalance %.2g J",
+         "by damping %.3g; ",
          external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
          unless_nothing(last_value(r, "energy/dissipated_damage"), external),
-         last_value(r, "energy/dissipated_damping"), imbalance);
-  if (fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+         last_value(r, "energy/dissipated_damping"));
+  const char *unchecked;
+  simulation_imbalance(r->simulation, &unchecked);
+  if (unchecked)
+    printf("imbalance not checked: %s", unchecked);
+  else
+    printf("imbalance %.2g J", imbalance);
+  if (!unchecked && fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
   putchar('\n');
 }
 

@@ -310,6 +310,10 @@ bool finish_result(run *r) {
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
   for (int k = 0; k < count; k++)
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
+  const char *unchecked;
+  const int imbalance = simulation_imbalance(r->simulation, &unchecked);
+  if (imbalance >= 0) series[imbalance].judges = true;
+  if (imbalance >= 0) series[imbalance].unchecked = unchecked;
   const double *time;
   long samples = simulation_history(r->simulation, &time);
   char error[ERROR_LENGTH];

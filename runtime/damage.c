@@ -27,7 +27,7 @@ double damage_of_bond(const sweep *w, const rows_bond *bond) {
   double most = 0;
   for (int f = 0; f < w->law->field_count; f++) {
     if (!counts(&w->law->fields[f], false)) continue;
-    const double here = sweep_bond_value(w, w->field[f], bond);
+    const double here = sweep_bond_value(w, w->new_field[f], bond);
     if (here > most) most = here;
   }
   return most;
@@ -36,7 +36,8 @@ double damage_of_bond(const sweep *w, const rows_bond *bond) {
 double damage_of_site(const sweep *w, long site) {
   double most = 0;
   for (int f = 0; f < w->law->field_count; f++)
-    if (counts(&w->law->fields[f], true) && w->field[f][site] > most) most = w->field[f][site];
+    if (counts(&w->law->fields[f], true) && w->new_field[f][site] > most)
+      most = w->new_field[f][site];
   return most;
 }
 
@@ -45,7 +46,7 @@ const double *damage_of_all_bonds(const sweep *w) {
   for (int f = 0; f < w->law->field_count; f++) {
     if (!counts(&w->law->fields[f], false)) continue;
     if (only || w->law->fields[f].place != PL_ON_BOND) return NULL;
-    only = w->field[f];
+    only = w->new_field[f];
   }
   return only;
 }

@@ -1,4 +1,4 @@
-/* Damage of bonds and particles, from the law's fields of that kind, wherever they stand. A bond's
+/* Damage of bonds and particles in the state observed, from the law's fields of that kind, wherever they stand. A bond's
    damage is the largest of those on it (laws of families: of their means over both sides). A
    particle's is the largest of those on it; where the law has none there, the mean over the bonds
    that it began with. */

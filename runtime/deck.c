@@ -224,7 +224,6 @@ static void set_computed_defaults(deck_reader *r) {
   if (!k->output.result) k->output.result = arena_printf(r->memory, "%s.h5", name);
   if (k->simulation.step_safety <= 0)
     k->simulation.step_safety = k->relaxation.increments > 0 ? 0.9 : 0.25;
-  if (k->output.sample <= 0) k->output.sample = k->simulation.end_time / 2000;
 }
 
 /* A name that could not be read may be the one that a reference means. */

@@ -245,7 +245,7 @@ typedef struct deck_output {
   deck_item item;
   const char *result;  /* path; default: the deck's file name with .h5, in the working directory */
   int frames;          /* default 20 */
-  double sample;       /* s: history interval; default end_time/2000 */
+  double sample;       /* s: history interval; 0: chosen */
   const char **fields; /* "displacement", "velocity", "rotation", "force", "damage", "dissipated",
                           law fields */
   int field_count;

@@ -606,7 +606,8 @@ static const deck_key_info monitor_keys[] = {
      .bound = BOUND_NOT_NEGATIVE,
      .fallback = "0",
      AT(monitor, average),
-     .doc = "mean over this time before each sample; 0: the value at the sample"},
+     .doc = "mean of all states of this time before each sample, the present one included; of a "
+            "velocity way over time; 0: the value at the sample"},
     {.name = "zero_at",
      .type = DECK_REAL,
      .unit = "s",
@@ -668,7 +669,7 @@ static const deck_key_info output_keys[] = {
      .type = DECK_REAL,
      .unit = "s",
      .bound = BOUND_POSITIVE,
-     .fallback = "= end_time/2000",
+     .fallback = "= end_time/2000, at least 200 steps",
      AT(output, sample),
      .doc = "interval of the history"},
     {.name = "fields",

@@ -95,7 +95,7 @@ typedef struct deck_group_info {
     "Weight of every particle; several add up. Its work is in the energy ledger.")                 \
   X(initial_velocity, "region", false, false, "Velocity of a region when the run begins.")         \
   X(monitor, "name", false, false, "A quantity recorded at every sample of the history.")          \
-  X(stop, "monitor", false, false, "Ends the run early. Give `below` or `above`.")                 \
+  X(stop, "monitor", false, false, "Ends the run early, at a sample. Give `below` or `above`.")                 \
   X(output, NULL, true, false, "What is written, and how often.")                                  \
   X(checkpoint, NULL, true, false, "State from which a stopped or killed run goes on.")
 

@@ -14,8 +14,8 @@
 static void point_at_fields(const sweep *w, family_block *b, long start) {
   const family *f = family_of(w);
   for (int k = 0; k < w->law->field_count; k++) {
-    b->old_field[k] = w->field[k] + start;
-    b->new_field[k] = f->new_field[k] + start;
+    b->old_field[k] = (b->observing ? w->new_field : w->field)[k] + start;
+    b->new_field[k] = w->new_field[k] + start;
   }
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
@@ -41,9 +41,10 @@ static void point_at_neighbours(const rows *g, int row, long start, pl_family *r
   run->mass = g->site_mass + start;
 }
 
-void family_begin_runs(const sweep *w, int block, pl_family *run) {
+void family_begin_runs(const sweep *w, const pl_program *program, int block, pl_family *run) {
   const family *f = family_of(w);
   family_block *b = &f->blocks[block];
+  b->observing = program == &w->law->observe;
   *run = (pl_family){.row_stride = FAMILY_ROWS_ALIKE * w->lattice->pitch,
                      .neighbours = f->neighbours,
                      .plane = w->lattice->size,
@@ -93,7 +94,7 @@ static const double *force_of_row(const sweep *w, const sweep_block *b, int row,
 /* `moving`: the forces are those of a step, and not of looking at the present state. All components in one loop, with a
    literal number of them and what is the same for most bodies left out:
 
-     next = decay v + dt/m f
+     next = decay v + part dt/m f (sweep.h)
 
    Not 0 when a velocity is not below the limit (NaN is not below anything). */
 static inline __attribute__((always_inline)) int64_t
@@ -106,7 +107,7 @@ kick(const sweep *w, const sweep_block *b, int row, bool moving, int dof, bool e
   for (int d = 0; d < dof; d++) {
     force[d] = force_of_row(w, b, row, d, moving);
     v[d] = w->velocity[d] + start;
-    factor[d] = w->time_step / w->mass[d];
+    factor[d] = sweep_force_part(w) * w->time_step / w->mass[d];
   }
   INDEPENDENT
   for (long q = 0; q < count; q++)
@@ -198,8 +199,8 @@ static void find_forces(sweep *w, int stage, int block) {
 /* What was new is now at hand. */
 static void turn(sweep *w) {
   double **old = w->field;
-  w->field = family_of(w)->new_field;
-  family_of(w)->new_field = old;
+  w->field = w->new_field;
+  w->new_field = old;
   if (family_of(w)->pairs) family_pairs_turn(family_of(w)->pairs);
 }
 
@@ -225,15 +226,12 @@ static void observe_rows(sweep *w, int block) {
   for (int row = b->first; row < b->last; row++) {
     kick_row(w, b, row, false);
     sweep_observe_motion(w, b, row);
-    w->row_stored[row] = stored_in_row(w, row);
-    w->row_internal_pending[row] = 0;
-    for (int d = 0; d < w->dof; d++)
-      w->row_internal_pending[row] += work_over(w, row, d, w->velocity[d] + sweep_start(w, row));
+    w->observed[row].stored = stored_in_row(w, row);
   }
 }
 
-/* Forces of the present state: the passes of a step, whose new fields are written again by the next
-   one. */
+/* Forces and new fields of the present state: the passes of a step, whose new fields are written again by the next one. Then
+   energy and outputs with these. */
 static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
   const int forces = program_stages(f, &w->law->step),
@@ -244,12 +242,6 @@ static void observe(sweep *w, int stage, int block) {
     run_program(w, &w->law->observe, stage - forces, block);
   else
     observe_rows(w, block);
-}
-
-static void find_outputs(sweep *w) {
-  for (int stage = 0; stage < program_stages(family_of(w), &w->law->observe); stage++)
-    for (int b = 0; b < w->block_count; b++)
-      run_program(w, &w->law->observe, stage, b);
 }
 
 static void output_values(sweep *w, int output, double *values) {
@@ -279,12 +271,6 @@ static void find_shapes(sweep *w, family *f) {
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->lattice->size;
-  f->new_field = must_calloc((size_t)law->field_count + 1, sizeof *f->new_field);
-  for (int k = 0; k < law->field_count; k++) {
-    const long count = sweep_planes(w, law->fields[k].place) * size;
-    f->new_field[k] = sweep_doubles(w, count);
-    memcpy(f->new_field[k], w->field[k], (size_t)count * sizeof(double));
-  }
   f->observed = must_calloc((size_t)law->output_count + 1, sizeof *f->observed);
   f->observed[0] = sweep_doubles(w, size);
   for (int k = 0; k < law->output_count; k++)
@@ -318,7 +304,6 @@ static void new_blocks(sweep *w, family *f) {
 
 static void free_own(sweep *w) {
   family *f = family_of(w);
-  free(f->new_field);
   free(f->link);
   free(f->bond_link);
   family_windows_free(w, f->windows);
@@ -361,7 +346,6 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
                         .turn = turn,
                         .fields_set = fields_set,
                         .observe = observe,
-                        .find_outputs = find_outputs,
                         .output = output_values,
                         .free = free_own,
                         .keeps_links = f->windows == NULL,

@@ -66,7 +66,7 @@ void family_pairs_stage(const sweep *w, int pass, int block) {
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;
   const double begun = family_pass_begins(w);
   pl_family run;
-  family_begin_runs(w, block, &run);
+  family_begin_runs(w, &w->law->step, block, &run);
   for (int row = s->before; row < b->last; row++)
     run_row(w, pass, block, row, row < b->first, &run);
   pair_sums_clear_ahead(w, s);
@@ -80,14 +80,14 @@ void family_pairs_turn(family_pairs *p) {
   p->constants_known = true;
 }
 
-static void find_marks(const sweep *w, const family *f, family_pairs *p) {
+static void find_marks(const sweep *w, family_pairs *p) {
   pair_marks_filled(w, w->field, p->old_filled);
-  pair_marks_filled(w, f->new_field, p->new_filled);
-  pair_marks_settled(w, w->field, f->new_field, p->settled);
+  pair_marks_filled(w, w->new_field, p->new_filled);
+  pair_marks_settled(w, w->field, w->new_field, p->settled);
 }
 
 void family_pairs_fields_set(const sweep *w) {
-  find_marks(w, family_of(w), family_of(w)->pairs);
+  find_marks(w, family_of(w)->pairs);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -127,7 +127,7 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
     b->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *b->constant_sum);
     b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
   }
-  find_marks(w, f, p);
+  find_marks(w, p);
   return p;
 }
 

@@ -11,6 +11,7 @@ enum { FAMILY_MOST_PASSES = 16 };
 enum { FAMILY_ROWS_ALIKE = 2 }; /* rows to the next in which neighbours may stand alike */
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
+  bool observing;             /* the observe program reads the fields that the step program has just found */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
   const double *shape[SHAPE_PLANES];
@@ -24,7 +25,6 @@ typedef struct family_pairs family_pairs;
 typedef struct family {
   int neighbours, reach;       /* rows between a particle and its farthest neighbour */
   double *uniforms;            /* [neighbours][uniform_count]; lists: [uniform_count] */
-  double **new_field;          /* [fields][planes * size] */
   double **link;               /* [links][size]; NULL where blocks have windows */
   double **bond_link;          /* [bond_links][neighbours * size]; the same */
   double **observed;           /* [1 + outputs][planes * size] */
@@ -44,7 +44,7 @@ static inline family *family_of(const sweep *w) {
 
 /* What a pass reads and writes, all but links: what is the same for all rows, once before some runs, and from the first site
    of a row on. A short row takes little longer than a fresh pl_family would. */
-void family_begin_runs(const sweep *w, int block, pl_family *run);
+void family_begin_runs(const sweep *w, const pl_program *program, int block, pl_family *run);
 void family_turn_to_row(const sweep *w, int block, int row, pl_family *run);
 
 /* The latter, and links of the whole body. */

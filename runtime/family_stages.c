@@ -29,15 +29,16 @@ static int end_of_alike(const sweep *w, int row, int last) {
 }
 
 /* Rows first .. last-1. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last) {
+static void run_rows(const sweep *w, const pl_program *program, int pass, int block, int first,
+                     int last) {
   pl_family run;
-  family_begin_runs(w, block, &run);
+  family_begin_runs(w, program, block, &run);
   for (int row = first, end; row < last; row = end) {
     end = end_of_alike(w, row, last);
     if (w->count[row] == 0) continue;
     family_turn_with_links(w, block, row, &run);
     run.count = sweep_start(w, end - 1) + w->count[end - 1] - sweep_start(w, row);
-    pass(w->law, family_of(w)->uniforms, &run);
+    program->pass[pass](w->law, family_of(w)->uniforms, &run);
   }
 }
 
@@ -65,7 +66,7 @@ static void run_inner(const sweep *w, const pl_program *program, int block) {
     int end = least(next[0] + at_a_time, last[0]);
     for (int p = 0; p < passes; p++) {
       const double begun = family_pass_begins(w);
-      run_rows(w, program->pass[p], block, next[p], end);
+      run_rows(w, program, p, block, next[p], end);
       family_pass_ends(w, block, p, begun);
       next[p] = end > next[p] ? end : next[p];
       if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - family_of(w)->reach;
@@ -79,8 +80,8 @@ static void run_outer(const sweep *w, const pl_program *program, int pass, int b
   int first, last;
   inner_rows(w, block, pass, &first, &last);
   const double begun = family_pass_begins(w);
-  run_rows(w, program->pass[pass], block, b->first, first);
-  run_rows(w, program->pass[pass], block, last, b->last);
+  run_rows(w, program, pass, block, b->first, first);
+  run_rows(w, program, pass, block, last, b->last);
   family_pass_ends(w, block, pass, begun);
 }
 

@@ -293,14 +293,14 @@ static void run_until(const sweep *w, pl_family_function pass, int block, int ro
 }
 
 /* Rows first .. last-1. */
-static void run_rows(const sweep *w, pl_family_function pass, int block, int first, int last,
-                     bool passing) {
+static void run_rows(const sweep *w, const pl_program *program, int pass, int block, int first,
+                     int last, bool passing) {
   pl_family run;
-  family_begin_runs(w, block, &run);
+  family_begin_runs(w, program, block, &run);
   for (int of_kind = first; of_kind < first + family_of(w)->windows[block].step; of_kind++)
     for (int row = of_kind, end; row < last; row = end) {
       end = end_of_run(w, block, row, last);
-      if (w->count[row] > 0) run_until(w, pass, block, row, end, passing, &run);
+      if (w->count[row] > 0) run_until(w, program->pass[pass], block, row, end, passing, &run);
     }
 }
 
@@ -336,7 +336,7 @@ void family_window_run(sweep *w, const pl_program *program, int block,
       if (end <= next[p]) continue;
       take_places(w, program, p, block, next[p], end);
       const double begun = family_pass_begins(w);
-      run_rows(w, program->pass[p], block, next[p], end, move != NULL);
+      run_rows(w, program, p, block, next[p], end, move != NULL);
       family_pass_ends(w, block, p, begun);
       next[p] = end;
     }

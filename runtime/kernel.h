@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 10
+#define PL_KERNEL_ABI 11
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -191,6 +191,8 @@ typedef struct pl_law {
   const pl_field *fields;
   int output_count;
   const pl_field *outputs;
+  int stores;      /* what is observed as stored is all energy that the bonds hold */
+  int reads_rates; /* forces or new fields depend on velocities */
   int uniform_count;         /* doubles that `prepare` writes */
   double flops_per_bond;     /* of `rows`: additions, multiplications, selections */
   double divisions_per_bond; /* of `rows`: divisions and roots */

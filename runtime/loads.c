@@ -207,6 +207,19 @@ static double load_at(const loads *l, const sweep *w, const time_function *f, in
   return (1 - part) * settled(c, f, value, c->from) + part * settled(c, f, value, c->to);
 }
 
+/* Part of the time within half a step of t that comes after `start`. The run itself begins with what begins at 0. */
+static double part_after(const sweep *w, double start, double t) {
+  return start <= 0 ? 1 : fmin(fmax((t - start) / w->time_step + 0.5, 0), 1);
+}
+
+/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. */
+static double acting(const loads *l, const sweep *w, const time_function *f, long step) {
+  const double value = load_at(l, w, f, time_function_at, step), jump = time_function_jump(f);
+  if (l->clock.ramp > 0 || jump == 0) return value;
+  const double t = time_of(l, w, step);
+  return value + jump * (part_after(w, f->start, t) - (t >= f->start));
+}
+
 /* --- forces ----------------------------------------------------------------------------------- */
 
 static void add_force(loads *l, int32_t particle, int component, int cause, double share) {
@@ -287,11 +300,14 @@ static void find_holders(loads *l, const motions *m) {
 }
 
 /* Of which a cause's forces are shares. */
-static double factor_at(const loads *l, const sweep *w, int cause, long step) {
+static const time_function *cause_of(const loads *l, int cause) {
   const int forces = l->deck->force_count;
-  const time_function *shape =
-      cause < forces ? &l->deck->forces[cause].force : &l->deck->end_moments[cause - forces].moment;
-  return load_at(l, w, shape, time_function_at, step);
+  return cause < forces ? &l->deck->forces[cause].force
+                        : &l->deck->end_moments[cause - forces].moment;
+}
+
+static double factor_at(const loads *l, const sweep *w, int cause, long step) {
+  return acting(l, w, cause_of(l, cause), step);
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -406,14 +422,19 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
 
 /* --- in time ---------------------------------------------------------------------------------- */
 
+static double decay_with(const sweep *w, double rate) {
+  return rate > 0 ? exp(-rate * w->time_step) : 1;
+}
+
 /* Factor of the step that begins at step * time_step. */
 static double decay_of(const loads *l, const sweep *w, long step) {
   const double t = time_of(l, w, step);
   double rate = 0;
-  for (int i = 0; i < l->deck->damping_count; i++)
-    if (t >= l->deck->dampings[i].from && t < l->deck->dampings[i].until)
-      rate += l->deck->dampings[i].rate;
-  return rate > 0 ? exp(-rate * w->time_step) : 1;
+  for (int i = 0; i < l->deck->damping_count; i++) {
+    const deck_damping *k = &l->deck->dampings[i];
+    rate += k->rate * (part_after(w, k->from, t) - part_after(w, k->until, t));
+  }
+  return decay_with(w, rate);
 }
 
 /* Motion prescribed after `step` steps since the drive's start: m, rad. */
@@ -424,42 +445,62 @@ static double motion_at(const loads *l, const sweep *w, const constraint *c, lon
                  drive->is_displacement ? time_function_at : time_function_integral, step);
 }
 
-/* A drive holds its particles from the first step that begins at or after its start, to rounding; in
-   a quasi-static run from the beginning of the increment that it begins in. */
+static double start_of(const loads *l, const constraint *c) {
+  return c->drive < 0 ? 0 : l->deck->drives[c->drive].motion.start;
+}
+
+/* What of the time of a step is rounding. */
+static double hardly(const sweep *w) {
+  return 1e-6 * w->time_step;
+}
+
+/* A drive holds its particles from the step on that begins with it, to rounding; in a quasi-static run from the beginning of the
+   increment that it begins in. */
 static bool is_held(const loads *l, const sweep *w, const constraint *c, long step) {
   if (c->drive < 0) return true;
-  const double start = l->deck->drives[c->drive].motion.start;
-  if (l->clock.ramp > 0) return l->clock.to > just_after(&l->clock, start);
-  return time_of(l, w, step) >= start - 1e-6 * w->time_step;
+  if (l->clock.ramp > 0) return l->clock.to > just_after(&l->clock, start_of(l, c));
+  return time_of(l, w, step) >= start_of(l, c) - hardly(w);
 }
 
-/* Where the motion takes up a particle that was free. A velocity that began between two steps has
-   already led a little way: that way is not caught up. */
-static double anchor_of(const loads *l, const sweep *w, const constraint *c, long step) {
-  const double here = w->displacement[c->component][c->site];
-  if (c->drive >= 0 && l->deck->drives[c->drive].is_displacement) return here;
-  return here - motion_at(l, w, c, step);
+/* Velocity prescribed just after the instant of a step. */
+static double velocity_at(const loads *l, const sweep *w, const constraint *c, long step) {
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion,
+                                                                           time_of(l, w, step));
 }
 
+/* A motion that begins moves on as if it had always gone so: its velocity half a step before is that after, mirrored at the
+   velocity prescribed now. A place that is prescribed at once has no velocity. */
+static double impulse_of(const loads *l, const sweep *w, const constraint *c, long step) {
+  if (c->drive < 0 || l->clock.ramp > 0) return 0;
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  if (drive->is_displacement && time_function_jump(&drive->motion) != 0) return 0;
+  const double after = (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
+  return 2 * velocity_at(l, w, c, step) - after - c->velocity;
+}
+
+/* The motion takes up a particle that was free and stands where it is. */
 static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
   if (c->active || !is_held(l, w, c, step)) return;
+  const bool placed = c->drive >= 0 && l->deck->drives[c->drive].is_displacement;
   c->active = 1;
-  c->anchor = anchor_of(l, w, c, step);
   c->held = w->displacement[c->component][c->site];
+  c->anchor = placed ? c->held : c->held - motion_at(l, w, c, step);
+  c->impulse = impulse_of(l, w, c, step);
 }
 
-/* Weight of the step that begins at step * time_step: what it adds to a velocity, and its work for
-   a velocity after that step; as for forces the mean of both ends of the way works. */
+/* Weight of the step that begins at step * time_step, and its work for a velocity after that step; as for forces the mean of both
+   ends of the way works. */
 static void set_gravity(const loads *l, sweep *w, long step) {
   for (int c = 0; c < w->dimensions; c++) {
     double here = 0, next = 0;
     for (int i = 0; i < l->deck->gravity_count; i++) {
       const deck_gravity *g = &l->deck->gravitys[i];
-      here += g->acceleration[c] * load_at(l, w, &g->factor, time_function_at, step);
-      next += g->acceleration[c] * load_at(l, w, &g->factor, time_function_at, step + 1);
+      here += g->acceleration[c] * acting(l, w, &g->factor, step);
+      next += g->acceleration[c] * acting(l, w, &g->factor, step + 1);
     }
-    w->push[c] = w->time_step * here;
-    w->push_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
+    w->gravity[c] = here;
+    w->gravity_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
   }
 }
 
@@ -481,6 +522,50 @@ void loads_begin(loads *l, sweep *w) {
   }
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
   if (w->weight) set_gravity(l, w, 0);
+}
+
+/* Acceleration by what acts at once when the run begins; a step near it may have only part of that. */
+static double weight_at_once(const loads *l, int component) {
+  double sum = 0;
+  for (int i = 0; i < l->deck->gravity_count; i++)
+    sum += l->deck->gravitys[i].acceleration[component] *
+           time_function_at(&l->deck->gravitys[i].factor, 0);
+  return sum;
+}
+
+static double damping_at_once(const loads *l) {
+  double rate = 0;
+  for (int i = 0; i < l->deck->damping_count; i++)
+    if (l->deck->dampings[i].from <= 0) rate += l->deck->dampings[i].rate;
+  return rate;
+}
+
+/* With v- = 2/(1 + decay) v - dt/2 a the step (sweep.h) goes to v+ with (v- + v+)/2 = v. */
+void loads_set_back(loads *l, sweep *w) {
+  const double half = 0.5 * w->time_step, back = 2 / (1 + decay_with(w, damping_at_once(l)));
+  for (int d = 0; d < w->dof; d++) {
+    const double weight = d < w->dimensions ? weight_at_once(l, d) : 0;
+    for (long p = 0; p < l->lattice->particle_count; p++) {
+      const int64_t q = l->lattice->particle_site[p];
+      double *v = &w->velocity[d][q];
+      *v = back * *v - half * (w->force[d][q] / sweep_mass(w, d, q) + weight);
+    }
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    const double force = f->share * time_function_at(cause_of(l, f->cause), 0);
+    w->velocity[f->component][f->site] -= half * force / sweep_mass(w, f->component, f->site);
+  }
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    double *v = &w->velocity[c->component][c->site];
+    if (c->active)
+      *v = c->velocity;
+    else
+      c->velocity = *v;
+  }
+  for (long i = 0; i < l->force_count; i++)
+    l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
 }
 
 /* The first item of an order by site that stands at `site` or further on; items begin with their site. */
@@ -521,16 +606,21 @@ static bool has_moved(const load_run *r, int64_t site) {
   return !r->stuck || sweep_has_moved(r->w, site);
 }
 
-/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over
-   the way of a free particle: the velocity after the step turns out to be larger by `change`. */
+/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over the way of a free particle,
+   whose velocity was `before` and is `after`; it turns out to be larger by `change`. */
 static void correct_free_way(const sweep *w, int component, int64_t site, double before,
-                             double change, load_sums *sums) {
+                             double after, double change, load_sums *sums) {
   const double mass = sweep_mass(w, component, site);
   if (component < w->dimensions)
-    sums->work += w->push_work[component] * (mass / w->mass[component]) * change;
-  sums->dissipated += 0.5 * mass * (1 - w->decay) * before * change;
+    sums->work += w->gravity_work[component] * (mass / w->mass[component]) * change;
+  sums->dissipated += 0.5 * mass * sweep_drag(w) * change * (2 * (before + after) + change);
   if (w->law->kind == PL_STATE && w->ledger)
     sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
+}
+
+/* Velocity that a force gives in a step. */
+static double given_by(const sweep *w, int component, int64_t site, double force) {
+  return w->time_step / sweep_mass(w, component, site) * (sweep_force_part(w) * force);
 }
 
 static void apply_forces(const load_run *r) {
@@ -538,10 +628,11 @@ static void apply_forces(const load_run *r) {
   for (long i = r->first_force; i < r->last_force; i++) {
     applied *f = &r->l->forces[i];
     if (!has_moved(r, f->site)) continue;
-    const double change = w->time_step / sweep_mass(w, f->component, f->site) * f->now;
-    w->velocity[f->component][f->site] += change;
+    double *v = &w->velocity[f->component][f->site];
+    const double change = given_by(w, f->component, f->site, f->now);
+    correct_free_way(w, f->component, f->site, f->velocity, *v, change, &f->sums);
+    *v += change;
     w->displacement[f->component][f->site] += w->time_step * change;
-    correct_free_way(w, f->component, f->site, f->velocity, change, &f->sums);
   }
 }
 
@@ -573,24 +664,53 @@ static double force_after(const load_run *r, const applied *f, remembered *m) {
   return f->share * *factor;
 }
 
-/* Prescribed motion and what it takes: reaction over the step times the mean of the velocities
- * before and after. */
+/* Force that gives a particle one velocity instead of another after a step. */
+static double force_for(const sweep *w, const constraint *c, double change) {
+  return sweep_mass(w, c->component, c->site) * change / (w->time_step * sweep_force_part(w));
+}
+
+/* Moves the particle to `target` instead of where it would go. What this takes works with the mean of the velocities before and
+   after. */
+static double pull(const sweep *w, constraint *c, double target) {
+  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
+  const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
+  const double force = force_for(w, c, prescribed - *v);
+  correct_free_way(w, c->component, c->site, before, *v, prescribed - *v, &c->sums);
+  c->sums.work += 0.5 * w->time_step * force * (before + prescribed);
+  c->held = target;
+  *v = prescribed;
+  *u = target;
+  return force;
+}
+
+/* Part of the force in the step that a motion begins with: its impulse. */
+static double impulsive(const sweep *w, const constraint *c) {
+  return c->impulse == 0 ? 0 : force_for(w, c, w->decay * c->impulse);
+}
+
+/* A motion that begins between the ends of the step: until then the particle was free. */
+static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
+  const sweep *w = r->w;
+  const double rest = time_of(r->l, w, r->step + 1) - start_of(r->l, c);
+  if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
+  const double v = w->velocity[c->component][c->site],
+               here = w->displacement[c->component][c->site];
+  c->active = 1;
+  c->anchor = here - rest * v;
+  c->held = here - w->time_step * v;
+  pull(w, c, c->anchor + motion_after(r, c, after));
+}
+
 static void apply_motion(const load_run *r, constraint *c, remembered *after) {
   const sweep *w = r->w;
-  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
-  const double before = c->velocity;
+  const bool held = c->active;
   c->reaction = 0;
-  if (c->active) {
-    const double target = c->anchor + motion_after(r, c, after);
-    const double prescribed = (target - c->held) / w->time_step;
-    c->reaction = sweep_mass(w, c->component, c->site) * (prescribed - *v) / w->time_step;
-    correct_free_way(w, c->component, c->site, before, prescribed - *v, &c->sums);
-    c->held = target;
-    *v = prescribed;
-    *u = target;
-  }
-  c->sums.work += 0.5 * w->time_step * c->reaction * (before + *v);
-  c->velocity = *v;
+  if (held)
+    c->reaction = pull(w, c, c->anchor + motion_after(r, c, after)) - impulsive(w, c);
+  else
+    begin_on_the_way(r, c, after);
+  c->velocity = w->velocity[c->component][c->site];
+  c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
 }
 
 static void apply_motions(const load_run *r) {
@@ -640,34 +760,69 @@ load_sums loads_total(const loads *l) {
   return total;
 }
 
-/* Velocity of a component after the coming step if nothing but bonds, damping and gravity acted on
- * it. */
-static double free_velocity(const sweep *w, const constraint *c) {
-  const double force = w->force[c->component][c->site];
-  const double push = c->component < w->dimensions ? w->push[c->component] : 0;
-  return w->decay * c->velocity + w->time_step / sweep_mass(w, c->component, c->site) * force +
-         push;
+/* Velocity after the coming step if nothing but bonds, damping and gravity acted on a particle. */
+static double free_velocity(const sweep *w, int component, int64_t site) {
+  const double weight = component < w->dimensions ? w->gravity[component] : 0;
+  return w->decay * w->velocity[component][site] +
+         given_by(w, component, site, w->force[component][site]) +
+         w->time_step * sweep_force_part(w) * weight;
 }
 
-void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work) {
-  *kinetic = 0;
-  *work = 0;
+/* The same when a motion is prescribed. */
+static double prescribed_velocity(const loads *l, const sweep *w, const constraint *c, long step) {
+  return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
+}
+
+/* In quasi-static runs inertia is but a means: a reaction is what balances bonds and weight. */
+static double force_at_rest(const sweep *w, const constraint *c) {
+  const double weight = c->component < w->dimensions ? w->gravity[c->component] : 0;
+  return w->force[c->component][c->site] + sweep_mass(w, c->component, c->site) * weight;
+}
+
+load_look loads_observe(loads *l, const sweep *w, long step) {
+  load_look sum = {0, 0, 0};
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    c->reaction = 0;
+    if (!c->active) continue;
+    const double mass = sweep_mass(w, c->component, c->site);
+    const double change =
+        prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
+    const double force = force_for(w, c, change);
+    c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
+    sum.kinetic += 0.5 * mass * c->velocity * change;
+    sum.dissipated += 0.5 * mass * sweep_drag(w) * c->velocity * change;
+    sum.work += 0.5 * w->time_step * c->velocity * force;
+  }
   for (long i = 0; i < l->force_count; i++) {
     const applied *f = &l->forces[i];
+    constraint *holder = f->holder >= 0 ? &l->constraints[f->holder] : NULL;
     const double power = 0.5 * w->time_step * f->now * f->velocity;
-    if (f->holder >= 0 && l->constraints[f->holder].active)
-      *work -= power; /* what holds the particle takes the force up */
-    else
-      *kinetic += power;
+    if (holder && holder->active) { /* what holds the particle takes the force up */
+      holder->reaction -= f->now;
+      sum.work -= power;
+      continue;
+    }
+    sum.kinetic += sweep_force_part(w) * power;
+    sum.dissipated += sweep_force_part(w) * sweep_drag(w) * power;
   }
-  for (long i = 0; i < l->constraint_count; i++) {
-    const constraint *c = &l->constraints[i];
-    if (!c->active) continue;
-    const double target = c->anchor + motion_at(l, w, c, step + 1);
-    const double prescribed = (target - c->held) / w->time_step;
-    const double mass = sweep_mass(w, c->component, c->site);
-    const double change = prescribed - free_velocity(w, c);
-    *kinetic += 0.5 * mass * c->velocity * change;
-    *work += 0.5 * mass * c->velocity * change;
-  }
+  return sum;
+}
+
+static double mean_velocity(const loads *l, const sweep *w, const constraint *c, long step) {
+  return 0.5 * (c->velocity + c->impulse + prescribed_velocity(l, w, c, step));
+}
+
+double loads_velocity(const loads *l, const sweep *w, int component, int64_t site, long step) {
+  const long count = l->constraint_count;
+  long i = first_at(l->constraints, count, sizeof *l->constraints, site);
+  for (; i < count && l->constraints[i].site == site; i++)
+    if (l->constraints[i].component == component && l->constraints[i].active)
+      return mean_velocity(l, w, &l->constraints[i], step);
+  double after = free_velocity(w, component, site);
+  i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
+  for (; i < l->force_count && l->forces[i].site == site; i++)
+    if (l->forces[i].component == component)
+      after += given_by(w, component, site, l->forces[i].now);
+  return 0.5 * (w->velocity[component][site] + after);
 }

@@ -2,12 +2,21 @@
    damping in time. The sweep moves every particle as if it were free; afterwards the loaded ones
    are put right.
 
+   Steps are of the second order. Places and forces are of the instants t_n = n dt, velocities of the middles between them, the
+   first of them half a step before the run:
+     v(-1/2) = v(0) - dt/2 a(0)                                   (loads_set_back)
+   A load that begins at once within half a step of t_n counts there with the part of t_n - dt/2 .. t_n + dt/2 that it covers:
+     t_(n-1)      t_n       t_(n+1)
+        |----.-----|-----.-----|        here with three quarters of its value at t_n; damping likewise
+               #################
+
    Signs: a reaction is what the support or drive exerts on the body,
      reaction = mass times prescribed acceleration - bond forces - mass damping - applied force,
    so that the sum of reactions, applied forces and damping is the rate of the momentum, to
    rounding. A drive leaves its particles free before its start; then their displacement follows
    time_function_integral (or the prescribed displacement) exactly, counted from where each particle
-   is at the first step at or after the start. */
+   is at the start. One that begins with a velocity changes the momentum at once: the impulse does work, but is no part of any
+   reaction. */
 #ifndef PERILAT_RUNTIME_LOADS_H
 #define PERILAT_RUNTIME_LOADS_H
 
@@ -31,7 +40,8 @@ typedef struct constraint { /* one component of one particle that is held or dri
   double anchor;   /* m, rad: displacement less the motion prescribed */
   double held;     /* present prescribed displacement */
   double velocity; /* after the last step */
-  double reaction; /* N, N m: of the last step */
+  double impulse;  /* m/s, rad/s: what the velocity changes by at once, as the motion begins in the coming step */
+  double reaction; /* N, N m: in the state that the last step began with, or in the one observed since */
   load_sums sums;
 } constraint;
 
@@ -45,6 +55,12 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   double velocity; /* m/s: after the last step */
   load_sums sums;
 } applied;
+
+typedef struct load_look { /* at the state observed: what loaded particles add to the sweep's sums, J */
+  double kinetic;          /* they are not free */
+  double work;             /* of reactions, from the last half step on */
+  double dissipated;       /* by mass damping, likewise */
+} load_look;
 
 typedef struct region_sites { /* of a region of the deck */
   int32_t *particles;
@@ -83,6 +99,8 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
 void loads_increment(loads *l, const sweep *w, load_clock clock);
 /* To be called once, before the first step: forces at time 0, places of the supports. */
 void loads_begin(loads *l, sweep *w);
+/* Then, in dynamic runs, when the state at time 0 was observed: velocities from there to half a step before. */
+void loads_set_back(loads *l, sweep *w);
 /* When step n -> n+1 has moved the rows of a block: applied forces, prescribed motions, reactions, work. What has not moved, as
    its row has a bad velocity, is left alone. */
 void loads_apply(loads *l, sweep *w, int block, long step);
@@ -90,9 +108,10 @@ void loads_apply(loads *l, sweep *w, int block, long step);
 void loads_turn(const loads *l, sweep *w, long step);
 load_sums loads_total(const loads *l);
 
-/* Loaded particles are not free, as sweep_observe has it: what that adds to the kinetic energy
-   sampled, and the work of the reactions from the last half step to the present state. */
-void loads_observe(const loads *l, const sweep *w, long step, double *kinetic, double *work);
+/* When the state after `step` steps was observed: reactions in it. */
+load_look loads_observe(loads *l, const sweep *w, long step);
+/* Then: velocity (m/s, rad/s) of a particle at this instant, the mean of those half a step before and after. */
+double loads_velocity(const loads *l, const sweep *w, int component, int64_t site, long step);
 
 /* Indices of the constraints of a region's particles in a component; malloc'ed. */
 long loads_constraints_of(const loads *l, int region, int component, int32_t **indices);

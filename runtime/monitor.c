@@ -112,6 +112,14 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
   return false;
 }
 
+static monitor_time when_known(const monitor *m, const monitors *all) {
+  const bool field = m->deck->kind == MONITOR_FIELD;
+  if (all->deck->relaxation.increments > 0 || (field && m->field >= all->state->law->field_count))
+    return KNOWN_WHEN_OBSERVED;
+  const bool reaction = m->deck->kind == MONITOR_REACTION || m->deck->kind == MONITOR_REACTIONS;
+  return field || reaction ? KNOWN_ONE_LATE : KNOWN_AFTER_STEP;
+}
+
 static void new_monitor(monitors *all, int index, diagnostics *d) {
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
@@ -141,6 +149,7 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_BROKEN:
     break;
   }
+  m->known = when_known(m, all);
 }
 
 monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
@@ -227,22 +236,23 @@ static double count_damaged(const monitors *all, const monitor *m) {
   return (double)count;
 }
 
-/* All outputs are found together, once for a state. */
-static const double *output_now(monitors *all, int output) {
-  if (!all->outputs_found) sweep_find_outputs(all->state);
-  all->outputs_found = true;
-  sweep_output(all->state, output, all->values);
-  return all->values;
-}
-
-static double field_mean(monitors *all, const monitor *m) {
-  const int fields = all->state->law->field_count;
-  const double *values =
-      m->field < fields ? all->state->field[m->field] : output_now(all, m->field - fields);
+/* Of a law's field or output on particles. */
+static double field_mean(const monitors *all, const monitor *m, double *const *fields) {
+  const int count = all->state->law->field_count;
+  const double *values = m->field < count ? fields[m->field] : all->values;
+  if (m->field >= count) sweep_output(all->state, m->field - count, all->values);
   return mean_at(values, m->indices[0], m->index_count[0]);
 }
 
-static double value_now(monitors *all, const monitor *m) {
+static double velocity_mean(const monitors *all, const monitor *m, long step) {
+  double sum = 0;
+  for (long p = 0; p < m->index_count[0]; p++)
+    sum += loads_velocity(all->loads, all->state, m->deck->component, m->indices[0][p], step);
+  return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
+}
+
+/* A value at the instant of the state observed. */
+static double value_now(const monitors *all, const monitor *m, long step) {
   const int c = m->deck->component;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
@@ -252,12 +262,12 @@ static double value_now(monitors *all, const monitor *m) {
   case MONITOR_DISPLACEMENT:
     return mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
   case MONITOR_VELOCITY:
-    return mean_at(all->state->velocity[c], m->indices[0], m->index_count[0]);
+    return velocity_mean(all, m, step);
   case MONITOR_OPENING:
     return mean_at(all->state->displacement[c], m->indices[1], m->index_count[1]) -
            mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
   case MONITOR_FIELD:
-    return field_mean(all, m);
+    return field_mean(all, m, all->state->new_field);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
@@ -265,33 +275,66 @@ static double value_now(monitors *all, const monitor *m) {
   return count_damaged(all, m);
 }
 
-/* From the oldest value to the newest, so that a resumed run sums in the same order. */
-static double mean_of_ring(const monitor *m) {
-  const int64_t count = m->state.filled < m->window ? m->state.filled : m->window;
+/* What a step has made known for a window: the velocity in it, the field of the state that it left; the same for all else. */
+static double value_of_step(const monitors *all, const monitor *m, long step) {
+  if (m->deck->kind == MONITOR_VELOCITY)
+    return mean_at(all->state->velocity[m->deck->component], m->indices[0], m->index_count[0]);
+  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, all->state->field);
+  return value_now(all, m, step);
+}
+
+/* --- windows ---------------------------------------------------------------------------------- */
+
+static void push(monitor *m, double value) {
+  m->ring[m->state.filled++ % m->window] = value;
+}
+
+/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the newest, so that a resumed run
+   sums in the same order. */
+static double mean_of_ring(const monitor *m, long most, const double *more) {
+  const int64_t count = m->state.filled < most ? m->state.filled : most;
   double sum = 0;
   for (int64_t k = m->state.filled - count; k < m->state.filled; k++)
     sum += m->ring[k % m->window];
-  return count ? sum / (double)count : 0;
+  return more ? (sum + *more) / (double)(count + 1) : sum / (double)count;
 }
 
-static double averaged(monitors *all, const monitor *m) {
-  return m->window > 1 ? mean_of_ring(m) : value_now(all, m);
+static double averaged(const monitors *all, const monitor *m, long step) {
+  const bool late = m->known == KNOWN_ONE_LATE;
+  if (m->window > 1 && !late && m->state.filled > 0) return mean_of_ring(m, m->window, NULL);
+  const double now = value_now(all, m, step);
+  return m->window > 1 && late ? mean_of_ring(m, m->window - 1, &now) : now;
 }
 
 void monitors_step(monitors *all, long step) {
-  all->outputs_found = false;
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
-    if (m->window > 1) m->ring[m->state.filled++ % m->window] = value_now(all, m);
-    if (step == m->zero_step) m->state.zero = averaged(all, m);
+    const bool of_state = m->known == KNOWN_AFTER_STEP && m->deck->kind != MONITOR_VELOCITY;
+    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED && (step > 0 || of_state))
+      push(m, value_of_step(all, m, step));
   }
 }
 
-void monitors_sample(monitors *all, double time, bool observed, double *values) {
-  all->outputs_found |= observed;
+bool monitors_due(const monitors *all, long step) {
+  for (int i = 0; i < all->count; i++) {
+    const monitor *m = &all->items[i];
+    if (step == m->zero_step || (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED)) return true;
+  }
+  return false;
+}
+
+void monitors_look(monitors *all, long step, long position) {
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
-    values[i] = m->deck->scale * (averaged(all, m) - m->state.zero);
+    if (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED) push(m, value_now(all, m, step));
+    if (position == m->zero_step) m->state.zero = averaged(all, m, step);
+  }
+}
+
+void monitors_sample(monitors *all, long step, double time, double *values) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    values[i] = m->deck->scale * (averaged(all, m, step) - m->state.zero);
     if (fabs(values[i]) <= fabs(m->state.peak)) continue;
     m->state.peak = values[i];
     m->state.peak_time = time;

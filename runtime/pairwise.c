@@ -23,10 +23,10 @@ typedef struct row_forces {
 
 typedef struct pairwise_block { /* what one thread works with */
   row_forces buffer[2];
-  row_forces seam;       /* of the last row: the block above needs them, too */
-  team_errand seam_done; /* once a step */
-  double *fields;   /* [fields][pitch] copy of a row's fields for evaluations that leave no trace */
-  double *observed; /* [1 + outputs][pitch] */
+  row_forces seam;           /* of the last row: the block above needs them, too */
+  team_errand seam_done;     /* once a step */
+  double *fields;            /* [fields][pitch] copy of those of another block's row */
+  double *observed;          /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
   const double **parameters; /* [varying] for strips */
   char apart[SWEEP_APART];
@@ -154,22 +154,38 @@ static void evaluate_part(sweep *w, pairwise_block *b, row_part at, const row_fo
   }
 }
 
-/* The same on a copy of the fields: forces of the present state without a trace. */
-static void evaluate_aside(sweep *w, pairwise_block *b, int row, row_forces *buffer) {
+/* What a row's bonds take in the state observed, to begin with. */
+static void clear_lost(const sweep *w, int row) {
+  const size_t bytes = (size_t)w->count[row] * sizeof(double);
+  memset(w->lost_state + sweep_start(w, row), 0, bytes);
+  memset(w->lost_rate + sweep_start(w, row), 0, bytes);
+}
+
+/* The same on a copy of the fields: forces and new fields of the present state. Of a row of another block, whose first row needs
+   them, only the forces are kept. */
+static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
   const rows *g = w->lattice;
+  pairwise_block *b = &own(w)->blocks[block];
+  const bool foreign = row < w->blocks[block].first, ledger = w->ledger && !foreign;
+  const long start = sweep_start(w, row);
   take_buffer_for_row(w, buffer, row);
+  if (ledger) clear_lost(w, row);
   for (int k = 0; k < g->directions && w->count[row] > 0; k++) {
     double *force[PL_MAX_PLANES];
     for (int p = 0; p < w->law->force_planes; p++)
       force[p] = plane(w, buffer, p, k) + w->begin[row];
     for (int f = 0; f < w->law->field_count; f++) {
-      b->pointers[f] = b->fields + f * g->pitch;
-      memcpy(b->pointers[f], w->field[f] + k * g->size + rows_start(g, row) + w->begin[row],
+      b->pointers[f] = foreign ? b->fields + f * g->pitch : w->new_field[f] + k * g->size + start;
+      memcpy(b->pointers[f], w->field[f] + k * g->size + start,
              (size_t)w->count[row] * sizeof(double));
     }
     pl_strip s = {.field = b->pointers, .force = force};
     strip_ends(w, b, row, k, 0, w->count[row], &s);
-    w->law->rows(w->law, pairwise_uniforms(w, k), &s);
+    if (ledger) {
+      s.dissipated_state = w->lost_state + start;
+      s.dissipated_rate = w->lost_rate + start;
+    }
+    (ledger ? w->law->rows_ledger : w->law->rows)(w->law, pairwise_uniforms(w, k), &s);
   }
 }
 
@@ -222,12 +238,12 @@ static inline uint64_t size_bits(double x) {
   return u.bits;
 }
 
-/* next = decay v + dt/m f in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
+/* next = decay v + part dt/m f (sweep.h) in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
    (NaN is not below anything). One loop whose choices are literal: that is what compilers make vectors of. */
 static inline __attribute__((always_inline)) int64_t
 kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
   const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
-  const double decay = w->decay, step = w->time_step;
+  const double decay = w->decay, step = sweep_force_part(w) * w->time_step;
   const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
   const gathered s = *from;
   uint64_t largest[] = {0, 0, 0};
@@ -348,7 +364,7 @@ static pl_strip observe_strip(sweep *w, pairwise_block *b, int row, int directio
   const rows *g = w->lattice;
   double **observed = b->pointers + w->law->field_count;
   for (int f = 0; f < w->law->field_count; f++)
-    b->pointers[f] = w->field[f] + direction * g->size + rows_start(g, row) + w->begin[row];
+    b->pointers[f] = w->new_field[f] + direction * g->size + sweep_start(w, row);
   for (int o = 0; o <= w->law->output_count; o++)
     observed[o] = b->observed + o * g->pitch;
   pl_strip s = {.field = b->pointers, .observed = observed};
@@ -378,6 +394,18 @@ static void output_values(sweep *w, int output, double *values) {
     }
 }
 
+/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other forces, count half a step
+   until the state is reached; they are none of those that a step must be short enough for (sweep_row.free). */
+static void sum_lost(sweep *w, int row) {
+  const long start = sweep_start(w, row), count = w->count[row];
+  const double pending = 0.5 * sweep_total(count, w->lost_rate + start);
+  sweep_row *r = &w->observed[row];
+  r->state =
+      sweep_total(count, w->dissipated_state + start) + sweep_total(count, w->lost_state + start);
+  r->rate = sweep_total(count, w->dissipated_rate + start) + pending;
+  r->free += pending;
+}
+
 static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
   sweep_block *b = &w->blocks[block];
@@ -390,7 +418,9 @@ static void observe_row(sweep *w, int block, int row, const row_forces *here,
       w->force[d][start + q] = d < 2 ? bond_sum(&from, d, q) : -bond_sum(&from, 2, q);
   }
   sweep_observe_motion(w, b, row);
-  w->row_stored[row] = w->ledger ? stored_in_row(w, &own(w)->blocks[block], row) : 0;
+  if (!w->ledger) return;
+  w->observed[row].stored = stored_in_row(w, &own(w)->blocks[block], row);
+  sum_lost(w, row);
 }
 
 static void observe(sweep *w, int stage, int block) {
@@ -399,10 +429,10 @@ static void observe(sweep *w, int stage, int block) {
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = &p->buffer[1];
   clear_buffer(w, below);
-  if (b->first > 0) evaluate_aside(w, p, b->first - 1, below);
+  if (b->first > 0) evaluate_aside(w, block, b->first - 1, below);
   for (int r = b->first; r < b->last; r++) {
     row_forces *here = &p->buffer[(r - b->first) & 1];
-    evaluate_aside(w, p, r, here);
+    evaluate_aside(w, block, r, here);
     observe_row(w, block, r, here, below);
     below = here;
   }
@@ -495,10 +525,10 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
   for (int k = 0; k < w->block_count; k++)
     new_block(w, p, &p->blocks[k]);
-  if (w->ledger) {
-    w->dissipated_state = sweep_doubles(w, w->lattice->size);
-    w->dissipated_rate = sweep_doubles(w, w->lattice->size);
-  }
+  double **const energies[] = {&w->dissipated_state, &w->dissipated_rate, &w->lost_state,
+                               &w->lost_rate};
+  for (int k = 0; k < 4 && w->ledger; k++)
+    *energies[k] = sweep_doubles(w, w->lattice->size);
   list_streams(w, p);
   return (sweep_engine){.step_stages = 1,
                         .observe_stages = 1,

@@ -29,7 +29,6 @@ static long ramp_of(const rows *g, double part) {
 }
 
 relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part) {
-  const double margin = 0.02;
   relaxation *r = must_calloc(1, sizeof *r);
   const size_t size = (size_t)w->lattice->size;
   r->deck = &k->relaxation;
@@ -37,8 +36,6 @@ relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part) {
   r->loads = l;
   r->interval = k->simulation.end_time / k->relaxation.increments;
   r->ramp = ramp_of(w->lattice, part);
-  /* v+ = d v + dt a is stable while (dt omega)^2 <= 2 (1 + d), and dt omega <= 2 part */
-  r->least_decay = fmin(fmax(2 * part * part - 1 + margin, 0), 1);
   for (int d = 0; d < w->dof; d++) {
     r->displacement[d] = must_calloc(size, sizeof(double));
     r->force[d] = must_calloc(size, sizeof(double));
@@ -63,7 +60,7 @@ static bool is_loading(const relaxation *r, int64_t step) {
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->sweep->decay = fmax(exp(-rate * r->sweep->time_step), r->least_decay);
+  r->sweep->decay = exp(-rate * r->sweep->time_step);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -113,7 +110,7 @@ static void add_component(const relaxation *r, int d, squares *sum) {
   const sweep *w = r->sweep;
   const loads *l = r->loads;
   const double arm = d < w->dimensions ? 1 : w->lattice->spacing;
-  const double gravity = d < w->dimensions ? w->push[d] / w->time_step : 0;
+  const double gravity = d < w->dimensions ? w->gravity[d] : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
     const double weight = gravity * sweep_mass(w, d, q);

@@ -31,7 +31,6 @@ typedef struct relaxation {
   relaxation_state state;
   double *displacement[PL_MAX_DOF]; /* [size] at the last look */
   double *force[PL_MAX_DOF];
-  double least_decay; /* of a step that is still stable */
   double interval;    /* s of the deck's time in an increment */
   long ramp;          /* steps */
 

@@ -114,6 +114,15 @@ static bool write_input(hid_t file, const result_header *h) {
          write_texts(file, "/input/kernels", h->kernels, h->kernel_count);
 }
 
+static bool write_verdict(hid_t file, const char *name, const result_series *s) {
+  if (!s->judges) return true;
+  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  const bool good = set >= 0 && h5_attribute_integer(set, "checked", s->unchecked == NULL) &&
+                    (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked));
+  if (set >= 0) H5Dclose(set);
+  return good;
+}
+
 static bool write_history(hid_t file, const double *time, long count, const result_series *series,
                           int series_count) {
   hsize_t n[1] = {(hsize_t)count};
@@ -122,7 +131,8 @@ static bool write_history(hid_t file, const double *time, long count, const resu
   for (int k = 0; good && k < series_count; k++) {
     char name[512];
     snprintf(name, sizeof name, "/history/%s", series[k].name);
-    good = h5_write_doubles(file, name, series[k].values, 1, n, series[k].unit);
+    good = h5_write_doubles(file, name, series[k].values, 1, n, series[k].unit) &&
+           write_verdict(file, name, &series[k]);
   }
   return good;
 }

@@ -36,6 +36,9 @@ typedef struct result_series { /* of the history */
   const char *name;            /* "load"; "energy/kinetic" */
   const char *unit;
   const double *values; /* [history_count] */
+  /* Of a series that judges the run: attribute `checked` 1, or 0 where it is not known, with the sentence `unchecked`. */
+  bool judges;
+  const char *unchecked;
 } result_series;
 
 typedef struct result_header {
@@ -108,6 +111,9 @@ int result_names_find(const result_names *n, const char *given);
 /* The full name of a history or a field that is given so. False with a sentence that lists what there is. */
 bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
                  char *error, size_t error_size);
+
+/* Why a series that judges the run does not ("" where it does, or is no such series). */
+void result_read_unchecked(result_file *f, const char *name, char *why, size_t size);
 
 /* A name may be given by its last part where that says which. */
 double *result_read_series(result_file *f, const char *name, long *count, char *unit,

@@ -117,6 +117,9 @@ static bool count_increments(simulation *s) {
   return true;
 }
 
+/* Unless the deck asks for more: a sample takes up to four steps, so that these take less than 2 % of a run. */
+enum { STEPS_A_SAMPLE = 200 };
+
 static bool count_steps(simulation *s, diagnostics *d) {
   static const double most = 1e12;
   if (s->deck->relaxation.increments > 0) return count_increments(s);
@@ -127,9 +130,9 @@ static bool count_steps(simulation *s, diagnostics *d) {
     return false;
   }
   s->step_count = steps < 1 ? 1 : (int64_t)steps;
-  s->sample_interval = s->deck->output.sample > 0 ? s->deck->output.sample : end / 2000;
-  s->sample_interval =
-      fmax(s->sample_interval, s->limit.step); /* there is no more than a sample a step */
+  const double asked = s->deck->output.sample;
+  s->sample_interval = asked > 0 ? fmax(asked, s->limit.step) /* no more than a sample a step */
+                                 : fmax(end / 2000, STEPS_A_SAMPLE * s->limit.step);
   const double samples = fmin(ceil(end / s->sample_interval), steps);
   s->history_capacity = (int64_t)samples + 3;
   return true;
@@ -237,7 +240,7 @@ static bool set_up(simulation *s, diagnostics *d) {
   const bool fields = frames_check(s, d), step = choose_step(s, d);
   if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
-                       k->output.energy, quasi_static || frames_want(s, "force"));
+                       k->output.energy, quasi_static);
   s->team = team_new(s->state->block_count);
   if (s->fields) s->state->parameter = s->fields->value;
   if (k->gravity_count > 0) sweep_add_gravity(s->state);
@@ -249,7 +252,7 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->monitors) return false;
   frames_choose(s);
   new_history(s);
-  s->at.last_frame_step = -1;
+  s->at.last_frame_step = s->observed_step = -1;
   const size_t family = 2 * (size_t)s->lattice->directions;
   s->bad_fields = must_calloc((1 + family) * (size_t)s->law->field_count + 1, sizeof(double));
   s->bad_family = must_calloc(family, sizeof *s->bad_family);
@@ -364,14 +367,16 @@ static int64_t next_sample(const simulation *s) {
   return k;
 }
 
-/* Values of the present state into the history. The end is sampled also when it lies between two
+/* Values of the state observed into the history. The end is sampled also when it lies between two
  * samples. */
-static void take_sample(simulation *s, bool observed) {
+static void take_sample(simulation *s, const load_look *look) {
   const double time = simulation_time(s);
   const int watched = s->monitors->count;
-  monitors_sample(s->monitors, time, observed, s->sampled);
+  bool sound = true;
+  monitors_sample(s->monitors, (long)s->at.step, time, s->sampled);
   if (s->deck->output.energy)
-    ledger_sample(&s->ledger, s->state, s->loads, (long)s->at.step, s->sampled + watched);
+    sound = ledger_sample(&s->ledger, s->state, s->loads, look, s->limit.omega_max,
+                          s->sampled + watched);
   if (s->relaxation) {
     double *own = s->sampled + s->series_count - RELAXATION_COUNT;
     own[0] = (double)s->relaxation->state.steps;
@@ -383,15 +388,17 @@ static void take_sample(simulation *s, bool observed) {
   s->at.samples++;
   s->at.next_sample = s->relaxation ? s->at.samples : next_sample(s);
   s->stopped_by = monitors_stop(s->monitors, time, s->sampled);
-  if (s->stopped_by) {
-    s->at.status = STEP_STOPPED;
-    s->go_on = false;
-  }
+  if (s->stopped_by) s->at.status = STEP_STOPPED;
+  if (!sound) bad_energy(s, "energy from nothing");
+  if (s->deck->output.energy && simulation_position(s) == simulation_end(s) &&
+      !isfinite(s->sampled[watched + LEDGER_KINETIC] + s->sampled[watched + LEDGER_STORED]))
+    bad_energy(s, "energies that are not finite");
+  if (s->at.status != STEP_OK) s->go_on = false;
 }
 
-static void record_sample(simulation *s, bool observed) {
+static void record_sample(simulation *s, const load_look *look) {
   const double begun = s->profile ? monotonic_seconds() : 0;
-  take_sample(s, observed);
+  take_sample(s, look);
   if (s->profile) s->profile->sampled += monotonic_seconds() - begun;
 }
 
@@ -419,6 +426,11 @@ const char *simulation_series(const simulation *s, int k, const char **symbol,
                      : relaxation_names[own];
 }
 
+int simulation_imbalance(const simulation *s, const char **unchecked) {
+  *unchecked = ledger_unchecked(s->law);
+  return s->deck->output.energy ? s->monitors->count + LEDGER_IMBALANCE : -1;
+}
+
 double simulation_monitor_peak(const simulation *s, int index, double *time) {
   const monitor_state *m = &s->monitors->items[index].state;
   if (time) *time = m->peak_time;
@@ -444,15 +456,14 @@ static void after_step(simulation *s) {
     return;
   }
   monitors_step(s->monitors, (long)s->at.step);
-  s->observe = sample_due(s) && s->deck->output.energy;
-  if (sample_due(s) && !s->observe) record_sample(s, false);
+  s->observe = sample_due(s) || monitors_due(s->monitors, (long)s->at.step);
 }
 
 /* Quasi-static runs observe to see whether the body has come to rest. */
-static void end_increment(simulation *s) {
+static void end_increment(simulation *s, const load_look *look) {
   if (!relaxation_look(s->relaxation, s->at.step)) return;
-  monitors_step(s->monitors, (long)simulation_position(s));
-  record_sample(s, true);
+  monitors_look(s->monitors, (long)s->at.step, (long)simulation_position(s));
+  record_sample(s, look);
   if (simulation_position(s) == simulation_end(s))
     s->at.status = s->at.status == STEP_OK ? STEP_END : s->at.status;
   else
@@ -461,11 +472,15 @@ static void end_increment(simulation *s) {
 }
 
 static void after_observing(simulation *s) {
+  const load_look look = loads_observe(s->loads, s->state, (long)s->at.step);
   s->observe = false;
-  if (s->relaxation && s->at.step > 0)
-    end_increment(s);
-  else
-    record_sample(s, true);
+  s->observed_step = s->at.step;
+  if (s->relaxation && s->at.step > 0) {
+    end_increment(s, &look);
+    return;
+  }
+  monitors_look(s->monitors, (long)s->at.step, (long)simulation_position(s));
+  if (sample_due(s)) record_sample(s, &look);
 }
 
 void simulation_measure(simulation *s, profile *p) {
@@ -531,12 +546,23 @@ static int64_t next_stop(const simulation *s, long steps) {
 }
 
 static void begin(simulation *s) {
+  if (s->at.begun) return;
   s->at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);
   loads_begin(s->loads, s->state);
-  monitors_step(s->monitors, 0);
-  s->observe = s->deck->output.energy;
-  if (!s->observe) record_sample(s, false);
+  if (!s->relaxation) {
+    sweep_observe(s->state);
+    loads_set_back(s->loads, s->state);
+    monitors_step(s->monitors, 0);
+  }
+}
+
+void simulation_observe(simulation *s) {
+  begin(s);
+  if (s->observed_step == s->at.step) return;
+  sweep_observe(s->state);
+  loads_observe(s->loads, s->state, (long)s->at.step);
+  s->observed_step = s->at.step;
 }
 
 static void run_team(simulation *s) {
@@ -577,9 +603,9 @@ step_status simulation_advance(simulation *s, long steps,
   s->until = next_stop(s, steps);
   s->interrupted = interrupted;
   s->go_on = s->at.step < s->until && !(interrupted && *interrupted);
-  s->observe = false;
   const double begun = s->profile ? monotonic_seconds() : 0;
-  if (!s->at.begun) begin(s);
+  begin(s);
+  s->observe = s->at.samples == 0;
   run_team(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;

@@ -85,7 +85,7 @@ typedef struct bad_neighbour { /* of a law of families */
   const double *fields; /* [law's fields] at its beginning: toward it; those on particles its own */
 } bad_neighbour;
 
-/* When STEP_BAD: the lowest particle whose velocity was no number or took it further than a spacing
+/* When STEP_BAD: `particle` is -1 where only the energies tell (ledger.h). Else it is the lowest particle whose velocity was no number or took it further than a spacing
    (half a turn) in one step, and its bond that gave such a force, or else the largest. A row was
    not moved from about the first bad particle on, so that the state there is that before the step; a partner elsewhere
    is moved back by its velocity. With a law of families there is no such bond, but all neighbours. */
@@ -103,7 +103,7 @@ typedef struct bad_state {
   const bad_neighbour *family; /* of the particle; the values are the simulation's */
   int family_count;
   const double *own_fields; /* [law's fields] those on particles: of the particle */
-  const char *what;         /* "not a number", "runaway velocity" */
+  const char *what;         /* "not a number", "runaway velocity", "energy from nothing" */
 } bad_state;
 bad_state simulation_bad(const simulation *s);
 
@@ -112,6 +112,8 @@ bad_state simulation_bad(const simulation *s);
 long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
+/* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
+int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
                                double *time); /* value that is largest in size, its sign kept */
 

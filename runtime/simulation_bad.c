@@ -151,6 +151,15 @@ void bad_explain(simulation *s) {
   }
 }
 
+void bad_energy(simulation *s, const char *what) {
+  s->at.status = STEP_BAD;
+  s->bad = (bad_state){.step = (long)s->at.step,
+                       .time = simulation_time(s),
+                       .particle = -1,
+                       .bond_particle = -1,
+                       .what = what};
+}
+
 bad_state simulation_bad(const simulation *s) {
   return s->bad;
 }

@@ -38,18 +38,18 @@ void frames_choose(simulation *s) {
       6 + (size_t)law->field_count + (size_t)law->output_count + (size_t)law->varying_count;
   s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
-  double *const *u = s->state->displacement, *const *v = s->state->velocity;
+  double *const *u = s->state->displacement;
   offer(s, all || frames_want(s, "displacement"),
         (frame_field){"displacement", "m", false, s->state->dimensions, "other"},
         (frame_source){FROM_STATE, u, 0});
   offer(s, all || frames_want(s, "velocity"),
         (frame_field){"velocity", "m/s", false, s->state->dimensions, "other"},
-        (frame_source){FROM_STATE, v, 0});
+        (frame_source){FROM_VELOCITY, NULL, 0});
   offer(s, law->dof > law->dimensions && (all || frames_want(s, "rotation")),
         (frame_field){"rotation", "rad", false, 1, "other"}, (frame_source){FROM_STATE, u + 2, 0});
   offer(s, frames_want(s, "force"),
         (frame_field){"force", "N", false, s->state->dimensions, "other"},
-        (frame_source){FROM_FORCE, s->state->force, 0});
+        (frame_source){FROM_STATE, s->state->force, 0});
   const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
   offer(s, damage, (frame_field){"damage", "1", false, 1, "damage"},
         (frame_source){FROM_DAMAGE, NULL, 0});
@@ -184,7 +184,9 @@ static void bond_values(const simulation *s, const double *array, double *values
 static void particle_dissipated(const simulation *s, double *values) {
   for (long p = 0; p < s->lattice->particle_count; p++) {
     const int32_t site = s->lattice->particle_site[p];
-    values[p] = s->state->dissipated_state[site] + s->state->dissipated_rate[site];
+    const sweep *w = s->state;
+    values[p] = w->dissipated_state[site] + w->lost_state[site] + w->dissipated_rate[site] +
+                0.5 * w->lost_rate[site];
   }
 }
 
@@ -200,19 +202,25 @@ static void output_values(simulation *s, int output, double *values) {
   const pl_field *field = &s->law->outputs[output];
   const size_t planes = (size_t)sweep_planes(s->state, field->place);
   double *array = must_calloc(planes * (size_t)s->lattice->size, sizeof *array);
-  sweep_find_outputs(s->state);
   sweep_output(s->state, output, array);
   law_values(s, field, array, values);
   free(array);
 }
 
+static void velocities(const simulation *s, int components, double *values) {
+  for (long p = 0; p < s->lattice->particle_count; p++)
+    for (int c = 0; c < components; c++)
+      values[p * components + c] = loads_velocity(
+          s->loads, s->state, c, s->lattice->particle_site[p], (long)s->at.step);
+}
+
 void simulation_frame_values(simulation *s, int field, double *values) {
   const frame_source *from = &s->frame_sources[field];
   const unsigned environment = sweep_enter();
+  simulation_observe(s);
   switch (from->kind) {
-  case FROM_FORCE:
-    sweep_observe(s->state);
-    site_values(s, from->arrays, s->frame_fields[field].components, values);
+  case FROM_VELOCITY:
+    velocities(s, s->frame_fields[field].components, values);
     break;
   case FROM_STATE:
     site_values(s, from->arrays, s->frame_fields[field].components, values);
@@ -224,7 +232,7 @@ void simulation_frame_values(simulation *s, int field, double *values) {
     particle_dissipated(s, values);
     break;
   case FROM_FIELD:
-    law_values(s, &s->law->fields[from->index], s->state->field[from->index], values);
+    law_values(s, &s->law->fields[from->index], s->state->new_field[from->index], values);
     break;
   case FROM_OUTPUT:
     output_values(s, from->index, values);

@@ -26,7 +26,7 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
 typedef struct frame_source { /* where a frame field comes from */
   enum {
     FROM_STATE,
-    FROM_FORCE,
+    FROM_VELOCITY,
     FROM_DAMAGE,
     FROM_DISSIPATED,
     FROM_FIELD,
@@ -65,6 +65,7 @@ struct simulation {
   bad_neighbour *bad_family;
   progress_state at;
   bool observe, go_on;         /* set by one thread for all */
+  int64_t observed_step;       /* of the state observed last; -1: none */
   profile *profile;            /* NULL: nothing is measured */
   const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
@@ -86,5 +87,10 @@ int64_t frames_step(const simulation *s, int64_t frame);
 
 /* Fills s->bad after a sweep that found a velocity beyond its limit. */
 void bad_explain(simulation *s);
+/* The energies just sampled are none that a stable step allows. */
+void bad_energy(simulation *s, const char *what);
+
+/* Makes sure that the run has begun and that its present state is the one observed; outside of the time loop. */
+void simulation_observe(simulation *s);
 
 #endif

@@ -32,8 +32,8 @@ static void add_state(part_list *l, const simulation *s) {
   }
   if (w->weight) {
     add_part(l, "work_of_gravity", w->row_gravity, (size_t)s->lattice->row_count * sizeof(double));
-    add_part(l, "push", s->state->push, sizeof s->state->push);
-    add_part(l, "push_work", s->state->push_work, sizeof s->state->push_work);
+    add_part(l, "gravity", s->state->gravity, sizeof s->state->gravity);
+    add_part(l, "gravity_work", s->state->gravity_work, sizeof s->state->gravity_work);
   }
   add_part(l, "dissipated_mass", w->row_mass, (size_t)s->lattice->row_count * sizeof(double));
   add_part(l, "internal", w->row_internal, (size_t)s->lattice->row_count * sizeof(double));
@@ -87,7 +87,7 @@ static bool is_reachable(const simulation *s, const progress_state *at) {
   if (at->status < STEP_OK || at->status > STEP_BAD) return false;
   if (at->step < 0 || at->step > s->step_count || (!at->begun && at->step > 0)) return false;
   if (at->next_sample < 0 || at->next_sample > s->history_capacity) return false;
-  if (at->samples < at->begun || at->samples > at->next_sample + 1) return false;
+  if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
   if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
   if (s->relaxation && at->samples > simulation_end(s) + 1) return false;
   return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
@@ -120,6 +120,7 @@ static void put_places_back(const simulation *s, own_places *own) {
     c->anchor = read.anchor;
     c->held = read.held;
     c->velocity = read.velocity;
+    c->impulse = read.impulse;
     c->reaction = read.reaction;
     c->sums = read.sums;
   }
@@ -130,13 +131,14 @@ static void put_places_back(const simulation *s, own_places *own) {
     l->forces[k].velocity = read.velocity;
     l->forces[k].sums = read.sums;
   }
-  if (s->relaxation && s->at.begun) { /* a sample at the start, and one after each increment */
+  if (s->relaxation && s->at.samples > 0) { /* one at the start, and one after each increment */
     s->relaxation->state.done = s->at.samples - 1;
     l->clock = relaxation_clock(s->relaxation, l->clock.first);
   }
-  for (int m = 0; m < s->monitors->count; m++) /* one push a step, and one before the first */
-    if (s->monitors->items[m].window > 1)
-      s->monitors->items[m].state.filled = s->at.begun ? simulation_position(s) + 1 : 0;
+  for (int m = 0; m < s->monitors->count; m++) { /* one push a step, and perhaps one before the first */
+    int64_t *filled = &s->monitors->items[m].state.filled;
+    if (*filled < 0 || *filled > simulation_position(s) + 1) *filled = 0;
+  }
 }
 
 bool simulation_restore(simulation *s, const char *path, const char *fingerprint,

@@ -48,24 +48,25 @@ int sweep_planes(const sweep *w, int where) {
   return where == PL_ON_PARTICLE ? 1 : 2 * w->lattice->directions;
 }
 
-static void new_state(sweep *w, bool forces) {
+static void new_state(sweep *w) {
   const rows *g = w->lattice;
   for (int d = 0; d < w->dof; d++) {
     w->displacement[d] = sweep_doubles(w, g->size);
     w->velocity[d] = sweep_doubles(w, g->size);
-    if (forces) w->force[d] = sweep_doubles(w, g->size);
+    w->force[d] = sweep_doubles(w, g->size);
   }
   w->field = must_calloc((size_t)w->law->field_count + 1, sizeof *w->field);
+  w->new_field = must_calloc((size_t)w->law->field_count + 1, sizeof *w->new_field);
   for (int f = 0; f < w->law->field_count; f++) {
     const long values = sweep_planes(w, w->law->fields[f].place) * g->size;
     w->field[f] = sweep_doubles(w, values);
+    w->new_field[f] = sweep_doubles(w, values);
     for (long k = 0; k < values; k++)
-      w->field[f][k] = w->law->fields[f].initial;
+      w->field[f][k] = w->new_field[f][k] = w->law->fields[f].initial;
   }
-  double **sums[] = {&w->row_kinetic, &w->row_stored,   &w->row_mass,
-                     &w->row_pending, &w->row_internal, &w->row_internal_pending};
-  for (size_t k = 0; k < sizeof sums / sizeof *sums; k++)
-    *sums[k] = sweep_doubles(w, g->row_count);
+  w->row_mass = sweep_doubles(w, g->row_count);
+  w->row_internal = sweep_doubles(w, g->row_count);
+  w->observed = must_calloc((size_t)g->row_count, sizeof *w->observed);
   w->row_stuck = must_calloc((size_t)g->row_count, sizeof *w->row_stuck);
 }
 
@@ -132,7 +133,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   }
   find_spans(w);
   new_masses(w);
-  new_state(w, ledger || forces || families);
+  new_state(w);
   new_blocks(w, threads);
   w->engine = families ? family_engine(w, parameters) : pairwise_engine(w, parameters);
   return w;
@@ -149,7 +150,9 @@ void sweep_free(sweep *w) {
   if (!w) return;
   w->engine.free(w);
   free(w->field);
+  free(w->new_field);
   free(w->row_stuck);
+  free(w->observed);
   free(w->begin);
   free(w->count);
   free(w->blocks);
@@ -208,7 +211,8 @@ static int64_t add_push(long count, double push, double limit, const double *res
 
 int64_t sweep_push(const sweep *w, row_part at, int component, double *next) {
   if (!w->weight || component >= w->dimensions) return 0;
-  return add_push(at.end - at.first, w->push[component], w->limit[component],
+  const double push = w->time_step * sweep_force_part(w) * w->gravity[component];
+  return add_push(at.end - at.first, push, w->limit[component],
                   w->weight + sweep_start(w, at.row) + at.first, next + at.first);
 }
 
@@ -226,15 +230,15 @@ static inline __attribute__((always_inline)) void drift(const sweep *w, int dof,
     }
 }
 
-/* Sum of weight a (a + b) or weight a b; without weights they count as 1. Eight lanes, then their sum: the order is the same
-   whatever the vector width. */
+/* Sum of weight a b or, with `square`, of weight (a + b)^2; without weights they count as 1. Eight lanes, then their sum: the
+   order is the same whatever the vector width. */
 static inline __attribute__((always_inline)) double
 lane_sum(long count, const double *restrict weight, const double *restrict a,
          const double *restrict b, bool square) {
   double lane[PL_LANES] = {0};
   for (long q = 0; q < count; q += PL_LANES)
     for (int l = 0; l < PL_LANES; l++) {
-      const double term = a[q + l] * (square ? a[q + l] + b[q + l] : b[q + l]);
+      const double both = a[q + l] + b[q + l], term = square ? both * both : a[q + l] * b[q + l];
       lane[l] += weight ? weight[q + l] * term : term;
     }
   double sum = 0;
@@ -243,7 +247,7 @@ lane_sum(long count, const double *restrict weight, const double *restrict a,
   return sum;
 }
 
-/* Sum of m a (a + b) or m a b over particles, with m relative to their mean mass; literal choices make vectors. */
+/* Sum of m a b or m (a + b)^2 over particles, with m relative to their mean mass; literal choices make vectors. */
 static double mass_sum(const sweep *w, row_part at, const double *a, const double *b, bool square) {
   const long count = at.end - at.first;
   const double *m = w->relative_mass;
@@ -288,11 +292,11 @@ static void keep_ledger(sweep *w, const sweep_block *b, row_part at) {
     const double *next = b->next + d * w->lattice->pitch + at.first;
     if (w->decay < 1 && w->ledger)
       w->row_mass[at.row] +=
-          0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, at, w->velocity[d] + start, next, true);
+          0.5 * w->mass[d] * sweep_drag(w) * mass_sum(w, at, w->velocity[d] + start, next, true);
     if (w->weight && d < w->dimensions)
       w->row_gravity[at.row] +=
-          w->push_work[d] * (w->relative_mass ? sweep_dot(count, w->relative_mass + start, next)
-                                              : sweep_total(count, next));
+          w->gravity_work[d] * (w->relative_mass ? sweep_dot(count, w->relative_mass + start, next)
+                                                 : sweep_total(count, next));
   }
 }
 
@@ -332,42 +336,44 @@ bool sweep_step(sweep *w) {
   return true;
 }
 
-void sweep_find_forces(sweep *w) {
+static void do_stages(sweep *w, int stages, void (*stage_of)(sweep *, int stage, int block)) {
 #pragma omp parallel num_threads(w->block_count) if (w->block_count > 1)
   {
     const unsigned environment = sweep_enter();
-    for (int stage = 0; stage < w->engine.force_stages; stage++) {
+    for (int stage = 0; stage < stages; stage++) {
 #pragma omp for schedule(static)
       for (int block = 0; block < w->block_count; block++)
-        w->engine.forces(w, stage, block);
+        stage_of(w, stage, block);
     }
     sweep_leave(environment);
   }
+}
+
+void sweep_find_forces(sweep *w) {
+  do_stages(w, w->engine.force_stages, w->engine.forces);
 }
 
 /* --- sampling --------------------------------------------------------------------------------- */
 
 void sweep_observe_motion(sweep *w, const sweep_block *b, int row) {
   const long start = sweep_start(w, row);
-  w->row_kinetic[row] = 0;
-  w->row_pending[row] = 0;
+  const row_part all = whole_row(w, row);
+  sweep_row *r = &w->observed[row];
+  r->kinetic = r->free = r->mass = r->internal = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
-    w->row_kinetic[row] += 0.5 * w->mass[d] * mass_sum(w, whole_row(w, row), v, next, false);
-    if (w->decay < 1)
-      w->row_pending[row] +=
-          0.5 * w->mass[d] * (1 - w->decay) * mass_sum(w, whole_row(w, row), v, v, false);
+    const double half = 0.5 * w->mass[d], square = mass_sum(w, all, v, v, false),
+                 product = mass_sum(w, all, v, next, false);
+    r->kinetic += half * product;
+    r->mass += half * sweep_drag(w) * (square + product);
+    const double work = -0.5 * w->time_step * sweep_dot(all.end, w->force[d] + start, v);
+    r->internal += work;
+    r->free += half * square - work;
   }
 }
 
 void sweep_observe(sweep *w) {
-  for (int stage = 0; stage < w->engine.observe_stages; stage++)
-    for (int b = 0; b < w->block_count; b++)
-      w->engine.observe(w, stage, b);
-}
-
-void sweep_find_outputs(sweep *w) {
-  if (w->engine.find_outputs) w->engine.find_outputs(w);
+  do_stages(w, w->engine.observe_stages, w->engine.observe);
 }
 
 void sweep_output(sweep *w, int output, double *values) {
@@ -390,15 +396,17 @@ static double sum_of(const double *values, long count) {
 
 sweep_totals sweep_sum(const sweep *w) {
   const int n = w->lattice->row_count;
-  sweep_totals t = {.kinetic = sum_of(w->row_kinetic, n),
-                    .stored = sum_of(w->row_stored, n),
-                    .internal = sum_of(w->row_internal, n) + sum_of(w->row_internal_pending, n),
-                    .dissipated_mass = sum_of(w->row_mass, n),
-                    .dissipated_pending = sum_of(w->row_pending, n)};
+  sweep_totals t = {.internal = sum_of(w->row_internal, n), .dissipated = sum_of(w->row_mass, n)};
   if (w->weight) t.gravity = sum_of(w->row_gravity, n);
-  if (w->dissipated_state) {
-    t.dissipated_state = sum_of(w->dissipated_state, w->lattice->size);
-    t.dissipated_rate = sum_of(w->dissipated_rate, w->lattice->size);
+  for (int row = 0; row < n; row++) {
+    const sweep_row *r = &w->observed[row];
+    t.kinetic += r->kinetic;
+    t.stored += r->stored;
+    t.free += r->free;
+    t.dissipated_state += r->state;
+    t.dissipated_rate += r->rate;
+    t.dissipated += r->mass;
+    t.internal += r->internal;
   }
   return t;
 }

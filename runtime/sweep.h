@@ -31,16 +31,21 @@ typedef struct sweep_block { /* what one thread works on */
   char apart[SWEEP_APART];
 } sweep_block;
 
-typedef struct sweep_totals { /* sums over all particles and bonds, J */
+typedef struct sweep_totals { /* sums over all particles and bonds, J, up to the state observed */
   double kinetic; /* half m (v before)(v after): what a spring and a mass conserve exactly */
   double stored;
+  double free; /* kinetic, had only bonds acted */
   double dissipated_state, dissipated_rate; /* pairwise laws: by the law since the start */
-  double
-      internal; /* laws of families: work done against the forces of the bonds, up to the state */
-  double dissipated_mass; /* by mass damping since the start, up to the middle of the last step */
-  double gravity;         /* work of gravity since the start */
-  double dissipated_pending; /* by mass damping from there to the state sampled */
+  double internal;   /* laws of families: work done against the forces of the bonds */
+  double dissipated; /* by mass damping since the start */
+  double gravity;    /* work of gravity since the start */
 } sweep_totals;
+
+typedef struct sweep_row { /* of a row in the state observed, J */
+  double kinetic, stored, free;
+  double state, rate;    /* dissipated by the law of bonds since the start */
+  double mass, internal; /* mass damping, work against the bonds: from the middle of the last step on */
+} sweep_row;
 
 typedef struct sweep sweep;
 
@@ -52,7 +57,6 @@ typedef struct sweep_engine {
       sweep *w);          /* after values of fields were set from outside; NULL: nothing to do */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
   void (*observe)(sweep *w, int stage, int block);
-  void (*find_outputs)(sweep *w); /* NULL: `output` does */
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
   bool
@@ -65,9 +69,9 @@ struct sweep {
   const pl_law *law;
   double time_step; /* s */
   double decay;     /* factor of mass damping on the velocities in the coming step; 1: none */
-  double push[3];   /* m/s that gravity adds to the velocities in the coming step */
+  double gravity[3]; /* m/s^2 in the coming step */
   /* J s/m: work of gravity over the velocity after the coming step, of a particle of mean mass */
-  double push_work[3];
+  double gravity_work[3];
   double *weight; /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
   bool ledger;    /* dissipated energies are kept */
   bool forces;    /* somebody looks at the forces of every step */
@@ -79,15 +83,17 @@ struct sweep {
   double
       limit[PL_MAX_DOF]; /* velocity that no particle may reach: one spacing, half a turn a step */
   double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF]; /* [size] m, rad; m/s, rad/s */
-  double *
-      *field; /* [fields][sweep_planes * size]; which memory is a field's may change in a step */
+  /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed last; which memory is
+     whose may change in a step. */
+  double **field, **new_field;
   double *const *parameter; /* [varying][directions * size] of random fields; not owned */
-  double *dissipated_state, *dissipated_rate; /* [size] J at the site that owns the bond; NULL
-                                                 without ledger and for laws of families */
+  /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state observed; NULL without
+     ledger and for laws of families. */
+  double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
   double *force[PL_MAX_DOF]; /* [size] N, N m: sums over bonds, as last observed (families: as last
-                                used); NULL when never asked */
-  double *row_kinetic, *row_stored, *row_mass, *row_pending; /* [row_count] J */
-  double *row_internal, *row_internal_pending;               /* [row_count] J */
+                                used) */
+  double *row_mass, *row_internal; /* [row_count] J up to the middle of the last step */
+  sweep_row *observed;             /* [row_count] */
   long *
       row_stuck; /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
   double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
@@ -100,8 +106,7 @@ struct sweep {
   sweep_engine engine;
 };
 
-/* The fields start at their initial values, all at rest. With `ledger` or `forces` the force arrays
- * exist. */
+/* The fields start at their initial values, all at rest. */
 sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameters, double time_step,
                  int threads, bool ledger, bool forces);
 void sweep_free(sweep *w);
@@ -110,8 +115,19 @@ static inline double sweep_mass(const sweep *w, int component, long site) {
   return w->relative_mass ? w->mass[component] * w->relative_mass[site] : w->mass[component];
 }
 
-/* From now on `push` counts. */
+/* From now on `gravity` counts. */
 void sweep_add_gravity(sweep *w);
+
+/* Mass damping resists with the mean of the velocities before and after the step,
+     m (v+ - v-) = dt f - tanh(c dt/2) m (v+ + v-),
+   which is v+ = decay v- + part dt f/m with decay = exp(-c dt): exact without forces, of the second order with
+   them, stable with any c wherever the step is without damping. */
+static inline double sweep_force_part(const sweep *w) {
+  return 0.5 * (1 + w->decay);
+}
+static inline double sweep_drag(const sweep *w) { /* tanh(c dt/2) */
+  return (1 - w->decay) / (1 + w->decay);
+}
 
 /* Site arrays that make up a field or an output in that place (pl_place): one for each direction of
    a pairwise law's bonds; of a law of families one on particles, else one for each neighbour. */
@@ -138,19 +154,17 @@ bool sweep_step(sweep *w);
 /* Forces of the present state by a law of families, a thread for each block; nothing moves, and the fields stay. */
 void sweep_find_forces(sweep *w);
 
-/* Observing is done in stages too: forces on the particles in the present state, and the energies;
-   it changes no state. The velocity after the coming kick is needed for the kinetic energy: that of
-   free particles without applied forces is taken. This does all stages and blocks. */
+/* Observing is done in stages too: the law at the present places, aside: forces on the particles, new fields, stored energy and
+   outputs with these; it changes no state. A step brings places to t_n and fields to t_(n-1): observed, all is of t_n. The
+   velocity after the coming kick is needed for the kinetic energy: that of free particles without applied forces is taken. This
+   does all stages, a thread for each block. */
 void sweep_observe(sweep *w);
 /* Sums in row order; call after all was observed. */
 sweep_totals sweep_sum(const sweep *w);
 /* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a law
    of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
-/* Finds the outputs of the law in the present state; sweep_observe has found them, too. */
-void sweep_find_outputs(sweep *w);
-/* An output in the state for which they were found: values[sweep_planes * size], defined where bonds or
- * particles are. */
+/* An output in the state observed last: values[sweep_planes * size], defined where bonds or particles are. */
 void sweep_output(sweep *w, int output, double *values);
 
 #endif

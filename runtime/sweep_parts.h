@@ -43,8 +43,7 @@ void sweep_drift(sweep *w, sweep_block *b, row_part at);
 /* Sums in an order of their own, whatever the vector width; count is a multiple of PL_LANES. */
 double sweep_dot(long count, const double *a, const double *b);
 double sweep_total(long count, const double *a);
-/* Kinetic energy of the row with the block's `next`, and what mass damping takes from the middle of
-   the last step to the present state. */
+/* What a row's motion says of the energies, with the block's `next` and the forces at hand. */
 void sweep_observe_motion(sweep *w, const sweep_block *b, int row);
 
 #endif

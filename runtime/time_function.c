@@ -71,3 +71,32 @@ double time_function_integral(const time_function *f, double t) {
   }
   return 0;
 }
+
+/* 0 where the values are held. */
+static double table_slope(const time_function *f, double t) {
+  const int k = table_piece(f, t);
+  if (k < 0 || k == f->count - 1) return 0;
+  return (f->values[k + 1] - f->values[k]) / (f->times[k + 1] - f->times[k]);
+}
+
+double time_function_slope(const time_function *f, double t) {
+  const double since = t - f->start;
+  if (since < 0) return 0;
+  switch (f->shape) {
+  case TIME_CONSTANT:
+    return 0;
+  case TIME_RAMP:
+    return f->value / f->rise;
+  case TIME_RAMP_HOLD:
+    return since < f->rise ? f->value / f->rise : 0;
+  case TIME_COSINE:
+    return since < f->rise ? f->value * M_PI / (2 * f->rise) * sin(M_PI * since / f->rise) : 0;
+  case TIME_TABLE:
+    return table_slope(f, since);
+  }
+  return 0;
+}
+
+double time_function_jump(const time_function *f) {
+  return f->shape == TIME_CONSTANT ? f->value : f->shape == TIME_TABLE ? f->values[0] : 0;
+}

@@ -23,5 +23,9 @@ typedef struct time_function {
 double time_function_at(const time_function *f, double t);
 /* Integral from start to t, exact: displacement of a prescribed velocity. */
 double time_function_integral(const time_function *f, double t);
+/* Slope just after t. */
+double time_function_slope(const time_function *f, double t);
+/* What comes at once at the start: the only jump that a function has. */
+double time_function_jump(const time_function *f);
 
 #endif

@@ -48,7 +48,8 @@ static void write_right(const char *path) {
   static const double u[2 * PARTICLES] = {0, 0.1, 0, 0, 0.2, 0}, omega[BONDS] = {0.5, 1},
                             time[SAMPLES] = {0, 1, 2, 3, 4};
   static const double *const values[] = {u, omega};
-  static const result_series series[] = {{"load", "N", time}, {"energy/kinetic", "J", time}};
+  static const result_series series[] = {{.name = "load", .unit = "N", .values = time},
+                                         {.name = "energy/kinetic", .unit = "J", .values = time}};
   const result_header h = {.path = path,
                            .fingerprint = "f",
                            .title = "t",

@@ -54,8 +54,9 @@ static void make_result(const workplace *w, const char *name, variant v) {
     kinetic[k] = 1e-6 + (k == 2 ? v.energy_at_2 : 0);
     external[k] = 2 * time[k];
   }
-  const result_series series[] = {
-      {"load", "N", load}, {"energy/kinetic", "J", kinetic}, {"energy/external", "J", external}};
+  const result_series series[] = {{.name = "load", .unit = "N", .values = load},
+                                  {.name = "energy/kinetic", .unit = "J", .values = kinetic},
+                                  {.name = "energy/external", .unit = "J", .values = external}};
   assert_true(result_finish(r, 1e-3, 42, time, v.samples, series, 3, error, sizeof error));
   result_discard(r);
   result_close(r);

@@ -181,7 +181,7 @@ static void elastic_tangent(const pl_law *law, const double *u, long count, cons
 
 #define ELASTIC_LAW(law_kind, law_name, law_dof, planes)                                           \
   {                                                                                                \
-    .abi = PL_KERNEL_ABI, .kind = law_kind, .dimensions = 2, .dof = law_dof,                       \
+    .abi = PL_KERNEL_ABI, .stores = 1, .kind = law_kind, .dimensions = 2, .dof = law_dof,                       \
     .force_planes = planes, .name = law_name, .key = law_name,                                     \
     .parameter_count = ELASTIC_PARAMETERS, .parameters = elastic_parameters, .field_count = 1,     \
     .fields = elastic_fields, .output_count = 1, .outputs = elastic_outputs,                       \

@@ -165,7 +165,7 @@ static void what_is_not_written_has_its_default(void **state) {
   assert_true(k->simulation.step == 0 && k->simulation.threads == 0);
   assert_string_equal(k->output.result, "d6_s6.35.h5");
   assert_int_equal(k->output.frames, 20);
-  near(k->output.sample, 30e-6);
+  near(k->output.sample, 0); /* the run chooses */
   assert_int_equal(k->output.field_count, 2);
   assert_string_equal(k->output.fields[1], "damage");
   assert_true(k->output.energy);

@@ -24,14 +24,20 @@ static double block_mass(const small_run *r) {
   return 2323 * sqrt(3) / 2 * SPACING * SPACING * THICKNESS * (double)w->particle_count;
 }
 
+static double first_of(const small_run *r, const char *name) {
+  const double *values;
+  simulation_series(r->simulation, small_series(r, name), NULL, &values);
+  return values[0];
+}
+
 static void must_open(small_run *r, const char *text) {
   small_open(r, &elastic_beam, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
 }
 
-/* u_n = a dt^2 n (n + 1)/2 and, with the velocities half a step before and after, kinetic energy
-   m a^2 dt^2 n (n + 1)/2: the leapfrog's own parabola, for every particle alike. */
+/* The parabola, for every particle alike: u = a t^2/2. With the velocities half a step before and after, the kinetic energy is
+   m a^2 (t^2 - dt^2/4)/2: less by what it is at the start. */
 static void a_free_body_falls_as_a_whole(void **state) {
   (void)state;
   small_run r;
@@ -41,7 +47,7 @@ static void a_free_body_falls_as_a_whole(void **state) {
   const double dt = simulation_step_limit(r.simulation)->step;
   const double n = (double)simulation_step_done(r.simulation);
   const sweep *w = simulation_state(r.simulation);
-  const double way = dt * dt * n * (n + 1) / 2;
+  const double way = dt * dt * n * n / 2;
   for (long q = 0; q < w->lattice->size; q++) {
     const double here = w->lattice->present[q] ? way : 0; /* absent sites stay */
     assert_true(fabs(w->displacement[0][q] - 2 * here) <= 1e-11 * way);
@@ -49,7 +55,9 @@ static void a_free_body_falls_as_a_whole(void **state) {
   }
   const double work = block_mass(&r) * (4 + 9.81 * 9.81) * way;
   assert_true(fabs(small_last(&r, "energy/external") / work - 1) < 1e-10);
-  assert_true(fabs(small_last(&r, "energy/kinetic") / work - 1) < 1e-10);
+  const double before = first_of(&r, "energy/kinetic");
+  assert_true(fabs((small_last(&r, "energy/kinetic") - before) / work - 1) < 1e-10);
+  assert_true(fabs(before / (work / (4 * n * n)) + 1) < 1e-10);
   assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-10 * work);
   small_close(&r);
 }
@@ -67,7 +75,7 @@ static void gravity_runs_away_before_it_moves(void **state) {
   assert_string_equal(simulation_bad(r.simulation).what, "runaway velocity");
   const sweep *w = simulation_state(r.simulation);
   for (long q = 0; q < w->lattice->size; q++)
-    assert_true(w->displacement[1][q] == 0 && w->velocity[1][q] == 0);
+    assert_true(w->displacement[1][q] == 0);
   small_close(&r);
 }
 
@@ -171,12 +179,6 @@ static void a_thrown_body_keeps_its_velocity(void **state) {
   assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-10 * energy);
   assert_true(small_last(&r, "energy/external") == 0);
   small_close(&r);
-}
-
-static double first_of(const small_run *r, const char *name) {
-  const double *values;
-  simulation_series(r->simulation, small_series(r, name), NULL, &values);
-  return values[0];
 }
 
 /* The ledger begins with the run: nothing is lost before it. */

@@ -43,7 +43,8 @@ static void finish(result *r) {
     time[k] = 0.25 * k;
     load[k] = 1000.0 * k * k;
   }
-  const result_series series[] = {{"load", "N", load}, {"energy/kinetic", "J", time}};
+  const result_series series[] = {{.name = "load", .unit = "N", .values = load},
+                                  {.name = "energy/kinetic", .unit = "J", .values = time}};
   assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);

@@ -73,7 +73,8 @@ static void write_large(void) {
     }
     assert_true(result_frame(r, k, values, error, sizeof error));
   }
-  const result_series series[] = {{"load", "N", time}, {"energy/kinetic", "J", volumes}};
+  const result_series series[] = {{.name = "load", .unit = "N", .values = time},
+                                  {.name = "energy/kinetic", .unit = "J", .values = volumes}};
   assert_true(result_finish(r, 1e-3, 42, time, LONG, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);
@@ -89,7 +90,8 @@ static void write_small(void) {
     assert_true(result_frame(r, k, (const double *const *)values, error, sizeof error));
   }
   const double time[] = {0, 1, 2, 3, 4};
-  const result_series series[] = {{"load", "N", time}, {"energy/kinetic", "J", time}};
+  const result_series series[] = {{.name = "load", .unit = "N", .values = time},
+                                  {.name = "energy/kinetic", .unit = "J", .values = time}};
   assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);

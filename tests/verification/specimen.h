@@ -13,7 +13,6 @@ typedef struct outcome {
   double damage;     /* largest w_t at the end */
   double external;   /* J: work of the ends */
   double lost;       /* J: what damage and the dampers in the bonds took of it */
-  double imbalance;  /* of the ledger, over the external work */
 } outcome;
 
 static inline const double *specimen_field(const sweep *w, const char *name) {
@@ -100,7 +99,6 @@ static inline outcome specimen_run(const char *deck_name, const char *end_time, 
   o.damage = specimen_damage(w);
   o.external = deck_case_series(&c, "energy/external")[samples - 1];
   o.lost = deck_case_series(&c, "energy/dissipated_damage")[samples - 1];
-  o.imbalance = deck_case_series(&c, "energy/imbalance")[samples - 1] / o.external;
   free(image);
   deck_case_close(&c);
   return o;

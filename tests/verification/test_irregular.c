@@ -84,7 +84,7 @@ static void every_family_has_it(void **state) {
   }
   double *sigma_1 = calloc((size_t)g->size, sizeof *sigma_1),
          *sigma_3 = calloc((size_t)g->size, sizeof *sigma_3);
-  sweep_find_outputs(w);
+  sweep_observe(w);
   sweep_output(w, 0, sigma_1);
   sweep_output(w, 1, sigma_3);
   for (long p = 0; p < g->particle_count; p++) {
