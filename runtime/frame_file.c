@@ -161,16 +161,16 @@ static bool is_of_run(const frame_file *f) {
 }
 
 bool frame_file_resume(frame_file *f, const frame_mark *mark, char *error, size_t size) {
-  const off_t end = end_of(f, mark->count);
   if (!is_of_run(f)) {
     snprintf(error, size, "`%s` does not hold the frames of the run to be resumed", f->path);
     return false;
   }
-  if (lseek(f->file, 0, SEEK_END) < end) {
+  if (mark->count > (lseek(f->file, 0, SEEK_END) - f->first) / (off_t)f->bytes) {
     snprintf(error, size, "`%s` holds fewer than the %lld frames that the checkpoint counts on",
              f->path, (long long)mark->count);
     return false;
   }
+  const off_t end = end_of(f, mark->count);
   f->mark = *mark;
   if (!frame_file_each(f, NULL, NULL, error, size)) return false;
   return (ftruncate(f->file, end) == 0 && lseek(f->file, end, SEEK_SET) == end) ||

@@ -1,7 +1,7 @@
 /* The seal of an HDF5 file: its attribute `seal` is a SHA-256 of the whole file, names, types, shapes, attributes, layouts
    and values as they are stored. It is looked at before the library reads anything, so that damage is found, not followed.
    The insides of large chunks are left out: for them stand their sums (Fletcher32), which the library checks when it reads
-   the values. What is left out is told behind the end of what HDF5 reads:
+   the values. What is left out is told behind the end of what HDF5 reads (and cuts off when it opens the file for writing):
 
      [count] pairs of places from, to, ascending: bytes that the seal leaves out, itself among them
      place of the seal, count, "perilat seal 1" in 16 bytes; all numbers of 8 bytes, the lowest first  */

@@ -91,7 +91,7 @@ static bool is_reachable(const simulation *s, const progress_state *at) {
   if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
   if (s->relaxation && at->samples > simulation_end(s) + 1) return false;
   return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
-         at->last_frame_step <= at->step && at->frames.count >= 0 && at->frames.count <= frames + 2;
+         at->last_frame_step <= at->step && at->frames.count >= 0;
 }
 
 /* Places that the set-up chose: they index arrays, and no file may move them. */
