@@ -462,11 +462,11 @@ static bool is_held(const loads *l, const sweep *w, const constraint *c, long st
   return time_of(l, w, step) >= start_of(l, c) - hardly(w);
 }
 
-/* Velocity prescribed just after the instant of a step. */
+/* Velocity prescribed just after the instant of a step, which rounding may have put before the start. */
 static double velocity_at(const loads *l, const sweep *w, const constraint *c, long step) {
   const deck_drive *drive = &l->deck->drives[c->drive];
-  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion,
-                                                                           time_of(l, w, step));
+  const double t = fmax(time_of(l, w, step), drive->motion.start);
+  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
 }
 
 /* A motion that begins moves on as if it had always gone so: its velocity half a step before is that after, mirrored at the
