@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/info_law.h"
@@ -50,8 +51,8 @@ static bool print_history(result_file *f, const char *name) {
   }
   double low = v[0], high = v[0];
   for (long k = 0; k < count; k++) {
-    low = fmin(low, v[k]);
-    high = fmax(high, v[k]);
+    low = pl_fmin(low, v[k]);
+    high = pl_fmax(high, v[k]);
   }
   char why[256];
   result_read_unchecked(f, name, why, sizeof why);

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "dsl/unit_hint.h"
 #include "dsl/units.h"
 #include "runtime/ordinary_file.h"
@@ -153,7 +154,7 @@ static bool read_unit(reader *r, int column, const char *from, const char *to) {
   unit_parse(column_units[column], strlen(column_units[column]), &needed, &bad, &bad_length);
   if (!unit_parse(from, (size_t)(to - from), &given, &bad, &bad_length)) {
     diag_report(r->d, DIAG_UNKNOWN_UNIT, text_span(r, from, to), "there is no unit `%.*s`",
-                (int)fmin((double)bad_length, 40), bad);
+                (int)pl_fmin((double)bad_length, 40), bad);
     unit_hint(r->d, bad, bad_length);
     return false;
   }
