@@ -49,7 +49,8 @@ bool result_spares_inputs(run *r);
 void fingerprint(run *r);
 /* Takes the result for this run alone; nothing is changed yet. */
 bool open_result(run *r);
-/* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts on. */
+/* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts
+   on. */
 bool begin_anew(run *r);
 bool resume(run *r);
 bool write_frame(run *r);

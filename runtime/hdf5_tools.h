@@ -12,8 +12,8 @@ void h5_quiet(void); /* before anything else */
 hid_t h5_create(const char *path);
 bool h5_make_group(hid_t file, const char *name); /* true when it is there already */
 
-/* Data sets of numbers lie in chunks of up to half a megabyte, shuffled and compressed, each with a sum (Fletcher32) that
-   is checked when it is read. */
+/* Data sets of numbers lie in chunks of up to half a megabyte, shuffled and compressed, each with a
+   sum (Fletcher32) that is checked when it is read. */
 bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank,
                       const hsize_t *shape, const char *unit_text);
 bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank,
@@ -32,11 +32,11 @@ bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t s
 /* Text of a data set that holds one, fixed or variable; malloc'ed, NULL when it holds something else. */
 char *h5_read_text(hid_t set);
 
-/* Calls `visit` for each data set, by each of its names. False when a call says so, or when the file holds a link that may
-   lead out of it: links that are not hard are not followed. */
+/* Calls `visit` for each data set, by each of its names. False when a call says so, or when the
+   file holds a link that may lead out of it: links that are not hard are not followed. */
 bool h5_each_set(hid_t file, bool (*visit)(hid_t set, void *context), void *context);
-/* All that the file holds lies in it: no links to elsewhere, no values in other files, virtual data sets only of data sets
-   of the file that are not virtual themselves. */
+/* All that the file holds lies in it: no links to elsewhere, no values in other files, virtual data
+   sets only of data sets of the file that are not virtual themselves. */
 bool h5_stays_inside(hid_t file);
 
 #endif

@@ -1,15 +1,20 @@
-/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are added to a plain file beside it
-   (frame_file.h), which survives a kill; result.h5 itself appears whole, by rename, when the run ends.
-   Layout, names and units of result.h5 are stable:
+/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are added to a plain
+   file beside it (frame_file.h), which survives a kill; result.h5 itself appears whole, by rename,
+   when the run ends. Layout, names and units of result.h5 are stable:
 
-     /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601), title, dt, steps, kernel_key
-     /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
+     /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
+                            title, dt, steps, kernel_key
+     /input/deck            text; /input/set: what --set changed in it, one a line (only then);
+                            /input/models/<name> law text; /input/kernels/<name> generated C
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
-     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles that stand on no lattice
+     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
+                            that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
-     /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
-     /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
-                            attributes units and kind ("state", "damage", "output" of the law, "other")  */
+     /history/time          [T] s; /history/<monitor> [T], attribute units;
+                            /history/energy/<term> [T] J
+     /frames/time           [F] s; /frames/<field> [F, N, components];
+                            /frames/<interaction>/<bond field> [F, M], attributes units and kind
+                            ("state", "damage", "output" of the law, "other")  */
 #ifndef PERILAT_RUNTIME_RESULT_H
 #define PERILAT_RUNTIME_RESULT_H
 
@@ -64,10 +69,11 @@ typedef struct result_header {
 
 typedef struct result result;
 
-/* Opens and locks the file of the frames, and changes nothing yet. With `resume` it must be there. On failure returns NULL
-   with a sentence in error (size bytes). */
+/* Opens and locks the file of the frames, and changes nothing yet. With `resume` it must be there.
+   On failure returns NULL with a sentence in error (size bytes). */
 result *result_open(const result_header *header, bool resume, char *error, size_t size);
-/* Either comes next: a new run, without frames, or one that goes on from the frames that the mark tells of. */
+/* Either comes next: a new run, without frames, or one that goes on from the frames that the mark
+   tells of. */
 bool result_begin(result *r, char *error, size_t size);
 bool result_resume(result *r, const frame_mark *mark, char *error, size_t size);
 /* Appends a frame: values[k] is field k, [count][components]. False when it cannot be written (disk full). */
@@ -86,12 +92,14 @@ bool result_finish(result *r, double dt, long steps, const double *time, long hi
 void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
 
-/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in `error` on failure. Damaged
-   files, changed ones, and those that lead out of themselves are refused; of a file without a seal a warning is printed. */
+/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in
+   `error` on failure. Damaged files, changed ones, and those that lead out of themselves are
+   refused; of a file without a seal a warning is printed. */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
-/* A sentence when something that is in the file could not be read: then no answer from it counts. NULL: all is well. */
+/* A sentence when something that is in the file could not be read: then no answer from it counts.
+   NULL: all is well. */
 const char *result_trouble(const result_file *f);
 /* The run was quasi-static: its samples are increments, its time is only an order. */
 bool result_is_quasi_static(result_file *f);

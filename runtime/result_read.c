@@ -25,7 +25,8 @@ struct result_file {
 
 /* --- opening ---------------------------------------------------------------------------------- */
 
-/* The file that was looked at, opened by the library; negative when it is none of HDF5, or another by now. */
+/* The file that was looked at, opened by the library; negative when it is none of HDF5, or another
+   by now. */
 static hid_t open_looked_at(const char *path, int looked_at) {
   struct stat before, now;
   int *handle;

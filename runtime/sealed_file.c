@@ -114,8 +114,8 @@ bool sealed_file_is_marked(hid_t file) {
 
 /* --- writing ---------------------------------------------------------------------------------- */
 
-/* The library keeps a text of variable length as its length and its bytes, without a sum: what stands there can be put in
-   when all else is written. */
+/* The library keeps a text of variable length as its length and its bytes, without a sum: what
+   stands there can be put in when all else is written. */
 static const char blank[] = "----------------------------------------------------------------";
 _Static_assert(sizeof blank == SHA256_TEXT, "room for the digits");
 
@@ -157,8 +157,8 @@ static bool has_sums(hid_t plist) {
                                        &config) == H5Z_FILTER_FLETCHER32;
 }
 
-/* The inside of each large chunk, all but its sum; not of those that could not be compressed: they lack the second sum, the
-   compression's own. */
+/* The inside of each large chunk, all but its sum; not of those that could not be compressed: they
+   lack the second sum, the compression's own. */
 static bool leave_out_chunks(hid_t set, void *ranges) {
   const hid_t plist = H5Dget_create_plist(set), space = H5Dget_space(set);
   const bool summed = has_sums(plist);

@@ -72,8 +72,8 @@ static void folder_of(const char *path, char *folder, size_t size) {
   snprintf(folder, size, "%.*s", slash ? (int)(slash - path) + 1 : 2, slash ? path : "./");
 }
 
-/* A rename is on the disk only when its folder is. The file is whole under its name by then, and some file systems cannot
-   sync folders: that this fails is no failure. */
+/* A rename is on the disk only when its folder is. The file is whole under its name by then, and
+   some file systems cannot sync folders: that this fails is no failure. */
 bool whole_file_end_on_disk(const whole_file *f, bool good) {
   char folder[WHOLE_FILE_PATH];
   if (!whole_file_end(f, good && sync_path(f->working, 0))) return false;

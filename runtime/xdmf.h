@@ -4,7 +4,8 @@
 
 #include "runtime/result.h"
 
-/* The text of a sidecar for the frames at `times` of the result `h`. False, with errno, when it cannot be written. */
+/* The text of a sidecar for the frames at `times` of the result `h`. False, with errno, when it
+   cannot be written. */
 bool xdmf_write(FILE *out, const result_header *h, const double *times, long frames);
 
 #endif

@@ -207,8 +207,8 @@ static inline off_t size_of(const workplace *w, const char *name) {
   return stat(in_workplace(w, name), &about) == 0 ? about.st_size : 0;
 }
 
-/* Starts a long run to the result `output` in the background, with one --set more or NULL; returns when a few frames are
-   written. */
+/* Starts a long run to the result `output` in the background, with one --set more or NULL; returns
+   when a few frames are written. */
 static inline pid_t start_long_run(const workplace *w, const char *output, const char *more) {
   enum { A_FEW = 8000 }; /* bytes; all hundred frames have 50000 */
   char frames[100], set[100];

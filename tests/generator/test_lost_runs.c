@@ -1,5 +1,6 @@
-/* What may happen to a run and to what it has written: another run in its place, a full disk, links and pipes in the way,
-   damage between stop and --resume. Nothing is lost that could be kept, and nothing wrong is taken for right. */
+/* What may happen to a run and to what it has written: another run in its place, a full disk, links
+   and pipes in the way, damage between stop and --resume. Nothing is lost that could be kept, and
+   nothing wrong is taken for right. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -216,7 +217,8 @@ static void damage(char *bytes, size_t size, uint32_t *seed) {
       bytes[k] = (char)~bytes[k];
 }
 
-/* What a command says on its standard output and draws into o.png (malloc'ed, of `size` bytes); its status. */
+/* What a command says on its standard output and draws into o.png (malloc'ed, of `size` bytes); its
+   status. */
 static char *answer(workplace *w, const char *command, int *status, size_t *size) {
   *status = shell(w, "rm -f o.png; $P %s > all 2> errors", command);
   shell(w, "test ! -f o.png || cat o.png >> all");

@@ -1,5 +1,5 @@
-/* Frames of a run that is going on: what a checkpoint counts on is found again to the bit or not at all; one run at a time;
-   no file is written through a link. */
+/* Frames of a run that is going on: what a checkpoint counts on is found again to the bit or not at
+   all; one run at a time; no file is written through a link. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -86,7 +86,8 @@ static void frames_are_found_again(void **state) {
   }
 }
 
-/* Any byte before the end of what the mark tells of; the file then stays as it was. Those behind do not matter. */
+/* Any byte before the end of what the mark tells of; the file then stays as it was. Those behind do
+   not matter. */
 static void changed_frames_are_refused(void **state) {
   (void)state;
   frame_mark marks[FRAMES + 1];
@@ -163,7 +164,8 @@ static void pipes_are_not_waited_for(void **state) {
   alarm(0);
 }
 
-/* A run that ends removes the file just when another one waits at its door: who has the lock has the file with the name. */
+/* A run that ends removes the file just when another one waits at its door: who has the lock has
+   the file with the name. */
 static void the_lock_is_that_of_the_name(void **state) {
   (void)state;
   enum { TRIES = 20000 };

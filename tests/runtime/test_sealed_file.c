@@ -1,4 +1,5 @@
-/* Results that are damaged, changed, or made to lead elsewhere: they give the right answers or none. */
+/* Results that are damaged, changed, or made to lead elsewhere: they give the right answers or
+   none. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -291,7 +292,8 @@ static bool is_refused(const char *path, const char *why) {
   return !f;
 }
 
-/* Whatever byte it is, before the library reads it: names, types, maps of virtual sets, references, the seal itself. */
+/* Whatever byte it is, before the library reads it: names, types, maps of virtual sets, references,
+   the seal itself. */
 static void no_byte_can_be_changed(void **state) {
   (void)state;
   size_t size;
@@ -320,7 +322,8 @@ static void no_byte_can_be_changed(void **state) {
   free(bytes);
 }
 
-/* Of an earlier version, or changed by somebody who takes the responsibility: a warning, which commands show. */
+/* Of an earlier version, or changed by somebody who takes the responsibility: a warning, which
+   commands show. */
 static void results_without_a_seal_are_read(void **state) {
   (void)state;
   uint64_t before, after;

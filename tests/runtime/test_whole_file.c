@@ -58,7 +58,8 @@ static void the_old_text_stays_until_the_end(void **state) {
   assert_int_not_equal(access(f.working, F_OK), 0);
 }
 
-/* Programs that write one file at the same time do not meet before the end; what stood under other names stays. */
+/* Programs that write one file at the same time do not meet before the end; what stood under other
+   names stays. */
 static void working_files_have_names_of_their_own(void **state) {
   (void)state;
   whole_file f, g;
