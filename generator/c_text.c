@@ -8,6 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/powers.h"
+
 #define LONGEST_NAME 60 /* characters kept of a model's name */
 
 static void make_room(c_text *t, size_t more) {
@@ -53,7 +55,7 @@ void c_text_number(c_text *t, double value) {
   }
   char digits[40];
   double size = fabs(value);
-  int whole = size >= 1 && size < 1e9 ? (int)log10(size) + 1 : 1; /* 20.0 rather than 2e+01 */
+  int whole = size >= 1 && size < 1e9 ? decade_of(size) + 1 : 1; /* 20.0 rather than 2e+01 */
   for (int precision = whole; precision <= 17; precision++) {
     snprintf(digits, sizeof digits, "%.*g", precision, size);
     if (strtod(digits, NULL) == size) break;

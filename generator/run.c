@@ -71,39 +71,69 @@ static bool load_deck(run *r) {
   }
   int file = source_add(&r->sources, o->deck_path, text, length);
   free(text);
-  r->deck = deck_read(r->memory, &r->sources, file, o->overrides, o->override_count, &r->said);
-  return r->deck != NULL;
+  r->deck = deck_read_what_is_right(r->memory, &r->sources, file, o->overrides, o->override_count,
+                                    &r->said);
+  return true;
 }
 
-/* What the language of decks allows and a run cannot do yet. */
-static bool is_supported(run *r) {
-  if (r->deck->lattice_count < 2) return true;
-  diag_report(&r->said, DIAG_NOT_SUPPORTED, r->deck->lattices[1].item.where,
-              "a run can have one lattice, this is the second");
-  return false;
+/* A solver's law was checked when it was built. A law that breaks mechanics has no step. */
+static int check_physics(run *r, int lattice) {
+  simulation_law *l = &r->laws[lattice];
+  const bool known = r->lattice || !deck_lattice_is_irregular(&r->deck->lattices[lattice]);
+  if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, lattice)) return 0;
+  free(l->parameters);
+  l->parameters = NULL;
+  return INPUT_WRONG;
 }
 
-/* Deck, laws, simulation. All errors of the deck's materials are reported before it gives up. */
+static int load_laws(run *r) {
+  int status = 0;
+  for (int k = 0; k < r->deck->lattice_count && !status; k++) {
+    status = load_law(r, k);
+    if (!status) status = check_physics(r, k);
+  }
+  for (int k = 0; k < r->deck->material_count; k++)
+    if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
+      check_law_alone(r, &r->deck->materials[k]);
+  return status;
+}
+
+/* What is left of the deck may not say what it is. */
+static void build_lattice(run *r) {
+  const deck *k = r->deck;
+  if (k->lattice_count > 1)
+    diag_report(&r->said, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
+                "a run can have one lattice, this is the second");
+  else if (k->lattice_count == 1 && !deck_lacks(k, "body") && !deck_lacks(k, "notch"))
+    r->lattice = rows_build(k, 0, &r->said);
+}
+
+/* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is
+   wrong elsewhere. */
 static int set_up(run *r) {
-  if (!load_deck(r) || !is_supported(r)) return INPUT_WRONG;
-  choose_paths(r);
-  if (!r->options->check_only && !result_can_be_written(r)) return INPUT_WRONG;
-  size_t lattices = (size_t)r->deck->lattice_count;
+  if (!load_deck(r)) return INPUT_WRONG;
+  const size_t lattices = (size_t)r->deck->lattice_count + 1;
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
   r->laws = must_calloc(lattices, sizeof *r->laws);
   r->built_in = must_calloc(lattices, sizeof *r->built_in);
-  int status = 0;
-  for (int k = 0; k < r->deck->lattice_count; k++) {
-    int s = load_law(r, k);
-    status = s ? s : status;
-  }
-  if (status) return status;
+  choose_paths(r);
+  if (!r->options->check_only) result_can_be_written(r);
+  build_lattice(r);
+  const int status = load_laws(r);
   if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
-  if (!result_spares_inputs(r)) return INPUT_WRONG;
-  r->simulation = simulation_new(r->deck, r->laws, &r->said);
+  result_spares_inputs(r);
+  if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
+  if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
   fingerprint(r);
   return 0;
+}
+
+/* Of laws, then of the deck. */
+static void tell_all(const run *r) {
+  for (int k = 0; k < r->open_models; k++)
+    tell(r, &r->models[k].said);
+  tell(r, &r->said);
 }
 
 static void let_go(run *r) {
@@ -170,17 +200,35 @@ static step_status march(run *r, bool *written) {
   return status;
 }
 
-/* What could not be written: what there is stays for --resume when a checkpoint can be written, and goes otherwise. */
+/* What could not be written: what the last checkpoint needs stays. */
 static void give_up_writing(run *r, step_status status) {
-  if (status != STEP_BAD && write_checkpoint(r)) {
-    fputs("  the run is kept in its checkpoint: make room, then go on with --resume:\n", stderr);
+  char text[MOMENT_TEXT];
+  if (status != STEP_BAD) write_checkpoint(r);
+  if (can_go_on(r)) {
+    fprintf(stderr,
+            "  the run is kept in its checkpoint at %s: make room, then go on with --resume:\n",
+            moment(r, r->kept_time, text));
     print_resume(r, stderr);
-  } else
+  } else if (!r->is_kept)
     result_discard(r->result);
 }
 
-static int execute(run *r, long resume_frames) {
-  if (!open_result(r, resume_frames)) return resume_frames >= 0 ? INPUT_WRONG : RUN_FAILED;
+/* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
+static int end_stopped(const run *r, bool saved) {
+  char now[MOMENT_TEXT], kept[MOMENT_TEXT];
+  printf("stopped at %s as asked; ", moment(r, simulation_time(r->simulation), now));
+  if (saved)
+    puts("this goes on from here:");
+  else if (r->is_kept)
+    printf("its last checkpoint is that at %s, and this goes on from there:\n",
+           moment(r, r->kept_time, kept));
+  else
+    puts("it has no checkpoint and cannot go on");
+  if (r->is_kept) print_resume(r, stdout);
+  return saved ? 128 + interrupted : RUN_FAILED;
+}
+
+static int execute(run *r) {
   struct sigaction before[STOPPING_SIGNALS];
   catch_signals(before);
   long first = simulation_step_done(r->simulation);
@@ -189,55 +237,19 @@ static int execute(run *r, long resume_frames) {
   if (r->options->profile) simulation_measure(r->simulation, &r->profile);
   step_status status = march(r, &written);
   double seconds = monotonic_seconds() - begun;
-  bool stopped_by_user = interrupted && status == STEP_OK;
-  if (stopped_by_user && written) write_checkpoint(r);
+  const bool stopped_by_user = interrupted && status == STEP_OK;
+  const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
-  written = written && finish_result(r, stopped_by_user);
+  written = written && finish_result(r);
   if (!written) give_up_writing(r, status);
+  if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
   release_signals(before);
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
-  if (stopped_by_user) {
-    char text[MOMENT_TEXT];
-    printf("stopped at %s as asked; this goes on from here:\n",
-           moment(r, simulation_time(r->simulation), text));
-    print_resume(r, stdout);
-    return 128 + interrupted;
-  }
-  unlink(r->checkpoint_path);
+  if (stopped_by_user) return end_stopped(r, saved);
   return status == STEP_BAD ? RUN_FAILED : 0;
-}
-
-static bool resume(run *r, long *frames) {
-  char error[ERROR_LENGTH];
-  if (simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, frames, error,
-                         sizeof error)) {
-    char text[MOMENT_TEXT];
-    printf("resumed at %s (step %ld)\n", moment(r, simulation_time(r->simulation), text),
-           simulation_step_done(r->simulation));
-    fflush(stdout);
-    return true;
-  }
-  if (access(r->checkpoint_path, F_OK) != 0)
-    fprintf(stderr,
-            "perilat: error: cannot resume: there is no checkpoint `%s`\n"
-            "  a run leaves one when it is stopped or killed; run without --resume\n",
-            r->checkpoint_path);
-  else {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
-    print_misfit(r);
-  }
-  return false;
-}
-
-static void warn_of_checkpoint(const run *r) {
-  if (access(r->checkpoint_path, F_OK) == 0)
-    fprintf(stderr,
-            "perilat: warning: this run starts anew; `%s` of an earlier one is given up (--resume "
-            "goes on from it)\n",
-            r->checkpoint_path);
 }
 
 /* --check-kernel: every compiled kernel against the interpreter, with the deck's parameters. */
@@ -267,12 +279,23 @@ static bool check_kernels(const run *r) {
   return good;
 }
 
+/* Before the frames are looked for, which would not be there either. */
+static bool has_checkpoint(const run *r) {
+  if (access(r->checkpoint_path, F_OK) == 0) return true;
+  fprintf(stderr,
+          "perilat: error: cannot resume: there is no checkpoint `%s`\n"
+          "  a run leaves one when it is stopped or killed; run without --resume\n",
+          r->checkpoint_path);
+  return false;
+}
+
 static int start(run *r) {
-  long frames = -1;
+  const bool resumes = r->options->resume;
+  const int failed = resumes ? INPUT_WRONG : RUN_FAILED;
   if (r->options->check_kernel && !check_kernels(r)) return RUN_FAILED;
-  if (r->options->resume && !resume(r, &frames)) return INPUT_WRONG;
-  if (!r->options->resume) warn_of_checkpoint(r);
-  return execute(r, frames);
+  if (resumes && !has_checkpoint(r)) return INPUT_WRONG;
+  if (!open_result(r) || !(resumes ? resume(r) : begin_anew(r))) return failed;
+  return execute(r);
 }
 
 int run_deck(const run_options *o) {
@@ -282,7 +305,7 @@ int run_deck(const run_options *o) {
   struct tm utc;
   strftime(r.started, sizeof r.started, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   int status = set_up(&r);
-  tell(&r, &r.said);
+  tell_all(&r);
   if (!status) {
     if (!o->report) announce(&r);
     status = o->check_only ? 0 : start(&r);

@@ -18,12 +18,15 @@ typedef struct run {
   deck *deck;
   model *models; /* [material_count] */
   int open_models;
+  rows *lattice; /* the simulation's, when there is one; NULL where it is not known */
   simulation_law *laws;          /* [lattice_count] */
   const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
   simulation *simulation;
   result *result;
   char *result_path, *checkpoint_path;
   const char *fingerprint;
+  bool is_kept;     /* a checkpoint of this run stands, */
+  double kept_time; /* s: of this moment */
   char started[32];
   double *frame_buffer;
   profile profile; /* with --profile */
@@ -34,8 +37,16 @@ void tell(const run *r, const diagnostics *d);
 
 /* --- run_laws.c --- */
 
-/* Opens, checks and compiles the law of a lattice and reads its parameters. 0, or an exit status. */
+/* Opens and compiles the law of a lattice and reads its parameters; what is wrong with them leaves
+   them NULL. 0, or an exit status. What a law's own file has to answer for stays in
+   models[].said. */
 int load_law(run *r, int lattice);
+/* Only says what is wrong with the law's file and its options: of a material whose lattice is not
+   known. */
+bool check_law_alone(run *r, deck_material *m);
+/* The physics checks with the deck's parameters, on its lattice, which must have been built where
+   particles stand on none. */
+bool obeys_mechanics(run *r, int lattice);
 
 /* --- run_result.c --- */
 
@@ -45,10 +56,19 @@ bool result_can_be_written(run *r);
 bool result_spares_inputs(run *r);
 /* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line each. */
 void fingerprint(run *r);
-bool open_result(run *r, long resume_frames);
+/* Takes the result for this run alone; nothing is changed yet. */
+bool open_result(run *r);
+/* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts
+   on. */
+bool begin_anew(run *r);
+bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-bool finish_result(run *r, bool keep_working);
+bool finish_result(run *r);
+/* When what has been written is complete: no checkpoint, no frames beside the result. */
+void remove_remains(run *r);
+/* A checkpoint stands, and the frames that it counts on. */
+bool can_go_on(const run *r);
 
 /* --- run_report.c --- */
 

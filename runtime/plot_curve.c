@@ -6,6 +6,8 @@
 
 #include "dsl/arena.h"
 #include "dsl/characters.h"
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "dsl/units.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
@@ -81,13 +83,13 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
 static void shorten_numbers(axis *a, double largest) {
   double shown = largest * a->factor;
   if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2)) return;
-  int power = 3 * (int)floor(log10(shown) / 3);
+  int power = 3 * (int)floor(decade_of(shown) / 3.0);
   char symbol[sizeof a->unit_text];
   memcpy(symbol, a->unit_text, sizeof symbol);
   bool pure = strcmp(symbol, "1") == 0;
   snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
            pure ? "" : symbol);
-  a->factor /= pow(10, power);
+  a->factor /= power_of(10, power);
 }
 
 static void range_of(const curve *curves, int count, bool of_x, double *low, double *high) {
@@ -97,8 +99,8 @@ static void range_of(const curve *curves, int count, bool of_x, double *low, dou
     for (long k = 0; k < curves[c].count; k++) {
       double v = of_x ? curves[c].x[k] : curves[c].y[k];
       if (isfinite(v)) {
-        *low = fmin(*low, v);
-        *high = fmax(*high, v);
+        *low = pl_fmin(*low, v);
+        *high = pl_fmax(*high, v);
       }
     }
 }
@@ -115,13 +117,13 @@ static bool set_axis(axis *a, const char *name, const char *si_unit, const char 
     snprintf(error, size, "`%s` holds no finite value to draw", name);
     return false;
   }
-  if (!choose_unit(a, si_unit, wanted, fmax(fabs(low), fabs(high)), error, size)) return false;
-  if (!wanted) shorten_numbers(a, fmax(fabs(low), fabs(high)));
+  if (!choose_unit(a, si_unit, wanted, pl_fmax(fabs(low), fabs(high)), error, size)) return false;
+  if (!wanted) shorten_numbers(a, pl_fmax(fabs(low), fabs(high)));
   const double range = high - low;
   low = without_noise(low, range) * a->factor;
   high = without_noise(high, range) * a->factor;
   if (low > 0 && low < 0.3 * high) low = 0;
-  if (!(high - low > 1e-12 * fmax(fabs(high), 1e-300))) {
+  if (!(high - low > 1e-12 * pl_fmax(fabs(high), 1e-300))) {
     high = low + (fabs(low) > 0 ? fabs(low) : 1);
   }
   a->step = nice_step(high - low, 5);
@@ -224,8 +226,8 @@ static void draw_legend(canvas *c, const curve *curves, int count, const axis *x
   enum { LINE = 26 };
   double widest = 0;
   for (int k = 0; k < count; k++)
-    widest = fmax(widest, canvas_text_width(c, 19, curves[k].label));
-  const double width = fmin(widest, 500) + 70, height = LINE * count + 10;
+    widest = pl_fmax(widest, canvas_text_width(c, 19, curves[k].label));
+  const double width = pl_fmin(widest, 500) + 70, height = LINE * count + 10;
   const double lefts[] = {WIDTH - RIGHT - width - 10, LEFT + 14},
                tops[] = {TOP + 8, HEIGHT - BOTTOM - height - 10};
   double left = lefts[0], top = tops[0];
@@ -346,6 +348,10 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
     label_curve(s, from, y, c);
     good = read_curve(f, s->o->x, s->o->ys[y], c, x_unit, y_unit, error, size) &&
            units_fit(s, from, s->o->ys[y], x_unit, y_unit, error, size);
+  }
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
   }
   result_read_close(f);
   return good;

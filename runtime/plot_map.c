@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/plot_frame.h"
 
@@ -41,18 +42,18 @@ static bool fit_picture(map *m, char *error, size_t size) {
   double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
   for (long p = 0; p < m->frame.particles; p++)
     for (int c = 0; c < 2; c++) {
-      low[c] = fmin(low[c], m->frame.moved[2 * p + c] - m->frame.spacing);
-      high[c] = fmax(high[c], m->frame.moved[2 * p + c] + m->frame.spacing);
+      low[c] = pl_fmin(low[c], m->frame.moved[2 * p + c] - m->frame.spacing);
+      high[c] = pl_fmax(high[c], m->frame.moved[2 * p + c] + m->frame.spacing);
     }
   if (!(high[0] - low[0] < 1e12) || !(high[1] - low[1] < 1e12) || !(high[0] > low[0])) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
   m->foot = FOOT + (m->frame.dimensions == 3 ? AXES : 0);
-  m->scale = fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]),
-                  (MOST_HEIGHT - HEAD - m->foot) / (high[1] - low[1]));
+  m->scale = pl_fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]),
+                     (MOST_HEIGHT - HEAD - m->foot) / (high[1] - low[1]));
   m->left = low[0] - ((WIDTH - 2 * MARGIN) / m->scale - (high[0] - low[0])) / 2;
-  m->height = fmax(LEAST_HEIGHT, HEAD + m->foot + (high[1] - low[1]) * m->scale);
+  m->height = pl_fmax(LEAST_HEIGHT, HEAD + m->foot + (high[1] - low[1]) * m->scale);
   m->bottom = low[1];
   return true;
 }
@@ -88,13 +89,13 @@ static void stroke_crack(canvas *c, const map *m, long b) {
   const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
                *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
   double x = (i[0] + j[0]) / 2, y = (i[1] + j[1]) / 2, dx = j[0] - i[0], dy = j[1] - i[1];
-  double half = 0.5 / sqrt(3) * m->frame.spacing / fmax(hypot(dx, dy), 1e-300);
+  double half = 0.5 / sqrt(3) * m->frame.spacing / pl_fmax(pl_hypot(dx, dy), 1e-300);
   cairo_move_to(c->cr, at_x(m, x - dy * half), at_y(m, y + dx * half));
   cairo_line_to(c->cr, at_x(m, x + dy * half), at_y(m, y - dx * half));
 }
 
 static void draw_bonds(canvas *c, const map *m, bool coloured) {
-  double thin = fmax(0.4, 0.12 * m->frame.spacing * m->scale);
+  double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
   for (int k = 0; k < CLASSES; k++) { /* the worse above the better */
     if (!coloured && k != SEPARATED) continue;
     canvas_colour(c, classes[k].ink);
@@ -118,7 +119,7 @@ static colour shade(double v) {
                                  {0.13, 0.57, 0.55},
                                  {0.37, 0.79, 0.38},
                                  {0.99, 0.91, 0.14}};
-  double at = fmin(fmax(v, 0), 1) * 4;
+  double at = pl_fmin(pl_fmax(v, 0), 1) * 4;
   int k = at >= 4 ? 3 : (int)at;
   double w = at - k;
   return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r),
@@ -128,7 +129,7 @@ static colour shade(double v) {
 
 /* Place in the colour bar, 0 to 1; what is no number stands with the lowest. */
 static double place_of(double value, double low, double high) {
-  return high > low ? fmin(fmax((value - low) / (high - low), 0), 1) : 0;
+  return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
 }
 
 static colour particle_colour(const map *m, long p, int component, double low, double high) {
@@ -143,7 +144,7 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
   cairo_fill_preserve(c->cr);
   if (m->frame.surface) { /* an edge, so that those in front stand out */
     canvas_colour(c, (colour){0.25, 0.25, 0.28});
-    cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
+    cairo_set_line_width(c->cr, pl_fmin(0.08 * radius, 1.5));
     cairo_stroke(c->cr);
   }
   cairo_new_path(c->cr);
@@ -153,7 +154,7 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
-  const double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const double radius = pl_fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
   const colour plain = {0.45, 0.48, 0.52};
   cairo_new_path(c->cr);
   for (int k = 0; k < (by_class ? CLASSES : 1); k++)
@@ -169,12 +170,12 @@ static bool is_separated(const map *m, long b) {
 
 enum { SHADES = 64 };
 static int shade_of(double value, double low, double high) {
-  return (int)fmin(SHADES * place_of(value, low, high), SHADES - 1);
+  return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
 }
 
 /* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their crack. */
 static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
-  const double wide = fmax(0.8, 0.22 * m->frame.spacing * m->scale);
+  const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
   for (int k = 0; k < 2 * SHADES; k++) {
     const bool separated = k < SHADES;
@@ -209,7 +210,7 @@ static void draw_axes(canvas *c, const map *m) {
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   for (int k = 0; k < 3; k++) {
     const double across = m->frame.axes[k][0], up = m->frame.axes[k][1];
-    if (hypot(across, up) < 0.1) continue;
+    if (pl_hypot(across, up) < 0.1) continue;
     canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
     canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
                 (char[]){"xyz"[k], 0});
@@ -256,7 +257,7 @@ static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o
     cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
     cairo_fill(c->cr);
   }
-  const char *shown = readable_unit(m->frame.unit_text, fmax(fabs(low), fabs(high)), &factor);
+  const char *shown = readable_unit(m->frame.unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
   char text[256];
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   snprintf(text, sizeof text, "%.4g", low * factor);
@@ -281,8 +282,8 @@ static bool range_of(const map *m, int component, double *low, double *high) {
   for (long k = 0; k < m->frame.value_count; k++) {
     const double v = plot_frame_value(&m->frame, k, component);
     if (!isfinite(v)) continue;
-    *low = fmin(*low, v);
-    *high = fmax(*high, v);
+    *low = pl_fmin(*low, v);
+    *high = pl_fmax(*high, v);
   }
   return *low <= *high;
 }

@@ -188,7 +188,7 @@ static void write_hostile_result(const workplace *w) {
   h.overrides = "simulation.title='\x1b[31m'\n";
   h.interaction = "\x1b[7mconcrete";
   h.fields = fields;
-  result *r = result_open(&h, -1, error, sizeof error);
+  result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);
   double u[2 * PARTICLES], omega[BONDS], t[] = {0, 1, 2};
   small_frame(0, u, omega);
@@ -196,7 +196,7 @@ static void write_hostile_result(const workplace *w) {
   const result_series series[] = {{"load\x1b[31m", "N\x1b[32m", t, false, NULL},
                                   {"two\nperilat: error: lines", "m", t, false, NULL},
                                   {"\xe2\x80\xae\xc2\x9b", "a,\"b\"\n", t, true, "\x1b[35mwhy\n"}};
-  assert_true(result_finish(r, 0.1, 3, t, 3, series, 3, false, error, sizeof error));
+  assert_true(result_finish(r, 0.1, 3, t, 3, series, 3, error, sizeof error));
   result_close(r);
 }
 
