@@ -175,7 +175,7 @@ static void keep(particle_table *t, long from, long to) {
   for (int c = 0; c < t->dimensions; c++)
     t->at[c][to] = t->at[c][from];
   if (t->volume) t->volume[to] = t->volume[from];
-  t->begin[to] = t->begin[from];
+  t->row[to] = t->row[from];
 }
 
 /* What is outside of the bodies and in notches goes. Without bodies all are meant. */
