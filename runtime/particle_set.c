@@ -302,7 +302,7 @@ static particle_set *load(maker *m) {
   const deck_lattice *l = m->lattice;
   particle_table t;
   particle_set *set = NULL;
-  if (particle_table_read(&t, deck_file_path(m->deck, l->file), m->solid.dimensions,
+  if (particle_table_read(&t, deck_file_path(m->deck->name, l->file), m->solid.dimensions,
                           l->mass_thickness, deck_where(&l->item, "file"), m->d))
     set = from_table(m, &t);
   particle_table_free(&t);
