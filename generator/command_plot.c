@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "dsl/units.h"
 #include "generator/commands.h"
+#include "generator/frame_choice.h"
 #include "generator/measured.h"
 #include "generator/model.h"
-#include "generator/quantity.h"
 #include "runtime/plot.h"
+#include "runtime/quantity.h"
 
 /* --data, with the --band of two of its columns; --line; --band of two values. */
 typedef struct beside_request {
@@ -27,6 +27,7 @@ typedef struct plot_request {
   int beside_count, table_count;
   plot_curve_options curve;
   plot_map_options map;
+  const char *frames, *frame; /* as given */
   bool is_map;
   const char *of_curves, *of_maps; /* an option that only these know, when one was given */
 } plot_request;
@@ -50,22 +51,11 @@ static bool read_whole(const char *name, const char *text, long *value) {
 
 /* "z=0.05" or "x=5 mm". */
 static bool read_slice(const char *text, plot_map_options *o) {
-  const char *axis = strchr("xyz", text[0]), *bad;
-  char *end;
-  size_t bad_length;
-  unit metre, in;
-  unit_parse("m", 1, &metre, &bad, &bad_length);
-  in = metre;
-  if (text[0] && axis && text[1] == '=') {
+  const char *axis = strchr("xyz", text[0]);
+  if (text[0] && axis && text[1] == '=' &&
+      quantity_read(text + 2, strlen(text + 2), "m", &o->slice_at)) {
     o->slice_axis = (int)(axis - "xyz");
-    o->slice_at = strtod(text + 2, &end);
-    const bool number = end != text + 2 && isfinite(o->slice_at);
-    end += strspn(end, " ");
-    if (number && (!*end || unit_parse(end, strlen(end), &in, &bad, &bad_length)) &&
-        dim_equal(in.dim, metre.dim)) {
-      o->slice_at *= in.factor;
-      return true;
-    }
+    return true;
   }
   fprintf(stderr,
           "perilat: error: --slice needs an axis and a place in m or with a unit, e.g. z=0.05 or "
@@ -147,7 +137,11 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   else if ((v = special_value(argc, argv, at, "--band", &q->of_curves, &bad)))
     bad = bad || !add_band(q, v);
   else if ((v = special_value(argc, argv, at, "--frame", &q->of_maps, &bad)))
-    bad = bad || !read_whole("--frame", v, &q->map.frame);
+    bad = bad || !read_whole("--frame", q->frame = v, &q->map.frame);
+  else if ((v = special_value(argc, argv, at, "--frames", &q->of_maps, &bad)))
+    q->frames = v;
+  else if ((v = special_value(argc, argv, at, "--mark", &q->of_maps, &bad)))
+    q->map.mark = v;
   else if ((v = special_value(argc, argv, at, "--factor", &q->of_maps, &bad)))
     bad = bad || !read_number("--factor", v, &q->map.factor);
   else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
@@ -234,10 +228,19 @@ static bool draw_curves(plot_request *q) {
   return good;
 }
 
-static bool draw_map(const plot_request *q) {
+static bool draw_map(plot_request *q) {
   char error[1024];
+  frame_choice chosen = {.count = 0};
+  if (q->frames && !frame_choice_read(&chosen, q->results[0], q->frames)) {
+    frame_choice_free(&chosen);
+    return false;
+  }
+  q->map.frames = chosen.frames;
+  q->map.captions = (const char *const *)chosen.captions;
+  q->map.frame_count = chosen.count;
   const bool good = plot_map(q->results[0], &q->map, error, sizeof error);
   if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  frame_choice_free(&chosen);
   return good;
 }
 
@@ -274,6 +277,8 @@ static bool complete(const plot_request *q) {
   else if (!q->is_map && q->of_maps)
     fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n",
             q->of_maps);
+  else if (q->frame && q->frames)
+    fputs("perilat: error: --frame shows one frame, --frames several; give one of them\n", stderr);
   else if (q->map.component < -1)
     fprintf(stderr,
             "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");

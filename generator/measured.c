@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/quantity.h"
+#include "runtime/quantity.h"
 
 enum { PAIR = 2 };
 

@@ -34,8 +34,16 @@ typedef struct plot_map_options {
   double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
   int slice_axis; /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
   double slice_at; /* m */
+  const char *
+      mark; /* "yielded", "S_p > 1e-6": particles or bonds where a field is above 0, above or below a value; NULL: none */
   const char *title;
+  /* Several frames instead of one, a panel each, with what stands above it; NULL: its time. */
+  const long *frames;
+  const char *const *captions;
+  int frame_count;
 } plot_map_options;
+
+enum { PLOT_MOST_PANELS = 48 };
 
 /* One curve a result file and history in one picture. */
 bool plot_curve(const char *const *results, int result_count, const plot_curve_options *o,
@@ -51,7 +59,7 @@ bool plot_histories_read(plot_histories *h, const char *path, const char *x, con
 /* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI units. */
 bool plot_values(const double *x, const double *y, long count, const char *x_unit,
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size);
-/* Particles and bonds of one frame, deformed, with a legend and a scale bar in mm. */
+/* Particles and bonds of one frame, or of several beside each other, deformed, with a legend and a scale bar in mm. */
 bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
 
 #endif

@@ -1,6 +1,6 @@
 /* A number with a unit in an option of a command: "58.88 kN", "0.128mm", "0.05". */
-#ifndef PERILAT_GENERATOR_QUANTITY_H
-#define PERILAT_GENERATOR_QUANTITY_H
+#ifndef PERILAT_RUNTIME_QUANTITY_H
+#define PERILAT_RUNTIME_QUANTITY_H
 
 #include <stdbool.h>
 #include <stddef.h>

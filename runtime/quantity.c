@@ -1,4 +1,4 @@
-#include "generator/quantity.h"
+#include "runtime/quantity.h"
 
 #include <ctype.h>
 #include <math.h>
