@@ -268,12 +268,24 @@ static void draw_marks(canvas *c, const map *m) {
   }
 }
 
+static bool has_mark(const map *m) {
+  const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
+  for (long k = 0; m->frame.marked && k < count; k++)
+    if (m->frame.marked[k] > 0) return true;
+  return false;
+}
+
 static void draw_mark_legend(canvas *c, const sheet *s, const char *mark) {
   const double x = MARGIN + 300, y = s->height - 64;
+  char text[256];
+  bool any = false;
+  for (int k = 0; k < s->count; k++)
+    any = any || has_mark(&s->panels[k]);
   if (!mark) return;
+  snprintf(text, sizeof text, "%.200s%s", mark, any ? "" : ": nowhere");
   draw_mark(c, x + 14, y, 7);
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, mark);
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, text);
 }
 
 /* --- head and foot ---------------------------------------------------------------------------- */
