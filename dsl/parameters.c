@@ -3,6 +3,8 @@
 #include <string.h>
 
 #include "dsl/check.h"
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "dsl/unit_hint.h"
 
 /* --- units ------------------------------------------------------------------------------------ */
@@ -47,30 +49,30 @@ static double call_value(const expr *e, const double *parameters) {
   case FUNCTION_SQRT:
     return sqrt(x);
   case FUNCTION_CBRT:
-    return cbrt(x);
+    return pl_cbrt(x);
   case FUNCTION_EXP:
-    return exp(x);
+    return pl_exp(x);
   case FUNCTION_LOG:
-    return log(x);
+    return pl_log(x);
   case FUNCTION_SIN:
-    return sin(x);
+    return pl_sin(x);
   case FUNCTION_COS:
-    return cos(x);
+    return pl_cos(x);
   case FUNCTION_TAN:
-    return tan(x);
+    return pl_tan(x);
   case FUNCTION_TANH:
-    return tanh(x);
+    return pl_tanh(x);
   case FUNCTION_SIGN:
     return (x > 0) - (x < 0);
   case FUNCTION_MACAULAY:
-    return fmax(x, 0);
+    return pl_max(x, 0);
   case FUNCTION_SOFT_SIGN:
     return x / (1 + fabs(x));
   case FUNCTION_MIN:
   case FUNCTION_MAX:
     for (int i = 1; i < e->argument_count; i++) {
       double y = law_constant_value(e->arguments[i].value, parameters);
-      x = e->builtin == FUNCTION_MIN ? fmin(x, y) : fmax(x, y);
+      x = e->builtin == FUNCTION_MIN ? pl_min(x, y) : pl_max(x, y);
     }
     return x;
   default:
@@ -90,7 +92,7 @@ static double binary_value(const expr *e, const double *parameters) {
   case OP_DIV:
     return a / b;
   case OP_POW:
-    return pow(a, b);
+    return power_of(a, b);
   default:
     return NAN;
   }

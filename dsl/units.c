@@ -6,6 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/powers.h"
+
 const dimension DIMENSIONLESS = {{0, 0, 0, 0}};
 
 /* No quantity of mechanics comes near this exponent; beyond it a dimension counts as overflown. */
@@ -250,8 +252,7 @@ static bool read_factor(reader *r, unit *result) {
   int numerator, denominator;
   if (!read_exponent(r, &numerator, &denominator)) return false;
   if (!dim_pow(result->dim, numerator, denominator, &result->dim)) return fail(r, begin, r->at);
-  result->factor = denominator == 1 ? pow(result->factor, numerator)
-                                    : pow(result->factor, (double)numerator / denominator);
+  result->factor = power_of(result->factor, (double)numerator / denominator);
   return true;
 }
 

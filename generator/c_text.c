@@ -10,6 +10,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/hash.h"
+#include "dsl/powers.h"
 
 #define LONGEST_NAME 60 /* characters kept of a model's name */
 
@@ -56,7 +57,7 @@ void c_text_number(c_text *t, double value) {
   }
   char digits[40];
   double size = fabs(value);
-  int whole = size >= 1 && size < 1e9 ? (int)log10(size) + 1 : 1; /* 20.0 rather than 2e+01 */
+  int whole = size >= 1 && size < 1e9 ? decade_of(size) + 1 : 1; /* 20.0 rather than 2e+01 */
   for (int precision = whole; precision <= 17; precision++) {
     snprintf(digits, sizeof digits, "%.*g", precision, size);
     if (strtod(digits, NULL) == size) break;

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/commands.h"
 #include "generator/compare_curve.h"
 #include "generator/model.h"
@@ -47,8 +48,8 @@ static const gap no_gap = {0, 0, -1, -1};
 static void widen(gap *g, double a, double b, long frame, long row) {
   const bool differ = a != b && !(isnan(a) && isnan(b));
   const double d = differ ? fabs(a - b) : 0;
-  if (!isnan(a)) g->scale = fmax(g->scale, fabs(a));
-  if (!isnan(b)) g->scale = fmax(g->scale, fabs(b));
+  if (!isnan(a)) g->scale = pl_fmax(g->scale, fabs(a));
+  if (!isnan(b)) g->scale = pl_fmax(g->scale, fabs(b));
   if (!differ || (g->row >= 0 && !(isnan(d) ? !isnan(g->largest) : d > g->largest))) return;
   g->largest = d;
   g->frame = frame;
@@ -100,10 +101,10 @@ static bool read_axis(comparison_run *c, time_axis *x) {
     }
   }
   const double end[2] = {x->time[0][x->count[0] - 1], x->time[1][x->count[1] - 1]};
-  x->until = fmin(end[0], end[1]);
+  x->until = pl_fmin(end[0], end[1]);
   x->same = x->count[0] == x->count[1];
   for (long n = 0; x->same && n < x->count[0]; n++)
-    x->same = fabs(x->time[0][n] - x->time[1][n]) <= 1e-9 * fmax(end[0], end[1]);
+    x->same = fabs(x->time[0][n] - x->time[1][n]) <= 1e-9 * pl_fmax(end[0], end[1]);
   return true;
 }
 
@@ -144,7 +145,7 @@ static double largest_energy(const comparison_run *c) {
           !table_read(c->files[k], names.items[n], -1, &v, error, sizeof error))
         continue;
       for (long i = 0; i < v.count; i++)
-        if (isfinite(v.values[i])) most = fmax(most, fabs(v.values[i]));
+        if (isfinite(v.values[i])) most = pl_fmax(most, fabs(v.values[i]));
       free(v.values);
     }
     result_names_free(&names);
@@ -168,7 +169,7 @@ static void compare_history(comparison_run *c, const time_axis *x, const char *n
     c->different++;
   } else {
     gap g = gap_of_series(x, a.values, b.values);
-    if (is_energy(name)) g.scale = fmax(g.scale, energy);
+    if (is_energy(name)) g.scale = pl_fmax(g.scale, energy);
     if (report(c, name, a.unit, &g))
       printf("  t = %.6g ms: %.9g and %.9g", 1e3 * x->time[0][g.row], a.values[g.row],
              x->same ? b.values[g.row] : value_at(x, b.values, x->time[0][g.row], &(long){0}));
@@ -280,8 +281,8 @@ static bool same_particles(const frame_context *x) {
     return false;
   double extent = 0, apart = 0;
   for (long n = 0; n < x->dimensions[0] * x->particles[0]; n++) {
-    extent = fmax(extent, fabs(x->reference[0][n]));
-    apart = fmax(apart, fabs(x->reference[0][n] - x->reference[1][n]));
+    extent = pl_fmax(extent, fabs(x->reference[0][n]));
+    apart = pl_fmax(apart, fabs(x->reference[0][n] - x->reference[1][n]));
   }
   return apart <= 1e-9 * extent;
 }
@@ -455,18 +456,16 @@ static int conclude(const comparison_run *c) {
 
 static int compare_results(const compare_request *q) {
   comparison_run c = {.request = q};
-  int status = WRONG;
   for (int k = 0; k < 2; k++)
     c.files[k] = table_open(program, q->results[k]);
   if (c.files[0] && c.files[1]) {
     const bool all = !q->history_count && !q->field_count;
     if (all || q->history_count) compare_histories(&c);
     if (all || q->field_count) compare_frames(&c);
-    status = conclude(&c);
   }
   for (int k = 0; k < 2; k++)
-    if (c.files[k]) result_read_close(c.files[k]);
-  return status;
+    c.wrong = !(c.files[k] && table_close(c.files[k], !c.wrong));
+  return conclude(&c);
 }
 
 static int compare_with_table(const compare_request *q) {

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/explain_bad.h"
@@ -278,8 +279,8 @@ static long largest_fall(const drive_table *t) {
   double most = 0, scale = 0, fall = 0;
   long row = 0;
   for (long k = 0; k < t->rows; k++) {
-    scale = fmax(scale, fabs(energy[DRIVE_ENERGY_STORED].values[k]) + fabs(lost[k]));
-    most = fmax(most, lost[k]);
+    scale = pl_fmax(scale, fabs(energy[DRIVE_ENERGY_STORED].values[k]) + fabs(lost[k]));
+    most = pl_fmax(most, lost[k]);
     if (most - lost[k] <= fall) continue;
     fall = most - lost[k];
     row = k;

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "dsl/elementary.h"
 #include "generator/curve_gap.h"
 #include "generator/measured.h"
 #include "runtime/canvas.h"
@@ -14,7 +15,7 @@ enum { NEAR = 0, WRONG = 1, FAR = 2 };
 static double largest_of(const double *values, long count) {
   double most = 0;
   for (long k = 0; k < count; k++)
-    if (isfinite(values[k])) most = fmax(most, fabs(values[k]));
+    if (isfinite(values[k])) most = pl_fmax(most, fabs(values[k]));
   return most;
 }
 
@@ -53,12 +54,12 @@ static void print_range(const curve_request *q, const scale_text *s, const measu
   double low = INFINITY, high = -INFINITY;
   for (long k = 0; k < m->count; k++)
     if (isfinite(m->x[k])) {
-      low = fmin(low, m->x[k]);
-      high = fmax(high, m->x[k]);
+      low = pl_fmin(low, m->x[k]);
+      high = pl_fmax(high, m->x[k]);
     }
   printf("  compared over %s", q->x);
   print_span(s, g->from, g->to);
-  const bool whole = fmin(g->from, g->to) <= low && fmax(g->from, g->to) >= high;
+  const bool whole = pl_fmin(g->from, g->to) <= low && pl_fmax(g->from, g->to) >= high;
   if (!whole) fputs("; the table goes", stdout);
   if (!whole) print_span(s, low, high);
   puts("\n  relative to the largest value of the table");
@@ -66,7 +67,7 @@ static void print_range(const curve_request *q, const scale_text *s, const measu
 
 static int report(const curve_request *q, const plot_histories *h, const measured *m,
                   const curve_gap *g) {
-  const double scale = m->low ? fmax(largest_of(m->low, m->count), largest_of(m->high, m->count))
+  const double scale = m->low ? pl_fmax(largest_of(m->low, m->count), largest_of(m->high, m->count))
                               : largest_of(m->y, m->count);
   const double most = relative(g->largest, scale);
   const bool over = most > q->tolerance;

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/kernel.h"
 
 static const uint64_t poison = UINT64_C(0x7ff4dead00000bad);
@@ -19,7 +20,7 @@ static bool is_poison(double value) {
 double ulps_between(double a, double b) {
   if (a == b || (isnan(a) && isnan(b))) return 0;
   if (!isfinite(a) || !isfinite(b)) return INFINITY;
-  double larger = fmax(fabs(a), fabs(b));
+  double larger = pl_fmax(fabs(a), fabs(b));
   return fabs(a - b) / (larger - nextafter(larger, 0)); /* finite spacing for the largest too */
 }
 

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* Ascending in x times the direction; equal x are a jump. */
 typedef struct ascent {
@@ -67,8 +68,8 @@ static double direction_of(const curve_points *p) {
   double up = 0, down = 0;
   for (long k = 0; k < p->count; k++) {
     if (!is_point(p, k)) continue;
-    up = fmax(up, p->x[k] - first);
-    down = fmax(down, first - p->x[k]);
+    up = pl_fmax(up, p->x[k] - first);
+    down = pl_fmax(down, first - p->x[k]);
   }
   return up >= down ? 1 : -1;
 }
@@ -84,7 +85,7 @@ static double on_piece(const ascent *a, const double *values, long k, double x) 
 static double positive_square(double a, double b) {
   if (a <= 0 && b <= 0) return 0;
   if (a >= 0 && b >= 0) return (a * a + a * b + b * b) / 3;
-  const double most = fmax(a, b);
+  const double most = pl_fmax(a, b);
   return most / fabs(a - b) * most * most / 3;
 }
 
@@ -98,7 +99,7 @@ static void look(curve_gap *g, const ascent *c, long i, const ascent *m, long j,
                high = on_piece(m, m->high, j, x);
   e->below[end] = low - y;
   e->above[end] = y - high;
-  const double distance = fmax(fmax(low - y, y - high), 0);
+  const double distance = pl_fmax(pl_fmax(low - y, y - high), 0);
   if (distance < g->largest || (distance == g->largest && isfinite(g->x))) return;
   g->largest = distance;
   g->x = x;
@@ -111,7 +112,7 @@ static void look(curve_gap *g, const ascent *c, long i, const ascent *m, long j,
 static double sum_of_squares(const ascent *c, const ascent *m, curve_gap *g) {
   double sum = 0;
   for (long i = 0, j = 0; i + 1 < c->count && j + 1 < m->count;) {
-    const double from = fmax(c->x[i], m->x[j]), to = fmin(c->x[i + 1], m->x[j + 1]);
+    const double from = pl_fmax(c->x[i], m->x[j]), to = pl_fmin(c->x[i + 1], m->x[j + 1]);
     if (to > from) {
       ends e;
       look(g, c, i, m, j, from, 0, &e);
@@ -136,8 +137,8 @@ bool curve_gap_find(const double *x, const double *y, long count, const curve_po
   ascent c = ascent_of(&computed, along, false), m = ascent_of(points, along, backwards);
   *gap = (curve_gap){.x = NAN};
   const bool both = c.count && m.count;
-  const double from = both ? fmax(c.x[0], m.x[0]) : 0,
-               to = both ? fmin(c.x[c.count - 1], m.x[m.count - 1]) : 0;
+  const double from = both ? pl_fmax(c.x[0], m.x[0]) : 0,
+               to = both ? pl_fmin(c.x[c.count - 1], m.x[m.count - 1]) : 0;
   if (to > from) {
     gap->rms = sqrt(sum_of_squares(&c, &m, gap) / (to - from));
     gap->from = along * from;

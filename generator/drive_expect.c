@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "dsl/parse.h"
 #include "generator/drive.h"
 #include "runtime/deck_value.h"
@@ -332,7 +333,7 @@ static drive_verdict judge_one(const judge *j, const double *parameters, const d
                      .extreme = at_extreme,
                      .beside = {time[row ? row - 1 : 0], time[row < t->rows - 1 ? row + 1 : row]}};
   v.expected = e->formula ? form_value(j, parameters, t, a->output, row) : a->value;
-  v.allowed = fmax(e->tolerance * fabs(v.expected), a->absolute);
+  v.allowed = pl_fmax(e->tolerance * fabs(v.expected), a->absolute);
   v.passed = fabs(v.found - v.expected) <= v.allowed; /* NaN does not */
   return v;
 }

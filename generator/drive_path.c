@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
@@ -629,7 +630,7 @@ static double wave_at(const drive_piece *p, double since, bool slope) {
   if (since < 0 || cycle >= p->cycles) return 0;
   switch (p->wave) {
   case WAVE_SINE:
-    return slope ? a * 2 * M_PI / p->period * cos(2 * M_PI * x) : a * sin(2 * M_PI * x);
+    return slope ? a * 2 * M_PI / p->period * pl_cos(2 * M_PI * x) : a * pl_sin(2 * M_PI * x);
   case WAVE_PULSE:
     if (slope) return (x < 0.5 ? 2 : -2) * a / p->period;
     return a * (x < 0.5 ? 2 * x : 2 - 2 * x);
@@ -681,7 +682,7 @@ double drive_end(const drive_input *in) {
   double end = 0;
   if (in->simulation.end_time >= 0) return in->simulation.end_time;
   for (int k = 0; k < in->piece_count; k++)
-    end = fmax(end, corner(&in->pieces[k], corner_count(&in->pieces[k]) - 1));
+    end = pl_fmax(end, corner(&in->pieces[k], corner_count(&in->pieces[k]) - 1));
   return end;
 }
 
@@ -738,7 +739,7 @@ double drive_time_of_stretch(const drive_input *in, double stretch, double after
   plain.expect_count = 0;
   double *t = drive_times(&plain, &count), found = NAN;
   for (long k = 0; k < count && isnan(found); k++) {
-    double high = t[k], low = k ? fmax(t[k - 1], after) : high;
+    double high = t[k], low = k ? pl_fmax(t[k - 1], after) : high;
     if (high < after) continue;
     double a = drive_at(in, DRIVE_STRETCH, low) - stretch,
            b = drive_at(in, DRIVE_STRETCH, high) - stretch;

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
 #include "runtime/quantity.h"
@@ -67,7 +68,7 @@ static double history_at(const plot_histories *h, double time) {
 static void choose_unit(seeker *s) {
   double most = 0;
   for (long k = 0; k < s->h.count; k++)
-    if (isfinite(s->h.y[k])) most = fmax(most, fabs(s->h.y[k]));
+    if (isfinite(s->h.y[k])) most = pl_fmax(most, fabs(s->h.y[k]));
   s->unit_text = readable_unit(s->h.y_unit, most, &s->factor);
 }
 
@@ -122,7 +123,7 @@ static double reach_of(const seeker *s, long frame) {
   const double here = s->at_frames[frame];
   const double before = frame > 0 ? fabs(here - s->at_frames[frame - 1]) : 0,
                after = frame + 1 < s->frames ? fabs(here - s->at_frames[frame + 1]) : 0;
-  return fmax(before, after) / 2;
+  return pl_fmax(before, after) / 2;
 }
 
 static bool seek(const seeker *s, double value, long *frame, char caption[CAPTION_TEXT]) {

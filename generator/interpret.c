@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 
 #define TRUTH(condition) ((condition) ? 1.0 : 0.0)
 

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 #include "generator/interpret.h"
 #include "generator/kinematics.h"
 

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 static const double PI = 3.14159265358979323846;
 
 range range_between(double low, double high, bool low_open, bool high_open) {
@@ -61,7 +63,7 @@ static bool is_empty(range a) {
 }
 
 range range_meet(range a, range b) {
-  range c = {fmax(a.low, b.low), fmin(a.high, b.high), false, false};
+  range c = {pl_fmax(a.low, b.low), pl_fmin(a.high, b.high), false, false};
   c.low_open = (a.low == c.low && a.low_open) || (b.low == c.low && b.low_open);
   c.high_open = (a.high == c.high && a.high_open) || (b.high == c.high && b.high_open);
   return is_empty(c) ? a : c;
@@ -130,13 +132,14 @@ static range rising(range a, double (*f)(double), double limit_low, double limit
 }
 
 static range root_of(range a) {
-  range b = range_between(fmax(a.low, 0), fmax(a.high, 0), a.low_open && a.low >= 0, a.high_open);
+  range b =
+      range_between(pl_fmax(a.low, 0), pl_fmax(a.high, 0), a.low_open && a.low >= 0, a.high_open);
   return range_between(sqrt(b.low), sqrt(b.high), b.low_open, b.high_open);
 }
 
 static range logarithm_of(range a) {
-  return range_between(a.low > 0 ? log(a.low) : -INFINITY, a.high > 0 ? log(a.high) : INFINITY,
-                       a.low_open, a.high_open);
+  return range_between(a.low > 0 ? pl_log(a.low) : -INFINITY,
+                       a.high > 0 ? pl_log(a.high) : INFINITY, a.low_open, a.high_open);
 }
 
 /* Of a base that is not negative. */
@@ -144,13 +147,13 @@ static range power_of(range a, range b) {
   if (!range_is_nonnegative(a)) return range_all();
   bool positive = range_is_positive(a);
   if (isinf(a.high) || isinf(b.low) || isinf(b.high) || (a.low == 0 && b.low < 0)) {
-    double low = b.low >= 0 && a.low >= 1 ? pow(a.low, b.low) : 0;
+    double low = b.low >= 0 && a.low >= 1 ? pl_pow(a.low, b.low) : 0;
     return range_between(low, INFINITY, positive && low == 0, true);
   }
-  const double p[] = {pow(a.low, b.low), pow(a.low, b.high), pow(a.high, b.low),
-                      pow(a.high, b.high)};
-  double low = fmin(fmin(p[0], p[1]), fmin(p[2], p[3])),
-         high = fmax(fmax(p[0], p[1]), fmax(p[2], p[3]));
+  const double p[] = {pl_pow(a.low, b.low), pl_pow(a.low, b.high), pl_pow(a.high, b.low),
+                      pl_pow(a.high, b.high)};
+  double low = pl_fmin(pl_fmin(p[0], p[1]), pl_fmin(p[2], p[3])),
+         high = pl_fmax(pl_fmax(p[0], p[1]), pl_fmax(p[2], p[3]));
   return range_between(low, high, low == 0 && positive, false);
 }
 
@@ -185,11 +188,11 @@ range range_apply(ir_op op, range a, range b) {
   case IR_POW:
     return power_of(a, b);
   case IR_EXP:
-    return rising(a, exp, 0, INFINITY);
+    return rising(a, pl_exp, 0, INFINITY);
   case IR_CBRT:
-    return rising(a, cbrt, -INFINITY, INFINITY);
+    return rising(a, pl_cbrt, -INFINITY, INFINITY);
   case IR_TANH:
-    return rising(a, tanh, -1, 1);
+    return rising(a, pl_tanh, -1, 1);
   case IR_MIN:
   case IR_MAX:
     return extreme(a, b, op == IR_MAX);

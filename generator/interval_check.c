@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/interval.h"
 #include "generator/interval_parts.h"
 #include "generator/interval_sums.h"
@@ -469,10 +470,10 @@ static range operation_range(analysis *a, context *c, ir_node n) {
     return range_between(1 - p.high, 1 - p.low, false, false);
   case IR_AND:
     return p.high < 1 || q.high < 1 ? range_of(0)
-                                    : range_between(fmin(p.low, q.low), 1, false, false);
+                                    : range_between(pl_fmin(p.low, q.low), 1, false, false);
   case IR_OR:
     return p.low > 0 || q.low > 0 ? range_of(1)
-                                  : range_between(0, fmax(p.high, q.high), false, false);
+                                  : range_between(0, pl_fmax(p.high, q.high), false, false);
   default:
     return range_apply(op, p, q);
   }
@@ -625,7 +626,7 @@ static void look_at_law(analysis *a) {
   const law *l = a->law;
   const ir_node *margins = damage_margins(a);
   a->nodes = ir_count(b->graph);
-  a->most_contexts = (int)fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a->nodes)));
+  a->most_contexts = (int)pl_fmin(MOST_CONTEXTS, (double)(1 + MOST_MEMORY / (4 * (long)a->nodes)));
   a->tried = arena_alloc(a->memory, (size_t)a->nodes);
   learn_fields(a);
   context *whole = whole_law(a);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/interval_parts.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
@@ -29,9 +30,9 @@ static double draw_between(bench *b, double low, double high, double usual) {
   if (choice == 1 && isfinite(high)) return high;
   if (choice < 5 && isfinite(low) && isfinite(high)) return draw_uniform(&b->seed, low, high);
   double drawn =
-      usual != 0 ? usual * pow(10, draw_uniform(&b->seed, -2, 2)) : draw_size(&b->seed, -3, 3);
+      usual != 0 ? usual * pl_pow(10, draw_uniform(&b->seed, -2, 2)) : draw_size(&b->seed, -3, 3);
   if (!isfinite(low) && draw_bits(&b->seed) % 2) drawn = -drawn;
-  return fmin(fmax(drawn, low), high);
+  return pl_fmin(pl_fmax(drawn, low), high);
 }
 
 static bool draw_parameters(hunt *h, int lane) {
@@ -72,13 +73,14 @@ static void draw_lane(hunt *h, int lane, bool vary) {
                                                          : 0;
     else if (choice == 0) {
       double drawn = bench_field(b, h->states, k)[lane] + draw_size(&b->seed, -6, 0);
-      bench_field(b, h->states, k)[lane] = fmin(fmax(drawn, h->fields[k].low), h->fields[k].high);
+      bench_field(b, h->states, k)[lane] =
+          pl_fmin(pl_fmax(drawn, h->fields[k].low), h->fields[k].high);
     }
   }
   motion m = {{draw_size(&b->seed, -7, 0.5), draw_size(&b->seed, -3, 5),
                draw_size(&b->seed, -6, 0.4), draw_size(&b->seed, -6, 0.4)}};
   if (draw_bits(&b->seed) % 8 == 0) m = (motion){{0}};
-  m.at[AXIS_STRETCH] = fmax(m.at[AXIS_STRETCH], -0.999);
+  m.at[AXIS_STRETCH] = pl_fmax(m.at[AXIS_STRETCH], -0.999);
   bench_move(b, h->states, lane, m);
 }
 

@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 #include "generator/interpret.h"
 
 enum { FIRST_NODES = 256, LARGEST_EXPONENT = 16 };

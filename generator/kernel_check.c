@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/guard_watch.h"
 #include "generator/kernel_check_families.h"
 #include "generator/kernel_check_strips.h"
@@ -41,7 +42,7 @@ static void arrays_free(state_arrays *a) {
 static void draw_states(const law_readers *l, double **in, uint64_t *seed, int count) {
   const pl_law *kernel = l->law[0];
   for (int q = 0; q < count; q++) {
-    in[0][q] = fmax(draw_size(seed, -9, 0), -0.9);
+    in[0][q] = pl_fmax(draw_size(seed, -9, 0), -0.9);
     in[1][q] = draw_size(seed, -3, 6);
     in[2][q] = draw_size(seed, -9, 0.5);
     in[3][q] = draw_size(seed, -9, 0.5);

@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/passes.h"
 #include "generator/random_values.h"
 
@@ -74,9 +75,11 @@ static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed)
     double turn = kind != ANY ? draw_size(seed, -9, -2)
                   : q % 3     ? draw_uniform(seed, -14, 14)
                               : draw_size(seed, -9, 0);
-    double stretched = 1 + fmax(draw_size(seed, -8, kind < SOME_SPIN ? 0 : -2), -0.9);
-    double across = stretched * (cos(turn) * b->chord[0] - sin(turn) * b->chord[1]) - b->chord[0];
-    double along = stretched * (sin(turn) * b->chord[0] + cos(turn) * b->chord[1]) - b->chord[1];
+    double stretched = 1 + pl_fmax(draw_size(seed, -8, kind < SOME_SPIN ? 0 : -2), -0.9);
+    double across =
+        stretched * (pl_cos(turn) * b->chord[0] - pl_sin(turn) * b->chord[1]) - b->chord[0];
+    double along =
+        stretched * (pl_sin(turn) * b->chord[0] + pl_cos(turn) * b->chord[1]) - b->chord[1];
     double x = b->s * draw_size(seed, -7, 0), y = b->s * draw_size(seed, -7, 0);
     double near[3] = {x, y, turn + draw_size(seed, -9, 0)};
     double far[3] = {x + across, y + along, turn + draw_size(seed, -9, 0)};

@@ -4,7 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 
 const builtin_quantity law_motion[PL_STATE_INPUTS] = {
     QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};

@@ -16,6 +16,8 @@ enum { WRITE_FAILED = 2 };
     "a folder in which laws are looked for by name, before those that were installed")             \
   X("PERILAT_CC", "the C compiler of kernels, with options if needed; otherwise CC, or the first " \
                   "of cc, gcc, clang")                                                             \
+  X("PERILAT_PROCESSOR", "what kernels are compiled for: x86-64, x86-64-v2, x86-64-v3 (AVX2), "    \
+                         "x86-64-v4 (AVX-512); otherwise this processor")                          \
   X("PERILAT_CACHE",                                                                               \
     "the folder of compiled kernels; otherwise perilat in XDG_CACHE_HOME or in ~/.cache")
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/comparison.h"
 #include "generator/law_inputs.h"
 #include "generator/physics_parameters.h"
@@ -193,7 +194,7 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
                 {QUANTITY_V, c->V},
                 {QUANTITY_M_END_I, c->mass_i},
                 {QUANTITY_M_END_J, c->mass_j},
-                {QUANTITY_M_BOND, fmin(c->mass_i, c->mass_j)},
+                {QUANTITY_M_BOND, pl_fmin(c->mass_i, c->mass_j)},
                 {QUANTITY_AREA, c->area},
                 {QUANTITY_SHELL, c->shell},
                 {QUANTITY_N_FAMILY, c->n}};
@@ -204,9 +205,9 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
 static pl_bond_class draw_class(bench *b, int lane, double density) {
   double s = 0.01, t = 0.1, uneven = 1;
   if (lane > 0) {
-    s *= exp2(draw_uniform(&b->seed, -2, 2));
-    t *= exp2(draw_uniform(&b->seed, -2, 2));
-    uneven = exp2(draw_uniform(&b->seed, -1, 1));
+    s *= pl_pow(2, draw_uniform(&b->seed, -2, 2));
+    t *= pl_pow(2, draw_uniform(&b->seed, -2, 2));
+    uneven = pl_pow(2, draw_uniform(&b->seed, -1, 1));
   }
   double volume = sqrt(3) / 2 * s * s * t, mass = density * volume;
   return (pl_bond_class){.s = s,

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -42,7 +43,7 @@ static pull solve(double matrix[WAYS][WAYS], pull right, int ways) {
   int pivot_of[WAYS];
   for (int k = 0; k < ways; k++)
     for (int q = 0; q < ways; q++)
-      largest = fmax(largest, fabs(matrix[k][q]));
+      largest = pl_fmax(largest, fabs(matrix[k][q]));
   for (int k = 0; k < ways; k++) {
     int pivot = -1;
     for (int row = 0; row < ways; row++)
@@ -87,7 +88,7 @@ static void improve(search *z, int lane, int ways, double step) {
       matrix[row][k] = (z->slope[k][lane].at[row] - z->pull[lane].at[row]) / step;
   pull change = solve(matrix, z->pull[lane], ways);
   for (int k = 0; k < ways; k++)
-    z->at[lane].at[way_axis[k]] -= fmin(fmax(change.at[k], -1), 1);
+    z->at[lane].at[way_axis[k]] -= pl_fmin(pl_fmax(change.at[k], -1), 1);
 }
 
 /* Newton's method from rest, all states at once. `there`: the pull at the states themselves. */
@@ -209,7 +210,7 @@ static int force_at_fault(physics *p, double *const *states, int count) {
   for (int k = 0; k < WAYS; k++) {
     double part = (g.at[k] - other.at[k]) * m.at[way_axis[k]];
     worst = part < least ? k : worst;
-    least = fmin(least, part);
+    least = pl_fmin(least, part);
   }
   return worst;
 }
@@ -265,7 +266,7 @@ static void check_rising(physics *p, int field, double *const *states, int count
     for (int lane = 0; lane < count && k > 0 && !p->failed[DIAG_DAMAGE_FORCE]; lane++) {
       work_done less = w[(k + 1) % 2][lane], more = w[k % 2][lane];
       if (!less.known || !more.known ||
-          !(more.work - less.work > 1e-7 * fmax(less.size, more.size)))
+          !(more.work - less.work > 1e-7 * pl_fmax(less.size, more.size)))
         continue;
       double *column = must_alloc((size_t)b->width * sizeof *column);
       bench_get(b, states, lane, column);
@@ -364,7 +365,7 @@ void physics_check_energy_and_force(physics *p) {
             bench_size(b, states, &both, lane) * (k == FORCE_N ? 1 : bench_length(b, states, lane));
         double force = both.out[k][lane], implied = both.out[WAYS + k][lane];
         if (!says || p->failed[DIAG_ENERGY_FORCE] ||
-            !(fabs(force - implied) > FORCE_TOLERANCE * fmax(size, fabs(implied))))
+            !(fabs(force - implied) > FORCE_TOLERANCE * pl_fmax(size, fabs(implied))))
           continue;
         bench_get(b, states, lane, column);
         physics_say(p, DIAG_ENERGY_FORCE, physics_fault(p, k, column), column,

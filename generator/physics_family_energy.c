@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/lower_parts.h"
 #include "generator/physics_family_parts.h"
 #include "generator/random_values.h"
@@ -29,7 +30,7 @@ static double largest(const double *v, long count) {
 /* Forces along the reference bonds have an energy in the limit of small strains only. */
 static double draw_strain(family_bench *b) {
   const bool small = b->step.along_reference;
-  return pow(10, small ? draw_uniform(&b->seed, -8, -7) : draw_uniform(&b->seed, -5, -2));
+  return pl_pow(10, small ? draw_uniform(&b->seed, -8, -7) : draw_uniform(&b->seed, -5, -2));
 }
 
 /* --- at rest ---------------------------------------------------------------------------------- */
@@ -54,7 +55,7 @@ static void turn(family_bench *b, double angle, double *u) {
                               n[0] * at[1] - n[1] * at[0]};
     for (int d = 0; d < p->law->dimensions; d++)
       u[d * p->inside_count + q] =
-          (cos(angle) - 1) * (at[d] - along * n[d]) + sin(angle) * across[d];
+          (pl_cos(angle) - 1) * (at[d] - along * n[d]) + pl_sin(angle) * across[d];
   }
 }
 
@@ -68,7 +69,7 @@ void family_check_rest(family_bench *b) {
     family_bench_forces(b, b->frozen, force);
     double scale = largest(force, b->values);
     family_bench_forces(b, b->whole, force); /* a law may carry its strain in states */
-    scale = fmax(scale, largest(force, b->values));
+    scale = pl_fmax(scale, largest(force, b->values));
     turn(b, round % 2 ? draw_uniform(&b->seed, -3, 3) : 0, u);
     family_bench_move(b, u, NULL);
     family_bench_forces(b, b->whole, force);
@@ -190,7 +191,7 @@ static void go_round(family_bench *b, triangle *t, int panels) {
   for (int leg = 0; leg < 3; leg++) {
     t->work[leg] = leg_work(b, corner[leg], corner[leg + 1], panels, &t->size);
     sum += t->work[leg];
-    t->peak = fmax(t->peak, fabs(sum));
+    t->peak = pl_fmax(t->peak, fabs(sum));
   }
 }
 

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_family_parts.h"
 #include "generator/random_values.h"
 
@@ -122,7 +123,7 @@ static both_sides worst_sides(const patch *p, int field, double *size) {
       if (!patch_has_bond(p, site, k)) continue;
       const double *v = p->new_field[field] + k * p->size, *back = v + half * p->size;
       const both_sides now = {v[site], back[patch_neighbour(p, site, k)]};
-      *size = fmax(*size, fmax(fabs(now.mine), fabs(now.other)));
+      *size = pl_fmax(*size, pl_fmax(fabs(now.mine), fabs(now.other)));
       if (fabs(now.mine - now.other) > fabs(worst.mine - worst.other)) worst = now;
     }
   return worst;
@@ -220,7 +221,7 @@ static double largest_force(family_bench *b, leg *l, double way, double *force) 
   move_on_leg(b, l, way);
   family_bench_forces(b, b->whole, force);
   for (long k = 0; k < b->values; k++)
-    most = fmax(most, fabs(force[k]));
+    most = pl_fmax(most, fabs(force[k]));
   return most;
 }
 
@@ -231,9 +232,9 @@ static void check_continuity(family_bench *b, leg *l, double before, double afte
   if (!line || meant || b->failed[DIAG_CONTINUITY]) return;
   const double reached = largest_force(b, l, 1, l->force);
   const double size =
-      fmax(largest_force(b, l, before, l->force), largest_force(b, l, after, l->other));
+      pl_fmax(largest_force(b, l, before, l->force), largest_force(b, l, after, l->other));
   for (long k = 0; k < b->values; k++)
-    jump = fmax(jump, fabs(l->force[k] - l->other[k]));
+    jump = pl_fmax(jump, fabs(l->force[k] - l->other[k]));
   const double smooth = (1e-9 + 1e3 * (after - before)) * reached;
   if (!(jump > JUMP_TOLERANCE * size + smooth)) return;
   family_bench_say(b, DIAG_CONTINUITY, line->where, l->strain,
@@ -388,8 +389,8 @@ static void begin_leg(family_bench *b, leg *l, bool slow, bool far) {
   double *from = l->from;
   l->from = l->to;
   l->to = from;
-  l->strain = pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -3.5, -0.7));
-  l->speed = slow ? 0 : pow(10, draw_uniform(&b->seed, -3, 5));
+  l->strain = pl_pow(10, far ? draw_uniform(&b->seed, 0, 0.5) : draw_uniform(&b->seed, -3.5, -0.7));
+  l->speed = slow ? 0 : pl_pow(10, draw_uniform(&b->seed, -3, 5));
   family_bench_deform(b, l->strain, l->to);
   for (long k = 0; k < b->values; k++)
     l->rate[k] = l->speed * (l->to[k] - l->from[k]);
@@ -401,7 +402,7 @@ static void rest_leg(family_bench *b, leg *l) {
 
 /* Steps grow: what a law begins with happens at small strains. */
 static double way_at(int step, int steps) {
-  return pow(10, 3.0 * (step - steps) / steps);
+  return pl_pow(10, 3.0 * (step - steps) / steps);
 }
 
 /* Jumps are looked for on slow legs: a damper may begin with a case. */
@@ -476,7 +477,7 @@ static void go_round(family_bench *b, cycle *c, int steps) {
       family_bench_move(b, u, v);
       family_bench_forces(b, b->whole, force);
       c->work += family_work(force, way, p->law->dimensions * p->inside_count, &size);
-      c->peak = fmax(c->peak, fabs(c->work));
+      c->peak = pl_fmax(c->peak, fabs(c->work));
       family_bench_accept(b);
     }
   }
@@ -509,8 +510,8 @@ static bool stays_negative(family_bench *b, cycle *c) {
 
 /* Out and back through another corner; some twice the same way. */
 static void draw_cycle(family_bench *b, cycle *c, int kind) {
-  c->strain = pow(10, draw_uniform(&b->seed, -5, -1));
-  c->speed = pow(10, draw_uniform(&b->seed, -3, 4));
+  c->strain = pl_pow(10, draw_uniform(&b->seed, -5, -1));
+  c->speed = pl_pow(10, draw_uniform(&b->seed, -3, 4));
   for (int k = 1; k + 1 < CORNERS; k++)
     family_bench_deform(b, c->strain, c->corner[k]);
   if (kind % 2) memset(c->corner[2], 0, (size_t)b->values * sizeof(double));

@@ -4,6 +4,8 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -17,7 +19,7 @@ enum { LEVELS = 12, LOOKS = 16 };
 
 /* How far a state is from its initial value: 0, then over nine decades, for it may count openings or shares. */
 static double level_at(int k) {
-  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : pow(10, k - 10);
+  return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : power_of(10, k - 10);
 }
 
 typedef double level_forces[FORCE_COUNT][LEVELS];
@@ -102,7 +104,7 @@ typedef struct tour {
 
 static tour draw_tour(physics *p) {
   motion amplitude = physics_draw_motion(p);
-  double speed = pow(10, draw_uniform(&p->b.seed, -3, 5));
+  double speed = pl_pow(10, draw_uniform(&p->b.seed, -3, 5));
   tour t = {0};
   for (int k = 1; k < CORNERS; k += 2) {
     t.corner[k] = physics_draw_corner(p, amplitude);
@@ -128,7 +130,7 @@ static bool is_stronger(physics *p, double *const *states, int lane, int field, 
   bench *b = &p->b;
   double *column = must_alloc((size_t)b->width * sizeof *column);
   motion m = without_rate(bench_motion(b, states, lane)), back = m;
-  back.at[AXIS_STRETCH] = fmax(-m.at[AXIS_STRETCH], -0.5);
+  back.at[AXIS_STRETCH] = pl_fmax(-m.at[AXIS_STRETCH], -0.5);
   bench_get(b, states, lane, column);
   for (int k = 0; k < LANES; k++) {
     bench_put(b, few, k, column);
@@ -186,7 +188,7 @@ static void look_at_step(physics *p, healing *h, int leg) {
                *now = b->step.out[FORCE_COUNT + h->field];
   for (int lane = 0; lane < BENCH_LANES && !p->failed[DIAG_HEALING]; lane++) {
     double back = (before[lane] - now[lane]) * h->way,
-           size = fmax(fabs(before[lane]), fabs(now[lane]));
+           size = pl_fmax(fabs(before[lane]), fabs(now[lane]));
     h->moved = h->moved || before[lane] != now[lane];
     bool weakened = (before[lane] - b->law->fields.items[h->field]->initial) * h->way > 0;
     if (weakened && back > LEAST_RETURN * size &&

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/random_values.h"
 
 /* Something in the middle of the bounds for a parameter that has no default. */
@@ -38,15 +39,15 @@ static void start_values(const law *l, double *values) {
 }
 
 static double vary(uint64_t *seed, double value, double low, double high) {
-  double drawn = value * exp2(draw_uniform(seed, -1, 1));
+  double drawn = value * pl_pow(2, draw_uniform(seed, -1, 1));
   bool off = draw_bits(seed) % 2;
   if (value == 0 && !off)
     return 0; /* what is switched off by default is switched on in half of the draws */
   if (value == 0 && isfinite(high))
     drawn = draw_uniform(seed, isfinite(low) ? low : -high, high);
   else if (value == 0)
-    drawn = pow(10, draw_uniform(seed, -3, 0));
-  return fmin(fmax(drawn, low), high);
+    drawn = pl_pow(10, draw_uniform(seed, -3, 0));
+  return pl_fmin(pl_fmax(drawn, low), high);
 }
 
 static bool all_within(const law *l, const double *values) {

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -65,7 +66,7 @@ static void add_leg_work(physics *p, loops *l, const probe *from, int lane, int 
     l->work[lane] += part;
     l->by_force[k][lane] += part;
   }
-  l->peak[lane] = fmax(l->peak[lane], fabs(l->work[lane]));
+  l->peak[lane] = pl_fmax(l->peak[lane], fabs(l->work[lane]));
 }
 
 static int force_at_fault(const loops *l, int lane) {
@@ -130,7 +131,7 @@ static double damage_of(const bench *b, double *const *states, int lane) {
   double largest = -1;
   for (int k = 0; k < b->field_count; k++)
     if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE && bench_field(b, states, k)[lane] > 0)
-      largest = fmax(largest, bench_field(b, states, k)[lane]);
+      largest = pl_fmax(largest, bench_field(b, states, k)[lane]);
   return largest;
 }
 
@@ -293,10 +294,10 @@ static void draw_corners(physics *p, loop *o, int kind) {
 
 /* Each leg at its own speed, within a decade of the others. */
 static void draw_rates(physics *p, loop *o) {
-  double speed = pow(10, draw_uniform(&p->b.seed, -3, 5));
+  double speed = pl_pow(10, draw_uniform(&p->b.seed, -3, 5));
   for (int leg = 0; leg < LEGS; leg++) {
     double way = o->corner[leg + 1].at[AXIS_STRETCH] - o->corner[leg].at[AXIS_STRETCH];
-    double rate = speed * pow(10, draw_uniform(&p->b.seed, -1, 0));
+    double rate = speed * pl_pow(10, draw_uniform(&p->b.seed, -1, 0));
     o->rate[leg] = way == 0 ? 0 : copysign(rate, way);
   }
 }

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
 
@@ -13,7 +14,7 @@ static const double JUMP_TOLERANCE = 1e-6;      /* of the force, between neighbo
 static const double DAMAGE_TOLERANCE = 1e-9;
 
 static double limited_stretch(double stretch) {
-  return fmin(fmax(stretch, LARGEST_SHORTENING), 10);
+  return pl_fmin(pl_fmax(stretch, LARGEST_SHORTENING), 10);
 }
 
 /* --- drawing ---------------------------------------------------------------------------------- */
@@ -32,7 +33,7 @@ motion physics_draw_motion(physics *p) {
   motion m = draw_anywhere(b);
   if (!p->scale_count || draw_bits(&b->seed) % 4 == 0) return m;
   const motion *near = &p->scales[draw_bits(&b->seed) % (uint64_t)p->scale_count];
-  double factor = pow(10, draw_uniform(&b->seed, -0.5, 0.7));
+  double factor = pl_pow(10, draw_uniform(&b->seed, -0.5, 0.7));
   for (int k = 0; k < AXIS_COUNT; k++)
     if (near->at[k] != 0 && isfinite(near->at[k]))
       m.at[k] = near->at[k] * factor * (draw_bits(&b->seed) % 4 ? 1 : -1) *
@@ -44,7 +45,8 @@ motion physics_draw_motion(physics *p) {
 motion physics_draw_corner(physics *p, motion amplitude) {
   bench *b = &p->b;
   for (int k = 0; k < AXIS_COUNT; k++)
-    amplitude.at[k] *= pow(10, draw_uniform(&b->seed, -1, 0)) * (draw_bits(&b->seed) % 2 ? 1 : -1);
+    amplitude.at[k] *=
+        pl_pow(10, draw_uniform(&b->seed, -1, 0)) * (draw_bits(&b->seed) % 2 ? 1 : -1);
   amplitude.at[AXIS_STRETCH] = limited_stretch(amplitude.at[AXIS_STRETCH]);
   amplitude.at[AXIS_RATE] = 0;
   return amplitude;
@@ -92,7 +94,7 @@ static void put_on_ray(physics *p, const ray *r, int lane, double way) {
 static double way_at(int k) {
   enum { HALF = BENCH_LANES / 2 };
   int size = k < HALF ? HALF - 1 - k : k - HALF;
-  double way = pow(10, -9 + 9.0 * size / (HALF - 1));
+  double way = pl_pow(10, -9 + 9.0 * size / (HALF - 1));
   return k < HALF ? -way : way;
 }
 
@@ -165,7 +167,8 @@ static void check_continuity(physics *p, const ray *r) {
   bench *b = &p->b;
   const case_line *line = parting_line(b);
   if (!line || p->failed[DIAG_CONTINUITY]) return;
-  double size = fmax(bench_size(b, r->states, &b->step, 0), bench_size(b, r->states, &b->step, 1));
+  double size =
+      pl_fmax(bench_size(b, r->states, &b->step, 0), bench_size(b, r->states, &b->step, 1));
   for (int k = 0; k < FORCE_COUNT; k++) {
     double weight = k == FORCE_N ? 1 : bench_length(b, r->states, 0);
     double a = b->step.out[k][0], c = b->step.out[k][1];
@@ -259,8 +262,8 @@ static double size_on_ray(const ray *r, double way) {
   double size = 0, reach = 0;
   for (int k = 0; k < AXIS_COUNT; k++)
     if (k != AXIS_RATE) {
-      size = fmax(size, fabs(m.at[k]));
-      reach = fmax(reach, fabs(r->along.at[k]));
+      size = pl_fmax(size, fabs(m.at[k]));
+      reach = pl_fmax(reach, fabs(r->along.at[k]));
     }
   return reach > 0 ? size / reach : 0;
 }
@@ -279,7 +282,7 @@ static void check_flow(physics *p, const ray *r, double before, double after) {
     if ((truth[0] != 0) == (truth[1] != 0)) continue;
     double limit = truth[1] != 0 ? after : before,
            away = truth[1] != 0 ? after - before : before - after;
-    double outward = copysign(fmax(fabs(limit), size_on_ray(r, limit)), away);
+    double outward = copysign(pl_fmax(fabs(limit), size_on_ray(r, limit)), away);
     for (int q = 0; q < COUNT; q++)
       put_on_ray(p, r, q, limit + outward * beyond[q]);
     probe_run(b, &b->guards, r->states, COUNT);
@@ -316,7 +319,7 @@ static void scan_ray(physics *p, ray *r) {
   probe_run(b, &b->step, r->states, BENCH_LANES);
   r->force = 0;
   for (int k = 0; k < BENCH_LANES; k++)
-    r->force = fmax(r->force, bench_size(b, r->states, &b->step, k));
+    r->force = pl_fmax(r->force, bench_size(b, r->states, &b->step, k));
   bench_watch(b, r->states, BENCH_LANES);
   int first = (int)(draw_bits(&b->seed) % (BENCH_LANES - 1));
   for (int k = 0; k < BENCH_LANES - 1 && count < MOST_CROSSINGS; k++) {
@@ -493,7 +496,7 @@ static void step_histories(physics *p, histories *h, int step) {
     check_damage_range(p, h, lane);
     compare_variant(p, h, lane, EXCHANGED, DIAG_EXCHANGE);
     if (b->micropolar) compare_variant(p, h, lane, MIRRORED, DIAG_MIRROR);
-    h->force[lane] = fmax(h->force[lane], bench_size(b, h->states[AS_IS], &b->step, lane));
+    h->force[lane] = pl_fmax(h->force[lane], bench_size(b, h->states[AS_IS], &b->step, lane));
     if (draw_bits(&b->seed) % 16 == 0) keep_state(p, h->states[AS_IS], lane);
   }
   bench_accept(b, h->states[AS_IS], BENCH_LANES);

@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/law_inputs.h"
 #include "generator/physics_parts.h"
 #include "generator/random_values.h"
@@ -95,7 +96,7 @@ void physics_check_stiffness(physics *p) {
       work += part;
       total += fabs(part);
       worst = part < least ? k : worst;
-      least = fmin(least, part);
+      least = pl_fmin(least, part);
     }
     if (!(work < -STIFFNESS_TOLERANCE * total) || p->failed[DIAG_STIFFNESS]) continue;
     bench_get(b, states, lane, column);
@@ -219,10 +220,10 @@ static void compare_slope(physics *p, tangent_test *t, int lane, bench_axis axis
     if (k == FORCE_N && axis == AXIS_STRETCH) symbolic += wrong;
     double noise =
                (1e-13 * fabs(at) + 1e-15 * (t->force_size[k] + fabs(t->intact[k][lane]))) / step,
-           size = fmax(fabs(close), fabs(symbolic));
+           size = pl_fmax(fabs(close), fabs(symbolic));
     if (size <= 1e-10 * t->largest[k * AXIS_COUNT + (int)axis])
       continue; /* what rounding leaves of a broken bond */
-    bool resolved = fabs(wide - close) <= 1e-5 * fmax(fabs(wide), fabs(close)) + noise;
+    bool resolved = fabs(wide - close) <= 1e-5 * pl_fmax(fabs(wide), fabs(close)) + noise;
     if (!resolved || !(fabs(symbolic - close) > TANGENT_TOLERANCE * size + 10 * noise)) continue;
     double *column = must_alloc((size_t)p->b.width * sizeof *column);
     bench_get(&p->b, t->states, lane, column);
@@ -256,14 +257,14 @@ static void test_batch(physics *p, tangent_test *t, int count, double wrong) {
   probe_run(b, &t->tangent, t->states, count);
   for (int k = 0; k < RESULTS_AND_AXES; k++)
     for (int lane = 0; lane < count; lane++)
-      t->largest[k] = fmax(t->largest[k], fabs(t->tangent.out[k][lane]));
+      t->largest[k] = pl_fmax(t->largest[k], fabs(t->tangent.out[k][lane]));
   copy_to_moved(p, t, count);
   find_intact(p, t, count);
   copy_to_moved(p, t, count);
   probe_run(b, &b->step, t->states, count);
   for (int k = 0; k < FORCE_COUNT; k++)
     for (int lane = 0; lane < count; lane++)
-      t->force_size[k] = fmax(t->force_size[k], fabs(b->step.out[k][lane]));
+      t->force_size[k] = pl_fmax(t->force_size[k], fabs(b->step.out[k][lane]));
   for (int axis = 0; axis < AXIS_COUNT; axis++) {
     if (!b->micropolar && axis >= AXIS_THETA_I) break;
     memset(t->dropped, 0, sizeof t->dropped);
@@ -271,9 +272,9 @@ static void test_batch(physics *p, tangent_test *t, int count, double wrong) {
       motion m = bench_motion(b, t->states, lane);
       double others = axis == AXIS_RATE
                           ? 0
-                          : fmax(fabs(m.at[AXIS_STRETCH]),
-                                 fmax(fabs(m.at[AXIS_THETA_I]), fabs(m.at[AXIS_THETA_J])));
-      double size = fmax(fabs(m.at[axis]), 1e-3 * others);
+                          : pl_fmax(fabs(m.at[AXIS_STRETCH]),
+                                    pl_fmax(fabs(m.at[AXIS_THETA_I]), fabs(m.at[AXIS_THETA_J])));
+      double size = pl_fmax(fabs(m.at[axis]), 1e-3 * others);
       t->step[lane] = size > LEAST_MOTION ? 1e-4 * size : 1e-9;
     }
     walk_stencil(p, t, count, (bench_axis)axis);

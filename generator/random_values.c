@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 uint64_t draw_bits(uint64_t *seed) {
   uint64_t z = *seed += UINT64_C(0x9e3779b97f4a7c15);
   z = (z ^ (z >> 30)) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -14,7 +16,7 @@ double draw_uniform(uint64_t *seed, double low, double high) {
 }
 
 double draw_size(uint64_t *seed, double low, double high) {
-  double size = pow(10, draw_uniform(seed, low, high));
+  double size = pl_pow(10, draw_uniform(seed, low, high));
   uint64_t choice = draw_bits(seed) % 16;
   return choice == 0 ? 0 : choice % 2 ? size : -size;
 }

@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "generator/run_parts.h"
 #include "runtime/clock.h"
 
@@ -26,7 +27,7 @@ static double triad(int threads) {
       if (round == 0) b[k] = c[k] = (double)k;
       a[k] = b[k] + 3 * c[k];
     }
-    if (round > 0) best = fmin(best, monotonic_seconds() - begun);
+    if (round > 0) best = pl_fmin(best, monotonic_seconds() - begun);
   }
   free(memory);
   return TRIAD_BYTES / best;
@@ -89,7 +90,7 @@ static void print_parts(const run *r, double seconds) {
       print_part(name, p->pass[number], seconds);
       between -= p->pass[number];
     }
-    print_part("law, between passes", fmax(between, 0), seconds);
+    print_part("law, between passes", pl_fmax(between, 0), seconds);
   }
   print_part("rest", seconds - known, seconds);
 }

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "generator/bad_bond.h"
 #include "generator/explain_bad.h"
 #include "generator/run_parts.h"
@@ -358,9 +359,9 @@ static void warn_of_gain(const run *r) {
     const char *series, *words;
   } parts[] = {{"energy/dissipated_damage", "its damage and states have"},
                {"energy/dissipated_damping", "its rate terms and the deck's damping have"}};
-  const double given = fmax(fabs(last_value(r, "energy/external")),
-                            fabs(sample_of(r, "energy/kinetic", false))),
-               scale = fmax(given, fabs(last_value(r, "energy/stored")));
+  const double given = pl_fmax(fabs(last_value(r, "energy/external")),
+                               fabs(sample_of(r, "energy/kinetic", false))),
+               scale = pl_fmax(given, fabs(last_value(r, "energy/stored")));
   for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
     const double lost = last_value(r, parts[k].series);
     if (!(lost < -1e-3 * scale)) continue;
@@ -378,7 +379,7 @@ static double largest_of(const run *r, const char *name) {
   const long samples = simulation_history(r->simulation, &time);
   double largest = 0;
   for (long k = 0; values && k < samples; k++)
-    largest = fmax(largest, values[k]);
+    largest = pl_fmax(largest, values[k]);
   return largest;
 }
 
@@ -411,7 +412,7 @@ static void conclude_monitor(const run *r, int k) {
 
 void conclude(const run *r, double seconds, long steps) {
   const rows *w = simulation_rows(r->simulation, 0);
-  double rate = (double)steps / fmax(seconds, 1e-9);
+  double rate = (double)steps / pl_fmax(seconds, 1e-9);
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
          1e-6 * rate * (double)w->bond_count);
   conclude_increments(r);
@@ -420,7 +421,7 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_energy(r);
   fflush(stdout);
   warn_of_gain(r);
-  long frames = result_frame_count(r->result);
+  long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");
 }

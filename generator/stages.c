@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* --- what operations cost --------------------------------------------------------------------- */
 
@@ -346,7 +347,7 @@ static stage_cost cost_of(planner *p, int stage, unsigned char *mask, unsigned c
       most(most(OPERATION_CYCLES * c.operations, c.stores), DIVIDER_CYCLES * c.divisions);
   const double waiting = (double)c.chain * c.operations / OPERATIONS_IN_FLIGHT;
   /* neither hides all of the other; up to two fifths more than measured where chains are short, but in the same order */
-  c.cycles = hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
+  c.cycles = pl_hypot(busy, waiting) + STORE_CYCLES * c.stores + LOOP_CYCLES;
   return c;
 }
 

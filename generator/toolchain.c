@@ -16,14 +16,14 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
-#include "generator/sha256.h"
+#include "dsl/sha256.h"
 
 extern char **environ;
 
 #define LONGEST_PATH   PATH_MAX
 #define MOST_ARGUMENTS 128
 
-/* --- the compiler ----------------------------------------------------------------------------- */
+/* --- programs and settings -------------------------------------------------------------------- */
 
 static bool is_program(const char *path) {
   struct stat about;
@@ -54,10 +54,50 @@ static const char *setting(const char *name) {
   return value && *value ? value : NULL;
 }
 
+/* --- the processor ---------------------------------------------------------------------------- */
+
+/* X(what kernels may be compiled for, its last instruction set as /proc/cpuinfo has it) */
+#if defined(__x86_64__)
+#define PROCESSORS(X)                                                                              \
+  X("native", "")                                                                                  \
+  X("x86-64", "")                                                                                  \
+  X("x86-64-v2", " sse4_2")                                                                        \
+  X("x86-64-v3", " avx2")                                                                          \
+  X("x86-64-v4", " avx512vl")
+#else
+#define PROCESSORS(X) X("native", "")
+#endif
+
+typedef struct processor {
+  const char *name, *needs;
+} processor;
+
+static const processor processors[] = {
+#define X(name, needs) {name, needs},
+    PROCESSORS(X)
+#undef X
+};
+
+static const char processor_names[] =
+#define X(name, needs) " " name
+    PROCESSORS(X);
+#undef X
+
+/* That of PERILAT_PROCESSOR, otherwise native; NULL when there is none of that name. */
+static const processor *chosen_processor(void) {
+  const char *name = setting("PERILAT_PROCESSOR");
+  for (size_t k = 0; k < sizeof processors / sizeof *processors; k++)
+    if (strcmp(name ? name : "native", processors[k].name) == 0) return &processors[k];
+  return NULL;
+}
+
+/* --- the compiler ----------------------------------------------------------------------------- */
+
 const char *toolchain_compiler(void) {
   static const char *const usual[] = {"cc", "gcc", "clang"};
   char path[LONGEST_PATH];
   const char *chosen = setting("PERILAT_CC");
+  if (!chosen_processor()) return NULL;
   if (chosen) /* who names a compiler gets that one or none */
     return find_program(chosen, path, sizeof path) ? chosen : NULL;
   chosen = setting("CC");
@@ -70,6 +110,11 @@ const char *toolchain_compiler(void) {
 const char *toolchain_no_compiler(void) {
   static _Thread_local char text[200]; /* the answer, until the thread's next call */
   const char *chosen = setting("PERILAT_CC");
+  if (!chosen_processor()) {
+    snprintf(text, sizeof text, "PERILAT_PROCESSOR is `%.40s`, which is none of%s",
+             setting("PERILAT_PROCESSOR"), processor_names);
+    return text;
+  }
   if (!chosen) return "no C compiler was found (install gcc or clang, or set PERILAT_CC)";
   snprintf(text, sizeof text, "PERILAT_CC names the C compiler `%.100s`, which was not found",
            chosen);
@@ -92,21 +137,35 @@ static void read_processor(char *text, size_t size) {
   if (in) fclose(in);
 }
 
+/* False with a sentence where kernels are compiled for instructions that are not here. */
+static bool runs_here(char *error, size_t size) {
+  char here[8192];
+  const processor *p = chosen_processor();
+  read_processor(here, sizeof here);
+  if (!p || strstr(here, p->needs)) return true;
+  snprintf(error, size, "PERILAT_PROCESSOR is %s, whose instructions this processor does not have",
+           p->name);
+  return false;
+}
+
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
    interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by name and then orders
    instructions for none in particular; told to order them for an older one of the same build it gains 5 %. Combining more than two instructions takes gcc a third
    of its time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
-  "-std=gnu11 -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off "             \
+  "-std=gnu11 -O3 -march=%s -fno-math-errno -fno-trapping-math -ffp-contract=off "                 \
   "--param max-combine-insns=2 -fPIC -shared"
 
 const char *toolchain_flags(void) {
-  char processor[8192];
-  read_processor(processor, sizeof processor);
-  if (!strstr(processor, " avx512f")) return COMMON_FLAGS;
-  return strstr(processor, "GenuineIntel") ? COMMON_FLAGS
-             " -mprefer-vector-width=512 -mtune=icelake-server"
-                                           : COMMON_FLAGS " -mprefer-vector-width=512";
+  static _Thread_local char flags[400]; /* the answer, until the thread's next call */
+  char here[8192];
+  const processor *p = chosen_processor();
+  read_processor(here, sizeof here);
+  const bool wide = p == processors && strstr(here, " avx512f");
+  snprintf(flags, sizeof flags, COMMON_FLAGS "%s%s", p ? p->name : processors->name,
+           wide ? " -mprefer-vector-width=512" : "",
+           wide && strstr(here, "GenuineIntel") ? " -mtune=icelake-server" : "");
+  return flags;
 }
 
 /* --- running it ------------------------------------------------------------------------------- */
@@ -351,16 +410,15 @@ static void add_text(sha256 *h, const char *text) {
 }
 
 char *toolchain_key(const char *text) {
-  char path[LONGEST_PATH] = "", version[512] = "", processor[8192];
+  char path[LONGEST_PATH] = "", version[512] = "", here[8192];
   const char *compiler = toolchain_compiler();
   if (compiler) {
     find_program(compiler, path, sizeof path);
     read_version(compiler, version, sizeof version);
   }
-  read_processor(processor, sizeof processor);
+  read_processor(here, sizeof here);
   const uint64_t layout[] = {PL_KERNEL_ABI, sizeof(pl_law), sizeof(pl_strip),
                              sizeof(pl_bond_class)};
-  unsigned char digest[SHA256_SIZE];
   sha256 h;
   sha256_begin(&h);
   add_text(&h, text);
@@ -368,12 +426,10 @@ char *toolchain_key(const char *text) {
   add_text(&h, path);
   add_text(&h, version);
   add_text(&h, toolchain_flags());
-  add_text(&h, processor);
+  add_text(&h, here);
   sha256_add(&h, layout, sizeof layout);
-  sha256_end(&h, digest);
-  char *key = must_alloc(2 * SHA256_SIZE + 1);
-  for (int k = 0; k < SHA256_SIZE; k++)
-    snprintf(key + 2 * k, 3, "%02x", digest[k]);
+  char *key = must_alloc(SHA256_TEXT);
+  sha256_text(&h, key);
   return key;
 }
 
@@ -593,6 +649,7 @@ bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *ou
 bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, char *error,
                     size_t size) {
   char object[LONGEST_PATH], source[LONGEST_PATH];
+  if (!runs_here(error, size)) return false;
   const char *cache = toolchain_cache();
   snprintf(object, sizeof object, "%s/%s.so", cache, key);
   snprintf(source, sizeof source, "%s/%s.c", cache, key);

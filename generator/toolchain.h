@@ -19,11 +19,12 @@ typedef struct loaded_kernel {
 } loaded_kernel;
 
 /* The C compiler in use: $PERILAT_CC, $CC, or the first of cc, gcc, clang on the path; NULL when there is none, also when
-   $PERILAT_CC names one that is not there. May carry options ("cc -g"). */
+   $PERILAT_CC names one that is not there or $PERILAT_PROCESSOR no processor. May carry options ("cc -g"). */
 const char *toolchain_compiler(void);
 /* A sentence that says why there is none. */
 const char *toolchain_no_compiler(void);
-/* Flags of every kernel: -O3 -march=native -fno-math-errno -fno-trapping-math -ffp-contract=off ... */
+/* Flags of every kernel: -O3 -fno-math-errno -fno-trapping-math -ffp-contract=off ... and -march=$PERILAT_PROCESSOR, otherwise
+   this one. */
 const char *toolchain_flags(void);
 /* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
    $TMPDIR. Created; never fails (an unwritable one gives a temporary folder). */
@@ -33,7 +34,7 @@ const char *toolchain_cache(void);
 char *toolchain_key(const char *text);
 
 /* Compiles `c_text` (unless the cache has it), loads it and checks ABI and key. On failure false and a message
-   in `error`; that of a compile failure names the kept source. */
+   in `error`; that of a compile failure names the kept source. Kernels for instructions that are not here are not made. */
 bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, char *error,
                     size_t size);
 /* Writes the shared object to `path` instead of the cache. */

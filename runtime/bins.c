@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 #define MOST_BOXES_PER_POINT 4.0
 
@@ -17,8 +18,8 @@ void bins_range(const double *x, long count, double range[2]) {
   enum { SAMPLES = 1024, FAR = SAMPLES / 256 };
   double sample[SAMPLES], low = INFINITY, high = -INFINITY;
   for (long k = 0; k < count; k++) {
-    low = fmin(low, x[k]);
-    high = fmax(high, x[k]);
+    low = pl_fmin(low, x[k]);
+    high = pl_fmax(high, x[k]);
   }
   range[0] = count > 0 ? low : 0;
   range[1] = count > 0 ? high : 0;
@@ -28,8 +29,8 @@ void bins_range(const double *x, long count, double range[2]) {
   qsort(sample, SAMPLES, sizeof *sample, ascending);
   const double within = sample[SAMPLES - 1 - FAR] - sample[FAR];
   if (!(within > 0)) return;
-  range[0] = fmax(low, sample[FAR] - 0.1 * within);
-  range[1] = fmin(high, sample[SAMPLES - 1 - FAR] + 0.1 * within);
+  range[0] = pl_fmax(low, sample[FAR] - 0.1 * within);
+  range[1] = pl_fmin(high, sample[SAMPLES - 1 - FAR] + 0.1 * within);
 }
 
 static void find_box(bins *b, double *const at[3], long points, double size) {
@@ -57,7 +58,7 @@ void bins_box(const bins *b, const double at[3], int box[3]) {
   box[2] = 0;
   for (int c = 0; c < b->dimensions; c++) {
     const double place = floor((at[c] - b->lower[c]) / b->size);
-    box[c] = (int)fmin(fmax(place, 0), b->count[c] - 1);
+    box[c] = (int)pl_fmin(pl_fmax(place, 0), b->count[c] - 1);
   }
 }
 

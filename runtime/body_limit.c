@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/sweep_parts.h"
 
 /* LAPACK: eigenvalues and vectors of a symmetric tridiagonal matrix, ascending. */
@@ -55,7 +56,7 @@ static void body_free(body *b) {
 static double largest_of(const double *x, long count) {
   double most = 0;
   for (long k = 0; k < count; k++)
-    most = fmax(most, fabs(x[k]));
+    most = pl_fmax(most, fabs(x[k]));
   return most;
 }
 
@@ -229,8 +230,8 @@ static bool find_damped(lanczos *l, double omega, step_limit *out) {
     good = find_largest(l);
     if (!good) break;
     find_vector(l, x);
-    const double k = fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
-    p = fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
+    const double k = pl_fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
+    p = pl_fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
     out->damping_ratio = k > 0 ? c / (2 * sqrt(k)) : INFINITY;
     if (p <= last * (1 + accuracy / 4)) break;
   }
@@ -247,7 +248,7 @@ void body_limit(const pl_law *law, const double *parameters, const rows *w, step
   out->damping_ratio = 0;
   out->mode = "translation";
   if (find_largest(&l)) {
-    out->omega_max = l.value > 0 ? sqrt(l.value + fmin(l.error, accuracy * l.value)) : 0;
+    out->omega_max = l.value > 0 ? sqrt(l.value + pl_fmin(l.error, accuracy * l.value)) : 0;
     out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
     if (is_damped(&b, out->omega_max) && !find_damped(&l, out->omega_max, out)) out->limit = 0;
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 enum { FARTHEST_NEIGHBOUR = 8 }; /* spacings: beyond, a family has more than it may */
 
@@ -33,10 +34,10 @@ int bravais_dimensions(const char *kind) {
 
 /* The coordinate axes, turned about `about` (Rodrigues); 0, 0, 0 is z. */
 static void turn_axes(double angle, const double about[3], double axis[3][3]) {
-  const double size = hypot(hypot(about[0], about[1]), about[2]);
+  const double size = pl_hypot(pl_hypot(about[0], about[1]), about[2]);
   const double n[3] = {size > 0 ? about[0] / size : 0, size > 0 ? about[1] / size : 0,
                        size > 0 ? about[2] / size : 1};
-  const double c = cos(angle), s = sin(angle);
+  const double c = pl_cos(angle), s = pl_sin(angle);
   const double cross[3][3] = {{0, n[2], -n[1]}, {-n[2], 0, n[0]}, {n[1], -n[0], 0}};
   for (int a = 0; a < 3; a++)
     for (int k = 0; k < 3; k++)
@@ -84,7 +85,7 @@ void bravais_coordinates(const bravais *b, const double at[3], double out[3]) {
 }
 
 double bravais_distance(const double p[3], const double q[3]) {
-  return hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]);
+  return pl_hypot(pl_hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]);
 }
 
 /* --- neighbours ------------------------------------------------------------------------------- */
@@ -127,7 +128,7 @@ int bravais_family(const bravais *b, double horizon, int shells,
   const double reach = horizon > 0 ? horizon * (1 + BRAVAIS_REACH_TOLERANCE) : FARTHEST_NEIGHBOUR;
   const int last = horizon > 0 ? INT32_MAX : shells > 0 ? shells : 1;
   int found, count = 0, shell = 0;
-  bravais_neighbour *all = collect(b, fmin(reach, FARTHEST_NEIGHBOUR), &found);
+  bravais_neighbour *all = collect(b, pl_fmin(reach, FARTHEST_NEIGHBOUR), &found);
   for (int k = 0; k < found; k++) {
     shell += k == 0 || all[k].square > all[k - 1].square;
     if (shell > last) break;

@@ -7,6 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
+
 static bool ends_in(const char *text, const char *tail) {
   size_t n = strlen(text), m = strlen(tail);
   return n > m && strcmp(text + n - m, tail) == 0;
@@ -28,7 +31,7 @@ bool canvas_open(canvas *c, const char *path, double width, double height, char 
     snprintf(error, size, "a picture's name ends in .png, .svg or .pdf; `%s` does not", path);
     return false;
   }
-  c->file = whole_file_begin(&c->place, path) ? fopen(c->place.working, "wb") : NULL;
+  c->file = whole_file_open(&c->place, path);
   if (!c->file) {
     snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
     return false;
@@ -85,7 +88,8 @@ static void put_within(canvas *c, double x, double y, double size, double width,
   char shown[512];
   snprintf(shown, sizeof shown, "%s", text);
   double least = 0.7 * size;
-  size = fmax(least, fmin(size, size * width / fmax(canvas_text_width(c, size, shown), 1e-9)));
+  size = pl_fmax(least,
+                 pl_fmin(size, size * width / pl_fmax(canvas_text_width(c, size, shown), 1e-9)));
   for (size_t n = strlen(shown); n > 0 && canvas_text_width(c, size, shown) > width; n--) {
     while (n > 1 && ((unsigned char)shown[n - 1] & 0xC0) == 0x80) /* whole characters of UTF-8 */
       n--;
@@ -116,7 +120,7 @@ void canvas_line(canvas *c, double x1, double y1, double x2, double y2, double w
 }
 
 double nice_step(double range, int least) {
-  double raw = range / least, power = pow(10, floor(log10(raw)));
+  double raw = range / least, power = power_of(10, decade_of(raw));
   double lead = raw / power;
   return (lead >= 5 ? 5 : lead >= 2 ? 2 : 1) * power;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* --- storage ---------------------------------------------------------------------------------- */
 
@@ -59,7 +60,7 @@ static void find_reach(cell *c) {
   double square = 0;
   for (int k = 0; k < c->now.point_count; k++) {
     const double *p = c->now.point[k];
-    square = fmax(square, p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+    square = pl_fmax(square, p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
   }
   c->reach = sqrt(square);
 }
@@ -271,8 +272,8 @@ void cell_extent(const cell *c, double lower[3], double upper[3]) {
     lower[d] = INFINITY;
     upper[d] = -INFINITY;
     for (int k = 0; k < c->now.point_count; k++) {
-      lower[d] = fmin(lower[d], c->now.point[k][d]);
-      upper[d] = fmax(upper[d], c->now.point[k][d]);
+      lower[d] = pl_fmin(lower[d], c->now.point[k][d]);
+      upper[d] = pl_fmax(upper[d], c->now.point[k][d]);
     }
   }
 }

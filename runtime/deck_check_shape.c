@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/deck_check_parts.h"
 #include "runtime/deck_value.h"
 #include "runtime/shape.h"
@@ -71,7 +72,7 @@ static double twice_area(const deck_shape *shape, double *extent) {
   for (int i = 2; i < values; i += 2) {
     int next = (i + 2) % values;
     area += (p[i] - p[0]) * (p[next + 1] - p[1]) - (p[next] - p[0]) * (p[i + 1] - p[1]);
-    *extent = fmax(*extent, fmax(fabs(p[i] - p[0]), fabs(p[i + 1] - p[1])));
+    *extent = pl_fmax(*extent, pl_fmax(fabs(p[i] - p[0]), fabs(p[i + 1] - p[1])));
   }
   return area;
 }

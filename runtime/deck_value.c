@@ -279,6 +279,8 @@ static bool read_count(const deck_key_info *info, const namelist_value *v, int *
   return true;
 }
 
+enum { MOST_TURNS = 1000 }; /* more have lost digits that matter */
+
 static bool read_angle(const deck_key_info *info, const namelist_value *v, double *angle,
                        diagnostics *d) {
   deck_quantity q;
@@ -289,7 +291,13 @@ static bool read_angle(const deck_key_info *info, const namelist_value *v, doubl
     diag_hint(d, "write '%g deg', or the number without quotes", q.value);
     return false;
   }
-  if (dim_is_none(q.dim)) return true;
+  if (dim_is_none(q.dim) && fabs(*angle) <= MOST_TURNS * 2 * M_PI) return true;
+  if (dim_is_none(q.dim)) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, v->where, "`%s` must be at most %d turns", info->name,
+                MOST_TURNS);
+    diag_hint(d, "leave out whole turns");
+    return false;
+  }
   char words[128];
   describe(q.dim, words, sizeof(words));
   diag_report(d, DIAG_UNITS, v->where, "`%s` is an angle; `%.*s` is %s", info->name,

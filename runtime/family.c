@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/clock.h"
 #include "runtime/shape_matrix.h"
 
@@ -318,7 +319,7 @@ static void free_own(sweep *w) {
 static int reach_of(const rows *g) {
   double most = 0;
   for (int k = 0; k < g->directions; k++)
-    most = fmax(most, rint((double)g->offset[0][k] / (double)g->pitch));
+    most = pl_fmax(most, rint((double)g->offset[0][k] / (double)g->pitch));
   return g->list ? g->row_count : (int)most;
 }
 

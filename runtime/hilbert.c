@@ -4,6 +4,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 uint64_t hilbert_place(int dimensions, const uint32_t cell[3]) {
   uint32_t x[3] = {cell[0], cell[1], dimensions == 3 ? cell[2] : 0};
@@ -50,10 +51,10 @@ void hilbert_order(const point_cloud *c, int32_t *order) {
     double high = -INFINITY;
     low[a] = INFINITY;
     for (long p = 0; p < c->count; p++) {
-      low[a] = fmin(low[a], c->at[a][p]);
-      high = fmax(high, c->at[a][p]);
+      low[a] = pl_fmin(low[a], c->at[a][p]);
+      high = pl_fmax(high, c->at[a][p]);
     }
-    side = fmax(side, high - low[a]);
+    side = pl_fmax(side, high - low[a]);
   }
   placed *all = must_calloc((size_t)c->count + 1, sizeof *all);
   for (long p = 0; p < c->count; p++) {
@@ -61,7 +62,7 @@ void hilbert_order(const point_cloud *c, int32_t *order) {
     all[p].point = (int32_t)p;
     for (int a = 0; a < c->dimensions; a++) {
       all[p].at[a] = c->at[a][p];
-      if (side > 0) cell[a] = (uint32_t)fmin((c->at[a][p] - low[a]) / side * last, last);
+      if (side > 0) cell[a] = (uint32_t)pl_fmin((c->at[a][p] - low[a]) / side * last, last);
     }
     all[p].place = hilbert_place(c->dimensions, cell);
   }

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/bond_probe.h"
 #include "runtime/stability.h"
 #include "runtime/stencil.h"
@@ -121,7 +122,7 @@ static void pairwise_stiffness(const pl_law *law, const double *parameters, cons
     linear_stress(bonds, tangents, w->directions, e, stress);
     for (int r = 0; r < 3; r++)
       out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / site_volume(w);
-    out->asymmetry = fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
+    out->asymmetry = pl_fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
   }
   for (int k = 0; k < w->directions; k++)
     bond_probe_free(bonds[k].probe);
@@ -198,7 +199,7 @@ double implied_strength(const pl_law *law, const double *parameters, const rows 
   if (strain) *strain = NAN;
   if (law->kind == PL_STATE || w->list) return INFINITY;
   const int coarse = 1600, fine = 400;
-  double factor = pow(last / first, 1.0 / (coarse - 1)), at;
+  double factor = pl_pow(last / first, 1.0 / (coarse - 1)), at;
   scan_strength(law, parameters, w, component, first, factor, 0, coarse, &at);
   bool found = at > 0 && at < 0.99 * last;
   double strength = INFINITY;
@@ -250,14 +251,14 @@ static const double first_stretch = 1e-9, last_stretch = 1e3;
 
 /* Ways of the curve over the bond's length: evenly spaced logarithms. */
 static double curve_stretch(int k) {
-  return first_stretch * pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
+  return first_stretch * pl_pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
 }
 
 /* Stretch of a bond whose far end has gone `way` lengths along the unit vector e; *turn: of its chord. */
 static double drawn_stretch(const lattice_bond *b, const double e[2], double way, double *turn) {
   double along = b->n[0] * e[0] + b->n[1] * e[1], across = b->n[0] * e[1] - b->n[1] * e[0];
-  double length = hypot(1 + way * along, way * across);
-  *turn = atan2(way * across, 1 + way * along);
+  double length = pl_hypot(1 + way * along, way * across);
+  *turn = pl_atan2(way * across, 1 + way * along);
   return way * (2 * along + way) / (1 + length); /* length - 1, of a small way too */
 }
 
@@ -281,8 +282,8 @@ static void find_peak(lattice_bond *b, double from, double to, implied_bond *out
     double at = from, step = (to - from) / PEAK_POINTS;
     out->peak_force = peak_between(b, from, to, &at);
     out->stretch_at_peak = at;
-    from = fmax(at - step, from);
-    to = fmin(at + step, to);
+    from = pl_fmax(at - step, from);
+    to = pl_fmin(at + step, to);
   }
 }
 
@@ -306,7 +307,7 @@ static curve trace_curve(lattice_bond *b, const double e[2]) {
     if (!isfinite(N) || !isfinite(M)) return (curve){0};
     c.work += 0.5 * (force + N) * (next - stretch) * b->s - 0.5 * (moment + M) * (next_turn - turn);
     stretch = next, turn = next_turn, force = N, moment = M;
-    size = fmax(size, fabs(N) + fabs(M) / b->s);
+    size = pl_fmax(size, fabs(N) + fabs(M) / b->s);
     if (N > c.largest) {
       c.largest = N;
       c.peak = k;

@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 const char *const ledger_names[LEDGER_COUNT] = {
 #define X(code, name) name,
     LEDGER_TERMS(X)
@@ -25,7 +27,7 @@ static double taken(const ledger *g, const pl_law *law, const sweep_totals *t, d
 
 static bool is_sound(const ledger *g, const sweep *state, const sweep_totals *t, double omega) {
   const pl_law *law = state->law;
-  const double part = fmin(2 * pow(0.5 * state->time_step * omega, 2), 1);
+  const double phase = state->time_step * omega, part = pl_fmin(0.5 * phase * phase, 1);
   if (!law->stores || (law->kind == PL_STATE && law->reads_rates)) return true;
   return !(t->free + part * t->stored <
            -1e-6 * g->largest); /* numbers that are none are found by the next step */
@@ -49,7 +51,7 @@ bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_loo
                                 : terms[LEDGER_EXTERNAL] - (held - g->initial) -
                                       terms[LEDGER_DISSIPATED_DAMAGE] -
                                       terms[LEDGER_DISSIPATED_DAMPING];
-  g->largest =
-      fmax(fmax(g->largest, fabs(kinetic)), fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
+  g->largest = pl_fmax(pl_fmax(g->largest, fabs(kinetic)),
+                       pl_fmax(fabs(t.stored), fabs(terms[LEDGER_EXTERNAL])));
   return is_sound(g, state, &t, omega);
 }

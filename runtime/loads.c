@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* --- regions ---------------------------------------------------------------------------------- */
 
@@ -32,8 +33,8 @@ static void hint_extent(const char *lattice, const rows *w, diagnostics *d) {
     double at[3];
     rows_place(w, w->particle_site[p], at);
     for (int c = 0; c < 3; c++) {
-      low[c] = fmin(low[c], at[c]);
-      high[c] = fmax(high[c], at[c]);
+      low[c] = pl_fmin(low[c], at[c]);
+      high[c] = pl_fmax(high[c], at[c]);
     }
   }
   if (w->dimensions == 3)
@@ -175,7 +176,7 @@ static void add_motions(loads *l, motions *m) {
 
 /* Part of the increment's loads that is there after `step` steps of a quasi-static run. */
 static double part_of(const load_clock *c, long step) {
-  return fmin(1, (double)(step - c->first) / (double)c->ramp);
+  return pl_fmin(1, (double)(step - c->first) / (double)c->ramp);
 }
 
 static double time_of(const loads *l, const sweep *w, long step) {
@@ -209,7 +210,7 @@ static double load_at(const loads *l, const sweep *w, const time_function *f, in
 
 /* Part of the time within half a step of t that comes after `start`. The run itself begins with what begins at 0. */
 static double part_after(const sweep *w, double start, double t) {
-  return start <= 0 ? 1 : fmin(fmax((t - start) / w->time_step + 0.5, 0), 1);
+  return start <= 0 ? 1 : pl_fmin(pl_fmax((t - start) / w->time_step + 0.5, 0), 1);
 }
 
 /* What acts in the step: the value at its instant, of a jump nearby the part that is covered. */
@@ -250,9 +251,11 @@ static void add_end_moment(loads *l, int index, diagnostics *d) {
   double mean = 0, square = 0;
   for (long p = 0; p < at->count; p++)
     mean += y[l->lattice->particle_site[at->particles[p]]] / (double)at->count;
-  for (long p = 0; p < at->count; p++)
-    square += pow(y[l->lattice->particle_site[at->particles[p]]] - mean, 2);
-  if (square < pow(1e-6 * l->lattice->spacing, 2)) {
+  for (long p = 0; p < at->count; p++) {
+    const double arm = y[l->lattice->particle_site[at->particles[p]]] - mean;
+    square += arm * arm;
+  }
+  if (sqrt(square) < 1e-6 * l->lattice->spacing) {
     diag_report(
         d, DIAG_BAD_VALUE, deck_where(&e->item, "region"),
         "the particles of region `%s` lie at one height: horizontal forces on them make no moment",
@@ -423,7 +426,7 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
 /* --- in time ---------------------------------------------------------------------------------- */
 
 static double decay_with(const sweep *w, double rate) {
-  return rate > 0 ? exp(-rate * w->time_step) : 1;
+  return rate > 0 ? pl_exp(-rate * w->time_step) : 1;
 }
 
 /* Factor of the step that begins at step * time_step. */
@@ -462,11 +465,11 @@ static bool is_held(const loads *l, const sweep *w, const constraint *c, long st
   return time_of(l, w, step) >= start_of(l, c) - hardly(w);
 }
 
-/* Velocity prescribed just after the instant of a step. */
+/* Velocity prescribed just after the instant of a step, which rounding may have put before the start. */
 static double velocity_at(const loads *l, const sweep *w, const constraint *c, long step) {
   const deck_drive *drive = &l->deck->drives[c->drive];
-  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion,
-                                                                           time_of(l, w, step));
+  const double t = pl_fmax(time_of(l, w, step), drive->motion.start);
+  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
 }
 
 /* A motion that begins moves on as if it had always gone so: its velocity half a step before is that after, mirrored at the

@@ -5,6 +5,7 @@
 #include <strings.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/damage.h"
 #include "runtime/deck_value.h"
 
@@ -100,7 +101,7 @@ static bool find_field(monitor *m, const monitors *all, diagnostics *d) {
 static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
   static const double most = 1e8; /* values in a ring */
   const double dt = all->interval, steps = m->deck->average / dt;
-  m->zero_step = m->deck->zero_at >= 0 ? lround(fmin(m->deck->zero_at / dt, 9e15)) : -1;
+  m->zero_step = m->deck->zero_at >= 0 ? lround(pl_fmin(m->deck->zero_at / dt, 9e15)) : -1;
   m->window = 1;
   if (counts_damage(m) || m->deck->average <= 0) return true;
   if (steps <= most) {

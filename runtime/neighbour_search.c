@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bins.h"
 
 enum { POINTS_A_CELL = 2, MOST_CELLS = 1 << 20 /* along an axis */ };
@@ -53,7 +54,7 @@ static void choose_cells(cell_grid *g, const double extent[3]) {
       measure *= extent[a];
       axes++;
     }
-    if (axes > 0) g->side = pow(measure * POINTS_A_CELL / (double)g->points->count, 1.0 / axes);
+    if (axes > 0) g->side = pl_pow(measure * POINTS_A_CELL / (double)g->points->count, 1.0 / axes);
   }
   if (!(g->side > 0)) g->side = 1; /* all points are one */
   for (int a = 0; a < 3; a++) {
@@ -167,11 +168,11 @@ static double seen_to(const walk *w) {
   double least = INFINITY;
   for (int a = 0; a < w->grid->points->dimensions; a++) {
     const double low = w->grid->low[a], side = w->grid->side;
-    if (w->low[a] > 0) least = fmin(least, w->from[a] - (low + (double)w->low[a] * side));
+    if (w->low[a] > 0) least = pl_fmin(least, w->from[a] - (low + (double)w->low[a] * side));
     if (w->high[a] < w->grid->cells[a] - 1)
-      least = fmin(least, low + (double)(w->high[a] + 1) * side - w->from[a]);
+      least = pl_fmin(least, low + (double)(w->high[a] + 1) * side - w->from[a]);
   }
-  return fmax(least, 0) * (1 - 1e-12); /* cells were found to rounding */
+  return pl_fmax(least, 0) * (1 - 1e-12); /* cells were found to rounding */
 }
 
 /* --- the nearest ------------------------------------------------------------------------------ */

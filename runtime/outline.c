@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 const double *outline_corner(const outline *o, int k) {
   return o->points + 2 * (k < o->count ? k : 0);
 }
@@ -17,7 +19,7 @@ typedef struct arc {
 static bool arc_of(const outline *o, int k, arc *out) {
   const double rise = o->bulge ? o->bulge[k] : 0;
   const double *a = outline_corner(o, k), *b = outline_corner(o, k + 1);
-  const double ex = b[0] - a[0], ey = b[1] - a[1], length = hypot(ex, ey);
+  const double ex = b[0] - a[0], ey = b[1] - a[1], length = pl_hypot(ex, ey);
   if (rise == 0 || length == 0) return false;
   *out = (arc){.radius = (0.25 * length * length + rise * rise) / (2 * fabs(rise)),
                .middle = {0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])},
@@ -52,8 +54,8 @@ static bool on_arc(const arc *e, double x, double y) {
 static void widen(double lower[2], double upper[2], double x, double y) {
   const double p[2] = {x, y};
   for (int c = 0; c < 2; c++) {
-    lower[c] = isnan(lower[c]) || isnan(p[c]) ? NAN : fmin(lower[c], p[c]);
-    upper[c] = isnan(upper[c]) || isnan(p[c]) ? NAN : fmax(upper[c], p[c]);
+    lower[c] = isnan(lower[c]) || isnan(p[c]) ? NAN : pl_fmin(lower[c], p[c]);
+    upper[c] = isnan(upper[c]) || isnan(p[c]) ? NAN : pl_fmax(upper[c], p[c]);
   }
 }
 
@@ -80,17 +82,17 @@ static double distance_to_straight(const double p[2], const double a[2], const d
   const double ex = b[0] - a[0], ey = b[1] - a[1];
   const double square = ex * ex + ey * ey;
   const double along = (p[0] - a[0]) * ex + (p[1] - a[1]) * ey;
-  const double u = square > 0 ? fmin(fmax(along / square, 0), 1) : 0;
-  return hypot(p[0] - a[0] - u * ex, p[1] - a[1] - u * ey);
+  const double u = square > 0 ? pl_fmin(pl_fmax(along / square, 0), 1) : 0;
+  return pl_hypot(p[0] - a[0] - u * ex, p[1] - a[1] - u * ey);
 }
 
 static double distance_to_arc(const double p[2], const arc *e, const double a[2],
                               const double b[2]) {
-  const double x = p[0] - e->centre[0], y = p[1] - e->centre[1], from_centre = hypot(x, y);
+  const double x = p[0] - e->centre[0], y = p[1] - e->centre[1], from_centre = pl_hypot(x, y);
   const double factor = e->radius / from_centre; /* at the centre all points are equally far */
   if (from_centre > 0 && on_arc(e, e->centre[0] + factor * x, e->centre[1] + factor * y))
     return fabs(from_centre - e->radius);
-  return fmin(hypot(p[0] - a[0], p[1] - a[1]), hypot(p[0] - b[0], p[1] - b[1]));
+  return pl_fmin(pl_hypot(p[0] - a[0], p[1] - a[1]), pl_hypot(p[0] - b[0], p[1] - b[1]));
 }
 
 /* Does the ray from p toward +x cross a-b? Half open in y, so that a corner counts once. */
@@ -131,10 +133,10 @@ double outline_distance(const outline *o, const double p[2]) {
     const double *a = outline_corner(o, k), *b = outline_corner(o, k + 1);
     arc edge;
     if (arc_of(o, k, &edge)) {
-      nearest = fmin(nearest, distance_to_arc(p, &edge, a, b));
+      nearest = pl_fmin(nearest, distance_to_arc(p, &edge, a, b));
       crossings += ray_crossings(p, &edge, a, b);
     } else {
-      nearest = fmin(nearest, distance_to_straight(p, a, b));
+      nearest = pl_fmin(nearest, distance_to_straight(p, a, b));
       crossings += ray_crosses(p, a, b);
     }
   }
@@ -147,7 +149,7 @@ bool outline_is_flat(const outline *o, double tolerance) {
     const double *a = outline_corner(o, k), *b = outline_corner(o, k + 1), *c = o->points;
     if (o->bulge && o->bulge[k] != 0) return false;
     twice += (a[0] - c[0]) * (b[1] - c[1]) - (a[1] - c[1]) * (b[0] - c[0]);
-    perimeter += hypot(b[0] - a[0], b[1] - a[1]);
+    perimeter += pl_hypot(b[0] - a[0], b[1] - a[1]);
   }
   return fabs(twice) <= tolerance * perimeter;
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/blue_noise.h"
 #include "runtime/particle_table.h"
 #include "runtime/shape.h"
@@ -23,7 +24,7 @@ double particle_measure(int dimensions, double spacing) {
 }
 
 static double spacing_for(int dimensions, double measure) {
-  return dimensions == 2 ? sqrt(measure / sqrt(0.75)) : cbrt(measure / sqrt(0.5));
+  return dimensions == 2 ? sqrt(measure / sqrt(0.75)) : pl_cbrt(measure / sqrt(0.5));
 }
 
 static particle_set *set_new(int dimensions, long count) {
@@ -103,7 +104,7 @@ static bool has_body(const maker *m) {
 static bool few_enough(const maker *m, double measure) {
   double box = 1;
   for (int c = 0; c < m->solid.dimensions; c++)
-    box *= fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
+    box *= pl_fmax(m->solid.upper[c] - m->solid.lower[c], m->lattice->spacing);
   return !site_too_many(m->lattice, box / measure, m->d);
 }
 

@@ -1,12 +1,13 @@
 #include "runtime/particle_table.h"
 
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 #include "dsl/arena.h"
+#include "runtime/ordinary_file.h"
 #include "runtime/result.h"
 
 #define FARTHEST 1e30 /* m, m^2, m^3: squares and cubes of sums are finite */
@@ -138,8 +139,9 @@ static bool refuse_file(const reader *r, const char *why) {
 
 static bool is_result(const char *path) {
   char head[8] = "";
-  struct stat about;
-  FILE *in = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+  const char *why;
+  const int file = ordinary_file_open(path, O_RDONLY, &why);
+  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
   if (!in) return false;
   const size_t length = fread(head, 1, sizeof head, in);
   fclose(in);
@@ -172,7 +174,9 @@ static bool take_result(const reader *r, result_file *f) {
   double *reference = result_read_reference(f, &t->count, &dimensions);
   t->volume = result_read_volume(f, &volumes);
   bool good = false;
-  if (!reference || (t->volume && volumes != t->count))
+  if (result_trouble(f))
+    diag_report(r->d, DIAG_FILE, r->where, "%s", result_trouble(f));
+  else if (!reference || (t->volume && volumes != t->count))
     refuse_file(r, "its particles are damaged");
   else if (dimensions != t->dimensions)
     diag_report(r->d, DIAG_CONFLICT, r->where,

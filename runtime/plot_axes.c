@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
+#include "dsl/powers.h"
 #include "dsl/units.h"
 
 /* Shown unit and the factor from SI; the user's unit must fit the history's. */
@@ -31,13 +33,13 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
 static void shorten_numbers(axis *a, double largest) {
   double shown = largest * a->factor;
   if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2)) return;
-  int power = 3 * (int)floor(log10(shown) / 3);
+  int power = 3 * (int)floor(decade_of(shown) / 3.0);
   char symbol[sizeof a->unit_text];
   memcpy(symbol, a->unit_text, sizeof symbol);
   bool pure = strcmp(symbol, "1") == 0;
   snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
            pure ? "" : symbol);
-  a->factor /= pow(10, power);
+  a->factor /= power_of(10, power);
 }
 
 /* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for it. */
@@ -52,13 +54,13 @@ bool axis_set(axis *a, const char *name, const char *si_unit, const char *wanted
     snprintf(error, size, "`%s` holds no finite value to draw", name);
     return false;
   }
-  if (!choose_unit(a, si_unit, wanted, fmax(fabs(low), fabs(high)), error, size)) return false;
-  if (!wanted) shorten_numbers(a, fmax(fabs(low), fabs(high)));
+  if (!choose_unit(a, si_unit, wanted, pl_fmax(fabs(low), fabs(high)), error, size)) return false;
+  if (!wanted) shorten_numbers(a, pl_fmax(fabs(low), fabs(high)));
   const double range = high - low;
   low = without_noise(low, range) * a->factor;
   high = without_noise(high, range) * a->factor;
   if (low > 0 && low < 0.3 * high) low = 0;
-  if (!(high - low > 1e-12 * fmax(fabs(high), 1e-300))) {
+  if (!(high - low > 1e-12 * pl_fmax(fabs(high), 1e-300))) {
     high = low + (fabs(low) > 0 ? fabs(low) : 1);
   }
   a->step = nice_step(high - low, 5);

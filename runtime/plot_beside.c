@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 /* Tables are told from each other by the shape of their points, too. */
 enum { CIRCLE, SQUARE, DIAMOND, TRIANGLE, MARKS };
 #define MARK_SIZE   4.5 /* half of its width */
@@ -20,8 +22,8 @@ static colour ink_of(int number) {
 static void widen(const double *values, long count, double *low, double *high) {
   for (long k = 0; values && k < count; k++)
     if (isfinite(values[k])) {
-      *low = fmin(*low, values[k]);
-      *high = fmax(*high, values[k]);
+      *low = pl_fmin(*low, values[k]);
+      *high = pl_fmax(*high, values[k]);
     }
 }
 
@@ -143,7 +145,7 @@ static void mark_points(canvas *c, const plot_beside *b, int number, const axis 
   for (long k = 0; k < b->count; k++) {
     if (!is_point(b, k)) continue;
     const double px = axis_along_x(x, b->x[k]), py = axis_along_y(y, b->y[k]);
-    if (hypot(px - last_x, py - last_y) < MARKS_APART) continue;
+    if (pl_hypot(px - last_x, py - last_y) < MARKS_APART) continue;
     draw_mark(c, number, last_x = px, last_y = py);
   }
 }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "dsl/units.h"
 #include "runtime/plot.h"
 #include "runtime/plot_axes.h"
@@ -49,8 +50,8 @@ static void range_of(const curve *curves, int count, const plot_curve_options *o
     for (long k = 0; k < curves[c].count; k++) {
       double v = of_x ? curves[c].x[k] : curves[c].y[k];
       if (isfinite(v)) {
-        *low = fmin(*low, v);
-        *high = fmax(*high, v);
+        *low = pl_fmin(*low, v);
+        *high = pl_fmax(*high, v);
       }
     }
   for (int b = 0; b < o->beside_count; b++)
@@ -145,8 +146,8 @@ static void draw_legend(canvas *c, const diagram *g) {
   const int count = g->count + g->o->beside_count;
   double widest = 0;
   for (int k = 0; k < count; k++)
-    widest = fmax(widest, canvas_text_width(c, 19, label_at(g, k)));
-  const box b = place_legend(g, fmin(widest, 500) + 70, LINE * count + 10);
+    widest = pl_fmax(widest, canvas_text_width(c, 19, label_at(g, k)));
+  const box b = place_legend(g, pl_fmin(widest, 500) + 70, LINE * count + 10);
   cairo_set_source_rgba(c->cr, 1, 1, 1, 0.85);
   cairo_rectangle(c->cr, b.left, b.top, b.width, b.height);
   cairo_fill(c->cr);
@@ -270,6 +271,10 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
     label_curve(s, from, y, c);
     good = read_curve(f, s->o->x, s->o->ys[y], c, x_unit, y_unit, error, size) &&
            units_fit(s, from, s->o->ys[y], x_unit, y_unit, error, size);
+  }
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
   }
   result_read_close(f);
   return good;

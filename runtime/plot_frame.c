@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/quantity.h"
 #include "runtime/result.h"
@@ -24,8 +25,8 @@ void plot_frame_free(plot_frame *m) {
 static double bond_length(const plot_frame *m, long b) {
   const int n = m->dimensions;
   const double *i = &m->reference[n * m->pairs[2 * b]], *j = &m->reference[n * m->pairs[2 * b + 1]];
-  const double plane = hypot(j[0] - i[0], j[1] - i[1]);
-  return n == 2 ? plane : hypot(plane, j[2] - i[2]);
+  const double plane = pl_hypot(j[0] - i[0], j[1] - i[1]);
+  return n == 2 ? plane : pl_hypot(plane, j[2] - i[2]);
 }
 
 /* Mean over the particles of the distance to the nearest bonded one: on a lattice its spacing. */
@@ -53,18 +54,18 @@ static void move_particles(plot_frame *m, const double *displacement, double wan
   double mean[3] = {0, 0, 0}, largest = 0, extent = 0;
   for (long p = 0; p < m->particles; p++)
     for (int c = 0; c < n; c++) {
-      low[c] = fmin(low[c], m->reference[n * p + c]);
-      high[c] = fmax(high[c], m->reference[n * p + c]);
+      low[c] = pl_fmin(low[c], m->reference[n * p + c]);
+      high[c] = pl_fmax(high[c], m->reference[n * p + c]);
       mean[c] += displacement[n * p + c] / (double)m->particles;
     }
   for (long p = 0; p < n * m->particles; p++)
-    largest = fmax(largest, fabs(displacement[p] - mean[p % n]));
+    largest = pl_fmax(largest, fabs(displacement[p] - mean[p % n]));
   for (int c = 0; c < n; c++)
-    extent = fmax(extent, high[c] - low[c]);
+    extent = pl_fmax(extent, high[c] - low[c]);
   m->factor = wanted;
   if (wanted < 0) {
     double raw = largest > 0 ? 0.05 * extent / largest : 1;
-    m->factor = raw < 1 ? 1 : fmin(nice_step(raw, 1), 1e4);
+    m->factor = raw < 1 ? 1 : pl_fmin(nice_step(raw, 1), 1e4);
   }
   m->moved = must_calloc((size_t)(m->particles * n) + 1, sizeof *m->moved);
   for (long p = 0; p < n * m->particles; p++)
@@ -349,8 +350,8 @@ static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, si
   double low = INFINITY, high = -INFINITY;
   for (long p = 0; p < m->particles; p++) {
     const double at = m->reference[3 * p + o->slice_axis];
-    low = fmin(low, at);
-    high = fmax(high, at);
+    low = pl_fmin(low, at);
+    high = pl_fmax(high, at);
     if (at > o->slice_at - half + rounding && at <= o->slice_at + half + rounding)
       order[count++] = p;
   }
@@ -434,10 +435,10 @@ static int farthest_first(const void *p, const void *q) {
 
 /* Sides toward +x, -y and +z are seen; parallel lines stay parallel. */
 static void take_surface(plot_frame *m, int component) {
-  const double turn = acos(-1) / 6, tilt = acos(-1) / 7;
-  const double across[3] = {cos(turn), sin(turn), 0};
-  const double up[3] = {-sin(turn) * sin(tilt), cos(turn) * sin(tilt), cos(tilt)};
-  const double away[3] = {-sin(turn) * cos(tilt), cos(turn) * cos(tilt), -sin(tilt)};
+  const double turn = M_PI / 6, tilt = M_PI / 7;
+  const double across[3] = {pl_cos(turn), pl_sin(turn), 0};
+  const double up[3] = {-pl_sin(turn) * pl_sin(tilt), pl_cos(turn) * pl_sin(tilt), pl_cos(tilt)};
+  const double away[3] = {-pl_sin(turn) * pl_cos(tilt), pl_cos(turn) * pl_cos(tilt), -pl_sin(tilt)};
   long *order = must_alloc(((size_t)m->particles + 1) * sizeof *order);
   show_on_particles(m, component);
   const long count = surface_particles(m, order);
@@ -463,8 +464,8 @@ static void describe_extents(plot_frame *m) {
   for (int c = 0; c < 3; c++) {
     double low = INFINITY, high = -INFINITY;
     for (long p = 0; p < m->particles; p++) {
-      low = fmin(low, m->reference[3 * p + c]);
-      high = fmax(high, m->reference[3 * p + c]);
+      low = pl_fmin(low, m->reference[3 * p + c]);
+      high = pl_fmax(high, m->reference[3 * p + c]);
     }
     used += (size_t)snprintf(m->extents + used, sizeof m->extents - used, "%s%c %.4g to %.4g mm",
                              c ? ", " : "", "xyz"[c], 1e3 * low, 1e3 * high);
@@ -477,6 +478,10 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   result_file *f = result_read(path, error, size);
   if (!f) return false;
   bool good = read_frame(f, path, m, o, error, size);
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
+  }
   result_read_close(f);
   if (good && m->dimensions == 2 && o->slice_axis >= 0) {
     snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");

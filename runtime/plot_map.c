@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/canvas.h"
 #include "runtime/plot_frame.h"
 
@@ -53,8 +54,8 @@ typedef struct sheet {
 static void add_extent(const plot_frame *f, sheet *s) {
   for (long p = 0; p < f->particles; p++)
     for (int c = 0; c < 2; c++) {
-      s->low[c] = fmin(s->low[c], f->moved[2 * p + c] - f->spacing);
-      s->high[c] = fmax(s->high[c], f->moved[2 * p + c] + f->spacing);
+      s->low[c] = pl_fmin(s->low[c], f->moved[2 * p + c] - f->spacing);
+      s->high[c] = pl_fmax(s->high[c], f->moved[2 * p + c] + f->spacing);
     }
 }
 
@@ -67,7 +68,7 @@ static double scale_with(const sheet *s, int columns) {
   const int rows = rows_of(s, columns);
   const double width = (WIDTH - 2 * MARGIN - (columns - 1) * GAP) / (double)columns,
                height = (MOST_HEIGHT - HEAD - s->foot - (rows - 1) * GAP) / rows - s->caption;
-  return fmin(width / (s->high[0] - s->low[0]), height / (s->high[1] - s->low[1]));
+  return pl_fmin(width / (s->high[0] - s->low[0]), height / (s->high[1] - s->low[1]));
 }
 
 /* As many columns as let the panels be largest, or nearly so; each in the middle of its part of the picture. */
@@ -82,7 +83,7 @@ static void place_panels(sheet *s) {
   const double high = (s->high[1] - s->low[1]) * s->scale + s->caption,
                part = (WIDTH - 2 * MARGIN + GAP) / (double)s->columns - GAP,
                indent = (part - (s->high[0] - s->low[0]) * s->scale) / 2;
-  s->height = fmax(LEAST_HEIGHT, HEAD + s->foot + rows * high + (rows - 1) * GAP);
+  s->height = pl_fmax(LEAST_HEIGHT, HEAD + s->foot + rows * high + (rows - 1) * GAP);
   for (int k = 0; k < s->count; k++) {
     map *m = &s->panels[k];
     const int column = k % s->columns, below = rows - 1 - k / s->columns;
@@ -143,13 +144,13 @@ static void stroke_crack(canvas *c, const map *m, long b) {
   const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
                *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
   double x = (i[0] + j[0]) / 2, y = (i[1] + j[1]) / 2, dx = j[0] - i[0], dy = j[1] - i[1];
-  double half = 0.5 / sqrt(3) * m->frame.spacing / fmax(hypot(dx, dy), 1e-300);
+  double half = 0.5 / sqrt(3) * m->frame.spacing / pl_fmax(pl_hypot(dx, dy), 1e-300);
   cairo_move_to(c->cr, at_x(m, x - dy * half), at_y(m, y + dx * half));
   cairo_line_to(c->cr, at_x(m, x + dy * half), at_y(m, y - dx * half));
 }
 
 static void draw_bonds(canvas *c, const map *m, bool coloured) {
-  double thin = fmax(0.4, 0.12 * m->frame.spacing * m->scale);
+  double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
   for (int k = 0; k < CLASSES; k++) { /* the worse above the better */
     if (!coloured && k != SEPARATED) continue;
     canvas_colour(c, classes[k].ink);
@@ -173,7 +174,7 @@ static colour shade(double v) {
                                  {0.13, 0.57, 0.55},
                                  {0.37, 0.79, 0.38},
                                  {0.99, 0.91, 0.14}};
-  double at = fmin(fmax(v, 0), 1) * 4;
+  double at = pl_fmin(pl_fmax(v, 0), 1) * 4;
   int k = at >= 4 ? 3 : (int)at;
   double w = at - k;
   return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r),
@@ -183,7 +184,7 @@ static colour shade(double v) {
 
 /* Place in the colour bar, 0 to 1; what is no number stands with the lowest. */
 static double place_of(double value, double low, double high) {
-  return high > low ? fmin(fmax((value - low) / (high - low), 0), 1) : 0;
+  return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
 }
 
 static colour particle_colour(const map *m, long p, int component, double low, double high) {
@@ -198,7 +199,7 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
   cairo_fill_preserve(c->cr);
   if (m->frame.surface) { /* an edge, so that those in front stand out */
     canvas_colour(c, (colour){0.25, 0.25, 0.28});
-    cairo_set_line_width(c->cr, fmin(0.08 * radius, 1.5));
+    cairo_set_line_width(c->cr, pl_fmin(0.08 * radius, 1.5));
     cairo_stroke(c->cr);
   }
   cairo_new_path(c->cr);
@@ -208,7 +209,7 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
-  const double radius = fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const double radius = pl_fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
   const colour plain = {0.45, 0.48, 0.52};
   cairo_new_path(c->cr);
   for (int k = 0; k < (by_class ? CLASSES : 1); k++)
@@ -224,12 +225,12 @@ static bool is_separated(const map *m, long b) {
 
 enum { SHADES = 64 };
 static int shade_of(double value, double low, double high) {
-  return (int)fmin(SHADES * place_of(value, low, high), SHADES - 1);
+  return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
 }
 
 /* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their crack. */
 static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
-  const double wide = fmax(0.8, 0.22 * m->frame.spacing * m->scale);
+  const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
   for (int k = 0; k < 2 * SHADES; k++) {
     const bool separated = k < SHADES;
@@ -251,13 +252,13 @@ static void draw_mark(canvas *c, double x, double y, double radius) {
   canvas_colour(c, mark_ink);
   cairo_fill_preserve(c->cr);
   canvas_colour(c, (colour){1, 1, 1});
-  cairo_set_line_width(c->cr, fmax(0.5, 0.25 * radius));
+  cairo_set_line_width(c->cr, pl_fmax(0.5, 0.25 * radius));
   cairo_stroke(c->cr);
 }
 
 /* On particles, or on the middle of bonds. */
 static void draw_marks(canvas *c, const map *m) {
-  const double radius = fmax(1.6, 0.22 * m->frame.spacing * m->scale);
+  const double radius = pl_fmax(1.6, 0.22 * m->frame.spacing * m->scale);
   const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
   for (long k = 0; m->frame.marked && k < count; k++) {
     if (!(m->frame.marked[k] > 0)) continue;
@@ -327,7 +328,7 @@ static void draw_axes(canvas *c, const sheet *s) {
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   for (int k = 0; k < 3; k++) {
     const double across = f->axes[k][0], up = f->axes[k][1];
-    if (hypot(across, up) < 0.1) continue;
+    if (pl_hypot(across, up) < 0.1) continue;
     canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
     canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
                 (char[]){"xyz"[k], 0});
@@ -380,7 +381,7 @@ static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options 
     cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
     cairo_fill(c->cr);
   }
-  const char *shown = readable_unit(f->unit_text, fmax(fabs(low), fabs(high)), &factor);
+  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
   char text[256];
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   snprintf(text, sizeof text, "%.4g", low * factor);
@@ -406,8 +407,8 @@ static bool range_of(const sheet *s, int component, double *low, double *high) {
     for (long k = 0; k < s->panels[n].frame.value_count; k++) {
       const double v = plot_frame_value(&s->panels[n].frame, k, component);
       if (!isfinite(v)) continue;
-      *low = fmin(*low, v);
-      *high = fmax(*high, v);
+      *low = pl_fmin(*low, v);
+      *high = pl_fmax(*high, v);
     }
   return *low <= *high;
 }
@@ -491,7 +492,7 @@ static bool read_panels(sheet *s, const char *path, const plot_map_options *o, d
 static double common_factor(const sheet *s) {
   double least = INFINITY;
   for (int k = 0; k < s->count; k++)
-    least = fmin(least, s->panels[k].frame.factor);
+    least = pl_fmin(least, s->panels[k].frame.factor);
   return least;
 }
 

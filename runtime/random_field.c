@@ -7,14 +7,17 @@
 #include <strings.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/random_number.h"
+#include "runtime/special_functions.h"
 
 /* --- numbers from places ---------------------------------------------------------------------- */
 
 /* Box and Muller (1958). */
 static double normal_number(uint64_t key) {
-  const double radius = sqrt(-2 * log(random_unit(random_mix(key))));
-  return radius * cos(2 * acos(-1) * random_unit(random_mix(key ^ UINT64_C(0x5851f42d4c957f2d))));
+  const double radius = sqrt(-2 * pl_log(random_unit(random_mix(key))));
+  const double turn = random_unit(random_mix(key ^ UINT64_C(0x5851f42d4c957f2d)));
+  return radius * special_cosine_of_turns(turn);
 }
 
 double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int64_t c, int direction) {
@@ -35,22 +38,24 @@ uint64_t random_seed_of(const deck_field *f) {
 enum { WAVES = 512 };
 
 struct random_waves {
-  double k[3][WAVES], phase[WAVES]; /* 1/m, rad */
+  double k[3][WAVES], phase[WAVES]; /* turns/m, turns */
 };
 
 random_waves *random_waves_new(uint64_t seed, double correlation_length) {
   random_waves *w = must_alloc(sizeof *w);
-  const double spread = sqrt(2) / correlation_length; /* E cos(k.r) = exp(-(r/L)^2) */
+  /* E cos(k.r) = exp(-(r/L)^2) */
+  const double spread = sqrt(2) / (2 * M_PI * correlation_length);
   for (int m = 0; m < WAVES; m++) {
     const uint64_t key = random_mix(seed ^ random_mix((uint64_t)m));
     /* normal components: |k| has the probability exp(-k^2/2) of more; one wave in each of equally
      * probable rings */
-    const double radius = spread * sqrt(-2 * log((m + random_unit(random_mix(key ^ 1))) / WAVES));
-    const double angle = 2 * acos(-1) * random_unit(random_mix(key ^ 2));
-    w->k[0][m] = radius * cos(angle);
-    w->k[1][m] = radius * sin(angle);
+    const double radius =
+        spread * sqrt(-2 * pl_log((m + random_unit(random_mix(key ^ 1))) / WAVES));
+    const double angle = 2 * M_PI * random_unit(random_mix(key ^ 2));
+    w->k[0][m] = radius * pl_cos(angle);
+    w->k[1][m] = radius * pl_sin(angle);
     w->k[2][m] = spread * normal_number(random_mix(key ^ 4));
-    w->phase[m] = 2 * acos(-1) * random_unit(random_mix(key ^ 3));
+    w->phase[m] = random_unit(random_mix(key ^ 3));
   }
   return w;
 }
@@ -59,32 +64,37 @@ void random_waves_free(random_waves *w) {
   free(w);
 }
 
+/* Added in halves, as vectors add. */
 double random_waves_at(const random_waves *w, const double at[3]) {
-  double sum = 0;
+  double wave[WAVES];
   for (int m = 0; m < WAVES; m++)
-    sum += cos(w->k[0][m] * at[0] + w->k[1][m] * at[1] + w->k[2][m] * at[2] + w->phase[m]);
-  return sqrt(2.0 / WAVES) * sum;
+    wave[m] = special_cosine_of_turns(w->k[0][m] * at[0] + w->k[1][m] * at[1] + w->k[2][m] * at[2] +
+                                      w->phase[m]);
+  for (int half = WAVES / 2; half > 0; half /= 2)
+    for (int m = 0; m < half; m++)
+      wave[m] += wave[m + half];
+  return sqrt(2.0 / WAVES) * wave[0];
 }
 
 /* --- distributions ---------------------------------------------------------------------------- */
 
 /* Coefficient of variation of a Weibull distribution. */
 static double weibull_cv(double shape) {
-  const double ratio = lgamma(1 + 2 / shape) - 2 * lgamma(1 + 1 / shape);
-  return sqrt(expm1(ratio));
+  const double ratio = special_log_gamma(2 / shape) - 2 * special_log_gamma(1 / shape);
+  return sqrt(special_expm1(ratio));
 }
 
 /* The cv falls with the shape, by bisection of its logarithm. */
 static double weibull_shape(double cv) {
-  double low = log(0.05), high = log(1e4);
+  double low = pl_log(0.05), high = pl_log(1e4);
   for (int n = 0; n < 100; n++) {
     const double middle = 0.5 * (low + high);
-    if (weibull_cv(exp(middle)) > cv)
+    if (weibull_cv(pl_exp(middle)) > cv)
       low = middle;
     else
       high = middle;
   }
-  return exp(0.5 * (low + high));
+  return pl_exp(0.5 * (low + high));
 }
 
 static bool refuse(char *error, size_t size, const char *text) {
@@ -110,12 +120,12 @@ bool random_distribution_of(const deck_field *f, double own, random_distribution
     out->b = deviation;
     break;
   case FIELD_LOGNORMAL:
-    out->b = sqrt(log1p(f->cv * f->cv));
-    out->a = log(mean) - 0.5 * out->b * out->b;
+    out->b = sqrt(special_log1p(f->cv * f->cv));
+    out->a = pl_log(mean) - 0.5 * out->b * out->b;
     break;
   case FIELD_WEIBULL:
     out->b = f->shape > 0 ? f->shape : weibull_shape(f->cv);
-    out->a = f->scale.given ? f->scale.value : mean / tgamma(1 + 1 / out->b);
+    out->a = f->scale.given ? f->scale.value : mean / special_gamma(1 / out->b);
     if (!(out->a > 0))
       return refuse(error, size, "the scale of a Weibull distribution is positive");
     break;
@@ -133,9 +143,9 @@ double random_distribution_mean(const random_distribution *r) {
   case FIELD_NORMAL:
     return r->a;
   case FIELD_LOGNORMAL:
-    return exp(r->a + 0.5 * r->b * r->b);
+    return pl_exp(r->a + 0.5 * r->b * r->b);
   default:
-    return r->a * tgamma(1 + 1 / r->b);
+    return r->a * special_gamma(1 / r->b);
   }
 }
 
@@ -146,22 +156,27 @@ double random_distribution_deviation(const random_distribution *r) {
   case FIELD_NORMAL:
     return r->b;
   case FIELD_LOGNORMAL:
-    return random_distribution_mean(r) * sqrt(expm1(r->b * r->b));
+    return random_distribution_mean(r) * sqrt(special_expm1(r->b * r->b));
   default:
     return random_distribution_mean(r) * weibull_cv(r->b);
   }
 }
 
+/* -log(1 - Phi(z)), without cancellation on either side. */
+static double hazard(double z) {
+  return z < 0 ? -special_log1p(-special_normal_above(-z)) : -pl_log(special_normal_above(z));
+}
+
 double random_quantile(const random_distribution *r, double z) {
   switch (r->kind) {
   case FIELD_UNIFORM:
-    return r->a + (r->b - r->a) * 0.5 * erfc(-z * sqrt(0.5));
+    return r->a + (r->b - r->a) * special_normal_above(-z);
   case FIELD_NORMAL:
     return r->a + r->b * z;
   case FIELD_LOGNORMAL:
-    return exp(r->a + r->b * z);
-  default: /* 1 - Phi(z) without cancellation */
-    return r->a * pow(-log(0.5 * erfc(z * sqrt(0.5))), 1 / r->b);
+    return pl_exp(r->a + r->b * z);
+  default:
+    return r->a * pl_pow(hazard(z), 1 / r->b);
   }
 }
 
@@ -340,8 +355,8 @@ static void find_extremes(random_fields *r, const rows *w, const rows_bond *bond
   for (int k = 0; k < r->count; k++) {
     double low = INFINITY, high = -INFINITY;
     for (long m = 0; m < w->bond_count; m++) {
-      low = fmin(low, r->value[k][bonds[m].slot]);
-      high = fmax(high, r->value[k][bonds[m].slot]);
+      low = pl_fmin(low, r->value[k][bonds[m].slot]);
+      high = pl_fmax(high, r->value[k][bonds[m].slot]);
     }
     r->smallest[k] = w->bond_count ? low : parameters[law->varying[k]];
     r->largest[k] = w->bond_count ? high : parameters[law->varying[k]];

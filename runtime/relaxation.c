@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
@@ -19,12 +20,12 @@ static long ramp_of(const rows *g, double part) {
     double at[3];
     rows_place(g, g->particle_site[p], at);
     for (int c = 0; c < g->dimensions; c++) {
-      lower[c] = fmin(lower[c], at[c]);
-      upper[c] = fmax(upper[c], at[c]);
+      lower[c] = pl_fmin(lower[c], at[c]);
+      upper[c] = pl_fmax(upper[c], at[c]);
     }
   }
   for (int c = 0; c < g->dimensions; c++)
-    longest = fmax(longest, upper[c] - lower[c]);
+    longest = pl_fmax(longest, upper[c] - lower[c]);
   return (long)ceil(4 * (longest / g->spacing + 1) / part);
 }
 
@@ -60,7 +61,7 @@ static bool is_loading(const relaxation *r, int64_t step) {
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->sweep->decay = exp(-rate * r->sweep->time_step);
+  r->sweep->decay = pl_exp(-rate * r->sweep->time_step);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -76,7 +77,7 @@ void relaxation_next(relaxation *r, int64_t step) {
 }
 
 void relaxation_begin(relaxation *r) {
-  r->state.rate = 2 * acos(-1) / ((double)r->ramp * r->sweep->time_step);
+  r->state.rate = 2 * M_PI / ((double)r->ramp * r->sweep->time_step);
   relaxation_next(r, 0);
 }
 
@@ -102,6 +103,10 @@ static void adapt(relaxation *r) {
   if (work > 0 && motion > 0) r->state.rate = 2 * sqrt(work / motion);
 }
 
+static double square_of(double x) {
+  return x * x;
+}
+
 typedef struct squares { /* N^2 */
   double free, held, applied;
 } squares;
@@ -120,25 +125,25 @@ static void add_component(const relaxation *r, int d, squares *sum) {
   for (long i = 0; i < l->force_count; i++) {
     if (l->forces[i].component != d) continue;
     r->total[l->forces[i].site] += l->forces[i].now;
-    sum->applied += pow(l->forces[i].now / arm, 2);
+    sum->applied += square_of(l->forces[i].now / arm);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     const constraint *c = &l->constraints[i];
     if (c->component != d || !c->active) continue;
-    sum->held += pow(r->total[c->site] / arm, 2);
+    sum->held += square_of(r->total[c->site] / arm);
     r->total[c->site] = 0;
   }
   for (long p = 0; p < w->lattice->particle_count; p++)
-    sum->free += pow(r->total[w->lattice->particle_site[p]] / arm, 2);
+    sum->free += square_of(r->total[w->lattice->particle_site[p]] / arm);
 }
 
 static double unbalance_of(relaxation *r) {
   squares sum = {0, 0, 0};
   for (int d = 0; d < r->sweep->dof; d++)
     add_component(r, d, &sum);
-  const double needed = sqrt(fmax(sum.held, sum.applied));
-  r->state.largest = fmax(r->state.largest, needed);
-  const double against = fmax(needed, forgotten * r->state.largest);
+  const double needed = sqrt(pl_fmax(sum.held, sum.applied));
+  r->state.largest = pl_fmax(r->state.largest, needed);
+  const double against = pl_fmax(needed, forgotten * r->state.largest);
   return sum.free == 0 ? 0 : sqrt(sum.free) / against;
 }
 

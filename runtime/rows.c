@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/neighbour_search.h"
 #include "runtime/rows_parts.h"
 #include "runtime/scattered.h"
@@ -120,7 +121,7 @@ static double horizon_of(const builder *b) {
 static double weight_of(const builder *b, double length) {
   const double horizon = horizon_of(b);
   if (b->lattice->volume_correction == VOLUME_WHOLE) return 1;
-  return fmin(fmax(horizon + 0.5 - length, 0), 1);
+  return pl_fmin(pl_fmax(horizon + 0.5 - length, 0), 1);
 }
 
 static void set_directions(rows *w, const builder *b) {
@@ -245,8 +246,8 @@ void rows_find_extent(rows *w) {
     double at[3];
     rows_place(w, w->particle_site[p], at);
     for (int c = 0; c < 3; c++) {
-      lower[c] = fmin(lower[c], at[c]);
-      upper[c] = fmax(upper[c], at[c]);
+      lower[c] = pl_fmin(lower[c], at[c]);
+      upper[c] = pl_fmax(upper[c], at[c]);
     }
   }
   w->width = upper[0] - lower[0];
@@ -532,15 +533,15 @@ static void add_interval(const rows *w, long site, int row, double reach, int32_
   const double half = sqrt(reach * reach - square) / step[COLUMN];
   const int shift = w->row_class[row + w->margin] - w->row_class[own + w->margin];
   const double middle = (double)(site - rows_start(w, own)) - 0.5 * shift;
-  const double first = fmax(ceil(middle - half), 0);
-  const double last = fmin(floor(middle + half), (double)w->pitch - 1);
+  const double first = pl_fmax(ceil(middle - half), 0);
+  const double last = pl_fmin(floor(middle + half), (double)w->pitch - 1);
   if (first > last) return;
   steps[rows_start(w, row) + (long)first]++;
   steps[rows_start(w, row) + (long)last + 1]--;
 }
 
 static int steps_within(double reach, double step, int most) {
-  return step > 0 ? (int)fmin(ceil(reach / step), most) : 0;
+  return step > 0 ? (int)pl_fmin(ceil(reach / step), most) : 0;
 }
 
 /* On lists. */
@@ -581,7 +582,7 @@ static unsigned char *mark_near(const rows *w, const int32_t *particles, long co
 }
 
 void rows_protect(rows *w, const int32_t *particles, long count, double radius) {
-  const double reach = fmax(radius, 0) + SITE_OUTLINE_TOLERANCE * w->spacing;
+  const double reach = pl_fmax(radius, 0) + SITE_OUTLINE_TOLERANCE * w->spacing;
   unsigned char *near = w->list ? mark_points_near(w, particles, count, reach)
                                 : mark_near(w, particles, count, reach);
   for (long p = 0; p < w->particle_count; p++) {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bond_numbers.h"
 #include "runtime/hilbert.h"
 #include "runtime/particle_set.h"
@@ -65,7 +66,7 @@ static double mean_measure(const builder *b) {
 
 /* Of a disc or a sphere of so many particles. */
 static double radius_of(int dimensions, double measure) {
-  return dimensions == 2 ? sqrt(measure / acos(-1)) : cbrt(0.75 * measure / acos(-1));
+  return dimensions == 2 ? sqrt(measure / M_PI) : pl_cbrt(0.75 * measure / M_PI);
 }
 
 static double horizon_of(const builder *b) {
@@ -212,7 +213,7 @@ static double longest_bond(const rows *w) {
   double longest = 0;
   for (long q = 0; q < w->size; q++)
     for (int k = 0; k < w->directions; k++)
-      if (rows_has_bond(w, q, k)) longest = fmax(longest, w->list->length[k * w->size + q]);
+      if (rows_has_bond(w, q, k)) longest = pl_fmax(longest, w->list->length[k * w->size + q]);
   return longest;
 }
 
@@ -234,7 +235,8 @@ static void cut_notch(rows *w, const deck_notch *notch, const deck_lattice *l, d
     if (notch->cut_bonds) cut += rows_cut(w, site, &notch->shape);
   }
   if (cut > 0 || (near > 0 && !notch->cut_bonds)) return;
-  const double wide = fmax(fmax(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+  const double wide =
+      pl_fmax(pl_fmax(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
   if (near > 0 && wide > longest) return; /* what it has removed leaves no bond to cut */
   diag_report(d, DIAG_DECK_WARNING, notch->item.where,
               "the notch removes no particle%s of lattice '%s'",
@@ -277,7 +279,7 @@ static double mean_nearest(const rows *w) {
     double nearest = INFINITY, chord[3];
     for (int n = 0; n < 2 * w->directions; n++)
       if (rows_has_neighbour(w, w->particle_site[p], n))
-        nearest = fmin(nearest, rows_chord(w, w->particle_site[p], n, chord));
+        nearest = pl_fmin(nearest, rows_chord(w, w->particle_site[p], n, chord));
     sum += isfinite(nearest) ? nearest : w->spacing;
   }
   return sum / (double)w->particle_count;

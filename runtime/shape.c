@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/outline.h"
 
 enum { NEAR_CUTS = 32 }; /* places where a chord meets an outline that need no allocation */
@@ -16,7 +17,7 @@ static double dot(const double *a, const double *b) {
 }
 
 static double size_of(const double *a) {
-  return hypot(hypot(a[0], a[1]), a[2]);
+  return pl_hypot(pl_hypot(a[0], a[1]), a[2]);
 }
 
 static void subtract(const double *a, const double *b, double out[3]) {
@@ -34,7 +35,7 @@ typedef struct shape_outline {
 
 /* Corners given about `centre` before a turn. */
 static void turn_corners(shape_outline *s, const double centre[2], double angle) {
-  const double c = cos(angle), d = sin(angle);
+  const double c = pl_cos(angle), d = pl_sin(angle);
   for (int k = 0; k < s->line.count; k++) {
     double *p = s->points + 2 * k;
     const double x = p[0], y = p[1];
@@ -56,7 +57,7 @@ static void rectangle_outline(const deck_shape *shape, shape_outline *s) {
 /* Arcs of the given radius, one on either side, end on the straight sides half a chord from the middle. */
 static void dog_bone_outline(const deck_shape *shape, shape_outline *s) {
   const double w = shape->width / 2, h = shape->height / 2, rise = w - shape->neck / 2;
-  const double chord = sqrt(fmax(rise * (2 * shape->radius - rise), 0));
+  const double chord = sqrt(pl_fmax(rise * (2 * shape->radius - rise), 0));
   const double corners[16] = {-w, -h, w,  -h, w,  -chord, w,  chord,
                               w,  h,  -w, h,  -w, chord,  -w, -chord};
   memcpy(s->points, corners, sizeof corners);
@@ -110,8 +111,8 @@ double shape_unevenness(const deck_shape *face) {
   for (int k = 0; k < face->point_count; k++) {
     double from[3];
     subtract(face_corner(face, k), face->points, from);
-    extent = fmax(extent, size_of(from));
-    away = isnan(n[0]) ? NAN : fmax(away, fabs(dot(n, from)));
+    extent = pl_fmax(extent, size_of(from));
+    away = isnan(n[0]) ? NAN : pl_fmax(away, fabs(dot(n, from)));
   }
   return away / extent;
 }
@@ -121,7 +122,7 @@ static double distance_to_segment(const double *p, const double *a, const double
   subtract(b, a, along);
   subtract(p, a, from);
   const double square = dot(along, along);
-  const double u = square > 0 ? fmin(fmax(dot(from, along) / square, 0), 1) : 0;
+  const double u = square > 0 ? pl_fmin(pl_fmax(dot(from, along) / square, 0), 1) : 0;
   for (int c = 0; c < 3; c++)
     from[c] -= u * along[c];
   return size_of(from);
@@ -150,7 +151,7 @@ static double face_distance(const deck_shape *shape, const double *p) {
   if (over_face(shape, n, p)) return fabs(above_face(shape, n, p));
   for (int k = 0; k < shape->point_count; k++)
     nearest =
-        fmin(nearest, distance_to_segment(p, face_corner(shape, k), face_corner(shape, k + 1)));
+        pl_fmin(nearest, distance_to_segment(p, face_corner(shape, k), face_corner(shape, k + 1)));
   return nearest;
 }
 
@@ -186,11 +187,11 @@ static void box_about(const double *centre, double reach, int dimensions, double
 
 /* fmin and fmax pass over what is not a number; a box must not. */
 static double smaller(double a, double b) {
-  return isnan(a) || isnan(b) ? NAN : fmin(a, b);
+  return isnan(a) || isnan(b) ? NAN : pl_fmin(a, b);
 }
 
 static double larger(double a, double b) {
-  return isnan(a) || isnan(b) ? NAN : fmax(a, b);
+  return isnan(a) || isnan(b) ? NAN : pl_fmax(a, b);
 }
 
 static void box_of_ends(const double *a, const double *b, int dimensions, double lower[3],
@@ -206,7 +207,7 @@ static void cylinder_box(const deck_shape *shape, double lower[3], double upper[
   cylinder_axis(shape, axis);
   box_of_ends(shape->from, shape->to, 3, lower, upper);
   for (int c = 0; c < 3; c++) {
-    const double reach = shape->radius * hypot(axis[(c + 1) % 3], axis[(c + 2) % 3]);
+    const double reach = shape->radius * pl_hypot(axis[(c + 1) % 3], axis[(c + 2) % 3]);
     lower[c] -= reach;
     upper[c] += reach;
   }
@@ -266,16 +267,16 @@ void shape_box(const deck_shape *shape, double lower[3], double upper[3]) {
 
 /* Of a shape that is bounded in two directions at right angles, each with its distance. */
 static double both(double a, double b) {
-  return a <= 0 && b <= 0 ? fmax(a, b) : hypot(fmax(a, 0), fmax(b, 0));
+  return a <= 0 && b <= 0 ? pl_fmax(a, b) : pl_hypot(pl_fmax(a, 0), pl_fmax(b, 0));
 }
 
 static double round_distance(const deck_shape *shape, double from_centre) {
   const double outside = from_centre - shape->radius;
-  return shape->inner_radius > 0 ? fmax(outside, shape->inner_radius - from_centre) : outside;
+  return shape->inner_radius > 0 ? pl_fmax(outside, shape->inner_radius - from_centre) : outside;
 }
 
 static double between(double x, double low, double high) {
-  return fmax(low - x, x - high);
+  return pl_fmax(low - x, x - high);
 }
 
 static double cylinder_distance(const deck_shape *shape, const double *p) {
@@ -301,7 +302,7 @@ static double shape_distance(const deck_shape *shape, const double *p) {
     subtract(p, shape->at, from);
     return size_of(from);
   case SHAPE_DISC:
-    return round_distance(shape, hypot(p[0] - shape->centre[0], p[1] - shape->centre[1]));
+    return round_distance(shape, pl_hypot(p[0] - shape->centre[0], p[1] - shape->centre[1]));
   case SHAPE_SPHERE:
     subtract(p, shape->centre, from);
     return round_distance(shape, size_of(from));
@@ -529,16 +530,16 @@ static bool deep_between_cuts(cuts *c, const deck_shape *shape, const double *a,
 /* Distance of p from the line a-b, positive to its left. */
 static double left_of(const double *p, const double *a, const double *b) {
   const double ex = b[0] - a[0], ey = b[1] - a[1];
-  return (ex * (p[1] - a[1]) - ey * (p[0] - a[0])) / hypot(ex, ey);
+  return (ex * (p[1] - a[1]) - ey * (p[0] - a[0])) / pl_hypot(ex, ey);
 }
 
 static bool crosses_slit(const double *a, const double *b, const double *p, const double *q,
                          double tolerance) {
-  if (hypot(q[0] - p[0], q[1] - p[1]) <= tolerance) return false;
+  if (pl_hypot(q[0] - p[0], q[1] - p[1]) <= tolerance) return false;
   const double side_a = left_of(a, p, q), side_b = left_of(b, p, q);
-  if (fmin(side_a, side_b) >= -tolerance || fmax(side_a, side_b) <= tolerance) return false;
+  if (pl_fmin(side_a, side_b) >= -tolerance || pl_fmax(side_a, side_b) <= tolerance) return false;
   const double side_p = left_of(p, a, b), side_q = left_of(q, a, b);
-  return fmin(side_p, side_q) <= tolerance && fmax(side_p, side_q) >= -tolerance;
+  return pl_fmin(side_p, side_q) <= tolerance && pl_fmax(side_p, side_q) >= -tolerance;
 }
 
 static bool crosses_face(const deck_shape *shape, const double *a, const double *b,
@@ -546,7 +547,7 @@ static bool crosses_face(const deck_shape *shape, const double *a, const double 
   double n[3], at[3];
   face_normal(shape, n);
   const double side_a = above_face(shape, n, a), side_b = above_face(shape, n, b);
-  if (fmin(side_a, side_b) >= -tolerance || fmax(side_a, side_b) <= tolerance) return false;
+  if (pl_fmin(side_a, side_b) >= -tolerance || pl_fmax(side_a, side_b) <= tolerance) return false;
   for (int c = 0; c < 3; c++)
     at[c] = a[c] + side_a / (side_a - side_b) * (b[c] - a[c]);
   return face_distance(shape, at) <= tolerance;
@@ -569,8 +570,8 @@ static bool boxes_apart(const deck_shape *shape, const double *a, const double *
   double lower[3], upper[3];
   shape_box(shape, lower, upper);
   for (int c = 0; c < (is_of_space(shape) ? 3 : 2); c++) {
-    if (fmin(a[c], b[c]) > upper[c] + tolerance) return true;
-    if (fmax(a[c], b[c]) < lower[c] - tolerance) return true;
+    if (pl_fmin(a[c], b[c]) > upper[c] + tolerance) return true;
+    if (pl_fmax(a[c], b[c]) < lower[c] - tolerance) return true;
   }
   return false;
 }

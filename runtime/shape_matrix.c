@@ -1,17 +1,11 @@
 #include "runtime/shape_matrix.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/arena.h"
-
-/* LAPACK: eigenvalues and vectors of a symmetric matrix. The last two arguments are the hidden text
- * lengths. */
-void dsyev_(const char *job, const char *triangle, const int *n, double *a, const int *lda,
-            double *values, double *work, const int *work_size, int *info, size_t job_length,
-            size_t triangle_length);
+#include "runtime/eigen.h"
 
 /* Of the largest eigenvalue: smaller ones count as 0. Families of lattices lack a strain or have it well; on lists there is
    all between, and where a strain is hardly seen its fit is noise. */
@@ -19,7 +13,7 @@ void dsyev_(const char *job, const char *triangle, const int *n, double *a, cons
 #define SMALLEST_ON_LIST 1e-3
 #define RESOLVED         1e-3
 
-enum { MOST_ORDER = 6, MOST_PLANES = PL_SHAPE_PLANES(3), PLACES = 4096 };
+enum { MOST_ORDER = EIGEN_MOST, MOST_PLANES = PL_SHAPE_PLANES(3), PLACES = 4096 };
 
 /* Families differ in the bonds they have, and most of them are alike. */
 typedef struct known_family {
@@ -44,26 +38,29 @@ static int products(const rows *w, const double c[3], double s, double n[MOST_OR
 /* Least squares with the smallest tensor, sum of e_ab^2, so that the axes do not matter: shear, which counts twice in
    that, is scaled by the root of 2. Behind the matrix stands whether the bonds resolve all strains. */
 static void invert(int dimensions, int order, double smallest, double *sum) {
-  double scale[MOST_ORDER], a[MOST_ORDER * MOST_ORDER], values[MOST_ORDER], work[16 * MOST_ORDER];
-  const int size = 16 * MOST_ORDER;
-  int info = 0, at = 0;
+  double scale[MOST_ORDER], a[MOST_ORDER][MOST_ORDER], values[MOST_ORDER],
+      vectors[MOST_ORDER][MOST_ORDER];
+  double least = INFINITY, most = 0;
+  int at = 0;
   for (int p = 0; p < order; p++)
     scale[p] = p < dimensions ? 1 : sqrt(2);
   for (int p = 0; p < order; p++)
     for (int q = p; q < order; q++)
-      a[q * order + p] = scale[p] * scale[q] * sum[at++];
-  dsyev_("V", "U", &order, a, &order, values, work, &size, &info, 1, 1);
-  assert(info == 0);
+      a[p][q] = a[q][p] = scale[p] * scale[q] * sum[at++];
+  eigen_symmetric(order, a, values, vectors);
+  for (int m = 0; m < order; m++) {
+    least = values[m] < least ? values[m] : least;
+    most = values[m] > most ? values[m] : most;
+  }
   at = 0;
   for (int p = 0; p < order; p++)
     for (int q = p; q < order; q++) {
       double value = 0;
       for (int m = 0; m < order; m++)
-        if (values[m] > smallest * values[order - 1])
-          value += a[m * order + p] * a[m * order + q] / values[m];
+        if (values[m] > smallest * most) value += vectors[m][p] * vectors[m][q] / values[m];
       sum[at++] = scale[p] * scale[q] * value;
     }
-  sum[at] = values[order - 1] > 0 && values[0] >= RESOLVED * values[order - 1];
+  sum[at] = most > 0 && least >= RESOLVED * most;
 }
 
 static void add_products(const double *n, int order, double weight, double *sum) {

@@ -7,6 +7,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "runtime/clock.h"
 #include "runtime/stability.h"
 
@@ -131,9 +132,9 @@ static bool count_steps(simulation *s, diagnostics *d) {
   }
   s->step_count = steps < 1 ? 1 : (int64_t)steps;
   const double asked = s->deck->output.sample;
-  s->sample_interval = asked > 0 ? fmax(asked, s->limit.step) /* no more than a sample a step */
-                                 : fmax(end / 2000, STEPS_A_SAMPLE * s->limit.step);
-  const double samples = fmin(ceil(end / s->sample_interval), steps);
+  s->sample_interval = asked > 0 ? pl_fmax(asked, s->limit.step) /* no more than a sample a step */
+                                 : pl_fmax(end / 2000, STEPS_A_SAMPLE * s->limit.step);
+  const double samples = pl_fmin(ceil(end / s->sample_interval), steps);
   s->history_capacity = (int64_t)samples + 3;
   return true;
 }

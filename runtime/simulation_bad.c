@@ -2,6 +2,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "dsl/elementary.h"
 #include "runtime/bond_probe.h"
 #include "runtime/simulation_parts.h"
 
@@ -17,7 +18,7 @@ static void ends_before(const simulation *s, int64_t site, double u[3], double v
 }
 
 static double wrapped(double angle) {
-  return remainder(angle, 2 * acos(-1));
+  return remainder(angle, 2 * M_PI);
 }
 
 static bond_motion motion_of(const simulation *s, const rows_bond *b, int direction) {
@@ -26,9 +27,9 @@ static bond_motion motion_of(const simulation *s, const rows_bond *b, int direct
   ends_before(s, s->lattice->particle_site[b->i], ui, vi);
   ends_before(s, s->lattice->particle_site[b->j], uj, vj);
   const double c[2] = {reference[0] + uj[0] - ui[0], reference[1] + uj[1] - ui[1]};
-  const double turn =
-      atan2(reference[0] * c[1] - reference[1] * c[0], reference[0] * c[0] + reference[1] * c[1]);
-  const double now = hypot(c[0], c[1]);
+  const double turn = pl_atan2(reference[0] * c[1] - reference[1] * c[0],
+                               reference[0] * c[0] + reference[1] * c[1]);
+  const double now = pl_hypot(c[0], c[1]);
   bond_motion k = {.stretch = (now - length) / length};
   k.rate = (c[0] * (vj[0] - vi[0]) + c[1] * (vj[1] - vi[1])) / (now * length);
   k.theta_i = s->law->dof > 2 ? wrapped(ui[2] - turn) : 0;

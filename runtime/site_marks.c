@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape.h"
 
 #define FARTHEST 1e8 /* spacings from the origin: positions keep 1e-8 spacings */
@@ -54,8 +55,8 @@ bool site_range_of(const bravais *b, const deck_shape *shape, site_range *out) {
     bravais_coordinates(b, p, q);
     for (int c = 0; c < 3; c++) {
       if (!(fabs(q[c]) < FARTHEST)) return false;
-      least[c] = fmin(least[c], q[c]);
-      most[c] = fmax(most[c], q[c]);
+      least[c] = pl_fmin(least[c], q[c]);
+      most[c] = pl_fmax(most[c], q[c]);
     }
   }
   const double margin = 2 * SITE_OUTLINE_TOLERANCE;
@@ -124,7 +125,8 @@ bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
               "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
               l->name, sites, SITE_MOST);
   diag_hint(d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : cbrt(part)) * 1.01);
+            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : pl_cbrt(part)) *
+                1.01);
   return true;
 }
 

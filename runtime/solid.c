@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape.h"
 #include "runtime/site_marks.h"
 
@@ -24,8 +25,8 @@ static void widen(solid *s, const deck_shape *shape) {
   double lower[3], upper[3];
   shape_box(shape, lower, upper);
   for (int c = 0; c < 3; c++) {
-    s->lower[c] = fmin(s->lower[c], lower[c]);
-    s->upper[c] = fmax(s->upper[c], upper[c]);
+    s->lower[c] = pl_fmin(s->lower[c], lower[c]);
+    s->upper[c] = pl_fmax(s->upper[c], upper[c]);
   }
 }
 
@@ -130,7 +131,7 @@ static void fill_line(solid_desk *w, const double *a, const double *b, int power
   if (power == 3 && w->leaves_once) {
     double u = 1;
     for (int k = 0; k < w->cut_count; k++)
-      u = fmin(u, w->cuts[k]);
+      u = pl_fmin(u, w->cuts[k]);
     sum[0] = u * u * u;
     sum[1] = sum[0] * u;
     return;
@@ -196,8 +197,8 @@ static bool ends_of_line(const filling *f, double y, double *low, double *high) 
     const double *a = corner(f, k), *b = corner(f, k + 1);
     if ((a[1] <= y) == (b[1] <= y)) continue;
     const double x = a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-    *low = fmin(*low, x);
-    *high = fmax(*high, x);
+    *low = pl_fmin(*low, x);
+    *high = pl_fmax(*high, x);
   }
   return *high > *low;
 }
@@ -282,7 +283,7 @@ static cell_moments fill_polygon(const filling *f) {
     add_levels_of_shape(f, w->near.notches[n]);
   sort_numbers(w->levels, w->level_count);
   for (int k = 0; k + 1 < w->level_count; k++) {
-    const double low = fmax(w->levels[k], lower[1]), high = fmin(w->levels[k + 1], upper[1]);
+    const double low = pl_fmax(w->levels[k], lower[1]), high = pl_fmin(w->levels[k + 1], upper[1]);
     if (!(high > low)) continue;
     const cell_moments part = halve(f, low, high, gauss(f, low, high), MOST_HALVINGS);
     add_scaled(&sum, 1, &part);

@@ -3,6 +3,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "dsl/elementary.h"
 #include "runtime/body_limit.h"
 #include "runtime/bond_probe.h"
 #include "runtime/stencil.h"
@@ -169,7 +170,7 @@ static void bond_setup(crystal *c, int direction, const pl_law *law, const doubl
   const rate_scan rates = scan_rates(b);
   if (!rates.bounded && rates.size > 0) {
     double viscous[LAW_VARIABLES][LAW_VARIABLES] = {
-        {fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
+        {pl_fmax(rates.slope[0], 0), 0, 0}, {rates.slope[1], 0, 0}, {rates.slope[2], 0, 0}};
     bond_part(&bonds, viscous, c->dof, &out->damping);
     c->damped = true;
   }

@@ -129,7 +129,7 @@ sweep *sweep_new(const rows *lattice, const pl_law *law, const double *parameter
   w->dof = law->dof;
   for (int d = 0; d < w->dof; d++) {
     w->mass[d] = d < w->dimensions ? lattice->mass : lattice->inertia;
-    w->limit[d] = (d < w->dimensions ? lattice->spacing : acos(-1)) / time_step;
+    w->limit[d] = (d < w->dimensions ? lattice->spacing : M_PI) / time_step;
   }
   find_spans(w);
   new_masses(w);

@@ -2,6 +2,7 @@
 
 #include <ctype.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,7 +11,9 @@
 #include <sys/stat.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "dsl/unit_hint.h"
+#include "runtime/ordinary_file.h"
 
 #define LONGEST ((long long)1 << 31) /* bytes: places in the text are spans */
 
@@ -25,12 +28,14 @@ static bool refuse_file(const text_table *t, span where, diagnostics *d, const c
 
 static bool load(text_table *t, span where, diagnostics *d) {
   struct stat about;
-  if (stat(t->path, &about) != 0) return refuse_file(t, where, d, strerror(errno));
-  if (!S_ISREG(about.st_mode))
-    return refuse_file(t, where, d, S_ISDIR(about.st_mode) ? "it is a folder" : "it is not a file");
-  if (about.st_size >= LONGEST) return refuse_file(t, where, d, "it is longer than 2 GiB");
-  FILE *in = fopen(t->path, "rb");
-  if (!in) return refuse_file(t, where, d, strerror(errno));
+  const char *why = NULL;
+  const int file = ordinary_file_open(t->path, O_RDONLY, &why);
+  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
+  if (!in || fstat(file, &about) != 0) return refuse_file(t, where, d, why ? why : strerror(errno));
+  if (about.st_size >= LONGEST) {
+    fclose(in);
+    return refuse_file(t, where, d, "it is longer than 2 GiB");
+  }
   t->text = t->owned = must_alloc((size_t)about.st_size + 1);
   t->length = fread(t->owned, 1, (size_t)about.st_size, in);
   t->owned[t->length] = 0;
@@ -331,7 +336,7 @@ bool text_table_unit(text_table *t, int column, unit *u, diagnostics *d) {
   if (length == 0 || (length == 1 && *from == '-')) return true;
   if (unit_parse(from, length, u, &bad, &bad_length)) return true;
   diag_report(d, DIAG_UNKNOWN_UNIT, text_span(t, from, from + length, d), "there is no unit `%.*s`",
-              (int)fmin((double)bad_length, 40), bad);
+              (int)pl_fmin((double)bad_length, 40), bad);
   unit_hint(d, bad, bad_length);
   return false;
 }

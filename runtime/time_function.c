@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/elementary.h"
+
 /* Piece of the table that holds t: the last k with times[k] <= t; -1 before the first point. */
 static int table_piece(const time_function *f, double t) {
   int low = -1, high = f->count;
@@ -50,7 +52,7 @@ double time_function_at(const time_function *f, double t) {
   case TIME_RAMP_HOLD:
     return since < f->rise ? f->value * (since / f->rise) : f->value;
   case TIME_COSINE:
-    return since < f->rise ? f->value * (1 - cos(M_PI * since / f->rise)) / 2 : f->value;
+    return since < f->rise ? f->value * (1 - pl_cos(M_PI * since / f->rise)) / 2 : f->value;
   case TIME_TABLE:
     return table_at(f, since);
   }
@@ -70,7 +72,7 @@ double time_function_integral(const time_function *f, double t) {
     return f->value * (rising * rising / (2 * f->rise) + (since - rising));
   case TIME_COSINE:
     return f->value *
-           ((rising - f->rise / M_PI * sin(M_PI * rising / f->rise)) / 2 + (since - rising));
+           ((rising - f->rise / M_PI * pl_sin(M_PI * rising / f->rise)) / 2 + (since - rising));
   case TIME_TABLE:
     return table_integral(f, since);
   }
@@ -95,7 +97,7 @@ double time_function_slope(const time_function *f, double t) {
   case TIME_RAMP_HOLD:
     return since < f->rise ? f->value / f->rise : 0;
   case TIME_COSINE:
-    return since < f->rise ? f->value * M_PI / (2 * f->rise) * sin(M_PI * since / f->rise) : 0;
+    return since < f->rise ? f->value * M_PI / (2 * f->rise) * pl_sin(M_PI * since / f->rise) : 0;
   case TIME_TABLE:
     return table_slope(f, since);
   }

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
@@ -93,7 +94,7 @@ static double momentum_of(const probe *p) {
 /* The face of a particle: of the square or cube that has its volume. */
 static double face_of(const rows *w, long site) {
   const double V = volume_of(w, site), t = w->stiffness_thickness;
-  return w->dimensions == 2 ? sqrt(V * t) : cbrt(V * V);
+  return w->dimensions == 2 ? sqrt(V * t) : pl_cbrt(V * V);
 }
 
 static void note_left(const probe *p, int strain, const double stress[MOST_STRAINS]) {
@@ -173,7 +174,7 @@ bool uniform_strain_response(const pl_law *law, const double *parameters, const 
     find_slopes(&p, c);
     mean_stress(&p, stress);
     note_left(&p, c, stress);
-    out->momentum = fmax(out->momentum, momentum_of(&p));
+    out->momentum = pl_fmax(out->momentum, momentum_of(&p));
     for (int r = 0; r < p.strains; r++)
       C[r][c] = stress[r];
   }

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/bins.h"
 
 #define FIRST_REACH 2.5 /* spacings: half the side of the box that a cell begins with */
@@ -49,7 +50,7 @@ static vicinity vicinity_of(const bins *b, double reach) {
   int most[3];
   long count = 1;
   for (int c = 0; c < 3; c++) {
-    most[c] = least((int)fmin(ceil(reach) + 1, 1e6), b->count[c] - 1);
+    most[c] = least((int)pl_fmin(ceil(reach) + 1, 1e6), b->count[c] - 1);
     count *= 2 * most[c] + 1;
   }
   vicinity v = {.boxes = must_alloc((size_t)count * sizeof *v.boxes)};
@@ -159,8 +160,8 @@ static void begin_cell(cutter *w, const solid *s, const double at[3], double rea
   for (int c = 0; c < s->dimensions; c++) {
     lower[c] = -reach;
     upper[c] = reach;
-    if (at[c] > s->lower[c]) lower[c] = fmax(lower[c], s->lower[c] - at[c]);
-    if (at[c] < s->upper[c]) upper[c] = fmin(upper[c], s->upper[c] - at[c]);
+    if (at[c] > s->lower[c]) lower[c] = pl_fmax(lower[c], s->lower[c] - at[c]);
+    if (at[c] < s->upper[c]) upper[c] = pl_fmin(upper[c], s->upper[c] - at[c]);
   }
   cell_set_box(&w->cell, lower, upper);
 }
@@ -270,8 +271,8 @@ static double farthest(const diagram *g) {
   for (int c = 0; c < g->points->dimensions; c++) {
     double low = g->solid->lower[c], high = g->solid->upper[c];
     for (long k = 0; k < g->points->count; k++) {
-      low = fmin(low, g->points->at[c][k]);
-      high = fmax(high, g->points->at[c][k]);
+      low = pl_fmin(low, g->points->at[c][k]);
+      high = pl_fmax(high, g->points->at[c][k]);
     }
     square += (high - low) * (high - low);
   }
@@ -313,7 +314,7 @@ static long near_partner(const voronoi_points *p, const bins *b, long k, double 
       const long m = b->point[from];
       place_of(p, m, other);
       if (m > k && (found < 0 || m < found) &&
-          hypot(hypot(other[0] - at[0], other[1] - at[1]), other[2] - at[2]) < distance)
+          pl_hypot(pl_hypot(other[0] - at[0], other[1] - at[1]), other[2] - at[2]) < distance)
         found = m;
     }
   }

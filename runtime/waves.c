@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 
 /* LAPACK: eigenvalues and vectors of a Hermitian matrix. The last two arguments are the hidden text
  * lengths. */
@@ -56,7 +57,7 @@ void lattice_primitive(const rows *w, double primitive[3][3]) {
       for (int k = w->dimensions == 2 ? j : j + 1; k < w->directions; k++) {
         const double *c = w->dimensions == 2 ? out_of_plane : w->chord[k];
         const double size = fabs(volume_of(w->chord[i], w->chord[j], c));
-        const double least = 1e-6 * pow(w->spacing, w->dimensions);
+        const double least = 1e-6 * pl_pow(w->spacing, w->dimensions);
         if (size >= least && size < smallest * (1 - 1e-6)) {
           smallest = size;
           memcpy(primitive[0], w->chord[i], sizeof primitive[0]);
@@ -70,7 +71,7 @@ void lattice_primitive(const rows *w, double primitive[3][3]) {
 static void find_reciprocal(const rows *w, double reciprocal[3][3]) {
   double a[3][3];
   lattice_primitive(w, a);
-  const double turn = 2 * acos(-1) / volume_of(a[0], a[1], a[2]);
+  const double turn = 2 * M_PI / volume_of(a[0], a[1], a[2]);
   for (int k = 0; k < 3; k++) {
     cross(a[(k + 1) % 3], a[(k + 2) % 3], reciprocal[k]);
     for (int c = 0; c < 3; c++)
@@ -108,7 +109,8 @@ static void wave_matrices(const crystal *c, const double k[3], matrix stiffness,
   memset(damping, 0, sizeof(matrix));
   for (int n = 0; n < c->term_count; n++) {
     const wave_term *t = &c->terms[n];
-    const double complex phase = cexp(I * (k[0] * t->R[0] + k[1] * t->R[1] + k[2] * t->R[2]));
+    const double angle = k[0] * t->R[0] + k[1] * t->R[1] + k[2] * t->R[2];
+    const double complex phase = pl_cos(angle) + I * pl_sin(angle);
     add_part(c, &t->stiffness, phase, stiffness);
     if (c->damped) add_part(c, &t->damping, phase, damping);
   }
@@ -133,7 +135,7 @@ static bool modes(const crystal *c, matrix stiffness, double *omega, matrix vect
       a[q * n + p] = stiffness[p][q];
   if (!eigen(n, a, omega)) return false;
   for (int m = 0; m < n; m++) {
-    omega[m] = sqrt(fmax(omega[m], 0));
+    omega[m] = sqrt(pl_fmax(omega[m], 0));
     for (int p = 0; p < n; p++)
       vectors[m][p] = a[m * n + p];
   }

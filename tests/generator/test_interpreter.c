@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 #include "generator/interpret.h"
 #include "generator/ir.h"
 

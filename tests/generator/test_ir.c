@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 #include "generator/interpret.h"
 #include "generator/ir.h"
 

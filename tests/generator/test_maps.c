@@ -22,7 +22,7 @@ static void make_result(const workplace *w) {
   double u[2 * PARTICLES], omega[BONDS], time[TIMES], opening[TIMES];
   const double *values[] = {u, omega};
   const result_header h = small_header(in_workplace(w, "a.h5"));
-  result *r = result_open(&h, -1, error, sizeof error);
+  result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);
   for (int k = 0; k < FRAMES; k++) {
     small_frame(k, u, omega);
@@ -33,7 +33,8 @@ static void make_result(const workplace *w) {
     opening[k] = 1e-3 * cmod[k];
   }
   const result_series series[] = {{.name = "cmod", .unit = "m", .values = opening}};
-  assert_true(result_finish(r, 1e-3, 42, time, TIMES, series, 1, false, error, sizeof error));
+  assert_true(result_finish(r, 1e-3, 42, time, TIMES, series, 1, error, sizeof error));
+  result_discard(r);
   result_close(r);
 }
 

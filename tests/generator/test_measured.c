@@ -96,7 +96,7 @@ static void make_result(const workplace *w) {
   double u[2 * PARTICLES], omega[BONDS], time[SAMPLES], load[SAMPLES], cmod[SAMPLES];
   const double *values[] = {u, omega};
   const result_header h = small_header(in_workplace(w, "a.h5"));
-  result *r = result_open(&h, -1, error, sizeof error);
+  result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, values, error, sizeof error));
@@ -108,7 +108,8 @@ static void make_result(const workplace *w) {
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = load},
                                   {.name = "cmod", .unit = "m", .values = cmod}};
-  assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 3, false, error, sizeof error));
+  assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 3, error, sizeof error));
+  result_discard(r);
   result_close(r);
 }
 

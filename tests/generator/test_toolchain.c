@@ -19,8 +19,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "dsl/sha256.h"
 #include "generator/prelude.h"
-#include "generator/sha256.h"
 #include "generator/toolchain.h"
 
 #define ERROR_SIZE 2000
@@ -52,7 +52,7 @@ static char *keyed_text(double flops, char **key) {
 
 typedef struct place_of_test {
   char folder[256];
-  char *path, *compiler, *cc;
+  char *path, *compiler, *cc, *processor;
 } place_of_test;
 
 static int remove_one(const char *path, const struct stat *about, int kind, struct FTW *at) {
@@ -81,6 +81,8 @@ static int set_up(void **state) {
   p->path = kept_setting("PATH");
   p->compiler = kept_setting("PERILAT_CC");
   p->cc = kept_setting("CC");
+  p->processor = kept_setting("PERILAT_PROCESSOR");
+  unsetenv("PERILAT_PROCESSOR");
   *state = p;
   return 0;
 }
@@ -90,6 +92,7 @@ static int tear_down(void **state) {
   put_back("PATH", p->path);
   put_back("PERILAT_CC", p->compiler);
   put_back("CC", p->cc);
+  put_back("PERILAT_PROCESSOR", p->processor);
   nftw(p->folder, remove_one, 16, FTW_DEPTH | FTW_PHYS);
   free(p);
   return 0;
@@ -121,14 +124,11 @@ static int count_files(const char *folder, const char *ending) {
 
 static void assert_digest(const char *block, int times, const char *expected) {
   sha256 h;
-  unsigned char digest[SHA256_SIZE];
-  char hex[2 * SHA256_SIZE + 1];
+  char hex[SHA256_TEXT];
   sha256_begin(&h);
   for (int k = 0; k < times; k++)
     sha256_add(&h, block, strlen(block));
-  sha256_end(&h, digest);
-  for (int k = 0; k < SHA256_SIZE; k++)
-    snprintf(hex + 2 * k, 3, "%02x", digest[k]);
+  sha256_text(&h, hex);
   assert_string_equal(hex, expected);
 }
 
@@ -367,6 +367,28 @@ static void a_named_compiler_is_taken_or_none(void **state) {
   free(key);
 }
 
+/* What another one runs is another kernel, under a key of its own. */
+static void a_named_processor_is_compiled_for(void **state) {
+  (void)state;
+  assert_non_null(strstr(toolchain_flags(), "-march=native"));
+  setenv("PERILAT_PROCESSOR", "8087", 1);
+  assert_null(toolchain_compiler());
+  assert_non_null(strstr(toolchain_no_compiler(), "PERILAT_PROCESSOR is `8087`, which is none of"));
+#if defined(__x86_64__)
+  unsetenv("PERILAT_PROCESSOR");
+  char *native, *basic, *text = keyed_text(5, &native);
+  free(text);
+  setenv("PERILAT_PROCESSOR", "x86-64", 1);
+  assert_non_null(strstr(toolchain_flags(), "-march=x86-64 "));
+  text = keyed_text(5, &basic);
+  assert_string_not_equal(native, basic);
+  assert_loads(text, basic, false, 5);
+  free(text);
+  free(native);
+  free(basic);
+#endif
+}
+
 static void a_compiler_that_fails_is_reported(void **state) {
   place_of_test *p = *state;
   loaded_kernel k;
@@ -498,6 +520,7 @@ int main(void) {
       IN_OWN_CACHE(objects_cannot_be_built_where_nothing_can_be_written),
       IN_OWN_CACHE(without_a_compiler_there_is_none),
       IN_OWN_CACHE(a_named_compiler_is_taken_or_none),
+      IN_OWN_CACHE(a_named_processor_is_compiled_for),
       IN_OWN_CACHE(a_compiler_that_fails_is_reported),
       IN_OWN_CACHE(parts_are_compiled_each_and_linked),
       IN_OWN_CACHE(the_key_holds_text_compiler_and_flags),

@@ -336,6 +336,26 @@ static void an_impulse_does_work(void **state) {
   }
 }
 
+/* n dt may be a little before or after a start that is written in decimals. */
+static void rounding_does_not_make_an_impulse_a_reaction(void **state) {
+  (void)state;
+  for (int n = 1; n <= 60; n++) {
+    char text[2048];
+    snprintf(text, sizeof text,
+             "&simulation end_time = 61e-7 step = 1e-7 /\n" PAIR
+             "&drive region = 'left' component = 'x' velocity = 1 start = %de-7 /\n"
+             "&monitor name = 'r' kind = 'reaction' region = 'left' component = 'x' /\n"
+             "&output frames = 0 sample = 1e-7 /\n",
+             n);
+    small_run r;
+    small_open(&r, &elastic_bar, text);
+    assert_non_null(r.simulation);
+    assert_int_equal(small_go(&r), STEP_END);
+    assert_true(small_largest(&r, "r") < 1e-6 * mass() / 1e-7 + stiffness() * 61e-7);
+    small_close(&r);
+  }
+}
+
 /* What does not jump keeps its values: a ramp acts in a step with its value there. */
 static void ramps_act_as_they_are(void **state) {
   (void)state;
@@ -366,6 +386,7 @@ int main(void) {
       cmocka_unit_test(a_drive_may_begin_at_any_time),
       cmocka_unit_test(a_flying_particle_is_caught_where_it_is),
       cmocka_unit_test(an_impulse_does_work),
+      cmocka_unit_test(rounding_does_not_make_an_impulse_a_reaction),
       cmocka_unit_test(ramps_act_as_they_are),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

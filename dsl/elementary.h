@@ -1,12 +1,13 @@
-/* Branch-free elementary functions shared, as text, by the interpreter and every emitted kernel:
-   the same source compiled with -ffp-contract=off gives the same bits in both. Accuracy over the
-   stated ranges is tested.
+/* Branch-free elementary functions for all of perilat and, as text, for every emitted kernel: the
+   same source compiled with -ffp-contract=off gives the same bits with every compiler, on every
+   processor. C's library does not: its bits differ with its version and with the processor.
+   Accuracy over the stated ranges is tested.
 
    Selects only, no tables, no calls, so that loops over them vectorise. A fused multiply-add is
    written out where it is meant; it rounds once on every machine, in hardware or not. Largest
    errors measured against 64-bit-mantissa references, in ulp of the result:
 
-     exp 1.0, log 0.9, pow 1.0, cbrt 0.5, inverse_root 1.0, sin and cos 0.8, tan 2.2,
+     exp 1.0, log 0.9, pow 1.0, cbrt 0.5, inverse_root 1.0, hypot 1.2, sin and cos 0.8, tan 2.2,
      tanh 1.7, atan2 1.3 (0.5 for angles up to 1e-6 rad);
      wrap_angle 5e-16 rad for |x| <= 1e4 rad, exact for |x| <= pi.
 
@@ -17,8 +18,8 @@
    Coefficients are weighted minimax fits (Remez 1934) of the expressions named beside them, made
    for this file; the reductions by exact multiples of a constant in parts follow Cody and Waite
    (1980), error terms Dekker (1971). */
-#ifndef PERILAT_GENERATOR_ELEMENTARY_H
-#define PERILAT_GENERATOR_ELEMENTARY_H
+#ifndef PERILAT_DSL_ELEMENTARY_H
+#define PERILAT_DSL_ELEMENTARY_H
 
 #include <stdint.h>
 
@@ -83,7 +84,17 @@ PL_ELEMENTARY double pl_max(double a, double b) {
   return a != a ? a : most;
 }
 
-/* The same, but b where either is NaN. */
+/* The other where one is NaN, as C's fmin and fmax; the first of 0 and -0, which these leave to the
+ * compiler. */
+PL_ELEMENTARY double pl_fmin(double a, double b) {
+  return ((a <= b) | (b != b)) ? a : b;
+}
+
+PL_ELEMENTARY double pl_fmax(double a, double b) {
+  return ((a >= b) | (b != b)) ? a : b;
+}
+
+/* Smaller and larger, but b where either is NaN. */
 PL_ELEMENTARY double pl_smaller(double a, double b) {
   return a < b ? a : b;
 }
@@ -276,6 +287,17 @@ PL_ELEMENTARY double pl_inverse_root(double x) {
   const double near = guess * p;
   const double rest = pl_fma(-(x * near), near, 1.0);
   return pl_fma(near * rest, pl_fma(0.375, rest, 0.5), near);
+}
+
+/* sqrt(x^2 + y^2), both scaled by a power of two near the larger. */
+PL_ELEMENTARY double pl_hypot(double x, double y) {
+  const double x_size = pl_abs(x), y_size = pl_abs(y);
+  const double larger = x_size > y_size ? x_size : y_size;
+  const uint64_t scale =
+      UINT64_C(0x7fd0000000000000) - (pl_to_bits(larger) & UINT64_C(0x7fc0000000000000));
+  const double a = x * pl_from_bits(scale), b = y * pl_from_bits(scale);
+  const double root = pl_sqrt(a * a + b * b) * pl_from_bits(UINT64_C(0x7fe0000000000000) - scale);
+  return ((x_size == PL_INFINITY) | (y_size == PL_INFINITY)) ? PL_INFINITY : root;
 }
 
 /* x = quarter pi/2 + angle + tail, |angle| <= pi/4. */

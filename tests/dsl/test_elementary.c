@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "generator/elementary.h"
+#include "dsl/elementary.h"
 
 enum { SAMPLES = 200000, STRIP = 512 };
 
@@ -111,6 +111,19 @@ static void powers(void **unused) {
   ONE_ARGUMENT(sqrt, 0.501, fabs(log_uniform(&state, -1074, 1023)), sqrtl);
   ONE_ARGUMENT(inverse_root, 1.0, fabs(log_uniform(&state, -1022, 1023)), one_over_root);
   ONE_ARGUMENT(inverse_root, 1.0, uniform(&state, 1.0, 4.0), one_over_root);
+}
+
+static void magnitudes(void **unused) {
+  (void)unused;
+  TWO_ARGUMENTS(hypot, 1.25, uniform(&state, -1.0, 1.0), uniform(&state, -1.0, 1.0), hypotl);
+  TWO_ARGUMENTS(hypot, 1.25, log_uniform(&state, -1074, 1023), log_uniform(&state, -1074, 1023),
+                hypotl);
+  TWO_ARGUMENTS(hypot, 1.25, log_uniform(&state, -1074, -1000), log_uniform(&state, -1074, -1000),
+                hypotl);
+  TWO_ARGUMENTS(hypot, 1.25, log_uniform(&state, 1000, 1023), log_uniform(&state, 1000, 1023),
+                hypotl);
+  assert_true(pl_hypot(3, -4) == 5 && pl_hypot(0.1, 0) == 0.1 &&
+              pl_hypot(0, -0x1p-1074) == 0x1p-1074);
 }
 
 static void angles(void **unused) {
@@ -228,6 +241,7 @@ static void corner_values(void **unused) {
       const double y = corners[j];
       assert_corner("atan2", pl_atan2(x, y), atan2(x, y), x, y);
       assert_corner("pow", pl_pow(x, y), pow(x, y), x, y);
+      assert_corner("hypot", pl_hypot(x, y), hypot(x, y), x, y);
     }
   }
 }
@@ -239,6 +253,11 @@ static void selects(void **unused) {
   assert_true(isnan(pl_min(NAN, 1.0)) && isnan(pl_min(1.0, NAN)));
   assert_true(isnan(pl_max(NAN, 1.0)) && isnan(pl_max(1.0, NAN)));
   assert_true(pl_max(-INFINITY, 3.0) == 3.0 && pl_min(INFINITY, 3.0) == 3.0);
+  assert_true(pl_fmin(1.0, 2.0) == 1.0 && pl_fmin(2.0, 1.0) == 1.0 && pl_fmax(1.0, 2.0) == 2.0);
+  assert_true(pl_fmax(2.0, 1.0) == 2.0 && pl_fmin(NAN, 1.0) == 1.0 && pl_fmin(1.0, NAN) == 1.0);
+  assert_true(pl_fmax(NAN, 1.0) == 1.0 && pl_fmax(1.0, NAN) == 1.0 && isnan(pl_fmax(NAN, NAN)));
+  assert_true(signbit(pl_fmin(-0.0, 0.0)) && !signbit(pl_fmin(0.0, -0.0)));
+  assert_true(signbit(pl_fmax(-0.0, 0.0)) && !signbit(pl_fmax(0.0, -0.0)));
   assert_true(pl_sign(-3.0) == -1.0 && pl_sign(0.0) == 0.0 && pl_sign(1e-320) == 1.0);
   assert_true(isnan(pl_sign(NAN)));
   assert_true(pl_abs(-0.0) == 0.0 && !signbit(pl_abs(-0.0)) && pl_abs(-3.5) == 3.5);
@@ -258,16 +277,17 @@ static void symmetry(void **unused) {
 
 /* --- the compiler's report: every function vectorises ----------------------------------------- */
 
-static const char *const one_argument[] = {"abs", "sqrt", "sign", "exp",  "log",       "cbrt",
-                                           "sin", "cos",  "tan",  "tanh", "wrap_angle", "inverse_root"};
-static const char *const two_arguments[] = {"min", "max", "pow", "atan2"};
+static const char *const one_argument[] = {"abs", "sqrt", "sign",       "exp",
+                                           "log", "cbrt", "sin",        "cos",
+                                           "tan", "tanh", "wrap_angle", "inverse_root"};
+static const char *const two_arguments[] = {"min", "max", "pow", "hypot", "atan2"};
 enum {
   ONES = sizeof one_argument / sizeof *one_argument,
   TWOS = sizeof two_arguments / sizeof *two_arguments
 };
 
 static void write_loops(FILE *c) {
-  fprintf(c, "#include \"generator/elementary.h\"\n");
+  fprintf(c, "#include \"dsl/elementary.h\"\n");
   for (int k = 0; k < ONES; k++)
     fprintf(c,
             "void f%d(int n, const double *restrict a, double *restrict o)"
@@ -341,11 +361,12 @@ static void lanes_agree(void **unused) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(exp_and_log),     cmocka_unit_test(powers),
-      cmocka_unit_test(angles),          cmocka_unit_test(chord_rotation),
-      cmocka_unit_test(wrapping),        cmocka_unit_test(corner_values),
-      cmocka_unit_test(selects),         cmocka_unit_test(symmetry),
-      cmocka_unit_test(loops_vectorise), cmocka_unit_test(lanes_agree),
+      cmocka_unit_test(exp_and_log),    cmocka_unit_test(powers),
+      cmocka_unit_test(magnitudes),     cmocka_unit_test(angles),
+      cmocka_unit_test(chord_rotation), cmocka_unit_test(wrapping),
+      cmocka_unit_test(corner_values),  cmocka_unit_test(selects),
+      cmocka_unit_test(symmetry),       cmocka_unit_test(loops_vectorise),
+      cmocka_unit_test(lanes_agree),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
