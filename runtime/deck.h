@@ -286,6 +286,7 @@ typedef struct deck {
                            without comments, title, number of threads and checkpoints */
   deck_file *files;     /* each once */
   int file_count;
+  unsigned lacks;       /* groups of which items were left out: see deck_lacks */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;
@@ -318,6 +319,12 @@ typedef struct deck_override {
    is there already, under its path, is not read from the disk. */
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d);
+/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
+   Faulty items are left out, but for materials whose law is known. */
+deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
+                              const deck_override *overrides, int override_count, diagnostics *d);
+/* Some item of that group ("body") may have been left out; NULL: of any group. */
+bool deck_lacks(const deck *k, const char *group);
 
 /* Every group and key with its value, unit, default and meaning, as Markdown. */
 void deck_reference(FILE *out);
