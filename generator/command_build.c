@@ -46,7 +46,8 @@ static int build_law(const char *path, const char *output, bool no_physics) {
 
 /* --- solvers ---------------------------------------------------------------------------------- */
 
-/* What the deck's only lattice is made of, with its options decided, and the tables of the deck's loads. */
+/* What the deck's only lattice is made of, with its options decided, and the tables of the deck's
+   loads. */
 typedef struct deck_law {
   model model;
   bool opened;

@@ -1,8 +1,7 @@
-/* perilat compare: where two results differ most, history by history and field by field; or a result and a table
-   (compare_curve.h).
-   A difference is relative to the largest absolute value that the quantity has in either result;
-   energies are relative to the largest energy of all, since the smaller terms are differences of
-   larger ones. */
+/* perilat compare: where two results differ most, history by history and field by field; or a
+   result and a table (compare_curve.h). A difference is relative to the largest absolute value that
+   the quantity has in either result; energies are relative to the largest energy of all, since the
+   smaller terms are differences of larger ones. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

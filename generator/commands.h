@@ -93,8 +93,10 @@
     "a line at a value, e.g. '58.88 kN' or 'f_t A = 58.88 kN'; may be given several times")        \
   X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")         \
   X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                    \
-  X(plot, "--frames", "LIST", "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")     \
-  X(plot, "--mark", "FIELD", "dots where a field is above 0 (yielded), or above or below a value ('S_p > 1e-6')")        \
+  X(plot, "--frames", "LIST",                                                                      \
+    "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")         \
+  X(plot, "--mark", "FIELD",                                                                       \
+    "dots where a field is above 0 (yielded), or above or below a value ('S_p > 1e-6')")           \
   X(plot, "--component", "K",                                                                      \
     "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                        \
   X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given") \

@@ -1,4 +1,5 @@
-/* perilat compare of a result with a table: one history over another against measured points, or a band. */
+/* perilat compare of a result with a table: one history over another against measured points, or a
+   band. */
 #ifndef PERILAT_GENERATOR_COMPARE_CURVE_H
 #define PERILAT_GENERATOR_COMPARE_CURVE_H
 
@@ -9,7 +10,8 @@ typedef struct curve_request {
   double tolerance;
 } curve_request;
 
-/* Exit status: 0 nowhere farther than the tolerance, times the largest value of the table; 2 farther; 1 after messages. */
+/* Exit status: 0 nowhere farther than the tolerance, times the largest value of the table; 2
+   farther; 1 after messages. */
 int compare_curve(const curve_request *q);
 
 #endif

@@ -1,5 +1,6 @@
-/* How far a computed curve y(x) lies from measured points, or outside of a band of them, over the values of x that both reach.
-   Both are straight between their points. Where a curve comes back in x, the first time counts that it reaches each x:
+/* How far a computed curve y(x) lies from measured points, or outside of a band of them, over the
+   values of x that both reach. Both are straight between their points. Where a curve comes back in
+   x, the first time counts that it reaches each x:
 
      y |       2        points 1, 2 and 4 count; at the x of 2 the curve jumps
        |     / :        to where the way from 3 to 4 passes it
@@ -11,8 +12,8 @@
 
 #include <stdbool.h>
 
-/* Points in the order in which they were taken; what is no number is left out. low and high are the same where there is no
-   band. */
+/* Points in the order in which they were taken; what is no number is left out. low and high are the
+   same where there is no band. */
 typedef struct curve_points {
   const double *x, *low, *high;
   long count;

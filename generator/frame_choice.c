@@ -118,7 +118,8 @@ static long nearest_frame(const seeker *s, double time, double value) {
   return fabs(s->at_frames[before] - value) <= fabs(s->at_frames[after] - value) ? before : after;
 }
 
-/* Half of what lies between the frame and its farther neighbour: what is beyond, another frame should have had. */
+/* Half of what lies between the frame and its farther neighbour: what is beyond, another frame
+   should have had. */
 static double reach_of(const seeker *s, long frame) {
   const double here = s->at_frames[frame];
   const double before = frame > 0 ? fabs(here - s->at_frames[frame - 1]) : 0,

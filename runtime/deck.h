@@ -1,7 +1,7 @@
 /* A deck: Fortran namelist groups read into plain structures, every value in SI, every item with
    its place in the text so that later errors (an empty region, say) can point at the line. Reading
-   a deck reads the tables of its loads, touches no other file, and checks what can be checked without
-   lattices or laws. */
+   a deck reads the tables of its loads, touches no other file, and checks what can be checked
+   without lattices or laws. */
 #ifndef PERILAT_RUNTIME_DECK_H
 #define PERILAT_RUNTIME_DECK_H
 
@@ -225,7 +225,7 @@ typedef enum monitor_kind {
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
   MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
   MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
-  MONITOR_REACTIONS     /* N, with `between`: half the reaction of the second less that of the first */
+  MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -286,7 +286,7 @@ typedef struct deck {
                            without comments, title, number of threads and checkpoints */
   deck_file *files;     /* each once */
   int file_count;
-  unsigned lacks;       /* groups of which items were left out: see deck_lacks */
+  unsigned lacks; /* groups of which items were left out: see deck_lacks */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;
@@ -315,8 +315,8 @@ typedef struct deck_override {
 } deck_override;
 
 /* Reads sources->items[file]. NULL on errors (all are reported). Overrides become sources of their
-   own, named "--set", so that errors in them point at their text. Tables of loads become sources, too, and one that
-   is there already, under its path, is not read from the disk. */
+   own, named "--set", so that errors in them point at their text. Tables of loads become sources,
+   too, and one that is there already, under its path, is not read from the disk. */
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d);
 /* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
@@ -336,7 +336,8 @@ int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 
-/* A file that the deck at a path names, beside the deck unless its name begins with `/`; malloc'ed. */
+/* A file that the deck at a path names, beside the deck unless its name begins with `/`;
+   malloc'ed. */
 char *deck_file_path(const char *deck_path, const char *name);
 
 /* "x", "y", and "rotation" in the plane or "z" in space. */

@@ -1,5 +1,6 @@
-/* Particles of a file: a table (text_table.h) with columns x, y and in space z, and perhaps volume or, in the plane, area; or
-   a result of an earlier run, of which the places at the beginning and the volumes are taken. */
+/* Particles of a file: a table (text_table.h) with columns x, y and in space z, and perhaps volume
+   or, in the plane, area; or a result of an earlier run, of which the places at the beginning and
+   the volumes are taken. */
 #ifndef PERILAT_RUNTIME_PARTICLE_TABLE_H
 #define PERILAT_RUNTIME_PARTICLE_TABLE_H
 

@@ -42,7 +42,8 @@ static void shorten_numbers(axis *a, double largest) {
   a->factor /= power_of(10, power);
 }
 
-/* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for it. */
+/* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for
+   it. */
 static double without_noise(double end, double range) {
   return fabs(end) < 2e-3 * range ? 0 : end;
 }

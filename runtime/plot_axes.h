@@ -1,4 +1,5 @@
-/* The axes of a diagram: which units and numbers they show, and where a value stands in the picture. */
+/* The axes of a diagram: which units and numbers they show, and where a value stands in the
+   picture. */
 #ifndef PERILAT_RUNTIME_PLOT_AXES_H
 #define PERILAT_RUNTIME_PLOT_AXES_H
 
@@ -14,8 +15,8 @@ typedef struct axis {
   double low, high, step, factor; /* shown values; shown = SI * factor */
 } axis;
 
-/* From `low` to `high` (SI), or a little more. The `wanted` unit must fit; NULL: a readable one is taken. False with a sentence
-   in error. */
+/* From `low` to `high` (SI), or a little more. The `wanted` unit must fit; NULL: a readable one is
+   taken. False with a sentence in error. */
 bool axis_set(axis *a, const char *name, const char *si_unit, const char *wanted, double low,
               double high, char *error, size_t size);
 /* Places of values in SI. */

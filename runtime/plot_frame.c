@@ -102,7 +102,8 @@ static bool is_stored(result_file *f, const char *field) {
 
 /* --- marks ------------------------------------------------------------------------------------ */
 
-/* "S_p > 1e-6" is a field, a relation and a level in the field's unit; "yielded" alone is above 0. */
+/* "S_p > 1e-6" is a field, a relation and a level in the field's unit; "yielded" alone is above
+   0. */
 typedef struct mark_rule {
   char field[256];
   bool below;

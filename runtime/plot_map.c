@@ -1,6 +1,7 @@
-/* Map of one frame, or of several side by side: bonds and particles where they have moved to. Damage is shown in the classes of Asadollahi
-   (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8 brown, below 1 red; separated bonds as black crack lines. Other
-   fields colour the particles or the bonds by their value. */
+/* Map of one frame, or of several side by side: bonds and particles where they have moved to.
+   Damage is shown in the classes of Asadollahi (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8
+   brown, below 1 red; separated bonds as black crack lines. Other fields colour the particles or
+   the bonds by their value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -71,7 +72,8 @@ static double scale_with(const sheet *s, int columns) {
   return pl_fmin(width / (s->high[0] - s->low[0]), height / (s->high[1] - s->low[1]));
 }
 
-/* As many columns as let the panels be largest, or nearly so; each in the middle of its part of the picture. */
+/* As many columns as let the panels be largest, or nearly so; each in the middle of its part of the
+   picture. */
 static void place_panels(sheet *s) {
   for (int columns = 1; columns <= s->count; columns++) {
     const double scale = scale_with(s, columns);

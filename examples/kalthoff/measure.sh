@@ -12,6 +12,7 @@ for result in "$@"; do
         weight[k] += $4; x[k] += $4 * $2; y[k] += $4 * $3
       }
       END {
+        if (!weight[1] || !weight[2]) { print result ": the crack does not cross the plate"; exit 1 }
         dx = x[2] / weight[2] - x[1] / weight[1]
         dy = y[2] / weight[2] - y[1] / weight[1]
         printf "%s: %.1f degrees\n", result, 90 + atan2(dy, dx) * 180 / 3.141592653589793

@@ -1,6 +1,7 @@
-/* Text of a table: of particles, then of a load. The first byte of an input says whether the lattice is in the plane, whether it
-   has a body and whether a spacing. A set and errors exclude each other; what is in the set is finite, positive and, without
-   volumes of its own, adds up to the body; times of a load ascend; places of messages lie in the text. */
+/* Text of a table: of particles, then of a load. The first byte of an input says whether the
+   lattice is in the plane, whether it has a body and whether a spacing. A set and errors exclude
+   each other; what is in the set is finite, positive and, without volumes of its own, adds up to
+   the body; times of a load ascend; places of messages lie in the text. */
 #include <math.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* Loads whose history stands in a file: the same bits as in the deck, units, what a checkpoint, a result and a solver keep of
-   it, and messages that show its lines. */
+/* Loads whose history stands in a file: the same bits as in the deck, units, what a checkpoint, a
+   result and a solver keep of it, and messages that show its lines. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

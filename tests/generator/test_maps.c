@@ -1,4 +1,5 @@
-/* Several frames in one picture, by number and by the values of a history, and marks on particles and bonds. */
+/* Several frames in one picture, by number and by the values of a history, and marks on particles
+   and bonds. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -14,7 +15,8 @@
 
 enum { FRAMES = 5, TIMES = 9 };
 
-/* Frames at 0, 1, ... 4 s; cmod in mm at every half second: up to 2, back, and on; up to 12 between frames. */
+/* Frames at 0, 1, ... 4 s; cmod in mm at every half second: up to 2, back, and on; up to 12 between
+   frames. */
 static const double cmod[TIMES] = {0, 1, 2, 1, 0.5, 2, 4, 12, 8};
 
 static void make_result(const workplace *w) {

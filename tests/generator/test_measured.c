@@ -1,5 +1,6 @@
-/* Laboratory data beside results: the distance of a computed curve from points and bands, against closed forms; tables, bands and
-   lines in pictures, by the places that they get there; messages. */
+/* Laboratory data beside results: the distance of a computed curve from points and bands, against
+   closed forms; tables, bands and lines in pictures, by the places that they get there;
+   messages. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -22,7 +23,8 @@ static void near(double got, double wanted) {
 
 /* --- distance --------------------------------------------------------------------------------- */
 
-/* y = 2x against y = 0 and 1 at x = 0 and 1, then 1: the distance grows as x to 1, then as 1 + 2(x - 1). */
+/* y = 2x against y = 0 and 1 at x = 0 and 1, then 1: the distance grows as x to 1, then as 1 + 2(x
+   - 1). */
 static void points_of_straight_lines(void **state) {
   (void)state;
   const double x[] = {0, 3}, y[] = {0, 6}, at[] = {-1, 0, 1, NAN, 2}, is[] = {9, 0, 1, 5, 1};
@@ -128,8 +130,8 @@ static void expect_all(workplace *w, const run_line *list, size_t count) {
 }
 #define COUNT(list) (sizeof(list) / sizeof *(list))
 
-/* From 0.2 to 2 mm the points lie 100 N below the curve: 1/11 of 1.1 kN. The band's lower side is 100 N below and its upper one
-   100 N above at 0.2 mm; at 2 mm they are 818.2 and 1100 N. */
+/* From 0.2 to 2 mm the points lie 100 N below the curve: 1/11 of 1.1 kN. The band's lower side is
+   100 N below and its upper one 100 N above at 0.2 mm; at 2 mm they are 818.2 and 1100 N. */
 static void a_curve_is_compared_with_a_table(void **state) {
   workplace *w = *state;
   make_result(w);

@@ -1,4 +1,5 @@
-/* Tables of numbers in texts: what stands between columns, names, units, gaps, and where messages point. */
+/* Tables of numbers in texts: what stands between columns, names, units, gaps, and where messages
+   point. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

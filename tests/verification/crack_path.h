@@ -1,4 +1,5 @@
-/* Kalthoff and Winkler's plate: the angle of the crack in a deck of examples/kalthoff, as its measure.sh has it. */
+/* Kalthoff and Winkler's plate: the angle of the crack in a deck of examples/kalthoff, as its
+   measure.sh has it. */
 #ifndef PERILAT_TESTS_CRACK_PATH_H
 #define PERILAT_TESTS_CRACK_PATH_H
 

@@ -72,7 +72,8 @@ static void the_peak_is_that_of_the_reference(void **state) {
   deck_case_close(&c);
 }
 
-/* Displacement of the loaded particle: what its drive has gone since the first phase, 20 mm/s reached evenly in 0.2 ms. */
+/* Displacement of the loaded particle: what its drive has gone since the first phase, 20 mm/s
+   reached evenly in 0.2 ms. */
 static void the_load_point_moves_as_it_is_driven(void **state) {
   (void)state;
   deck_case c;
