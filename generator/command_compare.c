@@ -1,7 +1,7 @@
-/* perilat compare: where two results differ most, history by history and field by field.
-   A difference is relative to the largest absolute value that the quantity has in either result;
-   energies are relative to the largest energy of all, since the smaller terms are differences of
-   larger ones. */
+/* perilat compare: where two results differ most, history by history and field by field; or a
+   result and a table (compare_curve.h). A difference is relative to the largest absolute value that
+   the quantity has in either result; energies are relative to the largest energy of all, since the
+   smaller terms are differences of larger ones. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,7 +11,10 @@
 #include "dsl/characters.h"
 #include "dsl/elementary.h"
 #include "generator/commands.h"
+#include "generator/compare_curve.h"
+#include "generator/model.h"
 #include "generator/result_table.h"
+#include "runtime/text_table.h"
 
 enum { SAME = 0, WRONG = 1, DIFFERENT = 2 };
 static const char program[] = "perilat compare";
@@ -22,6 +25,8 @@ typedef struct compare_request {
   double tolerance;
   const char **histories, **fields; /* the only ones to look at; none given: all */
   int history_count, field_count;
+  const char *x, *y, *band;          /* of a curve beside a table */
+  const char *of_curve, *of_results; /* an option that only these know, when one was given */
 } compare_request;
 
 typedef struct comparison_run {
@@ -58,11 +63,11 @@ static double relative(const gap *g) {
 }
 
 /* Counts the quantity; prints its line up to the place, which the caller adds. */
-static bool report(comparison_run *c, const char *name, const char *unit, const gap *g) {
+static bool report(comparison_run *c, const char *name, const char *unit_text, const gap *g) {
   const double r = relative(g);
   const bool over = r > c->request->tolerance;
   char title[128];
-  snprintf(title, sizeof title, "%s [%s]", name_shown(name), *unit ? name_shown(unit) : "1");
+  snprintf(title, sizeof title, "%s [%s]", name_shown(name), *unit_text ? name_shown(unit_text) : "1");
   c->compared++;
   c->different += over;
   printf("%c %-34s %12.4g %12.4g", over ? '*' : ' ', title, g->largest, r);
@@ -86,10 +91,10 @@ typedef struct time_axis {
 } time_axis;
 
 static bool read_axis(comparison_run *c, time_axis *x) {
-  char error[1024], unit[64];
+  char error[1024], unit_text[64];
   for (int k = 0; k < 2; k++) {
-    x->time[k] = result_read_series(c->files[k], "time", &x->count[k], unit, sizeof unit, error,
-                                    sizeof error);
+    x->time[k] = result_read_series(c->files[k], "time", &x->count[k], unit_text, sizeof unit_text,
+                                    error, sizeof error);
     if (!x->time[k] || x->count[k] == 0) {
       fprintf(stderr, "perilat: error: %s\n", x->time[k] ? "a result has no samples" : error);
       return false;
@@ -307,7 +312,7 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
   const frame_context *x = context;
   const long frames = x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1];
   gap g = no_gap;
-  char unit[64] = "";
+  char unit_text[64] = "";
   for (long f = 0; f < frames; f++) {
     char error[1024];
     table_values a, b = {.values = NULL};
@@ -317,7 +322,7 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
         good && a.count == b.count && a.components == b.components && strcmp(a.unit, b.unit) == 0;
     for (long n = 0; fit && n < a.count * a.components; n++)
       widen(&g, a.values[n], b.values[n], f, n / a.components);
-    if (good) memcpy(unit, a.unit, sizeof unit);
+    if (good) memcpy(unit_text, a.unit, sizeof unit_text);
     free(a.values);
     free(b.values);
     if (fit) continue;
@@ -331,7 +336,7 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
     }
     return;
   }
-  if (report(c, name, unit, &g)) print_place(x, name, &g);
+  if (report(c, name, unit_text, &g)) print_place(x, name, &g);
   putchar('\n');
 }
 
@@ -390,32 +395,50 @@ static bool read_tolerance(const char *text, double *tolerance) {
   return false;
 }
 
-static bool read_request(int argc, char **argv, compare_request *q) {
+/* One option or file. */
+static int read_one(int argc, char **argv, int *at, compare_request *q) {
   int bad = 0;
   const char *v;
-  for (int at = 0; at < argc && !bad;) {
-    if ((v = option_value(argc, argv, &at, "--tolerance", &bad)))
-      bad = bad || !read_tolerance(v, &q->tolerance);
-    else if ((v = option_value(argc, argv, &at, "--history", &bad)))
-      q->histories[q->history_count++] = v;
-    else if ((v = option_value(argc, argv, &at, "--field", &bad)))
-      q->fields[q->field_count++] = v;
-    else if (argv[at][0] == '-')
-      bad = option_unknown("compare", argv[at]);
-    else if (q->result_count == 2) {
-      fprintf(stderr, "perilat: error: `%s` takes two results; `%s` is a third one\n", program,
-              argv[at]);
-      bad = 1;
-    } else
-      q->results[q->result_count++] = argv[at++];
-  }
-  if (!bad && q->result_count < 2) {
-    fputs("perilat: error: `perilat compare` needs two results\n  perilat compare a.h5 b.h5 "
-          "--tolerance 1e-6\n",
-          stderr);
+  if ((v = option_value(argc, argv, at, "--tolerance", &bad)))
+    bad = bad || !read_tolerance(v, &q->tolerance);
+  else if ((v = option_value(argc, argv, at, "--history", &bad)))
+    q->histories[q->history_count++] = q->of_results = v;
+  else if ((v = option_value(argc, argv, at, "--field", &bad)))
+    q->fields[q->field_count++] = q->of_results = v;
+  else if ((v = option_value(argc, argv, at, "--x", &bad)))
+    q->x = q->of_curve = v;
+  else if ((v = option_value(argc, argv, at, "--y", &bad)))
+    q->y = q->of_curve = v;
+  else if ((v = option_value(argc, argv, at, "--band", &bad)))
+    q->band = q->of_curve = v;
+  else if (argv[*at][0] == '-')
+    bad = option_unknown("compare", argv[*at]);
+  else if (q->result_count == 2) {
+    fprintf(stderr, "perilat: error: `%s` takes two files; `%s` is a third one\n", program,
+            argv[*at]);
     bad = 1;
-  }
-  return !bad;
+  } else
+    q->results[q->result_count++] = argv[(*at)++];
+  return bad;
+}
+
+static bool read_request(int argc, char **argv, compare_request *q) {
+  for (int at = 0; at < argc;)
+    if (read_one(argc, argv, &at, q)) return false;
+  if (q->result_count == 2) return true;
+  fputs("perilat: error: `perilat compare` needs two results, or a result and a table\n  perilat "
+        "compare a.h5 b.h5 --tolerance 1e-6\n  perilat compare a.h5 lab.csv --x cmod --y load\n",
+        stderr);
+  return false;
+}
+
+/* By its ending, or because columns of it are named. */
+static bool is_table(const char *given) {
+  const char *columns;
+  char *path = text_table_split(given, &columns);
+  const bool table = columns || kind_of_file(path) == FILE_TABLE;
+  free(path);
+  return table;
 }
 
 static int conclude(const comparison_run *c) {
@@ -444,11 +467,31 @@ static int compare_results(const compare_request *q) {
   return conclude(&c);
 }
 
+static int compare_with_table(const compare_request *q) {
+  const curve_request curve = {q->results[0], q->results[1], q->x, q->y, q->band, q->tolerance};
+  if (!file_suits(q->results[0], FILES(RESULT), program, "a result first, then a table"))
+    return WRONG;
+  if (!q->of_results) return compare_curve(&curve);
+  fputs("perilat: error: --history and --field compare two results; with a table --x and --y name "
+        "the curve\n",
+        stderr);
+  return WRONG;
+}
+
+static int compare_files(const compare_request *q) {
+  if (is_table(q->results[1]) || is_table(q->results[0])) return compare_with_table(q);
+  if (!q->of_curve) return compare_results(q);
+  return kind_of_file(q->results[1]) == FILE_RESULT
+             ? (fputs("perilat: error: --x, --y and --band are for a result and a table\n", stderr),
+                WRONG)
+             : compare_with_table(q);
+}
+
 int command_compare(int argc, char **argv) {
   compare_request q = {.tolerance = 0};
   q.histories = must_calloc((size_t)argc + 1, sizeof *q.histories);
   q.fields = must_calloc((size_t)argc + 1, sizeof *q.fields);
-  const int status = read_request(argc, argv, &q) ? compare_results(&q) : WRONG;
+  const int status = read_request(argc, argv, &q) ? compare_files(&q) : WRONG;
   free(q.histories);
   free(q.fields);
   return status;

@@ -91,6 +91,11 @@ static int info_result(const char *path) {
   char *overrides = result_read_text(f, "/input/set");
   if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);
+  result_names files = result_list(f, "/input/files");
+  for (int k = 0; k < files.count; k++)
+    printf("%s%s%s", k ? ", " : "Loads from files: ", files.items[k],
+           k + 1 < files.count ? "" : "\n");
+  result_names_free(&files);
   puts("Histories:");
   good = print_history(f, "time") && good;
   result_names histories = result_members(f, "/history"), fields = result_members(f, "/frames");

@@ -285,12 +285,15 @@ int command_check(int argc, char **argv) {
 }
 
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count) {
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count) {
   run_options o = {.program = argv[0],
                    .deck_path = deck_name,
                    .deck_text = deck_text,
                    .laws = laws,
-                   .law_count = law_count};
+                   .law_count = law_count,
+                   .files = files,
+                   .file_count = file_count};
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
   terminal_begin();
   for (int a = 1; a < argc; a++)

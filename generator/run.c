@@ -71,6 +71,8 @@ static bool load_deck(run *r) {
   }
   int file = source_add(&r->sources, o->deck_path, text, length);
   free(text);
+  for (int k = 0; k < o->file_count; k++)
+    source_add(&r->sources, o->files[k].path, o->files[k].text, strlen(o->files[k].text));
   r->deck = deck_read_what_is_right(r->memory, &r->sources, file, o->overrides, o->override_count,
                                     &r->said);
   return true;

@@ -18,12 +18,20 @@ typedef struct built_in_law {
   const char *choices; /* "onset=rankine;..." decided when it was built */
 } built_in_law;
 
+/* A table that a load of the built-in deck names. */
+typedef struct built_in_file {
+  const char *path; /* where the deck would find it */
+  const char *text;
+} built_in_file;
+
 typedef struct run_options {
   const char *program;      /* as it is called: "perilat run", or a solver's name */
   const char *deck_path;    /* file, or the name of the built-in deck */
   const char *deck_text;    /* built-in deck, or NULL: read the file */
   const built_in_law *laws; /* NULL: compile the deck's models */
   int law_count;
+  const built_in_file *files; /* of a built-in deck */
+  int file_count;
   deck_override *overrides;
   int override_count;
   int threads; /* 0: as the deck or the machine says */
@@ -51,6 +59,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 
 /* main() of a stand-alone solver. */
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count);
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count);
 
 #endif

@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/hash.h"
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
@@ -89,9 +90,11 @@ bool result_spares_inputs(run *r) {
   for (int k = 0; k < r->open_models; k++)
     for (int f = 0; f < r->models[k].sources.count; f++)
       good = good && result_spares(r, r->models[k].sources.items[f].name);
+  for (int k = 0; k < r->deck->file_count; k++)
+    good = good && result_spares(r, r->sources.items[r->deck->files[k].source].name);
   for (int k = 0; good && k < r->deck->lattice_count; k++) {
     if (!r->deck->lattices[k].file) continue;
-    char *particles = deck_file_path(r->deck, r->deck->lattices[k].file);
+    char *particles = deck_file_path(r->deck->name, r->deck->lattices[k].file);
     good = result_spares(r, particles);
     free(particles);
   }
@@ -103,8 +106,13 @@ void fingerprint(run *r) {
   for (int k = 0; k < r->deck->lattice_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
                         r->laws[k].law->key);
+  for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
+    const source *s = &r->sources.items[r->deck->files[k].source];
+    text = arena_printf(r->memory, "%sfile %s, contents %016" PRIx64 "\n", text,
+                        r->deck->files[k].name, hash_more(HASH_START, s->text, s->length));
+  }
   text = arena_printf(r->memory, "%s%s", text, r->deck->identity);
-  for (int k = 0; k < r->deck->lattice_count; k++) { /* a file may have changed */
+  for (int k = 0; k < r->deck->lattice_count; k++) {
     const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
     if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
   }
@@ -125,6 +133,19 @@ static result_text *collect_texts(run *r, bool c_text, int *count) {
       texts[k].text = c_text ? b->c_text : b->law_text;
     else
       texts[k].text = c_text ? m->c_text : m->sources.items[0].text;
+  }
+  return texts;
+}
+
+/* A name in HDF5 has no slash. */
+static result_text *collect_files(run *r) {
+  result_text *texts = arena_alloc(r->memory, (size_t)r->deck->file_count * sizeof *texts);
+  for (int k = 0; k < r->deck->file_count; k++) {
+    const deck_file *f = &r->deck->files[k];
+    char *name = arena_text(r->memory, f->name, strlen(f->name));
+    for (char *c = name; *c; c++)
+      if (*c == '/') *c = ':';
+    texts[k] = (result_text){name, r->sources.items[f->source].text};
   }
   return texts;
 }
@@ -197,6 +218,8 @@ bool open_result(run *r) {
                      .interaction = r->deck->lattices[0].name};
   h.models = collect_texts(r, false, &h.model_count);
   h.kernels = collect_texts(r, true, &h.kernel_count);
+  h.files = collect_files(r);
+  h.file_count = r->deck->file_count;
   particle_table(r, simulation_rows(r->simulation, 0), &h);
   frame_table(r, &h, h.interaction);
   char error[ERROR_LENGTH];

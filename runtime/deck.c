@@ -1,6 +1,7 @@
 #include "runtime/deck.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
@@ -9,6 +10,7 @@
 #include "runtime/deck_set.h"
 #include "runtime/deck_value.h"
 #include "runtime/namelist.h"
+#include "runtime/text_table.h"
 
 enum { MOST_ERRORS = 100 };
 
@@ -38,12 +40,12 @@ int deck_lattice_dimensions(const deck_lattice *l) {
   return l->setting && strcmp(l->setting, "space") == 0 ? 3 : 2;
 }
 
-char *deck_file_path(const deck *k, const char *name) {
-  const char *slash = strrchr(k->name, '/');
-  const int folder = slash && name[0] != '/' ? (int)(slash - k->name) + 1 : 0;
+char *deck_file_path(const char *deck_path, const char *name) {
+  const char *slash = strrchr(deck_path, '/');
+  const int folder = slash && name[0] != '/' ? (int)(slash - deck_path) + 1 : 0;
   const size_t size = (size_t)folder + strlen(name) + 1;
   char *path = must_alloc(size);
-  snprintf(path, size, "%.*s%s", folder, k->name, name);
+  snprintf(path, size, "%.*s%s", folder, deck_path, name);
   return path;
 }
 
@@ -247,6 +249,43 @@ static bool all_names_known(const deck *k, const namelist *n) {
   return known;
 }
 
+/* --- files of loads --------------------------------------------------------------------------- */
+
+static int find_source(const source_set *sources, const char *name) {
+  for (int i = 0; i < sources->count; i++)
+    if (strcmp(sources->items[i].name, name) == 0) return i;
+  return -1;
+}
+
+static bool is_listed(const deck *k, int number) {
+  for (int i = 0; i < k->file_count; i++)
+    if (k->files[i].source == number) return true;
+  return false;
+}
+
+static void list_file(deck_reader *r, const namelist_value *v) {
+  const char *columns;
+  char *name = text_table_split(v->text, &columns), *path = deck_file_path(r->k->name, name);
+  const int found = find_source(r->d->sources, path);
+  if (found >= 0 && !is_listed(r->k, found))
+    r->k->files[r->k->file_count++] = (deck_file){arena_text(r->memory, name, strlen(name)), found};
+  free(path);
+  free(name);
+}
+
+/* Loads alone have a `file` that is read with the deck. */
+static void list_files(deck_reader *r, const namelist *n) {
+  r->k->files = arena_alloc(r->memory, ((size_t)n->group_count + 1) * sizeof *r->k->files);
+  for (int i = 0; i < n->group_count; i++) {
+    const int kind = deck_group_find(n->groups[i].name);
+    const namelist_key *file = namelist_find(&n->groups[i], "file");
+    if (kind < 0 || !file || file->value_count != 1 || file->values[0].kind != NAMELIST_TEXT)
+      continue;
+    const int key = deck_key_find(&deck_groups[kind], "file");
+    if (key >= 0 && deck_groups[kind].keys[key].type == DECK_LATER) list_file(r, &file->values[0]);
+  }
+}
+
 /* What may differ between a run and the run that resumes it. */
 static bool is_no_matter(const char *group, const char *key) {
   if (strcmp(group, "checkpoint") == 0) return true;
@@ -298,6 +337,7 @@ deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   DECK_GROUPS(X)
 #undef X
   set_computed_defaults(&r);
+  list_files(&r, n);
   k->identity = namelist_text(a, n, is_no_matter);
   if (!n->broken && !too_many_errors(&r)) deck_check_whole(&r);
   if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);

@@ -144,19 +144,14 @@ static void spread(const deck_reader *r, const namelist_group *from, time_functi
   f->rise = rest;
 }
 
-/* The one of two keys that was written, or NULL after a message. */
-static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
-                                  const char *second) {
-  const namelist_key *a = namelist_find(from, first), *b = namelist_find(from, second);
-  if (a && b) {
-    diag_report(r->d, DIAG_CONFLICT, b->name_where, "`%s` and `%s` exclude each other", first,
-                second);
-    diag_note(r->d, a->name_where, "`%s` is given here", first);
-  } else if (!a && !b) {
-    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` needs `%s` or `%s`", from->name, first,
-                second);
-  }
-  return a && b ? NULL : a ? a : b;
+static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_function *f) {
+  if (time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
+  const bool table = f->shape == TIME_TABLE;
+  const namelist_key *at = namelist_find(from, !table ? "displacement" : "values");
+  diag_report(r->d, DIAG_DECK_WARNING, (at ? at : namelist_find(from, "file"))->name_where,
+              table ? "this displacement begins with a jump"
+                    : "this displacement comes all at once");
+  diag_hint(r->d, table ? "let the first value be 0" : "give a `rise`, e.g. rise = '1 ms'");
 }
 
 void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
@@ -164,11 +159,12 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
   if (!take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
-  const namelist_key *key = either(r, from, "velocity", "displacement");
-  if (!key) return;
-  item->is_displacement = key == namelist_find(from, "displacement");
-  const char *unit_text = item->is_displacement ? (rotates ? "1" : "m") : rotates ? "1/s" : "m/s";
-  if (!deck_load_read(r->memory, from, key, unit_text, &item->motion, r->d)) {
+  const deck_load_kind kinds[] = {{"velocity", rotates ? "1/s" : "m/s", false},
+                                  {"displacement", rotates ? "1" : "m", false}};
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  if (kind < 0) return;
+  item->is_displacement = kind == 1;
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
     if (rotates && r->d->items[r->d->count - 1].code == DIAG_UNITS)
       diag_hint(r->d, "a rotation is in rad, its velocity in rad/s");
     return;
@@ -176,17 +172,16 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
   warn_late(r, &item->item, "start", item->motion.start);
   if (!item->is_displacement) return;
   spread(r, from, &item->motion);
-  if (item->motion.shape != TIME_CONSTANT || r->k->relaxation.increments > 0) return;
-  diag_report(r->d, DIAG_DECK_WARNING, key->name_where, "this displacement comes all at once");
-  diag_hint(r->d, "give a `rise`, e.g. rise = '1 ms'");
+  warn_of_jump(r, from, &item->motion);
 }
 
 void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *item) {
+  static const deck_load_kind kinds[] = {{"force", "N", false}, {"moment", "N*m", false}};
   deck_item_region_known(r, &item->item, item->region);
-  const namelist_key *key = either(r, from, "force", "moment");
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
-  if (!key) return;
-  bool rotates = key == namelist_find(from, "moment");
+  if (kind < 0) return;
+  const bool rotates = kind == 1;
   item->component = rotates ? WRITTEN_ROTATION : 0;
   if (component) item->component = deck_choice_read(r->memory, component, "x|y|z|rotation", r->d);
   if (item->component < 0 || !take_component(r, &item->item, item->region, &item->component))
@@ -198,19 +193,24 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
     return;
   }
   if (rotates != is_rotation(r, item->region, item->component)) {
-    diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
-                key->name, component_name(r, item->region, item->component));
+    const namelist_key *key = namelist_find(from, kinds[kind].key);
+    diag_report(r->d, DIAG_CONFLICT,
+                key ? key->name_where : namelist_find(from, "file")->value_where,
+                "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
+                key ? "`" : "", component_name(r, item->region, item->component));
     diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
     return;
   }
-  if (!deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d)) return;
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;
   warn_late(r, &item->item, "start", item->force.start);
   spread(r, from, &item->force);
 }
 
 void deck_check_end_moment(deck_reader *r, const namelist_group *from, deck_end_moment *item) {
+  static const deck_load_kind kind = {"moment", "N*m", false};
   deck_item_region_known(r, &item->item, item->region);
-  if (!deck_load_read(r->memory, from, namelist_find(from, "moment"), "N*m", &item->moment, r->d))
+  if (deck_load_kind_of(from, &kind, 1, r->d) < 0 ||
+      !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
     return;
   warn_late(r, &item->item, "start", item->moment.start);
   spread(r, from, &item->moment);
@@ -230,7 +230,7 @@ void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping
 }
 
 void deck_check_gravity(deck_reader *r, const namelist_group *from, deck_gravity *item) {
-  if (deck_factor_read(r->memory, from, &item->factor, r->d)) {
+  if (deck_factor_read(r->memory, from, "acceleration", &item->factor, r->d)) {
     warn_late(r, &item->item, "start", item->factor.start);
     spread(r, from, &item->factor);
   }
@@ -362,6 +362,17 @@ static void check_level(deck_reader *r, const namelist_key *key, deck_stop *item
   if (item->of_peak && (item->level <= 0 || item->level >= 1))
     diag_report(r->d, DIAG_OUT_OF_BOUNDS, v->where,
                 "a fraction of the peak must be greater than 0 and less than 1");
+}
+
+/* The one of two keys that was written, or NULL after a message. */
+static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
+                                  const char *second) {
+  const namelist_key *a = namelist_find(from, first), *b = namelist_find(from, second);
+  deck_refuse_both(r, from, first, second);
+  if (!a && !b)
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` needs `%s` or `%s`", from->name, first,
+                second);
+  return a && b ? NULL : a ? a : b;
 }
 
 void deck_check_stop(deck_reader *r, const namelist_group *from, deck_stop *item) {

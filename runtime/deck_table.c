@@ -120,7 +120,7 @@
    .type = DECK_LATER,                                                                             \
    .choices = "constant|ramp|ramp and hold|cosine|table",                                          \
    .fallback = "= 'constant', in quasi-static runs a ramp over the run; 'ramp and hold' with a "    \
-               "rise, 'table' with times",                                                         \
+               "rise, 'table' with times or a file",                                               \
    NOT_KEPT,                                                                                       \
    .doc = "how the value develops in time"},                                                       \
       {.name = "start",                                                                            \
@@ -139,9 +139,15 @@
        .unit = "s",                                                                                \
        NOT_KEPT,                                                                                   \
        .doc = "table: times after `start`, ascending"},                                            \
+      {.name = "values",                                                                           \
+       .type = DECK_LATER,                                                                         \
+       .unit = "1",                                                                                \
+       NOT_KEPT,                                                                                   \
+       .doc = "table: factors on the value at those times, straight lines between"},               \
   {                                                                                                \
-    .name = "values", .type = DECK_LATER, .unit = "1", NOT_KEPT,                                   \
-    .doc = "table: factors on the value at those times, straight lines between"                    \
+    .name = "file", .type = DECK_LATER, NOT_KEPT,                                                  \
+    .doc = "table: instead of `times` and `values`, two columns of a text file beside the deck; "  \
+           "factors on the value, or with a unit and without the value the load itself"            \
   }
 
 static const deck_key_info simulation_keys[] = {
@@ -487,7 +493,7 @@ static const deck_key_info end_moment_keys[] = {
     {.name = "moment",
      .type = DECK_LATER,
      .unit = "N*m",
-     .required = true,
+     .fallback = "= required, but for a file with a unit",
      NOT_KEPT,
      .doc = "full moment; counter-clockwise on the body is positive"},
     TIME_KEYS,

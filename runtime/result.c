@@ -111,7 +111,8 @@ static bool write_input(hid_t file, const result_header *h) {
   return h5_make_group(file, "/input") && h5_write_text(file, "/input/deck", h->deck_text) &&
          (!h->overrides || !*h->overrides || h5_write_text(file, "/input/set", h->overrides)) &&
          write_texts(file, "/input/models", h->models, h->model_count) &&
-         write_texts(file, "/input/kernels", h->kernels, h->kernel_count);
+         write_texts(file, "/input/kernels", h->kernels, h->kernel_count) &&
+         (h->file_count == 0 || write_texts(file, "/input/files", h->files, h->file_count));
 }
 
 static bool write_verdict(hid_t file, const char *name, const result_series *s) {

@@ -5,7 +5,8 @@
      /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
                             title, dt, steps, kernel_key
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);
-                            /input/models/<name> law text; /input/kernels/<name> generated C
+                            /input/models/<name> law text; /input/kernels/<name> generated C;
+                            /input/files/<name> tables of loads (only then)
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
@@ -55,6 +56,8 @@ typedef struct result_header {
   const char *overrides; /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
   int model_count, kernel_count;
+  const result_text *files; /* tables of loads */
+  int file_count;
   int dimensions; /* 2 or 3 */
   long particle_count;
   const double *reference; /* [N][dimensions] */

@@ -16,8 +16,12 @@ typedef struct time_function {
   double value;                 /* SI */
   double start, rise;           /* s */
   const double *times, *values; /* table; not owned */
+  const double *integrals;      /* table: of the values from the start to each of the times */
   int count;
 } time_function;
+
+/* Integrals of a table's values from 0 to each of its times; [count]. */
+void time_table_integrals(const double *times, const double *values, int count, double *integrals);
 
 /* 0 before start. */
 double time_function_at(const time_function *f, double t);

@@ -58,7 +58,7 @@ static void named_files_are_not_shown(void **state) {
   reveals_nothing(w, "check includes.plm", "`passwd.plm` holds no functions and constants");
   reveals_nothing(w, "explain includes.plm", "`passwd.plm` holds no functions and constants");
   reveals_nothing(w, "check includes_bytes.plm", "`program.plm` holds no functions and constants");
-  reveals_nothing(w, "check table.nml", "`passwd.plm` is not a table of particles");
+  reveals_nothing(w, "check table.nml", "`passwd.plm` is not a table");
 }
 
 /* --- numbers ---------------------------------------------------------------------------------- */
