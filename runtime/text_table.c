@@ -259,6 +259,7 @@ static bool read_titles(text_table *t, const char *line, bool named, diagnostics
    show none of a file without numbers. */
 static bool is_table(const text_table *t, const char *row, span where, diagnostics *d) {
   double value;
+  if (!row && t->separator != ' ') return true; /* names of columns, and nothing below */
   for (const char *p = row, *end = row ? line_end(row) : NULL; p;)
     if (as_number(read_field(t, p, end, &p), &value)) return true;
   diag_report(d, DIAG_FILE, where, "`%s` is not a table", t->path);
