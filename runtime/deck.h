@@ -274,11 +274,14 @@ typedef struct deck_simulation {
   int threads;        /* 0: as the machine offers */
 } deck_simulation;
 
+typedef struct deck_names deck_names;
+
 typedef struct deck {
   const char *name;     /* of the source */
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
                            without comments, title, number of threads and checkpoints */
   unsigned lacks;       /* groups of which items were left out: see deck_lacks */
+  deck_names *names;    /* of what deck_find_... finds; NULL: few, looked at one by one */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;
