@@ -111,6 +111,13 @@ void *arena_alloc(arena *a, size_t size) {
   return memory;
 }
 
+void *arena_room(arena *a, const void *items, int count, size_t size) {
+  if (count & (count - 1)) return (void *)(uintptr_t)items;
+  void *larger = arena_alloc(a, (count ? 2 * (size_t)count : 1) * size);
+  if (count) memcpy(larger, items, (size_t)count * size);
+  return larger;
+}
+
 char *arena_text(arena *a, const char *text, size_t length) {
   char *copy = arena_alloc(a, length + 1);
   if (length) memcpy(copy, text, length);

@@ -18,6 +18,9 @@ char *arena_text(arena *a, const char *text, size_t length);
 /* Formatted string. */
 char *arena_printf(arena *a, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
+/* A list of `count` items with room for one more at least: the same, or a copy twice as long where the count is a power of two. */
+void *arena_room(arena *a, const void *items, int count, size_t size);
+
 /* malloc, realloc, calloc, strdup that end the program with a message instead of returning NULL. */
 void *must_alloc(size_t size);
 void *must_calloc(size_t count, size_t size);

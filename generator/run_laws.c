@@ -123,6 +123,27 @@ bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *s
   return good;
 }
 
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of laws are shown. */
+static bool named_law_is_one(const deck_material *m, const char *path, diagnostics *said) {
+  char error[4 * ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  const bool good = text && parse_begins_law(text);
+  const span where = deck_where(&m->item, "model");
+  if (!text)
+    diag_report(said, DIAG_FILE, where, "%s", error);
+  else if (!good) {
+    diag_report(said, DIAG_FILE, where, "`%s` is not a law", path);
+    diag_hint(said, "the first word of a law is `model`");
+  }
+  free(text);
+  return good;
+}
+
+static bool open_named_law(deck_material *m, const char *path, model *out, diagnostics *said) {
+  return named_law_is_one(m, path, said) && run_open_law(m, path, out, said);
+}
+
 static law_setting setting_of(const deck_lattice *l) {
   for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
@@ -206,23 +227,6 @@ static bool can_vary(const deck_material *m, const law *of, bool families, diagn
   return false;
 }
 
-/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of laws are shown. */
-static bool named_law_is_one(const deck_material *m, const char *path, diagnostics *said) {
-  char error[4 * ERROR_LENGTH];
-  size_t length;
-  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
-  const bool good = text && parse_begins_law(text);
-  const span where = deck_where(&m->item, "model");
-  if (!text)
-    diag_report(said, DIAG_FILE, where, "%s", error);
-  else if (!good) {
-    diag_report(said, DIAG_FILE, where, "`%s` is not a law", path);
-    diag_hint(said, "the first word of a law is `model`");
-  }
-  free(text);
-  return good;
-}
-
 bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
                        diagnostics *said) {
   char *path = model_find(m->model, deck_path);
@@ -232,8 +236,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
                     "`models`; PERILAT_MODELS may name another folder");
     return false;
   }
-  bool good = named_law_is_one(m, path, said) && run_open_law(m, path, out, said) &&
-              take_setting(m, l, out, said);
+  bool good = open_named_law(m, path, out, said) && take_setting(m, l, out, said);
   free(path);
   if (!good) return false;
   const bool families = l && needs_families(l, out->law);
@@ -402,7 +405,7 @@ bool check_law_alone(run *r, deck_material *m) {
   char *path = r->options->laws ? NULL : model_find(m->model, r->options->deck_path);
   if (!path) return false;
   model *opened = &r->models[r->open_models++];
-  const bool good = run_open_law(m, path, opened, &r->said);
+  const bool good = open_named_law(m, path, opened, &r->said);
   free(path);
   return good;
 }

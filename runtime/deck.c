@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/name_index.h"
 #include "runtime/bravais.h"
 #include "runtime/deck_check.h"
 #include "runtime/deck_set.h"
@@ -20,11 +21,33 @@ span deck_where(const deck_item *item, const char *key) {
   return item->where;
 }
 
+/* Names of the items that were there at the last search. */
+struct deck_names {
+  struct {
+    name_index of;
+    int count;
+  } kind[DECK_GROUP_COUNT];
+};
+
+static deck_names *new_names(arena *a) {
+  deck_names *n = arena_alloc(a, sizeof *n);
+  for (int k = 0; k < DECK_GROUP_COUNT; k++)
+    n->kind[k].of.memory = a;
+  return n;
+}
+
 #define FIND(group, member)                                                                        \
-  int deck_find_##group(const deck *k, const char *name) {                                         \
+  static int look_for_##group(const deck *k, const char *name) {                                   \
     for (int i = 0; i < k->group##_count; i++)                                                     \
       if (k->group##s[i].member && strcmp(k->group##s[i].member, name) == 0) return i;             \
     return -1;                                                                                     \
+  }                                                                                                \
+  int deck_find_##group(const deck *k, const char *name) {                                         \
+    if (!k->names) return look_for_##group(k, name);                                               \
+    name_index *of = &k->names->kind[DECK_GROUP_##group].of;                                       \
+    for (int *i = &k->names->kind[DECK_GROUP_##group].count; *i < k->group##_count; ++*i)          \
+      if (k->group##s[*i].member) name_index_add(of, k->group##s[*i].member, *i);                  \
+    return name_index_find(of, name);                                                              \
   }
 FIND(region, name)
 FIND(lattice, name)
@@ -324,10 +347,11 @@ deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
 
   deck *k = arena_alloc(a, sizeof(*k));
+  k->names = new_names(a);
   k->name = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
   k->simulation.item.where.file = k->output.item.where.file = k->checkpoint.item.where.file =
       (uint16_t)file;
-  deck_reader r = {a, d, k, true};
+  deck_reader r = {.memory = a, .d = d, .k = k, .names_known = true};
   report_unknown_groups(&r, n);
 #define X(group, identity, single, open, doc)                                                      \
   r.names_known = all_names_known(k, n);                                                           \
@@ -343,6 +367,7 @@ deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);
   if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
   leave_out_faulty(k);
+  k->names = new_names(a); /* others have moved up */
   return k;
 }
 

@@ -280,13 +280,16 @@ typedef struct deck_file { /* a table that a load was read from */
   int source;              /* its text among the sources */
 } deck_file;
 
+typedef struct deck_names deck_names;
+
 typedef struct deck {
   const char *name;     /* of the source */
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
                            without comments, title, number of threads and checkpoints */
   deck_file *files;     /* each once */
   int file_count;
-  unsigned lacks; /* groups of which items were left out: see deck_lacks */
+  unsigned lacks;    /* groups of which items were left out: see deck_lacks */
+  deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;

@@ -48,6 +48,8 @@ static void named_files_are_not_shown(void **state) {
              "&body lattice = 'a' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n");
   static const char law[] = "`./passwd.plm` is not a law";
   reveals_nothing(w, "check beam.nml --set material.model=passwd.plm", law);
+  reveals_nothing(w, "check beam.nml --set material.lattice=none --set material.model=passwd.plm",
+                  law);
   reveals_nothing(w, "run beam.nml --set material.model=passwd.plm", law);
   reveals_nothing(w, "build beam.nml --set material.model=passwd.plm", "");
   reveals_nothing(w, "check --dump=c beam.nml --set material.model=passwd.plm", law);
