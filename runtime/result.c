@@ -7,6 +7,7 @@
 #include "dsl/arena.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/sealed_file.h"
+#include "runtime/views.h"
 #include "runtime/whole_file.h"
 #include "runtime/xdmf.h"
 
@@ -224,7 +225,8 @@ static bool write_hdf5(const result *r, const ending *e, frame_sets *frames, con
   const bool good = write_attributes(file, &r->header, e->dt, e->steps) &&
                     write_input(file, &r->header) && write_particles(file, &r->header) &&
                     write_history(file, e->time, e->history_count, e->series, e->series_count) &&
-                    write_frames(file, r, frames, error, size);
+                    write_frames(file, r, frames, error, size) &&
+                    views_write(file, &r->header, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);
   return false;
