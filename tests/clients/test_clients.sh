@@ -16,7 +16,7 @@ done
 screen=()
 if [ "$module" = paraview ] && [ -z "${DISPLAY:-}" ]; then
   command -v xvfb-run >/dev/null || { echo "skipped: $packages not installed"; exit 77; }
-  screen=(xvfb-run -a)
+  screen=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset") # or it starts anew when a first window is closed
 fi
 
 work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_clients.XXXXXX")
