@@ -1,5 +1,6 @@
 #include "runtime/hdf5_tools.h"
 
+#include <hdf5_hl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -171,6 +172,14 @@ bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const
   return good;
 }
 
+bool h5_make_scale(hid_t set, const char *name) {
+  return H5DSset_scale(set, name) >= 0;
+}
+
+bool h5_attach_scale(hid_t set, hid_t scale, unsigned dimension) {
+  return H5DSattach_scale(set, scale, dimension) >= 0;
+}
+
 /* What is selected of the set; `shape` is its own where nothing lies in it. */
 static bool map_block(hid_t view, const hsize_t *shape, int rank, hid_t set, const h5_block *of,
                       hid_t plist) {
@@ -194,6 +203,8 @@ bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape,
   if (set < 0) return false;
   const hid_t space = H5Screate_simple(rank, shape, NULL), plist = H5Pcreate(H5P_DATASET_CREATE),
               type = H5Dget_type(set);
+  H5Pset_dset_no_attrs_hint(plist, true); /* half the size */
+  H5Pset_obj_track_times(plist, false);
   bool good = is_empty(rank, shape) || map_block(space, shape, rank, set, of, plist);
   H5Sselect_all(space);
   const hid_t view =

@@ -35,6 +35,9 @@ bool h5_attribute_name(hid_t object, const char *name, const char *text);
 hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,
                      const char *unit_text);
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values);
+/* Dimension scales (H5DS): a data set becomes one, which is attached to a dimension of others. */
+bool h5_make_scale(hid_t set, const char *name);
+bool h5_attach_scale(hid_t set, hid_t scale, unsigned dimension);
 
 enum { H5_VIEW_RANK = 3 }; /* at most, of a view and of what it shows */
 typedef struct h5_block {  /* of a data set of the file */

@@ -46,7 +46,15 @@ static void finish(result *r) {
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = time}};
-  assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
+  assert_true(result_finish(r,
+                            &(result_ending){.ended = "end of the run",
+                                             .dt = 1e-3,
+                                             .steps = 42,
+                                             .time = time,
+                                             .history_count = SAMPLES,
+                                             .series = series,
+                                             .series_count = 2},
+                            error, sizeof error));
   result_discard(r);
   result_close(r);
 }
@@ -235,8 +243,8 @@ static int count_elements(const char *text) {
 
 static void the_sidecar_is_xml_whatever_the_names(void **state) {
   (void)state;
-  static const result_field odd[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
-                                     {"omega", "1", "a<b", 1, BONDS, "damage"}};
+  static const result_field odd[] = {{"displacement", "m", NULL, 2, PARTICLES, "other", NULL},
+                                     {"omega", "1", "a<b", 1, BONDS, "damage", NULL}};
   char text[16384];
   result_header h = header("result_<&>.h5");
   h.interaction = "a<b";
@@ -308,12 +316,13 @@ static void pictures(void **state) {
 /* --- kinds of fields ---------------------------------------------------------------------------- */
 
 enum { KINDS = 6 };
-static const result_field of_kinds[KINDS] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
-                                             {"damage", "1", NULL, 1, PARTICLES, "damage"},
-                                             {"alpha", "1", "concrete", 1, BONDS, "state"},
-                                             {"omega_c", "1", "concrete", 1, BONDS, "damage"},
-                                             {"omega_t", "1", "concrete", 1, BONDS, "damage"},
-                                             {"w", "m", "concrete", 1, BONDS, "output"}};
+static const result_field of_kinds[KINDS] = {
+    {"displacement", "m", NULL, 2, PARTICLES, "other", NULL},
+    {"damage", "1", NULL, 1, PARTICLES, "damage", NULL},
+    {"alpha", "1", "concrete", 1, BONDS, "state", NULL},
+    {"omega_c", "1", "concrete", 1, BONDS, "damage", NULL},
+    {"omega_t", "1", "concrete", 1, BONDS, "damage", NULL},
+    {"w", "m", "concrete", 1, BONDS, "output", NULL}};
 
 /* One frame of a law with a state, two damages and an output; without the first `skip` fields. */
 static void write_kinds(const char *path, int skip, int count) {
@@ -523,8 +532,8 @@ static void write_cube(const char *path) {
     }
   }
   assert_int_equal(links, LINKS);
-  static const result_field of_cube[] = {{"displacement", "m", NULL, 3, CUBE, "other"},
-                                         {"omega", "1", "concrete", 1, LINKS, "damage"}};
+  static const result_field of_cube[] = {{"displacement", "m", NULL, 3, CUBE, "other", NULL},
+                                         {"omega", "1", "concrete", 1, LINKS, "damage", NULL}};
   result_header h = header(path);
   h.dimensions = 3;
   h.particle_count = CUBE;

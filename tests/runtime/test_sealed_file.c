@@ -45,8 +45,8 @@ enum { MANY = 3000, LONG = 400, STEPS = 6 }; /* particles, samples, frames */
 static void write_large(void) {
   static double places[2 * MANY], volumes[MANY], u[2 * MANY], omega[MANY], time[LONG];
   static int32_t bodies[MANY], pairs[2 * MANY];
-  static const result_field fields[] = {{"displacement", "m", NULL, 2, MANY, "other"},
-                                        {"omega", "1", "concrete", 1, MANY, "damage"}};
+  static const result_field fields[] = {{"displacement", "m", NULL, 2, MANY, "other", NULL},
+                                        {"omega", "1", "concrete", 1, MANY, "damage", NULL}};
   uint32_t seed = 7;
   for (int p = 0; p < MANY; p++) {
     places[2 * p] = p % 50 + 1e-3 * random_number(&seed);
@@ -76,7 +76,15 @@ static void write_large(void) {
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = time},
                                   {.name = "energy/kinetic", .unit = "J", .values = volumes}};
-  assert_true(result_finish(r, 1e-3, 42, time, LONG, series, 2, error, sizeof error));
+  assert_true(result_finish(r,
+                            &(result_ending){.ended = "end of the run",
+                                             .dt = 1e-3,
+                                             .steps = 42,
+                                             .time = time,
+                                             .history_count = LONG,
+                                             .series = series,
+                                             .series_count = 2},
+                            error, sizeof error));
   result_discard(r);
   result_close(r);
 }
@@ -93,7 +101,15 @@ static void write_small(void) {
   const double time[] = {0, 1, 2, 3, 4};
   const result_series series[] = {{.name = "load", .unit = "N", .values = time},
                                   {.name = "energy/kinetic", .unit = "J", .values = time}};
-  assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
+  assert_true(result_finish(r,
+                            &(result_ending){.ended = "end of the run",
+                                             .dt = 1e-3,
+                                             .steps = 42,
+                                             .time = time,
+                                             .history_count = SAMPLES,
+                                             .series = series,
+                                             .series_count = 2},
+                            error, sizeof error));
   result_discard(r);
   result_close(r);
 }
