@@ -163,6 +163,14 @@ static void particle_table(run *r, const rows *w, result_header *h) {
   h->bonds = pairs;
 }
 
+/* What a law says may take several lines. */
+static const char *one_line(run *r, const char *words) {
+  char *line = arena_text(r->memory, words, strlen(words));
+  for (char *at = line; (at = strchr(at, '\n')); at++)
+    *at = ' ';
+  return line;
+}
+
 /* Fields of the frames, as the simulation offers them. */
 static void frame_table(run *r, result_header *h, const char *interaction) {
   const frame_field *offered;
@@ -175,7 +183,7 @@ static void frame_table(run *r, result_header *h, const char *interaction) {
                                offered[k].components,
                                offered[k].on_bonds ? h->bond_count : h->particle_count,
                                offered[k].kind,
-                               offered[k].long_name};
+                               one_line(r, offered[k].long_name)};
   h->fields = fields;
 }
 
@@ -331,7 +339,7 @@ bool finish_result(run *r, const run_end *end) {
     series[k] = (result_series){.judges = false};
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
     simulation_series_words(r->simulation, k, words, sizeof words);
-    series[k].long_name = arena_text(r->memory, words, strlen(words));
+    series[k].long_name = one_line(r, words);
   }
   const char *unchecked;
   const int imbalance = simulation_imbalance(r->simulation, &unchecked);

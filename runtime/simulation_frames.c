@@ -35,9 +35,8 @@ static void offer(simulation *s, bool offered, frame_field field, frame_source f
   s->frame_sources[s->frame_field_count++] = from;
 }
 
-/* The law's words, or else its name for it. */
-static const char *words_of(const char *doc, const char *name) {
-  return doc && *doc ? doc : name;
+static const char *words_of(const char *doc, const char *otherwise) {
+  return doc && *doc ? doc : otherwise;
 }
 
 /* What is stored of any law. */
@@ -77,20 +76,22 @@ static void offer_law(simulation *s, bool all, bool damage) {
     const bool damages = f->kind == PL_FIELD_DAMAGE;
     offer(s, all || frames_want(s, f->name) || (damages && damage),
           (frame_field){f->name, f->unit, on_bonds(f), 1, damages ? "damage" : "state",
-                        words_of(f->doc, f->name)},
+                        words_of(f->doc, damages ? "damage of the law" : "state of the law")},
           (frame_source){FROM_FIELD, NULL, k});
   }
   for (int k = 0; k < law->output_count; k++) {
     const pl_field *o = &law->outputs[k];
     offer(s, frames_want(s, o->name),
-          (frame_field){o->name, o->unit, on_bonds(o), 1, "output", words_of(o->doc, o->name)},
+          (frame_field){o->name, o->unit, on_bonds(o), 1, "output",
+                        words_of(o->doc, "output of the law")},
           (frame_source){FROM_OUTPUT, NULL, k});
   }
   for (int k = 0; k < law->varying_count; k++) {
     const pl_parameter *p = &law->parameters[law->varying[k]];
-    offer(s, frames_want(s, p->name),
-          (frame_field){p->name, p->unit, true, 1, "other", words_of(p->doc, p->name)},
-          (frame_source){FROM_PARAMETER, NULL, k});
+    offer(
+        s, frames_want(s, p->name),
+        (frame_field){p->name, p->unit, true, 1, "other", words_of(p->doc, "parameter of the law")},
+        (frame_source){FROM_PARAMETER, NULL, k});
   }
 }
 
