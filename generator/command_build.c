@@ -99,13 +99,15 @@ static void put_string(c_text *out, const char *name, const char *text) {
 
 static const char solver_main[] =
     "typedef struct built_in_law {\n  const char *model;\n  const pl_law *law;\n"
-    "  const char *law_text, *c_text;\n  const char *choices;\n} built_in_law;\n"
+    "  const char *law_text, *c_text;\n  const char *choices;\n"
+    "  const char *compiler, *flags;\n} built_in_law;\n"
     "int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,\n"
     "                        const built_in_law *laws, int law_count,\n"
     "                        const built_in_file *files, int file_count);\n"
     "int main(int argc, char **argv) {\n"
     "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
-    "                                solver_kernel_text, solver_choices}};\n"
+    "                                solver_kernel_text, solver_choices,\n"
+     "                                solver_compiler, solver_flags}};\n"
     "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1,\n"
     "                             solver_files, solver_file_count);\n}\n";
 
@@ -130,6 +132,7 @@ static void put_files(c_text *out, const deck_law *l) {
 /* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
 static char *solver_text(const deck_law *l, const char *deck_name, const char *deck_text) {
   c_text out = {NULL, 0, 0};
+  char compiler[512];
   c_text_add(&out, "%s\n/* --- the solver --- */\n\n", l->model.c_text);
   put_string(&out, "solver_deck_name", deck_name);
   put_string(&out, "solver_deck", deck_text);
@@ -138,6 +141,9 @@ static char *solver_text(const deck_law *l, const char *deck_name, const char *d
   put_string(&out, "solver_kernel_text", l->model.c_text);
   put_string(&out, "solver_choices", l->choices);
   put_files(&out, l);
+  toolchain_version(compiler, sizeof compiler);
+  put_string(&out, "solver_compiler", compiler);
+  put_string(&out, "solver_flags", toolchain_flags());
   c_text_add(&out, "%s", solver_main);
   return out.text;
 }

@@ -84,10 +84,27 @@ static bool print_sizes(result_file *f, const char *path) {
   return placed;
 }
 
+/* How the run ended, and what made it; results of earlier versions do not say. */
+static void print_ending(result_file *f) {
+  char *ended = result_read_words(f, "ended"), *compiler = result_read_words(f, "compiler"),
+       *flags = result_read_words(f, "flags"), *started = result_read_words(f, "started");
+  if (*ended)
+    printf("Ended: %s (status %.0f); %.0f steps in %.3g s of wall time, %.0f thread%s, begun %s\n",
+           ended, result_read_number(f, "status"), result_read_number(f, "steps"),
+           result_read_number(f, "wall_seconds"), result_read_number(f, "threads"),
+           result_read_number(f, "threads") > 1 ? "s" : "", started);
+  if (*compiler) printf("Compiler of the law: %s%s%s\n", compiler, *flags ? ", " : "", flags);
+  free(ended);
+  free(compiler);
+  free(flags);
+  free(started);
+}
+
 static int info_result(const char *path) {
   result_file *f = table_open("perilat info", path);
   if (!f) return 1;
   bool good = print_sizes(f, path);
+  print_ending(f);
   char *overrides = result_read_text(f, "/input/set");
   if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);

@@ -241,7 +241,12 @@ static int execute(run *r) {
   const bool stopped_by_user = interrupted && status == STEP_OK;
   const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
-  written = written && finish_result(r);
+  const run_end end = {status,
+                       stopped_by_user      ? 128 + interrupted
+                       : status == STEP_BAD ? RUN_FAILED
+                                            : 0,
+                       seconds};
+  written = written && finish_result(r, &end);
   if (!written) give_up_writing(r, status);
   if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
   release_signals(before);

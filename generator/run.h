@@ -16,6 +16,7 @@ typedef struct built_in_law {
   const pl_law *law;
   const char *law_text, *c_text;
   const char *choices; /* "onset=rankine;..." decided when it was built */
+  const char *compiler, *flags;
 } built_in_law;
 
 /* A table that a load of the built-in deck names. */

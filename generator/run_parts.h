@@ -64,7 +64,13 @@ bool begin_anew(run *r);
 bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-bool finish_result(run *r);
+/* What the run has come to: how it ended, in words, and what it will exit with. */
+typedef struct run_end {
+  step_status status;
+  int exit_status;
+  double seconds;
+} run_end;
+bool finish_result(run *r, const run_end *end);
 /* When what has been written is complete: no checkpoint, no frames beside the result. */
 void remove_remains(run *r);
 /* A checkpoint stands, and the frames that it counts on. */
@@ -90,6 +96,8 @@ void print_misfit(const run *r);
 void conclude(const run *r, double seconds, long steps);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
+/* "end of the run", "stopped by &stop: load was below 5 % of its peak": how a run ended. */
+void describe_end(const run *r, const run_end *end, char *text, size_t size);
 
 /* --- run_profile.c --- */
 

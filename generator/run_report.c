@@ -498,15 +498,36 @@ void conclude(const run *r, double seconds, long steps) {
          frames == 1 ? "" : "s");
 }
 
+/* "load was below 5 % of its peak" */
+static void describe_stop(const deck_stop *s, char *text, size_t size) {
+  const char *side = s->below ? "below" : "above";
+  if (s->of_peak)
+    snprintf(text, size, "%s was %s %.4g %% of its peak", s->monitor, side, 100 * s->level);
+  else
+    snprintf(text, size, "%s was %s %.6g", s->monitor, side, s->level);
+}
+
 /* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
 void print_stop(const run *r) {
   const deck_stop *s = simulation_stopped_by(r->simulation);
   if (!s) return;
-  char text[MOMENT_TEXT];
-  printf("  ended early at %s: %s was %s ", moment(r, simulation_time(r->simulation), text),
-         s->monitor, s->below ? "below" : "above");
-  if (s->of_peak)
-    printf("%.4g %% of its peak\n", 100 * s->level);
+  char text[MOMENT_TEXT], why[256];
+  describe_stop(s, why, sizeof why);
+  printf("  ended early at %s: %s\n", moment(r, simulation_time(r->simulation), text), why);
+}
+
+void describe_end(const run *r, const run_end *end, char *text, size_t size) {
+  const deck_stop *s = simulation_stopped_by(r->simulation);
+  char now[MOMENT_TEXT], why[256] = "";
+  moment(r, simulation_time(r->simulation), now);
+  if (end->status == STEP_BAD) {
+    const bad_state b = simulation_bad(r->simulation);
+    snprintf(text, size, "failed at %s: %s in step %ld", now, b.what, b.step);
+  } else if (end->status == STEP_STOPPED && s) {
+    describe_stop(s, why, sizeof why);
+    snprintf(text, size, "stopped by &stop at %s: %s", now, why);
+  } else if (end->status == STEP_OK)
+    snprintf(text, size, "interrupted at %s: the run can be resumed", now);
   else
-    printf("%.6g\n", s->level);
+    snprintf(text, size, "end of the run");
 }

@@ -184,6 +184,14 @@ static void particle_table(run *r, const rows *w, result_header *h) {
   h->bonds = pairs;
 }
 
+/* What a law says may take several lines. */
+static const char *one_line(run *r, const char *words) {
+  char *line = arena_text(r->memory, words, strlen(words));
+  for (char *at = line; (at = strchr(at, '\n')); at++)
+    *at = ' ';
+  return line;
+}
+
 /* Fields of the frames, as the simulation offers them. */
 static void frame_table(run *r, result_header *h, const char *interaction) {
   const frame_field *offered;
@@ -195,8 +203,23 @@ static void frame_table(run *r, result_header *h, const char *interaction) {
                                offered[k].on_bonds ? interaction : NULL,
                                offered[k].components,
                                offered[k].on_bonds ? h->bond_count : h->particle_count,
-                               offered[k].kind};
+                               offered[k].kind,
+                               one_line(r, offered[k].long_name)};
   h->fields = fields;
+}
+
+/* What made the kernels: now, when the solver was built, or nothing. */
+static void name_compiler(run *r, result_header *h) {
+  char version[512];
+  const built_in_law *b = r->built_in[0];
+  if (!b) toolchain_version(version, sizeof version);
+  if (b)
+    h->compiler = b->compiler, h->flags = b->flags;
+  else if (r->models[0].loaded.law) {
+    h->compiler = arena_text(r->memory, version, strlen(version));
+    h->flags = arena_printf(r->memory, "%s", toolchain_flags());
+  } else
+    h->compiler = "none: the law was interpreted", h->flags = "";
 }
 
 static char *list_overrides(run *r) {
@@ -213,6 +236,7 @@ bool open_result(run *r) {
                      .started = r->started,
                      .version = perilat_version,
                      .kernel_key = r->laws[0].law->key,
+                     .threads = simulation_threads(r->simulation),
                      .deck_text = r->sources.items[0].text,
                      .overrides = list_overrides(r),
                      .interaction = r->deck->lattices[0].name};
@@ -220,6 +244,7 @@ bool open_result(run *r) {
   h.kernels = collect_texts(r, true, &h.kernel_count);
   h.files = collect_files(r);
   h.file_count = r->deck->file_count;
+  name_compiler(r, &h);
   particle_table(r, simulation_rows(r->simulation, 0), &h);
   frame_table(r, &h, h.interaction);
   char error[ERROR_LENGTH];
@@ -328,21 +353,31 @@ void remove_remains(run *r) {
   result_discard(r->result);
 }
 
-bool finish_result(run *r) {
-  int count = simulation_series_count(r->simulation);
+bool finish_result(run *r, const run_end *end) {
+  enum { WORDS = 512 };
+  const int count = simulation_series_count(r->simulation);
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
-  for (int k = 0; k < count; k++)
+  char ended[WORDS], words[WORDS], error[ERROR_LENGTH];
+  for (int k = 0; k < count; k++) {
+    series[k] = (result_series){.judges = false};
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
+    simulation_series_words(r->simulation, k, words, sizeof words);
+    series[k].long_name = one_line(r, words);
+  }
   const char *unchecked;
   const int imbalance = simulation_imbalance(r->simulation, &unchecked);
   if (imbalance >= 0) series[imbalance].judges = true;
   if (imbalance >= 0) series[imbalance].unchecked = unchecked;
-  const double *time;
-  long samples = simulation_history(r->simulation, &time);
-  char error[ERROR_LENGTH];
-  bool good = result_finish(r->result, simulation_step_limit(r->simulation)->step,
-                            simulation_step_done(r->simulation), time, samples, series, count,
-                            error, sizeof error);
+  describe_end(r, end, ended, sizeof ended);
+  result_ending e = {.ended = ended,
+                     .status = end->exit_status,
+                     .seconds = end->seconds,
+                     .dt = simulation_step_limit(r->simulation)->step,
+                     .steps = simulation_step_done(r->simulation),
+                     .series = series,
+                     .series_count = count};
+  e.history_count = simulation_history(r->simulation, &e.time);
+  const bool good = result_finish(r->result, &e, error, sizeof error);
   if (!good) fprintf(stderr, "perilat: error: %s\n", error);
   return good;
 }

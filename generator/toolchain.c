@@ -432,13 +432,17 @@ static void add_text(sha256 *h, const char *text) {
   sha256_add(h, text, (size_t)length);
 }
 
+void toolchain_version(char *version, size_t size) {
+  const char *compiler = toolchain_compiler();
+  *version = 0;
+  if (compiler) read_version(compiler, version, size);
+}
+
 char *toolchain_key(const char *text) {
   char path[LONGEST_PATH] = "", version[512] = "", here[8192];
   const char *compiler = toolchain_compiler();
-  if (compiler) {
-    find_program(compiler, path, sizeof path);
-    read_version(compiler, version, sizeof version);
-  }
+  if (compiler) find_program(compiler, path, sizeof path);
+  toolchain_version(version, sizeof version);
   read_processor(here, sizeof here);
   const uint64_t layout[] = {PL_KERNEL_ABI, sizeof(pl_law), sizeof(pl_strip),
                              sizeof(pl_bond_class)};

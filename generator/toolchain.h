@@ -26,6 +26,8 @@ const char *toolchain_no_compiler(void);
 /* Flags of every kernel: -O3 -fno-math-errno -fno-trapping-math -ffp-contract=off ... and -march=$PERILAT_PROCESSOR, otherwise
    this one. */
 const char *toolchain_flags(void);
+/* What the compiler says it is, "gcc (Debian 12.2.0-14) 12.2.0"; "" when it does not answer. */
+void toolchain_version(char *version, size_t size);
 /* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
    $TMPDIR. Created; never fails (an unwritable one gives that private folder, too). */
 const char *toolchain_cache(void);

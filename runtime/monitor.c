@@ -1,7 +1,10 @@
 #include "runtime/monitor.h"
 
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #include "dsl/arena.h"
@@ -200,6 +203,79 @@ void monitors_free(monitors *m) {
   free(m->values);
   free(m->ring_memory);
   free(m);
+}
+
+/* --- in words --------------------------------------------------------------------------------- */
+
+/* Appends to the text, as far as there is room. */
+static void add_words(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void add_words(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text + used, size - used, format, values);
+  va_end(values);
+}
+
+static void add_component(const monitors *all, const monitor *m, const char *quantity, char *text,
+                          size_t size) {
+  const int c = m->deck->component, dimensions = all->state->dimensions;
+  add_words(text, size, "%s %s %s", quantity, c < dimensions ? "along" : "in",
+            deck_component_name(dimensions, c));
+}
+
+static void add_count(const monitors *all, const monitor *m, char *text, size_t size) {
+  const char *counted = damage_on_bonds(all->state->law) ? "bonds" : "particles";
+  add_words(text, size, "%s with %s %.6g", counted,
+            m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
+            m->deck->above);
+}
+
+static void add_field(const monitors *all, const monitor *m, char *text, size_t size) {
+  const pl_field *f = law_field(all->state->law, m->field);
+  add_words(text, size, "mean `%s` of `%s`", f->name, m->deck->region);
+  if (f->doc && *f->doc) add_words(text, size, " (%s)", f->doc);
+}
+
+static void add_quantity(const monitors *all, const monitor *m, char *text, size_t size) {
+  const deck_monitor *d = m->deck;
+  switch (d->kind) {
+  case MONITOR_REACTION:
+    add_component(all, m, "reaction", text, size);
+    add_words(text, size, " of `%s`", d->region);
+    return;
+  case MONITOR_REACTIONS:
+    add_component(all, m, "half the reaction", text, size);
+    add_words(text, size, " of `%s` less that of `%s`", d->between[1], d->between[0]);
+    return;
+  case MONITOR_OPENING:
+    add_component(all, m, "mean displacement", text, size);
+    add_words(text, size, " of `%s` less that of `%s`", d->between[1], d->between[0]);
+    return;
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_VELOCITY:
+    add_component(all, m, d->kind == MONITOR_VELOCITY ? "mean velocity" : "mean displacement", text,
+                  size);
+    add_words(text, size, " of `%s`", d->region);
+    return;
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    add_count(all, m, text, size);
+    return;
+  case MONITOR_FIELD:
+    add_field(all, m, text, size);
+  }
+}
+
+void monitor_words(const monitors *all, int index, char *text, size_t size) {
+  const monitor *m = &all->items[index];
+  *text = 0;
+  add_quantity(all, m, text, size);
+  if (m->window > 1) add_words(text, size, ", mean over %.6g s", m->deck->average);
+  if (m->zero_step >= 0) add_words(text, size, ", less its value at %.6g s", m->deck->zero_at);
+  if (m->deck->scale < 1 || m->deck->scale > 1)
+    add_words(text, size, ", times %.6g", m->deck->scale);
 }
 
 /* --- values ----------------------------------------------------------------------------------- */

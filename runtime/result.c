@@ -7,6 +7,7 @@
 #include "dsl/arena.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/sealed_file.h"
+#include "runtime/views.h"
 #include "runtime/whole_file.h"
 #include "runtime/xdmf.h"
 
@@ -115,27 +116,47 @@ static bool write_input(hid_t file, const result_header *h) {
          (h->file_count == 0 || write_texts(file, "/input/files", h->files, h->file_count));
 }
 
-static bool write_verdict(hid_t file, const char *name, const result_series *s) {
-  if (!s->judges) return true;
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  const bool good = set >= 0 && h5_attribute_integer(set, "checked", s->unchecked == NULL) &&
-                    (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked));
+/* A data set of times is the scale of the first dimension of what stands beside it. */
+static hid_t write_times(hid_t file, const char *name, const char *long_name, const double *times,
+                         long count) {
+  const hsize_t n[1] = {(hsize_t)count};
+  if (!h5_write_doubles(file, name, times, 1, n, "s")) return -1;
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  if (set < 0 || (h5_attribute_text(set, "long_name", long_name) && h5_make_scale(set, "time")))
+    return set;
+  H5Dclose(set);
+  return -1;
+}
+
+static bool describe(hid_t set, hid_t times, const char *long_name) {
+  return h5_attach_scale(set, times, 0) &&
+         (!long_name || h5_attribute_text(set, "long_name", long_name));
+}
+
+static bool write_verdict(hid_t set, const result_series *s) {
+  return !s->judges || (h5_attribute_integer(set, "checked", s->unchecked == NULL) &&
+                        (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked)));
+}
+
+static bool write_series(hid_t file, hid_t times, long count, const result_series *s) {
+  char name[512];
+  const hsize_t n[1] = {(hsize_t)count};
+  snprintf(name, sizeof name, "/history/%s", s->name);
+  if (!h5_write_doubles(file, name, s->values, 1, n, s->unit)) return false;
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  const bool good = set >= 0 && describe(set, times, s->long_name) && write_verdict(set, s);
   if (set >= 0) H5Dclose(set);
   return good;
 }
 
-static bool write_history(hid_t file, const double *time, long count, const result_series *series,
-                          int series_count) {
-  hsize_t n[1] = {(hsize_t)count};
-  bool good = h5_make_group(file, "/history") && h5_make_group(file, "/history/energy") &&
-              h5_write_doubles(file, "/history/time", time, 1, n, "s");
-  for (int k = 0; good && k < series_count; k++) {
-    char name[512];
-    snprintf(name, sizeof name, "/history/%s", series[k].name);
-    good = h5_write_doubles(file, name, series[k].values, 1, n, series[k].unit) &&
-           write_verdict(file, name, &series[k]);
-  }
-  return good;
+static bool write_history(hid_t file, const result_ending *e) {
+  if (!h5_make_group(file, "/history") || !h5_make_group(file, "/history/energy")) return false;
+  const hid_t times =
+      write_times(file, "/history/time", "time of the sample", e->time, e->history_count);
+  bool good = times >= 0;
+  for (int k = 0; good && k < e->series_count; k++)
+    good = write_series(file, times, e->history_count, &e->series[k]);
+  return times >= 0 && H5Dclose(times) >= 0 && good;
 }
 
 /* The data sets of the fields, and the times of the frames, while frames are copied. */
@@ -183,6 +204,14 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
   return good;
 }
 
+static bool describe_fields(hid_t file, const frame_sets *s) {
+  const hid_t times = write_times(file, "/frames/time", "time of the frame", s->times, s->count);
+  bool good = times >= 0;
+  for (int k = 0; good && k < s->header->field_count; k++)
+    good = describe(s->sets[k], times, s->header->fields[k].long_name);
+  return times >= 0 && H5Dclose(times) >= 0 && good;
+}
+
 /* A damaged frame leaves a sentence in `error`, a full disk none. */
 static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error, size_t size) {
   const int fields = r->header.field_count;
@@ -192,40 +221,35 @@ static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error
     s->sets[k] = good ? make_field(file, &r->header.fields[k], s->count) : -1;
     good = s->sets[k] >= 0;
   }
-  good = good && frame_file_each(r->frames, put_frame, s, error, size);
+  good = good && frame_file_each(r->frames, put_frame, s, error, size) && describe_fields(file, s);
   for (int k = 0; k < fields; k++)
     if (s->sets[k] >= 0) good = H5Dclose(s->sets[k]) >= 0 && good;
   free(s->sets);
-  const hsize_t n[1] = {(hsize_t)s->count};
-  return good && h5_write_doubles(file, "/frames/time", s->times, 1, n, "s");
+  return good;
 }
 
-static bool write_attributes(hid_t file, const result_header *h, double dt, long steps) {
+static bool write_attributes(hid_t file, const result_header *h, const result_ending *e) {
   return h5_attribute_text(file, "perilat_version", h->version) &&
          h5_attribute_text(file, "started", h->started) &&
          h5_attribute_text(file, "title", h->title) &&
          h5_attribute_text(file, "kernel_key", h->kernel_key) &&
-         h5_attribute_double(file, "dt", dt) && h5_attribute_integer(file, "steps", steps);
+         h5_attribute_text(file, "compiler", h->compiler ? h->compiler : "") &&
+         h5_attribute_text(file, "flags", h->flags ? h->flags : "") &&
+         h5_attribute_integer(file, "threads", h->threads) &&
+         h5_attribute_text(file, "ended", e->ended ? e->ended : "") &&
+         h5_attribute_integer(file, "status", e->status) &&
+         h5_attribute_double(file, "wall_seconds", e->seconds) &&
+         h5_attribute_double(file, "dt", e->dt) && h5_attribute_integer(file, "steps", e->steps);
 }
 
-/* What is to be written, for the functions below. */
-typedef struct ending {
-  double dt;
-  long steps;
-  const double *time; /* [history_count] */
-  long history_count;
-  const result_series *series;
-  int series_count;
-} ending;
-
-static bool write_hdf5(const result *r, const ending *e, frame_sets *frames, const char *path,
-                       char *error, size_t size) {
+static bool write_hdf5(const result *r, const result_ending *e, frame_sets *frames,
+                       const char *path, char *error, size_t size) {
   const hid_t file = sealed_file_create(path);
   if (file < 0) return false;
-  const bool good = write_attributes(file, &r->header, e->dt, e->steps) &&
-                    write_input(file, &r->header) && write_particles(file, &r->header) &&
-                    write_history(file, e->time, e->history_count, e->series, e->series_count) &&
-                    write_frames(file, r, frames, error, size);
+  const bool good = write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
+                    write_particles(file, &r->header) && write_history(file, e) &&
+                    write_frames(file, r, frames, error, size) &&
+                    views_write(file, &r->header, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);
   return false;
@@ -251,9 +275,7 @@ void result_sidecar(const char *path, char *sidecar, size_t size) {
 }
 
 /* Both are written before either is put in its place. */
-bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, char *error, size_t size) {
-  const ending e = {dt, steps, time, history_count, series, series_count};
+bool result_finish(result *r, const result_ending *e, char *error, size_t size) {
   const char *path = r->header.path;
   frame_sets frames = {.header = &r->header, .count = (long)result_mark(r).count};
   char sidecar_path[WHOLE_FILE_PATH];
@@ -264,7 +286,7 @@ bool result_finish(result *r, double dt, long steps, const double *time, long hi
   if (!whole_file_begin(&file, path)) return fail(path, error, size);
   errno = 0; /* the library has no better way of saying that the disk is full */
   frames.times = must_calloc((size_t)frames.count + 1, sizeof *frames.times);
-  bool good = write_hdf5(r, &e, &frames, file.working, error, size);
+  bool good = write_hdf5(r, e, &frames, file.working, error, size);
   good = good && whole_file_begin(&sidecar, sidecar_path);
   if (good) {
     good = write_sidecar(r, &frames, sidecar.working);

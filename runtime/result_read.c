@@ -1,6 +1,7 @@
 /* The reading half of result.h. */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -528,9 +529,25 @@ char *result_read_text(result_file *f, const char *path) {
   return text;
 }
 
+char *result_read_words(result_file *f, const char *name) {
+  char words[1024];
+  h5_read_attribute_text(f->file, name, words, sizeof words);
+  char *copy = must_calloc(strlen(words) + 1, 1);
+  return strcpy(copy, words);
+}
+
+double result_read_number(result_file *f, const char *name) {
+  double value = NAN;
+  if (H5Aexists(f->file, name) <= 0) return value;
+  const hid_t a = H5Aopen(f->file, name, H5P_DEFAULT), space = a >= 0 ? H5Aget_space(a) : -1;
+  if (space < 0 || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Aread(a, H5T_NATIVE_DOUBLE, &value) < 0)
+    value = NAN;
+  if (space >= 0) H5Sclose(space);
+  if (a >= 0) H5Aclose(a);
+  return value;
+}
+
 char *result_read_title(result_file *f) {
-  char title[512];
-  h5_read_attribute_text(f->file, "title", title, sizeof title);
-  char *copy = must_calloc(strlen(title) + 1, 1);
-  return strcpy(copy, title);
+  return result_read_words(f, "title");
 }

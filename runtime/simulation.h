@@ -126,6 +126,8 @@ bad_state simulation_bad(const simulation *s);
 long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
+/* What a series is, in words. */
+void simulation_series_words(const simulation *s, int k, char *text, size_t size);
 /* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
@@ -137,7 +139,8 @@ typedef struct frame_field {
   const char *name, *unit;
   bool on_bonds;
   int components;
-  const char *kind; /* "state", "damage", "output" of the law; else "other" */
+  const char *kind;      /* "state", "damage", "output" of the law; else "other" */
+  const char *long_name; /* in words: the law's, where it is of the law */
 } frame_field;
 int simulation_frame_fields(const simulation *s, const frame_field **fields);
 void simulation_frame_values(simulation *s, int field, double *values);

@@ -249,11 +249,18 @@ static void write_histories(workplace *w, const char *name, int count) {
   FILE *asked = open_in(w, list);
   for (int k = 0; k < count; k++) {
     snprintf(names[k], sizeof names[k], "history_%d", k);
-    series[k] = (result_series){names[k], "N", values, false, NULL};
+    series[k] = (result_series){.name = names[k], .unit = "N", .values = values};
     fprintf(asked, "--history history_%d\n", k);
   }
   fclose(asked);
-  assert_true(result_finish(r, 0.1, 3, values, 3, series, count, error, sizeof error));
+  const result_ending e = {.ended = "at the end",
+                           .dt = 0.1,
+                           .steps = 3,
+                           .time = values,
+                           .history_count = 3,
+                           .series = series,
+                           .series_count = count};
+  assert_true(result_finish(r, &e, error, sizeof error));
   result_close(r);
   free(path);
   free(names);

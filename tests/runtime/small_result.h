@@ -7,8 +7,9 @@
 enum { PARTICLES = 3, BONDS = 2, SAMPLES = 5 };
 
 static const double small_reference[2 * PARTICLES] = {0, 0, 1, 0, 0.5, 0.75};
-static const result_field small_fields[] = {{"displacement", "m", NULL, 2, PARTICLES, "other"},
-                                            {"omega", "1", "concrete", 1, BONDS, "damage"}};
+static const result_field small_fields[] = {
+    {"displacement", "m", NULL, 2, PARTICLES, "other", NULL},
+    {"omega", "1", "concrete", 1, BONDS, "damage", NULL}};
 
 static inline result_header small_header(const char *path) {
   static const double volume[PARTICLES] = {1, 2, 3};
