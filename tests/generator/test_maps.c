@@ -35,7 +35,14 @@ static void make_result(const workplace *w) {
     opening[k] = 1e-3 * cmod[k];
   }
   const result_series series[] = {{.name = "cmod", .unit = "m", .values = opening}};
-  assert_true(result_finish(r, 1e-3, 42, time, TIMES, series, 1, error, sizeof error));
+  const result_ending e = {.ended = "at the end",
+                           .dt = 1e-3,
+                           .steps = 42,
+                           .time = time,
+                           .history_count = TIMES,
+                           .series = series,
+                           .series_count = 1};
+  assert_true(result_finish(r, &e, error, sizeof error));
   result_discard(r);
   result_close(r);
 }
