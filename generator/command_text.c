@@ -189,6 +189,7 @@ static void show_key(const deck_key_info *key) {
     fputs("; required", stdout);
   else if (key->fallback)
     printf("; default %s", key->fallback[0] == '=' ? key->fallback + 2 : key->fallback);
+  if (key->former) printf("; formerly %s", key->former);
   putchar('\n');
 }
 

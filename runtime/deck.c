@@ -249,6 +249,7 @@ deck *deck_read(arena *a, source_set *sources, int file, const deck_override *ov
                 int override_count, diagnostics *d) {
   int errors = d->errors;
   namelist *n = namelist_read(a, sources, file, d);
+  deck_present_names(n, &deck_grammar_of_decks, d);
   deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
 
   deck *k = arena_alloc(a, sizeof(*k));

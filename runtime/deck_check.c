@@ -183,7 +183,7 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
 
 void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *item) {
   deck_item_region_known(r, &item->item, item->region);
-  const namelist_key *key = either(r, from, "force", "moment");
+  const namelist_key *key = either(r, from, "total", "moment");
   const namelist_key *component = namelist_find(from, "component");
   if (!key) return;
   bool rotates = key == namelist_find(from, "moment");
@@ -200,7 +200,7 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
   if (rotates != is_rotation(r, item->region, item->component)) {
     diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
                 key->name, component_name(r, item->region, item->component));
-    diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
+    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
     return;
   }
   if (!deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d)) return;
