@@ -307,9 +307,10 @@ static void fortran_reads_every_deck(void **state) {
   collection c = {.grammar = &deck_grammar_of_decks, .memory = arena_new()};
   add_decks(&c, SOURCE_DIR "/examples/*/*.nml");
   add_deck(&c, SOURCE_DIR "/generator/templates/deck.nml");
-  write_text(w, "force.nml", "&force region = 'a' total = '2 kN' times = 0, '1 s', 1.5 /\n"
-                             "&notch cut_bonds = .false. points = '1 m', 2*3 /\n"
-                             "&notch cut_bonds = T corner = 1.25, '-1 mm' /\n");
+  write_text(w, "force.nml",
+             "&force region = 'a' total = '2 kN' times = 0, '1 s', 1.5 /\n"
+             "&notch cut_bonds = .false. points = '1 m', 2*3 /\n"
+             "&notch cut_bonds = T corner = 1.25, '-1 mm' /\n");
   add_deck(&c, in_workplace(w, "force.nml"));
   assert_true(c.count > 30);
   expect_decks(w, &c);
