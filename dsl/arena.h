@@ -5,6 +5,10 @@
 
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct arena arena;
 
 arena *arena_new(void);
@@ -21,5 +25,7 @@ char *arena_printf(arena *a, const char *format, ...) __attribute__((format(prin
 void *must_alloc(size_t size);
 void *must_calloc(size_t count, size_t size);
 void *must_realloc(void *old, size_t size);
+
+C_LINKAGE_END
 
 #endif

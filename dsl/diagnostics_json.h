@@ -3,8 +3,11 @@
 #ifndef PERILAT_DSL_DIAGNOSTICS_JSON_H
 #define PERILAT_DSL_DIAGNOSTICS_JSON_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/json.h"
+
+C_LINKAGE_BEGIN
 
 enum { DIAG_JSON_SCHEMA = 1 };
 
@@ -21,5 +24,7 @@ void diag_json_begin(diag_json *j, const char *checked, const char *version);
 void diag_json_add(diag_json *j, const diagnostics *d);
 /* Writes the document and lets go of it. `accepted`: the input was found right. */
 void diag_json_end(diag_json *j, bool accepted, FILE *out);
+
+C_LINKAGE_END
 
 #endif

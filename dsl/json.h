@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 enum { JSON_DEEPEST = 16 };
 
 typedef struct json {
@@ -38,5 +42,7 @@ void json_null(json *j);
 
 /* Length of the UTF-8 character at `text` (1 to 4), or 0 when the bytes there are none. */
 size_t utf8_length(const char *text, size_t available);
+
+C_LINKAGE_END
 
 #endif

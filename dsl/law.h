@@ -4,8 +4,11 @@
 #define PERILAT_DSL_LAW_H
 
 #include "dsl/builtins.h"
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/tree.h"
+
+C_LINKAGE_BEGIN
 
 typedef enum symbol_kind {
   SYMBOL_QUANTITY, /* built in: stretch, s, ... */
@@ -31,7 +34,7 @@ typedef struct symbol {
       *rule; /* statement that gives its value in each step; NULL for built-ins, parameters */
   int index; /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
   dimension dim;
-  shape shape;
+  enum shape shape;
   placement place;
   const char *doc;       /* description or NULL */
   double initial;        /* PARAMETER: default, STATE: initial value; SI */
@@ -65,7 +68,7 @@ typedef struct law_choice {
 typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
 
 typedef struct law {
-  tree *tree;
+  struct tree *tree;
   law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
   int neighbours; /* of a full family, where they are known; else 0 */
@@ -100,5 +103,7 @@ double law_constant_value(const expr *e, const double *parameters);
 bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
 /* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
 void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
+
+C_LINKAGE_END
 
 #endif

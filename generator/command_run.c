@@ -8,6 +8,7 @@
 #include "generator/drive.h"
 #include "generator/interval.h"
 #include "generator/model.h"
+#include "generator/passes.h"
 #include "generator/physics.h"
 #include "generator/run.h"
 #include "generator/settings.h"

@@ -9,6 +9,7 @@
 
 #include "dsl/json.h"
 #include "generator/model.h"
+#include "generator/passes.h"
 #include "generator/run.h"
 #include "generator/settings.h"
 #include "runtime/deck_value.h"

@@ -3,17 +3,21 @@
 #ifndef PERILAT_GENERATOR_MODEL_H
 #define PERILAT_GENERATOR_MODEL_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/law.h"
-#include "generator/passes.h"
 #include "generator/toolchain.h"
+
+C_LINKAGE_BEGIN
+
+typedef struct kernel_plan kernel_plan;
 
 typedef struct model {
   arena *memory;
   source_set sources;
   diagnostics said; /* all diagnostics so far; the caller prints them */
   char *path;       /* of the model file; NULL when it was not found */
-  tree *tree;
-  law *law;
+  struct tree *tree;
+  struct law *law;
   kernel_plan *plan;
   char *c_text; /* emitted C */
   char *key;
@@ -67,5 +71,7 @@ void model_close(model *m);
 
 /* Whole text of a file (malloc'ed, NUL-terminated), or NULL with a sentence in error. Refuses folders and files over limit. */
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

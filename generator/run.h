@@ -3,10 +3,13 @@
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics_json.h"
 #include "generator/model.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 #define DECK_LIMIT ((size_t)16 << 20) /* B: the longest deck */
 
@@ -52,5 +55,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 /* main() of a stand-alone solver. */
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
                         const built_in_law *laws, int law_count);
+
+C_LINKAGE_END
 
 #endif

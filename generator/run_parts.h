@@ -4,6 +4,7 @@
 #define PERILAT_GENERATOR_RUN_PARTS_H
 
 #include "generator/run.h"
+#include "runtime/profile.h"
 #include "runtime/result.h"
 #include "runtime/simulation.h"
 

@@ -5,6 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct plot_curve_options {
   const char *output;          /* path */
   const char *x, *y;           /* histories: "cmod", "load", "time", "energy/kinetic" */
@@ -35,5 +39,7 @@ bool plot_values(const double *x, const double *y, long count, const char *x_uni
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size);
 /* Particles and bonds of one frame, deformed, with a legend and a scale bar in mm. */
 bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

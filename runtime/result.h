@@ -17,6 +17,10 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct result_text {
   const char *name, *text;
 } result_text;
@@ -120,5 +124,7 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
 double *result_read_frame_times(result_file *f, long *frames);
 char *result_read_text(result_file *f, const char *path); /* "/input/deck" */
 char *result_read_title(result_file *f);                  /* "" without one */
+
+C_LINKAGE_END
 
 #endif
