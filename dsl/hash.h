@@ -9,5 +9,9 @@
 
 /* The hash of what had `hash` with `bytes` bytes more. */
 uint64_t hash_more(uint64_t hash, const void *data, size_t bytes);
+/* For long arrays of numbers, at the speed of memory: another hash, of words of 8 bytes, in four
+   lanes that do not wait for each other (rounds as of Collet's XXH64). A change of one word always
+   changes it. */
+uint64_t hash_words(uint64_t hash, const void *data, size_t words);
 
 #endif

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/whole_file.h"
+
 void bad_bond_path(const char *result, char *path, size_t size) {
   size_t n = strlen(result);
   if (n > 3 && strcmp(result + n - 3, ".h5") == 0) n -= 3;
@@ -87,9 +89,11 @@ static bool write_all(const char *deck_name, const model *m, const simulation_la
 bool bad_bond_write(const char *path, const char *deck_name, const model *m,
                     const simulation_law *l, const rows *w, const bad_state *b, char *error,
                     size_t size) {
-  FILE *out = fopen(path, "w");
+  whole_file whole;
+  FILE *out = whole_file_open(&whole, path);
   bool good = out && write_all(deck_name, m, l, w, b, out);
   good = out && fclose(out) == 0 && good;
+  good = out && whole_file_end(&whole, good);
   if (!good) snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
   return good;
 }

@@ -432,18 +432,16 @@ static int conclude(const comparison_run *c) {
 
 static int compare_results(const compare_request *q) {
   comparison_run c = {.request = q};
-  int status = WRONG;
   for (int k = 0; k < 2; k++)
     c.files[k] = table_open(program, q->results[k]);
   if (c.files[0] && c.files[1]) {
     const bool all = !q->history_count && !q->field_count;
     if (all || q->history_count) compare_histories(&c);
     if (all || q->field_count) compare_frames(&c);
-    status = conclude(&c);
   }
   for (int k = 0; k < 2; k++)
-    if (c.files[k]) result_read_close(c.files[k]);
-  return status;
+    c.wrong = !(c.files[k] && table_close(c.files[k], !c.wrong));
+  return conclude(&c);
 }
 
 int command_compare(int argc, char **argv) {

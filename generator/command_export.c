@@ -270,13 +270,10 @@ static bool complete(const export_request *q) {
 static int write_table(const char *text, size_t length, const char *path) {
   if (!path) return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
   whole_file file;
-  bool good = whole_file_begin(&file, path);
-  if (good) {
-    FILE *out = fopen(file.working, "w");
-    good = out && fwrite(text, 1, length, out) == length;
-    good = out && fclose(out) == 0 && good;
-    good = whole_file_end(&file, good);
-  }
+  FILE *out = whole_file_open(&file, path);
+  bool good = out && fwrite(text, 1, length, out) == length;
+  good = out && fclose(out) == 0 && good;
+  good = out && whole_file_end(&file, good);
   if (good)
     printf("written %s\n", path);
   else
@@ -293,7 +290,7 @@ static int export_result(const export_request *q) {
   FILE *out = open_memstream(&text, &length);
   bool good = out && (q->framed ? export_frame(f, q, out) : export_history(f, q, out));
   const bool whole = out && fclose(out) == 0;
-  result_read_close(f);
+  good = table_close(f, good);
   if (good && !whole) fputs("perilat: error: not enough memory for the table\n", stderr);
   const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q->output);
   free(text);

@@ -9,8 +9,8 @@
 #include "generator/drive.h"
 #include "generator/info_law.h"
 #include "generator/model.h"
+#include "generator/result_table.h"
 #include "generator/run.h"
-#include "runtime/result.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 
@@ -39,14 +39,15 @@ static int info_builtins(void) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
-static void print_history(result_file *f, const char *name) {
-  char unit_text[64] = "", error[1024];
+/* False after a message. */
+static bool print_history(result_file *f, const char *name) {
+  char unit_text[64] = "", error[2048];
   long count = 0;
   double *v = result_read_series(f, name, &count, unit_text, sizeof unit_text, error, sizeof error);
-  if (!v) fprintf(stderr, "perilat: warning: %s\n", error);
+  if (!v) fprintf(stderr, "perilat: error: %s\n", error);
   if (!v || count == 0) {
     free(v);
-    return;
+    return v != NULL;
   }
   double low = v[0], high = v[0];
   for (long k = 0; k < count; k++) {
@@ -55,46 +56,51 @@ static void print_history(result_file *f, const char *name) {
   }
   char why[256];
   result_read_unchecked(f, name, why, sizeof why);
-  if (*why) {
+  if (*why)
     printf("  %-26s %-6s not checked: %s\n", name, unit_text, why);
-    free(v);
-    return;
-  }
-  printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
-         v[count - 1] + 0.0); /* no minus before zeros */
+  else /* no minus before zeros */
+    printf("  %-26s %-6s from %.6g to %.6g, last %.6g\n", name, unit_text, low + 0.0, high + 0.0,
+           v[count - 1] + 0.0);
   free(v);
+  return true;
+}
+
+/* False after a message. */
+static bool print_sizes(result_file *f, const char *path) {
+  long particles = 0, bonds = 0, frames = 0;
+  int dimensions;
+  double *places = result_read_reference(f, &particles, &dimensions);
+  const bool placed = places != NULL;
+  free(places);
+  free(result_read_bonds(f, NULL, &bonds));
+  free(result_read_frame_times(f, &frames));
+  if (placed)
+    printf("%s: %ld particles%s, %ld bonds, %ld frames\n", path, particles,
+           dimensions == 3 ? " in space" : "", bonds, frames);
+  else
+    fprintf(stderr, "perilat: error: `%s` does not say where its particles are\n", path);
+  return placed;
 }
 
 static int info_result(const char *path) {
-  char error[1024];
-  result_file *f = result_read(path, error, sizeof error);
-  if (!f) {
-    fprintf(stderr, "perilat: error: %s\n", error);
-    return 1;
-  }
-  long particles = 0, bonds = 0, frames = 0;
-  int dimensions;
-  free(result_read_reference(f, &particles, &dimensions));
-  free(result_read_bonds(f, NULL, &bonds));
-  free(result_read_frame_times(f, &frames));
-  printf("%s: %ld particles%s, %ld bonds, %ld frames\n", path, particles,
-         dimensions == 3 ? " in space" : "", bonds, frames);
+  result_file *f = table_open("perilat info", path);
+  if (!f) return 1;
+  bool good = print_sizes(f, path);
   char *overrides = result_read_text(f, "/input/set");
   if (overrides) printf("Set on the command line:\n%s", overrides);
   free(overrides);
   puts("Histories:");
-  print_history(f, "time");
+  good = print_history(f, "time") && good;
   result_names histories = result_members(f, "/history"), fields = result_members(f, "/frames");
   for (int k = 0; k < histories.count; k++)
-    print_history(f, histories.items[k]);
+    good = print_history(f, histories.items[k]) && good;
   printf("Frames hold:");
   for (int k = 0; k < fields.count; k++)
     printf("%s %s", k ? "," : "", fields.items[k]);
   puts(fields.count ? "" : " nothing");
   result_names_free(&histories);
   result_names_free(&fields);
-  result_read_close(f);
-  return 0;
+  return table_close(f, good) ? 0 : 1;
 }
 
 typedef struct info_options {

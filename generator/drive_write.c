@@ -12,6 +12,7 @@
 #include "generator/version.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/plot.h"
+#include "runtime/sealed_file.h"
 #include "runtime/whole_file.h"
 
 static bool is_pure(const char *unit_text) {
@@ -222,10 +223,10 @@ static bool cannot_write(const char *path, char *error, size_t size) {
 
 bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size) {
   whole_file whole;
-  if (!whole_file_begin(&whole, path)) return cannot_write(path, error, size);
-  FILE *out = fopen(whole.working, "w");
-  bool good = out && write_rows(t, out);
-  good = out && fclose(out) == 0 && good;
+  FILE *out = whole_file_open(&whole, path);
+  if (!out) return cannot_write(path, error, size);
+  bool good = write_rows(t, out);
+  good = fclose(out) == 0 && good;
   return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 
@@ -262,9 +263,9 @@ bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *p
   if (!whole_file_begin(&whole, path)) return cannot_write(path, error, size);
   h5_quiet();
   errno = 0;
-  hid_t file = h5_create(whole.working);
+  const hid_t file = sealed_file_create(whole.working);
   bool good = file >= 0 && write_file(in, t, file);
-  good = file >= 0 && H5Fclose(file) >= 0 && good;
+  good = file >= 0 && sealed_file_close(file, whole.working) && good;
   return whole_file_end(&whole, good) || cannot_write(path, error, size);
 }
 

@@ -1,6 +1,7 @@
 #include "generator/model.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -9,28 +10,23 @@
 #include "dsl/parse.h"
 #include "generator/emit.h"
 #include "runtime/clock.h"
+#include "runtime/ordinary_file.h"
 
 #define MODEL_LIMIT ((size_t)1 << 20)
 #define PATH_LIMIT  4096
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
   struct stat about;
-  if (stat(path, &about) != 0) {
-    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
-    return NULL;
-  }
-  if (!S_ISREG(about.st_mode)) {
-    snprintf(error, size, "cannot read `%s`: it is %s", path,
-             S_ISDIR(about.st_mode) ? "a folder" : "not a file");
+  const char *why = NULL;
+  const int file = ordinary_file_open(path, O_RDONLY, &why);
+  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
+  if (!in || fstat(file, &about) != 0) {
+    snprintf(error, size, "cannot read `%s`: %s", path, why ? why : strerror(errno));
     return NULL;
   }
   if ((size_t)about.st_size > limit) {
     snprintf(error, size, "cannot read `%s`: it is longer than %zu MiB", path, limit >> 20);
-    return NULL;
-  }
-  FILE *in = fopen(path, "rb");
-  if (!in) {
-    snprintf(error, size, "cannot read `%s`: %s", path, strerror(errno));
+    fclose(in);
     return NULL;
   }
   char *text = must_alloc((size_t)about.st_size + 1);
@@ -65,8 +61,9 @@ static file_kind kind_of_text(const char *text) {
 static file_kind kind_by_content(const char *path) {
   static const char signature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
   char head[65536];
-  struct stat about;
-  FILE *in = stat(path, &about) == 0 && S_ISREG(about.st_mode) ? fopen(path, "rb") : NULL;
+  const char *why;
+  const int file = ordinary_file_open(path, O_RDONLY, &why);
+  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
   if (!in) return FILE_UNKNOWN;
   size_t n = fread(head, 1, sizeof head - 1, in);
   fclose(in);

@@ -13,6 +13,14 @@ result_file *table_open(const char *command, const char *path) {
   return f;
 }
 
+bool table_close(result_file *f, bool good) {
+  const char *trouble = result_trouble(f);
+  if (good && trouble) fprintf(stderr, "perilat: error: %s\n", trouble);
+  good = good && !trouble;
+  result_read_close(f);
+  return good;
+}
+
 bool table_read(result_file *f, const char *name, long frame, table_values *out, char *error,
                 size_t size) {
   *out = (table_values){.name = name, .components = 1};

@@ -7,6 +7,9 @@
 
 /* NULL after a message. `command` as the person typed it, "perilat export". */
 result_file *table_open(const char *command, const char *path);
+/* What is `good` so far is so no longer, after a message, when something in the result could not be
+   read. */
+bool table_close(result_file *f, bool good);
 
 /* A history, or a field of one frame. */
 typedef struct table_values {

@@ -170,17 +170,35 @@ static step_status march(run *r, bool *written) {
   return status;
 }
 
-/* What could not be written: what there is stays for --resume when a checkpoint can be written, and goes otherwise. */
+/* What could not be written: what the last checkpoint needs stays. */
 static void give_up_writing(run *r, step_status status) {
-  if (status != STEP_BAD && write_checkpoint(r)) {
-    fputs("  the run is kept in its checkpoint: make room, then go on with --resume:\n", stderr);
+  char text[MOMENT_TEXT];
+  if (status != STEP_BAD) write_checkpoint(r);
+  if (can_go_on(r)) {
+    fprintf(stderr,
+            "  the run is kept in its checkpoint at %s: make room, then go on with --resume:\n",
+            moment(r, r->kept_time, text));
     print_resume(r, stderr);
-  } else
+  } else if (!r->is_kept)
     result_discard(r->result);
 }
 
-static int execute(run *r, long resume_frames) {
-  if (!open_result(r, resume_frames)) return resume_frames >= 0 ? INPUT_WRONG : RUN_FAILED;
+/* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
+static int end_stopped(const run *r, bool saved) {
+  char now[MOMENT_TEXT], kept[MOMENT_TEXT];
+  printf("stopped at %s as asked; ", moment(r, simulation_time(r->simulation), now));
+  if (saved)
+    puts("this goes on from here:");
+  else if (r->is_kept)
+    printf("its last checkpoint is that at %s, and this goes on from there:\n",
+           moment(r, r->kept_time, kept));
+  else
+    puts("it has no checkpoint and cannot go on");
+  if (r->is_kept) print_resume(r, stdout);
+  return saved ? 128 + interrupted : RUN_FAILED;
+}
+
+static int execute(run *r) {
   struct sigaction before[STOPPING_SIGNALS];
   catch_signals(before);
   long first = simulation_step_done(r->simulation);
@@ -189,55 +207,19 @@ static int execute(run *r, long resume_frames) {
   if (r->options->profile) simulation_measure(r->simulation, &r->profile);
   step_status status = march(r, &written);
   double seconds = monotonic_seconds() - begun;
-  bool stopped_by_user = interrupted && status == STEP_OK;
-  if (stopped_by_user && written) write_checkpoint(r);
+  const bool stopped_by_user = interrupted && status == STEP_OK;
+  const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
-  written = written && finish_result(r, stopped_by_user);
+  written = written && finish_result(r);
   if (!written) give_up_writing(r, status);
+  if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
   release_signals(before);
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
-  if (stopped_by_user) {
-    char text[MOMENT_TEXT];
-    printf("stopped at %s as asked; this goes on from here:\n",
-           moment(r, simulation_time(r->simulation), text));
-    print_resume(r, stdout);
-    return 128 + interrupted;
-  }
-  unlink(r->checkpoint_path);
+  if (stopped_by_user) return end_stopped(r, saved);
   return status == STEP_BAD ? RUN_FAILED : 0;
-}
-
-static bool resume(run *r, long *frames) {
-  char error[ERROR_LENGTH];
-  if (simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, frames, error,
-                         sizeof error)) {
-    char text[MOMENT_TEXT];
-    printf("resumed at %s (step %ld)\n", moment(r, simulation_time(r->simulation), text),
-           simulation_step_done(r->simulation));
-    fflush(stdout);
-    return true;
-  }
-  if (access(r->checkpoint_path, F_OK) != 0)
-    fprintf(stderr,
-            "perilat: error: cannot resume: there is no checkpoint `%s`\n"
-            "  a run leaves one when it is stopped or killed; run without --resume\n",
-            r->checkpoint_path);
-  else {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
-    print_misfit(r);
-  }
-  return false;
-}
-
-static void warn_of_checkpoint(const run *r) {
-  if (access(r->checkpoint_path, F_OK) == 0)
-    fprintf(stderr,
-            "perilat: warning: this run starts anew; `%s` of an earlier one is given up (--resume "
-            "goes on from it)\n",
-            r->checkpoint_path);
 }
 
 /* --check-kernel: every compiled kernel against the interpreter, with the deck's parameters. */
@@ -267,12 +249,23 @@ static bool check_kernels(const run *r) {
   return good;
 }
 
+/* Before the frames are looked for, which would not be there either. */
+static bool has_checkpoint(const run *r) {
+  if (access(r->checkpoint_path, F_OK) == 0) return true;
+  fprintf(stderr,
+          "perilat: error: cannot resume: there is no checkpoint `%s`\n"
+          "  a run leaves one when it is stopped or killed; run without --resume\n",
+          r->checkpoint_path);
+  return false;
+}
+
 static int start(run *r) {
-  long frames = -1;
+  const bool resumes = r->options->resume;
+  const int failed = resumes ? INPUT_WRONG : RUN_FAILED;
   if (r->options->check_kernel && !check_kernels(r)) return RUN_FAILED;
-  if (r->options->resume && !resume(r, &frames)) return INPUT_WRONG;
-  if (!r->options->resume) warn_of_checkpoint(r);
-  return execute(r, frames);
+  if (resumes && !has_checkpoint(r)) return INPUT_WRONG;
+  if (!open_result(r) || !(resumes ? resume(r) : begin_anew(r))) return failed;
+  return execute(r);
 }
 
 int run_deck(const run_options *o) {

@@ -25,6 +25,8 @@ typedef struct run {
   result *result;
   char *result_path, *checkpoint_path;
   const char *fingerprint;
+  bool is_kept;     /* a checkpoint of this run stands, */
+  double kept_time; /* s: of this moment */
   char started[32];
   double *frame_buffer;
   profile profile; /* with --profile */
@@ -46,10 +48,19 @@ bool result_can_be_written(run *r);
 bool result_spares_inputs(run *r);
 /* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line each. */
 void fingerprint(run *r);
-bool open_result(run *r, long resume_frames);
+/* Takes the result for this run alone; nothing is changed yet. */
+bool open_result(run *r);
+/* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts
+   on. */
+bool begin_anew(run *r);
+bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-bool finish_result(run *r, bool keep_working);
+bool finish_result(run *r);
+/* When what has been written is complete: no checkpoint, no frames beside the result. */
+void remove_remains(run *r);
+/* A checkpoint stands, and the frames that it counts on. */
+bool can_go_on(const run *r);
 
 /* --- run_report.c --- */
 

@@ -421,7 +421,7 @@ void conclude(const run *r, double seconds, long steps) {
   conclude_energy(r);
   fflush(stdout);
   warn_of_gain(r);
-  long frames = result_frame_count(r->result);
+  long frames = (long)result_mark(r->result).count;
   printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
          frames == 1 ? "" : "s");
 }

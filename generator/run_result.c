@@ -10,6 +10,7 @@
 #include "generator/run_parts.h"
 #include "generator/version.h"
 #include "runtime/shape_matrix.h"
+#include "runtime/whole_file.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 
@@ -32,27 +33,43 @@ void choose_paths(run *r) {
   if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode)) chosen = path;
   r->result_path = arena_text(r->memory, chosen, strlen(chosen));
   free(target);
-  r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", path);
+  r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", r->result_path);
+}
+
+/* What is in the way of a file that is to be put there; NULL: nothing. */
+static const char *obstacle(const char *path) {
+  struct stat about;
+  if (lstat(path, &about) != 0) return NULL;
+  if (S_ISDIR(about.st_mode)) return "a folder";
+  if (S_ISLNK(about.st_mode)) return "a link";
+  if (!S_ISREG(about.st_mode)) return "not an ordinary file";
+  return about.st_mode & 0222 ? NULL : "protected against writing";
+}
+
+/* The longest of the names beside the result. */
+static bool has_room(const run *r) {
+  whole_file probe;
+  const bool room = whole_file_begin(&probe, r->checkpoint_path);
+  if (room) whole_file_end(&probe, false);
+  return room;
 }
 
 /* Hours of computing must not end in a path that cannot be written. */
 bool result_can_be_written(run *r) {
   const span where = deck_where(&r->deck->output.item, "result");
-  struct stat about;
-  char folder[4096];
+  char sidecar[WHOLE_FILE_PATH];
+  result_sidecar(r->result_path, sidecar, sizeof sidecar);
   const char *slash = strrchr(r->result_path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - r->result_path) + 1 : 1,
-           slash ? r->result_path : ".");
-  bool exists = stat(r->result_path, &about) == 0;
-  if (exists && !S_ISREG(about.st_mode))
+  const int folder = slash ? (int)(slash - r->result_path) + 1 : 0;
+  if (obstacle(r->result_path))
     diag_report(&r->said, DIAG_FILE, where, "the result `%s` is %s", r->result_path,
-                S_ISDIR(about.st_mode) ? "a folder" : "not an ordinary file");
-  else if (exists && !(about.st_mode & 0222))
-    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is protected against writing",
-                r->result_path);
-  else if (access(folder, W_OK | X_OK) != 0)
-    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%s`: %s",
-                folder, strerror(errno));
+                obstacle(r->result_path));
+  else if (obstacle(sidecar))
+    diag_report(&r->said, DIAG_FILE, where, "`%s`, which belongs to the result, is %s", sidecar,
+                obstacle(sidecar));
+  else if (!has_room(r))
+    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%.*s`: %s",
+                folder > 0 ? folder : 1, folder > 0 ? r->result_path : ".", strerror(errno));
   else
     return true;
   diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
@@ -168,8 +185,9 @@ static char *list_overrides(run *r) {
   return text;
 }
 
-bool open_result(run *r, long resume_frames) {
+bool open_result(run *r) {
   result_header h = {.path = r->result_path,
+                     .fingerprint = r->fingerprint,
                      .title = r->deck->simulation.title ? r->deck->simulation.title : "",
                      .started = r->started,
                      .version = perilat_version,
@@ -182,13 +200,65 @@ bool open_result(run *r, long resume_frames) {
   particle_table(r, simulation_rows(r->simulation, 0), &h);
   frame_table(r, &h, h.interaction);
   char error[ERROR_LENGTH];
-  r->result = result_open(&h, resume_frames, error, sizeof error);
-  if (!r->result) fprintf(stderr, "perilat: error: %s\n", error);
+  r->result = result_open(&h, r->options->resume, error, sizeof error);
+  if (!r->result) {
+    fprintf(stderr, "perilat: error: %s\n", error);
+    return false;
+  }
+  whole_file_clear(r->checkpoint_path);
   size_t total = 0;
   for (int k = 0; k < h.field_count; k++)
     total += (size_t)(h.fields[k].count * h.fields[k].components);
   r->frame_buffer = must_alloc((total + 1) * sizeof(double));
-  return r->result != NULL;
+  return true;
+}
+
+/* Its frames are about to go. */
+static bool give_up_checkpoint(const run *r) {
+  if (unlink(r->checkpoint_path) == 0)
+    fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up\n",
+            r->checkpoint_path);
+  else if (errno != ENOENT) {
+    fprintf(stderr, "perilat: error: cannot remove `%s` of an earlier run: %s\n",
+            r->checkpoint_path, strerror(errno));
+    return false;
+  }
+  return true;
+}
+
+bool begin_anew(run *r) {
+  char error[ERROR_LENGTH];
+  if (!give_up_checkpoint(r)) return false;
+  if (result_begin(r->result, error, sizeof error)) return true;
+  fprintf(stderr, "perilat: error: %s\n", error);
+  result_discard(r->result);
+  return false;
+}
+
+static void keep(run *r) {
+  r->is_kept = true;
+  r->kept_time = simulation_time(r->simulation);
+}
+
+bool resume(run *r) {
+  char error[ERROR_LENGTH];
+  frame_mark frames;
+  if (!simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
+                          sizeof error)) {
+    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    print_misfit(r);
+    return false;
+  }
+  if (!result_resume(r->result, &frames, error, sizeof error)) {
+    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    return false;
+  }
+  char text[MOMENT_TEXT];
+  printf("resumed at %s (step %ld)\n", moment(r, simulation_time(r->simulation), text),
+         simulation_step_done(r->simulation));
+  fflush(stdout);
+  keep(r);
+  return true;
 }
 
 bool write_frame(run *r) {
@@ -214,14 +284,28 @@ bool write_frame(run *r) {
 
 bool write_checkpoint(run *r) {
   char error[ERROR_LENGTH];
+  const frame_mark frames = result_mark(r->result);
   bool good = result_sync(r->result, error, sizeof error) &&
-              simulation_save(r->simulation, r->checkpoint_path, r->fingerprint,
-                              result_frame_count(r->result), error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
+              simulation_save(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
+                              sizeof error);
+  if (good)
+    keep(r);
+  else
+    fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
   return good;
 }
 
-bool finish_result(run *r, bool keep_working) {
+bool can_go_on(const run *r) {
+  return r->is_kept && result_frames_hold(r->result);
+}
+
+/* The frames go last: the lock on them is on the checkpoint, too. */
+void remove_remains(run *r) {
+  unlink(r->checkpoint_path);
+  result_discard(r->result);
+}
+
+bool finish_result(run *r) {
   int count = simulation_series_count(r->simulation);
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
   for (int k = 0; k < count; k++)
@@ -235,7 +319,7 @@ bool finish_result(run *r, bool keep_working) {
   char error[ERROR_LENGTH];
   bool good = result_finish(r->result, simulation_step_limit(r->simulation)->step,
                             simulation_step_done(r->simulation), time, samples, series, count,
-                            keep_working, error, sizeof error);
+                            error, sizeof error);
   if (!good) fprintf(stderr, "perilat: error: %s\n", error);
   return good;
 }

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
-#include "generator/sha256.h"
+#include "dsl/sha256.h"
 
 extern char **environ;
 
@@ -419,7 +419,6 @@ char *toolchain_key(const char *text) {
   read_processor(here, sizeof here);
   const uint64_t layout[] = {PL_KERNEL_ABI, sizeof(pl_law), sizeof(pl_strip),
                              sizeof(pl_bond_class)};
-  unsigned char digest[SHA256_SIZE];
   sha256 h;
   sha256_begin(&h);
   add_text(&h, text);
@@ -429,10 +428,8 @@ char *toolchain_key(const char *text) {
   add_text(&h, toolchain_flags());
   add_text(&h, here);
   sha256_add(&h, layout, sizeof layout);
-  sha256_end(&h, digest);
-  char *key = must_alloc(2 * SHA256_SIZE + 1);
-  for (int k = 0; k < SHA256_SIZE; k++)
-    snprintf(key + 2 * k, 3, "%02x", digest[k]);
+  char *key = must_alloc(SHA256_TEXT);
+  sha256_text(&h, key);
   return key;
 }
 

@@ -31,7 +31,7 @@ bool canvas_open(canvas *c, const char *path, double width, double height, char 
     snprintf(error, size, "a picture's name ends in .png, .svg or .pdf; `%s` does not", path);
     return false;
   }
-  c->file = whole_file_begin(&c->place, path) ? fopen(c->place.working, "wb") : NULL;
+  c->file = whole_file_open(&c->place, path);
   if (!c->file) {
     snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
     return false;

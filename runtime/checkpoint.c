@@ -2,17 +2,17 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <libgen.h>
 #include <stdint.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "dsl/arena.h"
 #include "dsl/hash.h"
+#include "runtime/ordinary_file.h"
+#include "runtime/whole_file.h"
 
-static const char magic[8] = "PLATCKP1"; /* the digit is the version of the layout */
+static const char magic[8] = "PLATCKP2"; /* the digit is the version of the layout */
 
 typedef struct stream { /* a file and the checksum of what has passed */
   FILE *file;
@@ -52,42 +52,25 @@ static bool put_all(stream *s, const char *fingerprint, const checkpoint_part *p
   return good && put(s, &sum, sizeof sum);
 }
 
-/* A rename is on the disk only when its folder is. The file is whole under its name by now, and
-   some file systems cannot sync folders: that this fails is no failure of the checkpoint. */
-static void sync_folder(const char *path) {
-  char *copy = must_alloc(strlen(path) + 1);
-  strcpy(copy, path);
-  const int folder = open(dirname(copy), O_RDONLY | O_DIRECTORY);
-  free(copy);
-  if (folder < 0) return;
-  (void)fsync(folder);
-  close(folder);
-}
-
-static bool write_temporary(stream *s, const char *fingerprint, const checkpoint_part *parts,
-                            int count) {
+static bool write_working(stream *s, const char *fingerprint, const checkpoint_part *parts,
+                          int count) {
   s->file = fopen(s->path, "wb");
   if (!s->file) return fail(s, strerror(errno));
   bool good = put_all(s, fingerprint, parts, count);
-  if (good && (fflush(s->file) != 0 || fsync(fileno(s->file)) != 0))
-    good = fail(s, strerror(errno));
+  if (good && fflush(s->file) != 0) good = fail(s, strerror(errno));
   if (fclose(s->file) != 0 && good) good = fail(s, strerror(errno));
   return good;
 }
 
 bool checkpoint_write(const char *path, const char *fingerprint, const checkpoint_part *parts,
                       int count, char *error, size_t size) {
-  char *temporary = must_alloc(strlen(path) + 5);
-  sprintf(temporary, "%s.tmp", path);
-  stream s = {.path = temporary, .sum = HASH_START, .error = error, .error_size = size};
-  bool good = write_temporary(&s, fingerprint, parts, count);
-  if (good && rename(temporary, path) != 0) good = fail(&s, strerror(errno));
-  if (good)
-    sync_folder(path);
-  else
-    remove(temporary);
-  free(temporary);
-  return good;
+  whole_file whole;
+  stream s = {.path = path, .sum = HASH_START, .error = error, .error_size = size};
+  if (!whole_file_begin(&whole, path)) return fail(&s, strerror(errno));
+  s.path = whole.working;
+  const bool good = write_working(&s, fingerprint, parts, count);
+  s.path = path;
+  return whole_file_end_on_disk(&whole, good) || (good && fail(&s, strerror(errno)));
 }
 
 /* --- reading ---------------------------------------------------------------------------------- */
@@ -100,7 +83,10 @@ static bool get(stream *s, void *data, size_t bytes) {
 }
 
 static bool open_file(stream *s) {
-  s->file = fopen(s->path, "rb");
+  const char *why;
+  const int file = ordinary_file_open(s->path, O_RDONLY | O_NOFOLLOW, &why);
+  if (file < 0) return fail(s, why);
+  s->file = fdopen(file, "rb");
   return s->file || fail(s, strerror(errno));
 }
 

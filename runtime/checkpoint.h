@@ -1,6 +1,6 @@
-/* A checkpoint: named blocks of memory in one file that is either whole or not there. Written under
-   a temporary name, forced to the disk, renamed; the last eight bytes are a checksum of all before.
-   Bytes are those of this kind of machine: a checkpoint is for going on, not for keeping. */
+/* A checkpoint: named blocks of memory in one file that is either whole or not there
+   (whole_file.h), forced to the disk; the last eight bytes are a checksum of all before. Bytes are
+   those of this kind of machine: a checkpoint is for going on, not for keeping. */
 #ifndef PERILAT_RUNTIME_CHECKPOINT_H
 #define PERILAT_RUNTIME_CHECKPOINT_H
 

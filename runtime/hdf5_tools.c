@@ -1,10 +1,8 @@
 #include "runtime/hdf5_tools.h"
 
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 #include "dsl/arena.h"
 
@@ -13,6 +11,7 @@
 void h5_quiet(void) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
+  H5PLset_loading_state(0); /* a file must not make the library load programs */
 }
 
 hid_t h5_create(const char *path) {
@@ -36,45 +35,10 @@ static hid_t text_type(size_t length) {
   return type;
 }
 
-/* Texts of variable length lie in heaps without checksums, and a damaged heap makes the library crash or hang. So a
-   text attribute has a twin that our own reader looks at first: a line "name=text" of the object's comment, which the
-   checksum of the object's header covers. */
-static bool add_to_comment(hid_t object, const char *name, const char *text) {
-  const size_t most = 4096; /* a header has no room for much more than ten times that */
-  if (strchr(text, '\n') || strlen(text) > most) return true; /* only in the attribute */
-  const ssize_t before = H5Oget_comment(object, NULL, 0);
-  const size_t used = before > 0 ? (size_t)before : 0,
-               size = used + strlen(name) + strlen(text) + 3;
-  char *comment = must_calloc(size, 1);
-  if (used) H5Oget_comment(object, comment, used + 1);
-  snprintf(comment + used, size - used, "%s=%s\n", name, text);
-  const bool good = H5Oset_comment(object, comment) >= 0;
-  free(comment);
-  return good;
-}
-
-/* The twin of a text attribute; false when there is none. */
-static bool read_comment(hid_t object, const char *name, char *text, size_t size) {
-  const ssize_t length = H5Oget_comment(object, NULL, 0);
-  if (length <= 0) return false;
-  char *comment = must_calloc((size_t)length + 1, 1), *rest = NULL;
-  H5Oget_comment(object, comment, (size_t)length + 1);
-  const size_t n = strlen(name);
-  bool found = false;
-  for (char *line = strtok_r(comment, "\n", &rest); line && !found;
-       line = strtok_r(NULL, "\n", &rest))
-    if (strncmp(line, name, n) == 0 && line[n] == '=') {
-      snprintf(text, size, "%s", line + n + 1);
-      found = true;
-    }
-  free(comment);
-  return found;
-}
-
 bool h5_attribute_text(hid_t object, const char *name, const char *text) {
   hid_t type = text_type(H5T_VARIABLE), space = H5Screate(H5S_SCALAR);
   hid_t a = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-  bool good = a >= 0 && H5Awrite(a, type, &text) >= 0 && add_to_comment(object, name, text);
+  bool good = a >= 0 && H5Awrite(a, type, &text) >= 0;
   if (a >= 0) H5Aclose(a);
   H5Sclose(space);
   H5Tclose(type);
@@ -99,19 +63,49 @@ bool h5_attribute_integer(hid_t object, const char *name, int64_t value) {
   return attribute_number(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
 }
 
-static bool write_set(hid_t file, const char *name, hid_t stored, hid_t native, const void *values,
-                      int rank, const hsize_t *shape, const char *unit_text) {
-  hid_t space = H5Screate_simple(rank, shape, NULL);
-  hid_t set = H5Dcreate2(file, name, stored, space, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+/* As many values as half a megabyte holds, of whole rows and frames where these are smaller. */
+static void choose_chunk(int rank, const hsize_t *shape, hsize_t *chunk) {
+  hsize_t left = (hsize_t)1 << 16;
+  for (int k = rank - 1; k >= 0; k--) {
+    chunk[k] = shape[k] < left ? shape[k] : left;
+    left = left / chunk[k] > 0 ? left / chunk[k] : 1;
+  }
+}
+
+static bool is_empty(int rank, const hsize_t *shape) {
   bool empty = false;
   for (int k = 0; k < rank; k++)
     empty = empty || shape[k] == 0;
-  bool good = set >= 0 &&
-              (empty || H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0) &&
-              (!unit_text || h5_attribute_text(set, "units", unit_text));
-  if (set >= 0) good = H5Dclose(set) >= 0 && good;
+  return empty;
+}
+
+static hid_t make_set(hid_t file, const char *name, hid_t stored, int rank, const hsize_t *shape,
+                      const char *unit_text) {
+  enum { LEVEL = 4 };
+  hsize_t chunk[H5S_MAX_RANK];
+  hid_t space = H5Screate_simple(rank, shape, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
+  if (!is_empty(rank, shape)) {
+    choose_chunk(rank, shape, chunk);
+    H5Pset_chunk(creation, rank, chunk);
+    H5Pset_shuffle(creation);
+    H5Pset_deflate(creation, LEVEL);
+    H5Pset_fletcher32(creation);
+  }
+  hid_t set = H5Dcreate2(file, name, stored, space, H5P_DEFAULT, creation, H5P_DEFAULT);
+  H5Pclose(creation);
   H5Sclose(space);
-  return good;
+  if (set < 0 || !unit_text || h5_attribute_text(set, "units", unit_text)) return set;
+  H5Dclose(set);
+  return -1;
+}
+
+static bool write_set(hid_t file, const char *name, hid_t stored, hid_t native, const void *values,
+                      int rank, const hsize_t *shape, const char *unit_text) {
+  hid_t set = make_set(file, name, stored, rank, shape, unit_text);
+  if (set < 0) return false;
+  const bool good =
+      is_empty(rank, shape) || H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
+  return H5Dclose(set) >= 0 && good;
 }
 
 bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank,
@@ -135,21 +129,8 @@ bool h5_write_text(hid_t file, const char *name, const char *text) {
 }
 
 hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,
-                     const char *unit_text, int level) {
-  hid_t space = H5Screate_simple(rank, shape, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
-  hsize_t chunk[3] = {1, shape[1], rank > 2 ? shape[2] : 1};
-  const hsize_t most = (hsize_t)1 << 20; /* values a chunk */
-  if (chunk[1] > most) chunk[1] = most;
-  if (shape[0] > 0 && shape[1] > 0) {
-    H5Pset_chunk(creation, rank, chunk);
-    H5Pset_shuffle(creation);
-    H5Pset_deflate(creation, (unsigned)level);
-  }
-  hid_t set = H5Dcreate2(file, name, H5T_IEEE_F64LE, space, H5P_DEFAULT, creation, H5P_DEFAULT);
-  if (set >= 0) h5_attribute_text(set, "units", unit_text);
-  H5Pclose(creation);
-  H5Sclose(space);
-  return set;
+                     const char *unit_text) {
+  return make_set(file, name, H5T_IEEE_F64LE, rank, shape, unit_text);
 }
 
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values) {
@@ -165,7 +146,6 @@ bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const
 
 bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size) {
   text[0] = 0;
-  if (read_comment(object, name, text, size)) return true;
   if (H5Aexists(object, name) <= 0) return false;
   hid_t a = H5Aopen(object, name, H5P_DEFAULT);
   hid_t type = a >= 0 ? H5Aget_type(a) : -1;
@@ -211,17 +191,59 @@ char *h5_read_text(hid_t set) {
   return text;
 }
 
-bool sync_file(const char *path) {
-  int file = open(path, O_RDONLY);
-  bool good = file >= 0 && fsync(file) == 0;
-  if (file >= 0) close(file);
-  char folder[4096];
-  const char *slash = strrchr(path, '/');
-  snprintf(folder, sizeof folder, "%.*s", slash ? (int)(slash - path) : 1, slash ? path : ".");
-  int f = open(*folder ? folder : "/", O_RDONLY | O_DIRECTORY);
-  if (f >= 0) {
-    fsync(f); /* some file systems refuse to sync a folder; the file itself is safe */
-    close(f);
+/* --- what a file holds ------------------------------------------------------------------------ */
+
+typedef struct set_visit {
+  bool (*visit)(hid_t set, void *context);
+  void *context;
+} set_visit;
+
+static herr_t visit_link(hid_t root, const char *name, const H5L_info_t *link, void *data) {
+  const set_visit *v = data;
+  if (link->type != H5L_TYPE_HARD) return -1;
+  const hid_t object = H5Oopen(root, name, H5P_DEFAULT);
+  if (object < 0) return -1;
+  const bool good = H5Iget_type(object) != H5I_DATASET || v->visit(object, v->context);
+  H5Oclose(object);
+  return good ? 0 : -1;
+}
+
+bool h5_each_set(hid_t file, bool (*visit)(hid_t set, void *context), void *context) {
+  set_visit v = {visit, context};
+  return H5Lvisit(file, H5_INDEX_NAME, H5_ITER_NATIVE, visit_link, &v) >= 0;
+}
+
+/* Virtual sets of virtual sets might lead in a circle, in which the library does not end. */
+static bool is_plain(hid_t file, const char *name) {
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  const hid_t plist = set >= 0 ? H5Dget_create_plist(set) : -1;
+  const bool plain = plist >= 0 && H5Pget_layout(plist) != H5D_VIRTUAL;
+  if (plist >= 0) H5Pclose(plist);
+  if (set >= 0) H5Dclose(set);
+  return plain;
+}
+
+static bool maps_inside(hid_t file, hid_t plist) {
+  size_t count = 0;
+  bool good = H5Pget_virtual_count(plist, &count) >= 0;
+  for (size_t k = 0; good && k < count; k++) {
+    char from[3] = "", name[1024] = "";
+    H5Pget_virtual_filename(plist, k, from, sizeof from);
+    const ssize_t length = H5Pget_virtual_dsetname(plist, k, name, sizeof name);
+    good = strcmp(from, ".") == 0 && length > 0 && length < (ssize_t)sizeof name &&
+           is_plain(file, name);
   }
   return good;
+}
+
+static bool set_stays_inside(hid_t set, void *file) {
+  const hid_t plist = H5Dget_create_plist(set);
+  const bool good = plist >= 0 && H5Pget_external_count(plist) == 0 &&
+                    (H5Pget_layout(plist) != H5D_VIRTUAL || maps_inside(*(hid_t *)file, plist));
+  if (plist >= 0) H5Pclose(plist);
+  return good;
+}
+
+bool h5_stays_inside(hid_t file) {
+  return h5_each_set(file, set_stays_inside, &file);
 }

@@ -1,6 +1,7 @@
 #include "runtime/particle_table.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -13,6 +14,7 @@
 #include "dsl/elementary.h"
 #include "dsl/unit_hint.h"
 #include "dsl/units.h"
+#include "runtime/ordinary_file.h"
 #include "runtime/result.h"
 
 #define FARTHEST 1e30                 /* m, m^2, m^3: squares and cubes of sums are finite */
@@ -47,12 +49,14 @@ static bool is_result(const particle_table *t) {
 static bool load(const reader *r) {
   struct stat about;
   particle_table *t = r->table;
-  if (stat(t->path, &about) != 0) return refuse_file(r, strerror(errno));
-  if (!S_ISREG(about.st_mode))
-    return refuse_file(r, S_ISDIR(about.st_mode) ? "it is a folder" : "it is not a file");
-  if (about.st_size >= LONGEST) return refuse_file(r, "it is longer than 2 GiB");
-  FILE *in = fopen(t->path, "rb");
-  if (!in) return refuse_file(r, strerror(errno));
+  const char *why = NULL;
+  const int file = ordinary_file_open(t->path, O_RDONLY, &why);
+  FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
+  if (!in || fstat(file, &about) != 0) return refuse_file(r, why ? why : strerror(errno));
+  if (about.st_size >= LONGEST) {
+    fclose(in);
+    return refuse_file(r, "it is longer than 2 GiB");
+  }
   t->text = must_alloc((size_t)about.st_size + 1);
   t->length = fread(t->text, 1, (size_t)about.st_size, in);
   t->text[t->length] = 0;
@@ -369,7 +373,9 @@ static bool take_result(const reader *r, result_file *f) {
   double *reference = result_read_reference(f, &t->count, &dimensions);
   t->volume = result_read_volume(f, &volumes);
   bool good = false;
-  if (!reference || (t->volume && volumes != t->count))
+  if (result_trouble(f))
+    diag_report(r->d, DIAG_FILE, r->where, "%s", result_trouble(f));
+  else if (!reference || (t->volume && volumes != t->count))
     refuse_file(r, "its particles are damaged");
   else if (dimensions != t->dimensions)
     diag_report(r->d, DIAG_CONFLICT, r->where,

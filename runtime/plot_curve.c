@@ -346,6 +346,10 @@ static bool add_curves(curve_set *s, int from, char *error, size_t size) {
     good = read_curve(f, s->o->x, s->o->ys[y], c, x_unit, y_unit, error, size) &&
            units_fit(s, from, s->o->ys[y], x_unit, y_unit, error, size);
   }
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
+  }
   result_read_close(f);
   return good;
 }

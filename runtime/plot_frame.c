@@ -400,6 +400,10 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   result_file *f = result_read(path, error, size);
   if (!f) return false;
   bool good = read_frame(f, path, m, o, error, size);
+  if (result_trouble(f)) {
+    snprintf(error, size, "%s", result_trouble(f));
+    good = false;
+  }
   result_read_close(f);
   if (good && m->dimensions == 2 && o->slice_axis >= 0) {
     snprintf(error, size, "a slice is cut out of a body in space; this one is in the plane");

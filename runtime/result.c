@@ -1,159 +1,83 @@
 #include "runtime/result.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "dsl/arena.h"
 #include "runtime/hdf5_tools.h"
+#include "runtime/sealed_file.h"
+#include "runtime/whole_file.h"
 #include "runtime/xdmf.h"
-
-#define FRAMES_MAGIC "perilat frames 1\n"
-enum { MAGIC_LENGTH = sizeof FRAMES_MAGIC - 1, COMPRESSION_LEVEL = 4, PATH_LENGTH = 4096 };
 
 struct result {
   result_header header;
-  char path[PATH_LENGTH], working[PATH_LENGTH];
-  int file; /* working file: magic, record length, then records of time and all fields */
-  long frames;
-  size_t record; /* bytes of one frame */
+  frame_file *frames;
+  char *path; /* the header's */
 };
 
-static off_t frame_offset(const result *r, long frame) {
-  return (off_t)(MAGIC_LENGTH + sizeof(uint64_t) + (size_t)frame * r->record);
+/* --- frames while the run goes on ------------------------------------------------------------- */
+
+static size_t numbers_of(const result_field *f) {
+  return (size_t)f->count * (size_t)f->components;
 }
 
-static bool write_all(int file, const void *data, size_t size) {
-  const char *at = data;
-  while (size > 0) {
-    ssize_t n = write(file, at, size);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += n;
-    size -= (size_t)n;
-  }
-  return true;
-}
-
-static bool read_all(int file, void *data, size_t size, off_t offset) {
-  char *at = data;
-  while (size > 0) {
-    ssize_t n = pread(file, at, size, offset);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return false;
-    at += n;
-    offset += n;
-    size -= (size_t)n;
-  }
-  return true;
-}
-
-/* --- working file ----------------------------------------------------------------------------- */
-
-static bool start_working(result *r, char *error, size_t size) {
-  uint64_t record = r->record;
-  if (ftruncate(r->file, 0) == 0 && write_all(r->file, FRAMES_MAGIC, MAGIC_LENGTH) &&
-      write_all(r->file, &record, sizeof record))
-    return true;
-  snprintf(error, size, "cannot write `%s`: %s", r->working, strerror(errno));
-  return false;
-}
-
-static bool keep_working_frames(result *r, long frames, char *error, size_t size) {
-  char magic[MAGIC_LENGTH];
-  uint64_t record = 0;
-  off_t end = frame_offset(r, frames);
-  if (!read_all(r->file, magic, MAGIC_LENGTH, 0) ||
-      memcmp(magic, FRAMES_MAGIC, MAGIC_LENGTH) != 0 ||
-      !read_all(r->file, &record, sizeof record, MAGIC_LENGTH) || record != r->record) {
-    snprintf(error, size, "`%s` does not hold the frames of the run to be resumed", r->working);
-    return false;
-  }
-  if (lseek(r->file, 0, SEEK_END) < end) {
-    snprintf(error, size, "`%s` holds fewer than the %ld frames that the checkpoint counts on",
-             r->working, frames);
-    return false;
-  }
-  r->frames = frames;
-  if (ftruncate(r->file, end) == 0 && lseek(r->file, end, SEEK_SET) == end) return true;
-  snprintf(error, size, "cannot write `%s`: %s", r->working, strerror(errno));
-  return false;
-}
-
-static bool lock_working(result *r, char *error, size_t size) {
-  if (flock(r->file, LOCK_EX | LOCK_NB) == 0) return true;
-  snprintf(error, size,
-           "another run is writing `%s`; wait for it, or give `result` another name in &output",
-           r->path);
-  return false;
-}
-
-result *result_open(const result_header *header, long resume_frames, char *error, size_t size) {
-  result *r = must_calloc(1, sizeof *r);
-  r->header = *header;
-  if (snprintf(r->path, sizeof r->path, "%s", header->path) >= PATH_LENGTH - 16) {
-    snprintf(error, size, "the result's path is too long");
-    free(r);
-    return NULL;
-  }
-  snprintf(r->working, sizeof r->working, "%.4080s.frames", header->path);
-  r->header.path = r->path;
-  r->record = sizeof(double);
+result *result_open(const result_header *header, bool resume, char *error, size_t size) {
+  size_t numbers = 1; /* the time */
   for (int k = 0; k < header->field_count; k++)
-    r->record +=
-        sizeof(double) * (size_t)header->fields[k].count * (size_t)header->fields[k].components;
-  r->file = open(r->working, resume_frames >= 0 ? O_RDWR : O_RDWR | O_CREAT, 0666);
-  if (r->file < 0) {
-    snprintf(error, size, "cannot %s: `%s`: %s", resume_frames >= 0 ? "resume" : "write the result",
-             r->working, strerror(errno));
-    free(r);
-    return NULL;
-  }
-  bool locked = lock_working(r, error, size);
-  if (locked && (resume_frames >= 0 ? keep_working_frames(r, resume_frames, error, size)
-                                    : start_working(r, error, size)))
-    return r;
-  if (locked && resume_frames < 0) unlink(r->working);
-  close(r->file);
-  free(r);
-  return NULL;
+    numbers += numbers_of(&header->fields[k]);
+  frame_file *frames =
+      frame_file_open(header->path, header->fingerprint, numbers, resume, error, size);
+  if (!frames) return NULL;
+  char sidecar[WHOLE_FILE_PATH];
+  result_sidecar(header->path, sidecar, sizeof sidecar);
+  whole_file_clear(header->path);
+  whole_file_clear(sidecar);
+  result *r = must_calloc(1, sizeof *r);
+  *r = (result){*header, frames, must_alloc(strlen(header->path) + 1)};
+  r->header.path = strcpy(r->path, header->path);
+  return r;
+}
+
+bool result_begin(result *r, char *error, size_t size) {
+  return frame_file_begin(r->frames, error, size);
+}
+
+bool result_resume(result *r, const frame_mark *mark, char *error, size_t size) {
+  return frame_file_resume(r->frames, mark, error, size);
 }
 
 bool result_frame(result *r, double time, const double *const *values, char *error, size_t size) {
-  bool good = write_all(r->file, &time, sizeof time);
-  for (int k = 0; good && k < r->header.field_count; k++) {
-    const result_field *f = &r->header.fields[k];
-    good = write_all(r->file, values[k], sizeof(double) * (size_t)f->count * (size_t)f->components);
+  double *at = frame_file_record(r->frames);
+  *at++ = time;
+  for (int k = 0; k < r->header.field_count; k++) {
+    const size_t numbers = numbers_of(&r->header.fields[k]);
+    if (numbers) memcpy(at, values[k], numbers * sizeof *at);
+    at += numbers;
   }
-  if (good) {
-    r->frames++;
-    return true;
-  }
-  snprintf(error, size, "cannot write a frame to `%s`: %s", r->working, strerror(errno));
-  if (ftruncate(r->file, frame_offset(r, r->frames)) == 0) /* drop the part that was written */
-    lseek(r->file, frame_offset(r, r->frames), SEEK_SET);
-  return false;
+  return frame_file_add(r->frames, error, size);
 }
 
-long result_frame_count(const result *r) {
-  return r->frames;
+frame_mark result_mark(const result *r) {
+  return frame_file_mark(r->frames);
+}
+
+bool result_frames_hold(const result *r) {
+  char unsaid[512];
+  return frame_file_each(r->frames, NULL, NULL, unsaid, sizeof unsaid);
 }
 
 bool result_sync(result *r, char *error, size_t size) {
-  if (fsync(r->file) == 0) return true;
-  snprintf(error, size, "cannot write `%s` to the disk: %s", r->working, strerror(errno));
-  return false;
+  return frame_file_sync(r->frames, error, size);
 }
 
 void result_discard(result *r) {
-  unlink(r->working);
+  frame_file_remove(r->frames);
 }
 
 void result_close(result *r) {
-  close(r->file);
+  frame_file_close(r->frames);
+  free(r->path);
   free(r);
 }
 
@@ -213,46 +137,66 @@ static bool write_history(hid_t file, const double *time, long count, const resu
   return good;
 }
 
-/* One field of all frames, a frame at a time, out of the working file. `skip` bytes of a record stand before it. */
-static bool write_field(hid_t file, const result *r, const result_field *f, size_t skip,
-                        double *buffer) {
+/* The data sets of the fields, and the times of the frames, while frames are copied. */
+typedef struct frame_sets {
+  const result_header *header;
+  hid_t *sets; /* [field_count]; negative: could not be made */
+  double *times;
+  long count;
+} frame_sets;
+
+static int shape_of(const result_field *f, long frames, hsize_t shape[3]) {
+  shape[0] = (hsize_t)frames;
+  shape[1] = (hsize_t)f->count;
+  shape[2] = (hsize_t)f->components;
+  return f->interaction ? 2 : 3;
+}
+
+static hid_t make_field(hid_t file, const result_field *f, long frames) {
   char name[512];
-  if (f->interaction)
+  hsize_t shape[3];
+  snprintf(name, sizeof name, "/frames/%s", f->interaction ? f->interaction : f->name);
+  if (f->interaction) {
+    if (!h5_make_group(file, name)) return -1;
     snprintf(name, sizeof name, "/frames/%s/%s", f->interaction, f->name);
-  else
-    snprintf(name, sizeof name, "/frames/%s", f->name);
-  hsize_t shape[3] = {(hsize_t)r->frames, (hsize_t)f->count, (hsize_t)f->components};
-  hid_t set = h5_make_frames(file, name, f->interaction ? 2 : 3, shape, f->unit, COMPRESSION_LEVEL);
-  size_t bytes = sizeof(double) * (size_t)f->count * (size_t)f->components;
-  bool good = set >= 0 && h5_attribute_text(set, "kind", f->kind);
-  for (long frame = 0; good && frame < r->frames; frame++)
-    good = read_all(r->file, buffer, bytes, frame_offset(r, frame) + (off_t)skip) &&
-           h5_write_frame(set, frame, f->interaction ? 2 : 3, shape, buffer);
-  if (set >= 0) good = H5Dclose(set) >= 0 && good;
+  }
+  const int rank = shape_of(f, frames, shape);
+  const hid_t set = h5_make_frames(file, name, rank, shape, f->unit);
+  if (set < 0 || h5_attribute_text(set, "kind", f->kind)) return set;
+  H5Dclose(set);
+  return -1;
+}
+
+static bool put_frame(void *context, int64_t frame, const double *record) {
+  const frame_sets *s = context;
+  const double *values = record + 1;
+  bool good = true;
+  s->times[frame] = record[0];
+  for (int k = 0; good && k < s->header->field_count; k++) {
+    const result_field *f = &s->header->fields[k];
+    hsize_t shape[3];
+    const int rank = shape_of(f, s->count, shape);
+    good = s->sets[k] >= 0 && h5_write_frame(s->sets[k], (long)frame, rank, shape, values);
+    values += numbers_of(f);
+  }
   return good;
 }
 
-static bool write_frames(hid_t file, const result *r) {
-  const result_header *h = &r->header;
-  double *buffer = must_alloc(r->record);
-  double *times = must_calloc((size_t)r->frames + 1, sizeof *times);
+/* A damaged frame leaves a sentence in `error`, a full disk none. */
+static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error, size_t size) {
+  const int fields = r->header.field_count;
   bool good = h5_make_group(file, "/frames");
-  for (long frame = 0; good && frame < r->frames; frame++)
-    good = read_all(r->file, &times[frame], sizeof(double), frame_offset(r, frame));
-  hsize_t n[1] = {(hsize_t)r->frames};
-  good = good && h5_write_doubles(file, "/frames/time", times, 1, n, "s");
-  size_t skip = sizeof(double);
-  for (int k = 0; good && k < h->field_count; k++) {
-    char group[512];
-    snprintf(group, sizeof group, "/frames/%s",
-             h->fields[k].interaction ? h->fields[k].interaction : "");
-    good = (!h->fields[k].interaction || h5_make_group(file, group)) &&
-           write_field(file, r, &h->fields[k], skip, buffer);
-    skip += sizeof(double) * (size_t)h->fields[k].count * (size_t)h->fields[k].components;
+  s->sets = must_alloc(((size_t)fields + 1) * sizeof *s->sets);
+  for (int k = 0; k < fields; k++) {
+    s->sets[k] = good ? make_field(file, &r->header.fields[k], s->count) : -1;
+    good = s->sets[k] >= 0;
   }
-  free(buffer);
-  free(times);
-  return good;
+  good = good && frame_file_each(r->frames, put_frame, s, error, size);
+  for (int k = 0; k < fields; k++)
+    if (s->sets[k] >= 0) good = H5Dclose(s->sets[k]) >= 0 && good;
+  free(s->sets);
+  const hsize_t n[1] = {(hsize_t)s->count};
+  return good && h5_write_doubles(file, "/frames/time", s->times, 1, n, "s");
 }
 
 static bool write_attributes(hid_t file, const result_header *h, double dt, long steps) {
@@ -263,32 +207,70 @@ static bool write_attributes(hid_t file, const result_header *h, double dt, long
          h5_attribute_double(file, "dt", dt) && h5_attribute_integer(file, "steps", steps);
 }
 
-static bool fail(const char *temporary, const char *path, char *error, size_t size) {
-  int reason = errno;
-  unlink(temporary);
-  snprintf(error, size, "cannot write the result `%s`: %s", path,
-           reason ? strerror(reason) : "the HDF5 library refused");
+/* What is to be written, for the functions below. */
+typedef struct ending {
+  double dt;
+  long steps;
+  const double *time; /* [history_count] */
+  long history_count;
+  const result_series *series;
+  int series_count;
+} ending;
+
+static bool write_hdf5(const result *r, const ending *e, frame_sets *frames, const char *path,
+                       char *error, size_t size) {
+  const hid_t file = sealed_file_create(path);
+  if (file < 0) return false;
+  const bool good = write_attributes(file, &r->header, e->dt, e->steps) &&
+                    write_input(file, &r->header) && write_particles(file, &r->header) &&
+                    write_history(file, e->time, e->history_count, e->series, e->series_count) &&
+                    write_frames(file, r, frames, error, size);
+  if (good) return sealed_file_close(file, path);
+  H5Fclose(file);
   return false;
 }
 
+static bool write_sidecar(const result *r, const frame_sets *frames, const char *path) {
+  FILE *out = fopen(path, "w");
+  const bool good = out && xdmf_write(out, &r->header, frames->times, frames->count);
+  return out && fclose(out) == 0 && good;
+}
+
+static bool fail(const char *path, char *error, size_t size) {
+  if (!error[0])
+    snprintf(error, size, "cannot write the result `%s`: %s", path,
+             errno ? strerror(errno) : "the HDF5 library refused");
+  return false;
+}
+
+void result_sidecar(const char *path, char *sidecar, size_t size) {
+  const size_t n = strlen(path);
+  const bool ends = n > 3 && strcmp(path + n - 3, ".h5") == 0;
+  snprintf(sidecar, size, "%.*s.xdmf", (int)(ends ? n - 3 : n), path);
+}
+
+/* Both are written before either is put in its place. */
 bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, bool keep_working, char *error,
-                   size_t size) {
-  char temporary[PATH_LENGTH + 16];
-  snprintf(temporary, sizeof temporary, "%s.part", r->path);
+                   const result_series *series, int series_count, char *error, size_t size) {
+  const ending e = {dt, steps, time, history_count, series, series_count};
+  const char *path = r->header.path;
+  frame_sets frames = {.header = &r->header, .count = (long)result_mark(r).count};
+  char sidecar_path[WHOLE_FILE_PATH];
+  whole_file file, sidecar;
+  result_sidecar(path, sidecar_path, sizeof sidecar_path);
   h5_quiet();
-  errno = 0;
-  hid_t file = h5_create(temporary);
-  if (file < 0) return fail(temporary, r->path, error, size);
-  bool good = write_attributes(file, &r->header, dt, steps) && write_input(file, &r->header) &&
-              write_particles(file, &r->header) &&
-              write_history(file, time, history_count, series, series_count) &&
-              write_frames(file, r) && H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
-  good = H5Fclose(file) >= 0 && good;
-  good = good && sync_file(temporary) && rename(temporary, r->path) == 0;
-  if (!good) return fail(temporary, r->path, error, size);
-  if (!xdmf_write(&r->header, r->file, r->frames, r->record, frame_offset(r, 0), error, size))
-    return false;
-  if (!keep_working) unlink(r->working);
-  return true;
+  error[0] = 0;
+  if (!whole_file_begin(&file, path)) return fail(path, error, size);
+  errno = 0; /* the library has no better way of saying that the disk is full */
+  frames.times = must_calloc((size_t)frames.count + 1, sizeof *frames.times);
+  bool good = write_hdf5(r, &e, &frames, file.working, error, size);
+  good = good && whole_file_begin(&sidecar, sidecar_path);
+  if (good) {
+    good = write_sidecar(r, &frames, sidecar.working);
+    good = whole_file_end_on_disk(&file, good);
+    good = whole_file_end(&sidecar, good);
+  } else
+    whole_file_end(&file, false);
+  free(frames.times);
+  return good || fail(path, error, size);
 }

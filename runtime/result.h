@@ -1,15 +1,20 @@
-/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are appended to a plain working file
-   (result.h5.frames), which survives a kill; result.h5 itself appears whole, by rename, when the run ends.
-   Layout, names and units of result.h5 are stable:
+/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are added to a plain
+   file beside it (frame_file.h), which survives a kill; result.h5 itself appears whole, by rename,
+   when the run ends. Layout, names and units of result.h5 are stable:
 
-     /                      attributes perilat_version, started (ISO 8601), title, dt, steps, kernel_key
-     /input/deck            text; /input/set: what --set changed in it, one a line (only then); /input/models/<name> law text; /input/kernels/<name> generated C
+     /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
+                            title, dt, steps, kernel_key
+     /input/deck            text; /input/set: what --set changed in it, one a line (only then);
+                            /input/models/<name> law text; /input/kernels/<name> generated C
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
-     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles that stand on no lattice
+     /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
+                            that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
-     /history/time          [T] s; /history/<monitor> [T], attribute units; /history/energy/<term> [T] J
-     /frames/time           [F] s; /frames/<field> [F, N, components]; /frames/<interaction>/<bond field> [F, M],
-                            attributes units and kind ("state", "damage", "output" of the law, "other")  */
+     /history/time          [T] s; /history/<monitor> [T], attribute units;
+                            /history/energy/<term> [T] J
+     /frames/time           [F] s; /frames/<field> [F, N, components];
+                            /frames/<interaction>/<bond field> [F, M], attributes units and kind
+                            ("state", "damage", "output" of the law, "other")  */
 #ifndef PERILAT_RUNTIME_RESULT_H
 #define PERILAT_RUNTIME_RESULT_H
 
@@ -18,6 +23,7 @@
 #include <stdio.h>
 
 #include "dsl/c_linkage.h"
+#include "runtime/frame_file.h"
 
 C_LINKAGE_BEGIN
 
@@ -44,7 +50,8 @@ typedef struct result_series { /* of the history */
 } result_series;
 
 typedef struct result_header {
-  const char *path; /* of the final file */
+  const char *path;        /* of the final file */
+  const char *fingerprint; /* says which run the frames belong to */
   const char *title, *started, *version, *kernel_key;
   const char *deck_text;
   const char *overrides; /* of --set, one a line; NULL or "" without */
@@ -65,27 +72,38 @@ typedef struct result_header {
 
 typedef struct result result;
 
-/* Opens the working file. With resume_frames >= 0 an existing working file is kept and cut to that many frames.
+/* Opens and locks the file of the frames, and changes nothing yet. With `resume` it must be there.
    On failure returns NULL with a sentence in error (size bytes). */
-result *result_open(const result_header *header, long resume_frames, char *error, size_t size);
+result *result_open(const result_header *header, bool resume, char *error, size_t size);
+/* Either comes next: a new run, without frames, or one that goes on from the frames that the mark
+   tells of. */
+bool result_begin(result *r, char *error, size_t size);
+bool result_resume(result *r, const frame_mark *mark, char *error, size_t size);
 /* Appends a frame: values[k] is field k, [count][components]. False when it cannot be written (disk full). */
 bool result_frame(result *r, double time, const double *const *values, char *error, size_t size);
-long result_frame_count(const result *r);
-/* Forces the working file to the disk (before a checkpoint that counts on it). */
+frame_mark result_mark(const result *r); /* of the frames so far */
+/* The frames can be read, every bit as it was written. */
+bool result_frames_hold(const result *r);
+/* Forces the frames to the disk (before a checkpoint that counts on them). */
 bool result_sync(result *r, char *error, size_t size);
-/* Writes result.h5 and result.xdmf under temporary names and renames them; removes the working file unless
-   `keep_working` (an interrupted run that can be resumed). */
+/* The name of what is written beside the result for ParaView: RESULT.xdmf for RESULT.h5. */
+void result_sidecar(const char *path, char *sidecar, size_t size);
+/* Writes result.h5 and result.xdmf, whole or not at all; the file of the frames stays. */
 bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, bool keep_working, char *error,
-                   size_t size);
-/* Removes the working file; the result is closed afterwards all the same. */
+                   const result_series *series, int series_count, char *error, size_t size);
+/* Removes the file of the frames; the result is closed afterwards all the same. */
 void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
 
-/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in `error` on failure. */
+/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in
+   `error` on failure. Damaged files, changed ones, and those that lead out of themselves are
+   refused; of a file without a seal a warning is printed. */
 typedef struct result_file result_file;
 result_file *result_read(const char *path, char *error, size_t size);
 void result_read_close(result_file *f);
+/* A sentence when something that is in the file could not be read: then no answer from it counts.
+   NULL: all is well. */
+const char *result_trouble(const result_file *f);
 /* The run was quasi-static: its samples are increments, its time is only an order. */
 bool result_is_quasi_static(result_file *f);
 

@@ -1,53 +1,106 @@
 /* The reading half of result.h. */
 #include <errno.h>
+#include <fcntl.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "dsl/arena.h"
 #include "dsl/diagnostics.h"
 #include "runtime/hdf5_tools.h"
+#include "runtime/ordinary_file.h"
 #include "runtime/result.h"
+#include "runtime/sealed_file.h"
 
 #define VALUES_LIMIT ((hsize_t)1 << 32) /* of one read: 32 GiB of doubles */
 
 struct result_file {
   hid_t file;
-  char path[1024];
+  hid_t field; /* the set of frames that was read last, open for the next frame; -1: none */
+  char path[1024], field_name[512];
+  char trouble[1600];
 };
 
+/* --- opening ---------------------------------------------------------------------------------- */
+
+/* The file that was looked at, opened by the library; negative when it is none of HDF5, or another
+   by now. */
+static hid_t open_looked_at(const char *path, int looked_at) {
+  struct stat before, now;
+  int *handle;
+  const hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file < 0) return file;
+  if (H5Fget_vfd_handle(file, H5P_DEFAULT, (void **)&handle) >= 0 && fstat(*handle, &now) == 0 &&
+      fstat(looked_at, &before) == 0 && before.st_dev == now.st_dev && before.st_ino == now.st_ino)
+    return file;
+  H5Fclose(file);
+  return -1;
+}
+
+/* What is wrong with the file; NULL: nothing, and it is open. */
+static const char *open_checked(const char *path, int handle, seal_state seal, hid_t *file) {
+  static const char broken[] =
+      "has a broken seal: it is damaged, or was changed since it was written; copy it again from "
+      "where it was whole, or run again (who has changed it takes its attribute `seal` away)";
+  if (seal == SEAL_BROKEN) return broken;
+  *file = open_looked_at(path, handle);
+  if (*file < 0) return "is not a whole HDF5 file";
+  if (seal == SEAL_NONE && sealed_file_is_marked(*file)) return broken;
+  if (!h5_stays_inside(*file)) return "leads to other files, or in a circle; results do not";
+  if (H5Lexists(*file, "/history", H5P_DEFAULT) > 0 &&
+      H5Lexists(*file, "/particles", H5P_DEFAULT) > 0)
+    return NULL;
+  return "is damaged, or not a result of perilat";
+}
+
 result_file *result_read(const char *path, char *error, size_t size) {
+  const char *why;
+  hid_t file = -1;
   h5_quiet();
-  struct stat about;
-  FILE *probe = fopen(path, "rb");
-  if (!probe || fstat(fileno(probe), &about) != 0 || !S_ISREG(about.st_mode)) {
-    snprintf(error, size, "cannot read the result `%s`: %s", path,
-             probe ? "it is not a file" : strerror(errno));
-    if (probe) fclose(probe);
+  const int handle = ordinary_file_open(path, O_RDONLY, &why);
+  if (handle < 0) {
+    snprintf(error, size, "cannot read the result `%s`: %s", path, why);
     return NULL;
   }
-  fclose(probe);
-  hid_t file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
-  if (file < 0) {
-    snprintf(error, size, "`%s` is not a whole HDF5 file", path);
+  const seal_state seal = sealed_file_state(handle);
+  why = open_checked(path, handle, seal, &file);
+  close(handle);
+  if (why) {
+    if (file >= 0) H5Fclose(file);
+    snprintf(error, size, "`%s` %s", path, why);
     return NULL;
   }
-  if (H5Lexists(file, "/history", H5P_DEFAULT) <= 0 ||
-      H5Lexists(file, "/particles", H5P_DEFAULT) <= 0) {
-    H5Fclose(file);
-    snprintf(error, size, "`%s` is damaged, or not a result of perilat", path);
-    return NULL;
-  }
+  if (seal == SEAL_NONE)
+    fprintf(stderr,
+            "perilat: warning: `%s` has no seal, so that damage to it may stay unseen: it is of an "
+            "earlier version of perilat, or was changed\n",
+            path);
   result_file *f = must_calloc(1, sizeof *f);
   f->file = file;
+  f->field = -1;
   snprintf(f->path, sizeof f->path, "%s", path);
   return f;
 }
 
 void result_read_close(result_file *f) {
+  if (f->field >= 0) H5Dclose(f->field);
   H5Fclose(f->file);
   free(f);
+}
+
+const char *result_trouble(const result_file *f) {
+  return f->trouble[0] ? f->trouble : NULL;
+}
+
+/* A set that is there cannot be read: the first is kept for result_trouble. */
+static void report_unreadable(result_file *f, hid_t set) {
+  char name[512] = "";
+  if (f->trouble[0]) return;
+  H5Iget_name(set, name, sizeof name);
+  snprintf(f->trouble, sizeof f->trouble, "`%s` of `%s` cannot be read: it is damaged", name,
+           f->path);
 }
 
 bool result_is_quasi_static(result_file *f) {
@@ -95,14 +148,19 @@ static bool shape_of(hid_t set, int from, int *rank, hsize_t shape[3]) {
   return good && is_stored(set, *rank, shape);
 }
 
-static void *read_whole(hid_t set, hid_t type, size_t width, int rank_wanted, hsize_t shape[3]) {
+static void *read_whole(result_file *f, hid_t set, hid_t type, size_t width, int rank_wanted,
+                        hsize_t shape[3]) {
   int rank;
-  if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted) return NULL;
+  if (!shape_of(set, 0, &rank, shape) || rank != rank_wanted) {
+    report_unreadable(f, set);
+    return NULL;
+  }
   size_t count = 1;
   for (int k = 0; k < rank; k++)
     count *= (size_t)shape[k];
   void *values = must_calloc(count + 1, width);
   if (count && H5Dread(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
+    report_unreadable(f, set);
     free(values);
     return NULL;
   }
@@ -273,14 +331,23 @@ double *result_read_series(result_file *f, const char *name, long *count, char *
   hid_t set = open_named(f, "/history", name, error, size);
   if (set < 0) return NULL;
   hsize_t shape[3];
-  double *values = read_whole(set, H5T_NATIVE_DOUBLE, sizeof *values, 1, shape);
+  double *values = read_whole(f, set, H5T_NATIVE_DOUBLE, sizeof *values, 1, shape);
   if (values) {
     *count = (long)shape[0];
     h5_read_attribute_text(set, "units", unit_text, unit_size);
   } else
-    snprintf(error, size, "the history `%s` of `%s` cannot be read", name, f->path);
+    snprintf(error, size, "%s", f->trouble);
   H5Dclose(set);
   return values;
+}
+
+/* The set of a field, which stays open: frames that follow each other may lie in one chunk. */
+static hid_t open_field(result_file *f, const char *field, char *error, size_t size) {
+  if (f->field >= 0 && strcmp(f->field_name, field) == 0) return f->field;
+  if (f->field >= 0) H5Dclose(f->field);
+  f->field = open_named(f, "/frames", field, error, size);
+  snprintf(f->field_name, sizeof f->field_name, "%s", field);
+  return f->field;
 }
 
 static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]) {
@@ -299,14 +366,14 @@ static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit_text, size_t unit_size, char *error,
                           size_t size) {
-  hid_t set = open_named(f, "/frames", field, error, size);
+  hid_t set = open_field(f, field, error, size);
   if (set < 0) return NULL;
   int rank = 0;
   hsize_t shape[3] = {0, 0, 0};
   if (!shape_of(set, 1, &rank, shape) || rank < 2) {
+    report_unreadable(f, set);
     snprintf(error, size, "`%s` of `%s` is not a field with a value for each particle or bond",
              field, f->path);
-    H5Dclose(set);
     return NULL;
   }
   long frames = (long)shape[0], wanted = frame < 0 ? frames + frame : frame;
@@ -314,12 +381,13 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   if (wanted < 0 || wanted >= frames)
     snprintf(error, size, "`%s` has %ld frames, numbered from 0; there is no frame %ld", f->path,
              frames, frame);
-  else if (!(values = read_slab(set, wanted, rank, shape)))
-    snprintf(error, size, "frame %ld of `%s` in `%s` cannot be read", wanted, field, f->path);
+  else if (!(values = read_slab(set, wanted, rank, shape))) {
+    report_unreadable(f, set);
+    snprintf(error, size, "frame %ld of %s", wanted, f->trouble);
+  }
   *count = (long)shape[1];
   *components = rank > 2 ? (int)shape[2] : 1;
   h5_read_attribute_text(set, "units", unit_text, unit_size);
-  H5Dclose(set);
   return values;
 }
 
@@ -381,8 +449,9 @@ static void *read_table(result_file *f, const char *path, hid_t type, size_t wid
   const int rank = most > 1 ? 2 : 1;
   hid_t set = open_set(f, path);
   hsize_t shape[3] = {0, 0, 0};
-  void *values = set >= 0 ? read_whole(set, type, width, rank, shape) : NULL;
+  void *values = set >= 0 ? read_whole(f, set, type, width, rank, shape) : NULL;
   if (values && rank == 2 && (shape[1] < (hsize_t)least || shape[1] > (hsize_t)most)) {
+    report_unreadable(f, set);
     free(values);
     values = NULL;
   }
@@ -403,7 +472,12 @@ double *result_read_volume(result_file *f, long *particles) {
                     &columns);
 }
 
-/* Pairs that name particles which do not exist make the table unusable. */
+static bool name_particles(const int32_t *pairs, long bonds, long particles) {
+  for (long k = 0; k < 2 * bonds; k++)
+    if (pairs[k] < 0 || pairs[k] >= particles) return false;
+  return true;
+}
+
 int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
   char path[512];
   result_names all = result_list(f, "/bonds");
@@ -414,13 +488,12 @@ int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds)
   int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, 2, bonds, &columns);
   long particles;
   free(result_read_reference(f, &particles, &columns));
-  for (long m = 0; pairs && m < 2 * *bonds; m++)
-    if (pairs[m] < 0 || pairs[m] >= particles) {
-      free(pairs);
-      *bonds = 0;
-      return NULL;
-    }
-  return pairs;
+  if (!pairs || name_particles(pairs, *bonds, particles)) return pairs;
+  snprintf(f->trouble, sizeof f->trouble, "`%s` of `%s` names particles that are not there", path,
+           f->path);
+  free(pairs);
+  *bonds = 0;
+  return NULL;
 }
 
 double *result_read_frame_times(result_file *f, long *frames) {
@@ -432,6 +505,7 @@ char *result_read_text(result_file *f, const char *path) {
   hid_t set = open_set(f, path);
   if (set < 0) return NULL;
   char *text = h5_read_text(set);
+  if (!text) report_unreadable(f, set);
   H5Dclose(set);
   return text;
 }

@@ -13,6 +13,7 @@
 
 #include "dsl/c_linkage.h"
 #include "runtime/deck.h"
+#include "runtime/frame_file.h"
 #include "runtime/kernel.h"
 #include "runtime/rows.h"
 
@@ -135,12 +136,12 @@ void simulation_frame_taken(simulation *s);
 
 /* Everything that a later step depends on, as a checkpoint file (checkpoint.h). Restore is into a
    simulation made from the same deck and laws; false with a sentence, and the state untouched, when
-   the file does not fit. `fingerprint` names deck, laws and kernel; `frames` is the caller's count
-   of frames written. */
-bool simulation_save(const simulation *s, const char *path, const char *fingerprint, long frames,
-                     char *error, size_t size);
-bool simulation_restore(simulation *s, const char *path, const char *fingerprint, long *frames,
-                        char *error, size_t size);
+   the file does not fit. `fingerprint` names deck, laws and kernel; `frames` tells of the caller's
+   frames. */
+bool simulation_save(const simulation *s, const char *path, const char *fingerprint,
+                     const frame_mark *frames, char *error, size_t size);
+bool simulation_restore(simulation *s, const char *path, const char *fingerprint,
+                        frame_mark *frames, char *error, size_t size);
 
 C_LINKAGE_END
 

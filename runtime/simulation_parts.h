@@ -21,7 +21,7 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
   int64_t samples;              /* taken */
   int64_t next_sample;          /* in multiples of the interval */
   int64_t next_frame, last_frame_step;
-  int64_t result_frames; /* of the caller */
+  frame_mark frames; /* of the caller */
 } progress_state;
 
 typedef struct frame_source { /* where a frame field comes from */

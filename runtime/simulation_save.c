@@ -69,10 +69,10 @@ static part_list parts_of(const simulation *s, progress_state *head) {
   return l;
 }
 
-bool simulation_save(const simulation *s, const char *path, const char *fingerprint, long frames,
-                     char *error, size_t size) {
+bool simulation_save(const simulation *s, const char *path, const char *fingerprint,
+                     const frame_mark *frames, char *error, size_t size) {
   progress_state head = s->at;
-  head.result_frames = frames;
+  head.frames = *frames;
   part_list l = parts_of(s, &head);
   const bool good = checkpoint_write(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
@@ -91,7 +91,7 @@ static bool is_reachable(const simulation *s, const progress_state *at) {
   if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
   if (s->relaxation && at->samples > simulation_end(s) + 1) return false;
   return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
-         at->last_frame_step <= at->step && at->result_frames >= 0;
+         at->last_frame_step <= at->step && at->frames.count >= 0;
 }
 
 /* Places that the set-up chose: they index arrays, and no file may move them. */
@@ -141,8 +141,8 @@ static void put_places_back(const simulation *s, own_places *own) {
   }
 }
 
-bool simulation_restore(simulation *s, const char *path, const char *fingerprint, long *frames,
-                        char *error, size_t size) {
+bool simulation_restore(simulation *s, const char *path, const char *fingerprint,
+                        frame_mark *frames, char *error, size_t size) {
   progress_state head;
   if (!checkpoint_peek(path, fingerprint, &head, sizeof head, error, size)) return false;
   if (!is_reachable(s, &head)) {
@@ -156,7 +156,7 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   if (good) s->at = head;
   if (good) put_places_back(s, &own);
   if (good) sweep_fields_set(s->state);
-  if (good && frames) *frames = (long)head.result_frames;
+  if (good && frames) *frames = head.frames;
   free(own.constraints);
   free(own.forces);
   return good;

@@ -1,10 +1,6 @@
 #include "runtime/xdmf.h"
 
-#include <errno.h>
 #include <string.h>
-#include <unistd.h>
-
-enum { PATH_LENGTH = 4200 };
 
 /* The sidecar names the HDF5 file without its folder: both move together. */
 static const char *base_name(const char *path) {
@@ -123,32 +119,12 @@ static void print_frame(FILE *out, const char *file, const result_header *h, lon
   fputs("</Grid></Grid>\n", out);
 }
 
-bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first,
-                char *error, size_t size) {
-  char path[PATH_LENGTH], temporary[PATH_LENGTH + 8];
-  size_t n = strlen(h->path);
-  bool ends = n > 3 && strcmp(h->path + n - 3, ".h5") == 0;
-  snprintf(path, sizeof path, "%.*s.xdmf", (int)(ends ? n - 3 : n), h->path);
-  snprintf(temporary, sizeof temporary, "%s.part", path);
-  FILE *out = fopen(temporary, "w");
-  bool good = out != NULL;
-  if (good) {
-    fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n"
-          "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
-          out);
-    for (long frame = 0; good && frame < frames; frame++) {
-      double time;
-      good = pread(working_file, &time, sizeof time, first + (off_t)(record * (size_t)frame)) ==
-             (ssize_t)sizeof time;
-      print_frame(out, base_name(h->path), h, frames, frame, time);
-    }
-    fputs("</Grid></Domain></Xdmf>\n", out);
-    good = !ferror(out) && good;
-    good = fclose(out) == 0 && good && rename(temporary, path) == 0;
-  }
-  if (!good) {
-    snprintf(error, size, "cannot write `%s`: %s", path, strerror(errno));
-    unlink(temporary);
-  }
-  return good;
+bool xdmf_write(FILE *out, const result_header *h, const double *times, long frames) {
+  fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"2.0\"><Domain>\n"
+        "<Grid Name=\"frames\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+        out);
+  for (long frame = 0; frame < frames; frame++)
+    print_frame(out, base_name(h->path), h, frames, frame, times[frame]);
+  fputs("</Grid></Domain></Xdmf>\n", out);
+  return fflush(out) == 0 && !ferror(out);
 }

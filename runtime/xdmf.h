@@ -2,13 +2,10 @@
 #ifndef PERILAT_RUNTIME_XDMF_H
 #define PERILAT_RUNTIME_XDMF_H
 
-#include <sys/types.h>
-
 #include "runtime/result.h"
 
-/* Writes PATH with .h5 replaced by .xdmf, through a temporary name. The times are read from the working file: the first
-   value of each record. */
-bool xdmf_write(const result_header *h, int working_file, long frames, size_t record, off_t first,
-                char *error, size_t size);
+/* The text of a sidecar for the frames at `times` of the result `h`. False, with errno, when it
+   cannot be written. */
+bool xdmf_write(FILE *out, const result_header *h, const double *times, long frames);
 
 #endif

@@ -51,7 +51,8 @@ static void begin(void) {
   simulation_advance(run.simulation, 20, NULL);
   char path[64];
   snprintf(path, sizeof path, "/tmp/perilat_fuzz_%d", (int)getpid());
-  MUST(simulation_save(run.simulation, path, fingerprint, 1, error, sizeof error));
+  MUST(
+      simulation_save(run.simulation, path, fingerprint, &(frame_mark){1, 0}, error, sizeof error));
   right_bytes = file_bytes(path, &right_size);
   unlink(path);
   file = memory_file_new();
@@ -74,7 +75,7 @@ static void try_bytes(const uint8_t *bytes, size_t size) {
   const sweep *w = simulation_state(run.simulation);
   const double before = w->displacement[0][w->lattice->size / 2];
   const long step = simulation_step_done(run.simulation);
-  long frames = -1;
+  frame_mark frames = {-1, 0};
   *error = 0;
   memory_file_set(&file, bytes, size);
   if (simulation_restore(run.simulation, file.path, fingerprint, &frames, error, sizeof error)) {
@@ -83,7 +84,7 @@ static void try_bytes(const uint8_t *bytes, size_t size) {
     (void)simulation_bad(run.simulation);
     restore_right();
   } else {
-    MUST(*error && frames == -1);
+    MUST(*error && frames.count == -1);
     MUST(simulation_step_done(run.simulation) == step);
     MUST(memcmp(&before, &w->displacement[0][w->lattice->size / 2], sizeof before) == 0);
   }

@@ -10,11 +10,13 @@
 #include "runtime/hdf5_tools.h"
 #include "runtime/plot.h"
 #include "runtime/result.h"
+#include "runtime/sealed_file.h"
 #include "tests/fuzz/memory_file.h"
 
 enum {
   FROM_RECIPE = 1,
   PICTURES = 2,
+  SEAL_BROKEN_TOO = 4, /* else it is put right, so that what lies behind it is reached */
   LONGEST = 1 << 14,
   PARTICLES = 3,
   BONDS = 2,
@@ -49,6 +51,7 @@ static void write_right(const char *path) {
   static const result_series series[] = {{.name = "load", .unit = "N", .values = time},
                                          {.name = "energy/kinetic", .unit = "J", .values = time}};
   const result_header h = {.path = path,
+                           .fingerprint = "f",
                            .title = "t",
                            .started = "now",
                            .version = "0",
@@ -68,10 +71,12 @@ static void write_right(const char *path) {
                            .bonds = bonds,
                            .fields = fields,
                            .field_count = 2};
-  result *r = result_open(&h, -1, error, sizeof error);
-  MUST(r && result_frame(r, 0, values, error, sizeof error) &&
+  result *r = result_open(&h, false, error, sizeof error);
+  MUST(r && result_begin(r, error, sizeof error) &&
+       result_frame(r, 0, values, error, sizeof error) &&
        result_frame(r, 1, values, error, sizeof error));
-  MUST(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, false, error, sizeof error));
+  MUST(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
+  result_discard(r);
   result_close(r);
 }
 
@@ -410,6 +415,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   }
   memory_file_set(&file, bytes, left);
   free(bytes);
+  if (!(how & SEAL_BROKEN_TOO)) (void)sealed_file_renew(file.handle);
   *error = 0;
   result_file *f = result_read(file.path, error, sizeof error);
   MUST(f || *error);

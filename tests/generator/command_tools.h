@@ -4,12 +4,14 @@
 #define PERILAT_TESTS_COMMAND_TOOLS_H
 
 #include <ftw.h>
+#include <signal.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "runtime/result.h"
@@ -191,6 +193,60 @@ static inline void expect_same_results(const workplace *w, const char *first, co
   same_frames(a, b, "damage");
   result_read_close(a);
   result_read_close(b);
+}
+
+/* --- runs that are stopped -------------------------------------------------------------------- */
+
+static inline void wait_a_little(void) {
+  const struct timespec millisecond = {0, 1000000};
+  nanosleep(&millisecond, NULL);
+}
+
+static inline off_t size_of(const workplace *w, const char *name) {
+  struct stat about;
+  return stat(in_workplace(w, name), &about) == 0 ? about.st_size : 0;
+}
+
+/* Starts a long run to the result `output` in the background, with one --set more or NULL; returns
+   when a few frames are written. */
+static inline pid_t start_long_run(const workplace *w, const char *output, const char *more) {
+  enum { A_FEW = 8000 }; /* bytes; all hundred frames have 50000 */
+  char frames[100], set[100];
+  snprintf(frames, sizeof frames, "%s.frames", output);
+  snprintf(set, sizeof set, "output.result=%s", output);
+  bool begun = false;
+  pid_t child = fork();
+  assert_true(child >= 0);
+  if (child == 0) {
+    if (chdir(w->folder) != 0 || !freopen("said_long", "w", stdout) ||
+        dup2(fileno(stdout), fileno(stderr)) < 0)
+      _exit(99);
+    setenv("PERILAT_MODELS", SOURCE_DIR "/models", 1);
+    execl(PERILAT_PROGRAM, "perilat", "run", "long.nml", "--set", set, "--set",
+          "simulation.title=a long run", /* to be quoted for a shell */
+          more ? "--set" : NULL, more, (char *)NULL);
+    _exit(99);
+  }
+  for (int k = 0; k < 60000; k++) {
+    begun = begun || size_of(w, frames) < A_FEW; /* those of an earlier run are gone */
+    if (begun && size_of(w, frames) > A_FEW) return child;
+    wait_a_little();
+  }
+  fail_msg("the run of %s did not write frames", output);
+  return child;
+}
+
+static inline int end_of(pid_t child) {
+  int status;
+  assert_int_equal(waitpid(child, &status, 0), child);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+static inline void write_long_deck(workplace *w) {
+  assert_int_equal(
+      shell(w, "sed -e 's/1 ms/40 ms/' -e 's/frames = 4/frames = 100/' beam.nml > long.nml; "
+               "echo '&checkpoint interval = 0.02 /' >> long.nml"),
+      0);
 }
 
 #endif

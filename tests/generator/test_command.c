@@ -108,7 +108,7 @@ static void files_of_the_wrong_kind_are_refused(void **state) {
       {"info folder", 1, "it is a folder"},
       {"plot beam.nml", 1, "`beam.nml` is a deck; `perilat plot` needs a result"},
       {"plot noise.plm", 1, "`noise.plm` is a law"},
-      {"plot folder", 1, "it is not a file"},
+      {"plot folder", 1, "it is a folder"},
       {"plot noise.h5", 1, "is not a whole HDF5 file"},
       {"plot table.csv", 1, "`table.csv` is a table of comma-separated values; `perilat plot`"},
       {"info table.csv", 1, "needs a law, a deck or a result"},
@@ -518,63 +518,13 @@ static void a_result_that_is_there_stays_until_the_run_succeeds(void **state) {
 
 /* --- signals ---------------------------------------------------------------------------------- */
 
-static void wait_a_little(void) {
-  const struct timespec millisecond = {0, 1000000};
-  nanosleep(&millisecond, NULL);
-}
-
-static off_t size_of(const workplace *w, const char *name) {
-  struct stat about;
-  return stat(in_workplace(w, name), &about) == 0 ? about.st_size : 0;
-}
-
-/* Starts a long run to the result `output` in the background; returns when a few frames are written. */
-static pid_t start_long_run(const workplace *w, const char *output) {
-  char frames[100], set[100];
-  snprintf(frames, sizeof frames, "%s.frames", output);
-  snprintf(set, sizeof set, "output.result=%s", output);
-  pid_t child = fork();
-  assert_true(child >= 0);
-  if (child == 0) {
-    if (chdir(w->folder) != 0 || !freopen("said_long", "w", stdout) ||
-        !freopen("said_long", "w", stderr))
-      _exit(99);
-    setenv("PERILAT_MODELS", SOURCE_DIR "/models", 1);
-    execl(PERILAT_PROGRAM, "perilat", "run", "long.nml", "--set", set, "--set",
-          "simulation.title=a long run", (char *)NULL); /* to be quoted for a shell */
-    _exit(99);
-  }
-  off_t first = 0;
-  for (int k = 0; k < 60000; k++) {
-    off_t now = size_of(w, frames);
-    first = first ? first : now;
-    if (first && now > 5 * first) return child;
-    wait_a_little();
-  }
-  fail_msg("the run of %s did not write frames", output);
-  return child;
-}
-
-static int end_of(pid_t child) {
-  int status;
-  assert_int_equal(waitpid(child, &status, 0), child);
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-}
-
-static void write_long_deck(workplace *w) {
-  assert_int_equal(
-      shell(w, "sed -e 's/1 ms/40 ms/' -e 's/frames = 4/frames = 100/' beam.nml > long.nml; "
-               "echo '&checkpoint interval = 0.02 /' >> long.nml"),
-      0);
-}
-
 static void a_stopped_run_goes_on_to_the_same_bits(void **state) {
   workplace *w = *state;
   write_long_deck(w);
   expect(w, "run long.nml --set output.result=whole.h5", 0, "written");
   static const int signals[] = {SIGINT, SIGTERM, SIGHUP, SIGKILL};
   for (size_t k = 0; k < COUNT(signals); k++) {
-    pid_t run = start_long_run(w, "part.h5");
+    pid_t run = start_long_run(w, "part.h5", NULL);
     while (signals[k] == SIGKILL && !exists(w, "part.h5.checkpoint"))
       wait_a_little();
     kill(run, signals[k]);
@@ -605,7 +555,7 @@ static void checkpoints_that_do_not_fit_are_refused(void **state) {
   workplace *w = *state;
   static const char resume[] = "run long.nml --set output.result=part.h5 --resume";
   write_long_deck(w);
-  pid_t run = start_long_run(w, "part.h5");
+  pid_t run = start_long_run(w, "part.h5", NULL);
   kill(run, SIGTERM);
   assert_int_equal(end_of(run), 128 + SIGTERM);
   size_t size, frames_size;
@@ -635,7 +585,7 @@ static void checkpoints_that_do_not_fit_are_refused(void **state) {
 static void two_runs_do_not_mix(void **state) {
   workplace *w = *state;
   write_long_deck(w);
-  pid_t first = start_long_run(w, "part.h5");
+  pid_t first = start_long_run(w, "part.h5", NULL);
   kill(first, SIGSTOP);
   expect(w, "run long.nml --set output.result=part.h5", 2, "another run is writing `part.h5`");
   kill(first, SIGCONT);

@@ -44,7 +44,7 @@ static void make_result(const workplace *w, const char *name, variant v) {
   result_field fields[2] = {small_fields[0], small_fields[1]};
   fields[1].interaction = v.lattice;
   h.fields = fields;
-  result *r = result_open(&h, -1, error, sizeof error);
+  result *r = small_begin(&h, error, sizeof error);
   if (!r) fail_msg("%s", error);
   write_frames(r, &v);
   double time[SAMPLES + 4], load[SAMPLES + 4], kinetic[SAMPLES + 4], external[SAMPLES + 4];
@@ -57,7 +57,8 @@ static void make_result(const workplace *w, const char *name, variant v) {
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = kinetic},
                                   {.name = "energy/external", .unit = "J", .values = external}};
-  assert_true(result_finish(r, 1e-3, 42, time, v.samples, series, 3, false, error, sizeof error));
+  assert_true(result_finish(r, 1e-3, 42, time, v.samples, series, 3, error, sizeof error));
+  result_discard(r);
   result_close(r);
 }
 

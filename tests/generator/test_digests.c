@@ -18,7 +18,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "generator/sha256.h"
+#include "dsl/sha256.h"
 #include "runtime/result.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/digests/"

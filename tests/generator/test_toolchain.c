@@ -19,8 +19,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "dsl/sha256.h"
 #include "generator/prelude.h"
-#include "generator/sha256.h"
 #include "generator/toolchain.h"
 
 #define ERROR_SIZE 2000
@@ -124,14 +124,11 @@ static int count_files(const char *folder, const char *ending) {
 
 static void assert_digest(const char *block, int times, const char *expected) {
   sha256 h;
-  unsigned char digest[SHA256_SIZE];
-  char hex[2 * SHA256_SIZE + 1];
+  char hex[SHA256_TEXT];
   sha256_begin(&h);
   for (int k = 0; k < times; k++)
     sha256_add(&h, block, strlen(block));
-  sha256_end(&h, digest);
-  for (int k = 0; k < SHA256_SIZE; k++)
-    snprintf(hex + 2 * k, 3, "%02x", digest[k]);
+  sha256_text(&h, hex);
   assert_string_equal(hex, expected);
 }
 

@@ -345,11 +345,12 @@ static const char *put_result(const double reference[2 * PARTICLES]) {
   const double *values[2] = {u, omega}, time[1] = {0};
   result_header header = small_header(path);
   header.reference = reference;
-  result *r = result_open(&header, -1, error, sizeof error);
+  result *r = small_begin(&header, error, sizeof error);
   assert_non_null(r);
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, values, error, sizeof error));
-  assert_true(result_finish(r, 1, 1, time, 1, NULL, 0, false, error, sizeof error));
+  assert_true(result_finish(r, 1, 1, time, 1, NULL, 0, error, sizeof error));
+  result_discard(r);
   result_close(r);
   return path;
 }

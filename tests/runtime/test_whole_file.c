@@ -58,6 +58,42 @@ static void the_old_text_stays_until_the_end(void **state) {
   assert_int_not_equal(access(f.working, F_OK), 0);
 }
 
+/* Programs that write one file at the same time do not meet before the end; what stood under other
+   names stays. */
+static void working_files_have_names_of_their_own(void **state) {
+  (void)state;
+  whole_file f, g;
+  put("other.txt", "precious");
+  assert_int_equal(symlink("other.txt", "whole.txt.part"), 0);
+  assert_true(whole_file_begin(&f, name) && whole_file_begin(&g, name));
+  assert_string_not_equal(f.working, g.working);
+  put(f.working, "first");
+  put(g.working, "second");
+  assert_true(whole_file_end(&g, true));
+  expect_text(name, "second");
+  assert_true(whole_file_end_on_disk(&f, true));
+  expect_text(name, "first");
+  expect_text("other.txt", "precious");
+  unlink("whole.txt.part");
+  unlink("other.txt");
+}
+
+static void what_killed_programs_left_is_cleared(void **state) {
+  (void)state;
+  static const char *const others[] = {"whole.txt.1.part", "whole.txt.1.2.parts",
+                                       "whole.txt.a.2.part", "whole.text.1.2.part"};
+  whole_file f;
+  assert_true(whole_file_begin(&f, name));
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++)
+    put(others[k], "mine");
+  whole_file_clear(name);
+  assert_int_not_equal(access(f.working, F_OK), 0);
+  for (size_t k = 0; k < sizeof others / sizeof *others; k++) {
+    expect_text(others[k], "mine");
+    unlink(others[k]);
+  }
+}
+
 static void a_link_stays_a_link(void **state) {
   (void)state;
   whole_file f;
@@ -101,6 +137,8 @@ static void what_cannot_be_written_is_refused(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(the_old_text_stays_until_the_end, clean),
+      cmocka_unit_test_teardown(working_files_have_names_of_their_own, clean),
+      cmocka_unit_test_teardown(what_killed_programs_left_is_cleared, clean),
       cmocka_unit_test_teardown(a_link_stays_a_link, clean),
       cmocka_unit_test_teardown(a_device_is_written_to_and_stays, clean),
       cmocka_unit_test_teardown(what_cannot_be_written_is_refused, clean),

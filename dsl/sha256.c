@@ -1,5 +1,7 @@
-#include "generator/sha256.h"
+#include "dsl/sha256.h"
 
+#include <stdbool.h>
+#include <stdio.h>
 #include <string.h>
 
 /* First 32 bits of the fractional parts of the cube roots of the first 64 primes (section 4.2.2).
@@ -30,22 +32,20 @@ static void expand(const unsigned char block[64], uint32_t w[64]) {
 }
 
 static void digest_block(uint32_t state[8], const unsigned char block[64]) {
-  uint32_t w[64], v[8];
+  uint32_t w[64], a = state[0], b = state[1], c = state[2], d = state[3], e = state[4],
+                  f = state[5], g = state[6], h = state[7];
   expand(block, w);
-  memcpy(v, state, sizeof v);
   for (int t = 0; t < 64; t++) {
-    uint32_t a = v[0], e = v[4];
-    uint32_t choice = (e & v[5]) ^ (~e & v[6]);
-    uint32_t majority = (a & v[1]) ^ (a & v[2]) ^ (v[1] & v[2]);
-    uint32_t first =
-        v[7] + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + choice + round_constants[t] + w[t];
-    uint32_t second = (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + majority;
-    memmove(v + 1, v, 7 * sizeof *v);
-    v[4] += first;
-    v[0] = first + second;
+    const uint32_t choice = (e & f) ^ (~e & g), majority = (a & b) ^ (a & c) ^ (b & c);
+    const uint32_t first =
+        h + (turn(e, 6) ^ turn(e, 11) ^ turn(e, 25)) + choice + round_constants[t] + w[t];
+    const uint32_t second = (turn(a, 2) ^ turn(a, 13) ^ turn(a, 22)) + majority;
+    h = g, g = f, f = e, e = d + first;
+    d = c, c = b, b = a, a = first + second;
   }
+  const uint32_t more[8] = {a, b, c, d, e, f, g, h};
   for (int k = 0; k < 8; k++)
-    state[k] += v[k];
+    state[k] += more[k];
 }
 
 void sha256_begin(sha256 *h) {
@@ -57,9 +57,14 @@ void sha256_begin(sha256 *h) {
 
 void sha256_add(sha256 *h, const void *data, size_t size) {
   const unsigned char *bytes = data;
-  for (size_t k = 0; k < size; k++) {
-    h->block[h->length++ % 64] = bytes[k];
-    if (h->length % 64 == 0) digest_block(h->state, h->block);
+  while (size > 0) {
+    const size_t at = h->length % 64, part = size < 64 - at ? size : 64 - at;
+    const bool whole = part == 64; /* digested where it stands */
+    if (!whole) memcpy(h->block + at, bytes, part);
+    if (at + part == 64) digest_block(h->state, whole ? bytes : h->block);
+    h->length += part;
+    bytes += part;
+    size -= part;
   }
 }
 
@@ -72,4 +77,11 @@ void sha256_end(sha256 *h, unsigned char digest[SHA256_SIZE]) {
     sha256_add(h, &(unsigned char){(unsigned char)(bits >> shift)}, 1);
   for (int k = 0; k < SHA256_SIZE; k++)
     digest[k] = (unsigned char)(h->state[k / 4] >> (24 - 8 * (k % 4)));
+}
+
+void sha256_text(sha256 *h, char text[SHA256_TEXT]) {
+  unsigned char digest[SHA256_SIZE];
+  sha256_end(h, digest);
+  for (int k = 0; k < SHA256_SIZE; k++)
+    snprintf(text + 2 * k, 3, "%02x", digest[k]);
 }
