@@ -69,10 +69,11 @@ typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_S
 
 typedef struct law {
   struct tree *tree;
-  law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  law_setting
+      setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
   int neighbours; /* of a full family, where they are known; else 0 */
-  arena *memory; /* not owned */
+  arena *memory;  /* not owned */
   const source_set *sources;
   symbol_list parameters;
   symbol_list fields; /* states and damages, in the order declared */
@@ -101,6 +102,13 @@ double law_constant_value(const expr *e, const double *parameters);
 /* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
    what the bounds are, e.g. "(20, inf)". */
 bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
+/* The bounds as numbers, SI: lower and upper, infinite where there is none, NAN where one depends on a value that is NAN;
+   and whether the bound itself is left out. */
+typedef struct law_limits {
+  double lower, upper;
+  bool lower_open, upper_open;
+} law_limits;
+law_limits law_parameter_limits(const law *l, int p, const double *values);
 /* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
 void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
 

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "dsl/elementary.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
@@ -303,10 +304,9 @@ bool drive_is_deck(const char *file) {
 
 bool drive_refuse_path(const char *command, const char *file) {
   if (!drive_is_path(file)) return false;
-  fprintf(stderr,
-          "perilat: error: `%s` is a path that drives one bond, not a deck for `perilat %s`\n"
-          "  perilat drive %s\n",
-          file, command, file);
+  say_error("`%s` is a path that drives one bond, not a deck for `perilat %s`\n"
+            "  perilat drive %s",
+            file, command, file);
   return true;
 }
 

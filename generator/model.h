@@ -44,7 +44,8 @@ bool file_suits(const char *path, unsigned kinds, const char *command, const cha
 /* True when both name one existing file, by whatever path or link. */
 bool same_file(const char *a, const char *b);
 
-/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: beside `beside`
+/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL; `-`, the standard input, where no deck
+   gives the name. Looked for: beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
@@ -69,7 +70,8 @@ bool model_plan_of_families(model *m);
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);
 
-/* Whole text of a file (malloc'ed, NUL-terminated), or NULL with a sentence in error. Refuses folders and files over limit. */
+/* Whole text of a file (malloc'ed, NUL-terminated), of `-` the standard input, or NULL with a sentence in error. Refuses
+   folders and files over limit. */
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size);
 
 C_LINKAGE_END

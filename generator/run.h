@@ -35,8 +35,10 @@ typedef struct run_options {
   bool check_kernel; /* compare kernel and interpreter on random states first */
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
   bool profile;      /* say at the end where the time went */
+  bool json;         /* the command is asked for a document; run_deck looks at `report` */
   bool no_physics;   /* leave out the physics checks of the deck's laws */
-  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
+  diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
+                        how it ended follows them in the document */
 } run_options;
 
 /* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there

@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "generator/document.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
 #include "runtime/bravais.h"
@@ -292,7 +293,7 @@ int load_law(run *r, int lattice) {
                                         &note, error, sizeof error);
     if (note) fprintf(stderr, "perilat: warning: %s\n", note);
     if (!r->laws[lattice].law) {
-      fprintf(stderr, "perilat: error: %s\n", error);
+      say_error("%s", error);
       return RUN_FAILED;
     }
   }

@@ -1,5 +1,5 @@
 /* The parts of a run, inside: run.c leads; run_laws.c finds and compiles the laws of a deck, run_result.c writes, run_report.c
-   says what is going on. */
+   says what is going on, run_document.c what came out, for other programs. */
 #ifndef PERILAT_GENERATOR_RUN_PARTS_H
 #define PERILAT_GENERATOR_RUN_PARTS_H
 
@@ -30,6 +30,11 @@ typedef struct run {
   char started[32];
   double *frame_buffer;
   profile profile; /* with --profile */
+  /* How it ended: */
+  const char *ending; /* "end", "stopped", "interrupted", "failed" */
+  int signal;         /* that interrupted it, or 0 */
+  double wall;        /* s: of the march */
+  bool is_written;    /* the result */
 } run;
 
 /* Prints diagnostics, or adds them to the report that the caller has asked for. */
@@ -82,6 +87,11 @@ void print_misfit(const run *r);
 void conclude(const run *r, double seconds, long steps);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
+
+/* --- run_document.c --- */
+
+/* How the run ended, as entries of the open object. */
+void put_run(json *w, const run *r);
 
 /* --- run_profile.c --- */
 
