@@ -540,7 +540,7 @@ const char *law_setting_name(law_setting setting) {
   return setting_names[setting];
 }
 
-static law_setting first_setting(const law *l) {
+law_setting law_first_setting(const law *l) {
   for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (l->tree->setting_count && strcmp(l->tree->settings[0], setting_names[k]) == 0)
       return (law_setting)k;
@@ -552,7 +552,7 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
   int errors = d->errors;
   law *l = arena_alloc(memory, sizeof(law));
   *l = (law){.tree = t, .memory = memory, .sources = sources};
-  l->setting = first_setting(l);
+  l->setting = law_first_setting(l);
   checker ck = {.memory = memory, .tree = t, .sources = sources, .d = d, .law = l};
   list_statements(&ck);
   names_begin(&ck);

@@ -94,6 +94,8 @@ law *law_check(arena *memory, tree *t, const source_set *sources, const law_choi
                int choice_count, diagnostics *d);
 
 const char *law_setting_name(law_setting setting);
+/* The first that the law names in its line `for`; plane stress without one. */
+law_setting law_first_setting(const law *l);
 
 /* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of
    law->parameters; used for bounds. Infinite bounds have no expression. */

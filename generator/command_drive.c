@@ -11,7 +11,6 @@
 #include "generator/explain_bad.h"
 #include "generator/run.h"
 #include "generator/settings.h"
-#include "runtime/implied.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
 enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
@@ -247,12 +246,9 @@ static void report_bad(const driving *r) {
                   .theta_j = t->columns[DRIVE_COLUMN_THETA_J].values[row],
                   .fields = fields,
                   .field_count = t->fields};
-  rows *w = implied_lattice(r->in->bond.spacing, r->in->bond.thickness, 0);
-  if (w) {
-    w->mass = drive_bond_class(r->in, 1).mass_i;
-    explain_bad(r->model.plan, r->parameters, w, &at, stderr);
-    rows_free(w);
-  }
+  pl_bond_class bonds;
+  if (drive_bond_class(r->in, material_density(r->law, r->parameters), &bonds))
+    explain_bad(r->model.plan, r->parameters, &bonds, &at, stderr);
   free(fields);
 }
 

@@ -4,6 +4,10 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/arena.h"
+#include "runtime/implied.h"
+#include "runtime/simulation.h"
+
 enum { LANES = PL_LANES };
 
 /* --- one bond under the passes of a lattice --------------------------------------------------- */
@@ -180,15 +184,15 @@ int drive_column_find(const drive_table *t, const char *name) {
   return -1;
 }
 
-void drive_add_column(drive_table *t, const char *name, const char *unit_text, long rows) {
+void drive_add_column(drive_table *t, const char *name, const char *unit_text, long room) {
   if (drive_column_find(t, name) >= 0) name = arena_printf(t->memory, "law_%s", name);
   t->columns[t->column_count++] =
       (drive_column){arena_text(t->memory, name, strlen(name)),
                      arena_text(t->memory, unit_text, strlen(unit_text)),
-                     arena_alloc(t->memory, (size_t)rows * sizeof(double))};
+                     arena_alloc(t->memory, (size_t)room * sizeof(double))};
 }
 
-static void table_open(drive_table *t, const pl_law *kernel, long rows) {
+static void table_open(drive_table *t, const pl_law *kernel, long room) {
   int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
   *t = (drive_table){.memory = arena_new(),
                      .way = DRIVE_COLUMN_STRETCH,
@@ -198,13 +202,13 @@ static void table_open(drive_table *t, const pl_law *kernel, long rows) {
                      .bad_row = -1};
   t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
   for (int k = 0; k < DRIVE_COLUMN_LAW; k++)
-    drive_add_column(t, first_names[k], first_units[k], rows);
+    drive_add_column(t, first_names[k], first_units[k], room);
   for (int k = 0; k < kernel->field_count; k++)
-    drive_add_column(t, kernel->fields[k].name, kernel->fields[k].unit, rows);
+    drive_add_column(t, kernel->fields[k].name, kernel->fields[k].unit, room);
   for (int k = 0; k < kernel->output_count; k++)
-    drive_add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, rows);
+    drive_add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, room);
   for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
-    drive_add_column(t, last_names[k], "J", rows);
+    drive_add_column(t, last_names[k], "J", room);
 }
 
 void drive_columns(const pl_law *kernel, drive_table *out) {
@@ -294,33 +298,26 @@ static bool stays_a_bond(const drive_input *in, double stretch, double time, dia
   return false;
 }
 
-pl_bond_class drive_bond_class(const drive_input *in, double rho) {
-  const double s = in->bond.spacing, volume = sqrt(3) / 2 * s * s * in->bond.thickness;
-  double mass_i = in->bond.mass_i > 0 ? in->bond.mass_i : rho * volume;
-  double mass_j = in->bond.mass_j > 0 ? in->bond.mass_j : mass_i;
-  return (pl_bond_class){.s = s,
-                         .spacing = s,
-                         .t = in->bond.thickness,
-                         .V = volume,
-                         .mass_i = mass_i,
-                         .mass_j = mass_j,
-                         .shell = 1,
-                         .n = 6,
-                         .weight = 1,
-                         .chord = {s, 0, 0}};
-}
-
-static double rho_of(const pl_law *kernel, const double *parameters) {
-  for (int p = 0; p < kernel->parameter_count; p++)
-    if (strcmp(kernel->parameters[p].name, "rho") == 0) return parameters[p];
-  return 0;
+bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out) {
+  rows *w = implied_lattice(in->bond.spacing, in->bond.thickness, rho);
+  if (!w) return false;
+  *out = rows_bond_class(w, 0);
+  rows_free(w);
+  if (in->bond.mass_i > 0) out->mass_i = out->mass_j = in->bond.mass_i;
+  if (in->bond.mass_j > 0) out->mass_j = in->bond.mass_j;
+  return true;
 }
 
 bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
                const double *initial, drive_table *out, diagnostics *d) {
   long count;
+  pl_bond_class bonds;
+  if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&in->bond.item, "spacing"),
+                "there is no lattice of a spacing of %.4g m", in->bond.spacing);
+    return false;
+  }
   double *t = drive_times(in, &count);
-  pl_bond_class bonds = drive_bond_class(in, rho_of(kernel, parameters));
   marching m = {.in = in, .table = out};
   table_open(out, kernel, count);
   rig_open(&m.rig, kernel, parameters, &bonds);
@@ -345,8 +342,9 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
 
 void drive_observe(const drive_input *in, const pl_law *kernel, const double *parameters,
                    const drive_table *t, long row, double *outputs) {
-  pl_bond_class bonds = drive_bond_class(in, rho_of(kernel, parameters));
+  pl_bond_class bonds;
   rig r;
+  if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) return;
   rig_open(&r, kernel, parameters, &bonds);
   for (int f = 0; f < kernel->field_count; f++)
     r.field[f][0] = t->columns[DRIVE_COLUMN_LAW + f].values[row];

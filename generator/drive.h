@@ -190,8 +190,9 @@ void drive_table_free(drive_table *t);
 /* A law's own name that is a column already stands with `law_` before it. */
 void drive_add_column(drive_table *t, const char *name, const char *unit_text, long rows);
 int drive_column_find(const drive_table *t, const char *name); /* or -1 */
-/* What the law is told about the bond. rho may be 0. */
-pl_bond_class drive_bond_class(const drive_input *in, double rho);
+/* What the law is told about the bond: it is one of a hexagonal lattice, but for the masses that
+   the path gives. rho may be 0. False where there is no lattice of such a spacing. */
+bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out);
 
 /* The law's outputs, of whatever law with the same parameters and fields, in the state of one row.
  */

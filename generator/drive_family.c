@@ -9,6 +9,7 @@
 #include "generator/plan_parts.h"
 #include "runtime/implied.h"
 #include "runtime/patch.h"
+#include "runtime/simulation.h"
 
 static const char *const part_names[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
 static const int plane_parts[] = {0, 1, 3}, space_parts[] = {0, 1, 2, 3, 4, 5};
@@ -96,12 +97,6 @@ deck_lattice drive_lattice(const drive_input *in, const law *l) {
   return d;
 }
 
-static double rho_of(const pl_law *kernel, const double *parameters) {
-  for (int p = 0; p < kernel->parameter_count; p++)
-    if (strcmp(kernel->parameters[p].name, "rho") == 0) return parameters[p];
-  return 0;
-}
-
 static bool refuse(const drive_input *in, diagnostics *d, const char *what) {
   diag_report(d, DIAG_BAD_VALUE, in->particle.item.where, "%s", what);
   return false;
@@ -122,7 +117,7 @@ static bool rig_open(rig *r, const drive_input *in, const law *l, const pl_law *
   *r = (rig){.kernel = kernel, .dimensions = kernel->dimensions};
   if (bravais_dimensions(like.kind) != kernel->dimensions)
     return refuse(in, d, "this lattice does not suit the setting of the law");
-  r->lattice = implied_lattice_like(&like, rho_of(kernel, parameters));
+  r->lattice = implied_lattice_like(&like, material_density(kernel, parameters));
   if (!r->lattice)
     return refuse(in, d, "a particle of this lattice has no neighbours, or too many");
   r->stress_plan = plan_stress(l, d);

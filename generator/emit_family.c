@@ -452,12 +452,13 @@ void emit_program_members(emitter *e) {
   c_text_add(e->out,
              "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
              ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
-             ".reads_shape = %d,\n",
+             ".reads_shape = %d,\n    .pairwise = %d,\n",
              is_list(e) ? "PL_LIST" : "PL_ROWS",
              e->plan->form == FAMILY_WRITTEN_OUT ? e->plan->law->neighbours : 0,
              e->plan->links.of_particles, e->plan->links.of_bonds,
              program_sum_count(&e->plan->step),
-             program_constant_sums(e->graph, &e->plan->step, NULL), e->plan->reads_shape);
+             program_constant_sums(e->graph, &e->plan->step, NULL), e->plan->reads_shape,
+             e->plan->law->tree->law == LAW_CENTRAL_BOND);
   write_program_member(e, &e->plan->step);
   write_program_member(e, &e->plan->observe);
 }

@@ -63,19 +63,18 @@ static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out
   free(named);
 }
 
-void explain_bad(const kernel_plan *p, const double *parameters, const rows *w, const bad_state *b,
-                 FILE *out) {
+void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_class *bonds,
+                 const bad_state *b, FILE *out) {
   const symbol_list *fields = &p->law->fields;
   const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
-                                              w->spacing * (1 + b->stretch)};
+                                              bonds->s * (1 + b->stretch)};
   double **in = planes_new(PL_STATE_INPUTS + fields->count, 1);
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     in[k][0] = kinematics[k];
   for (int f = 0; f < fields->count; f++)
     in[PL_STATE_INPUTS + f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
-  pl_bond_class bonds = rows_bond_class(w, 0);
   law_inputs inputs;
-  law_inputs_open(&inputs, p->law, parameters, &bonds);
+  law_inputs_open(&inputs, p->law, parameters, bonds);
   interpreter_inputs at = law_inputs_at(&inputs, (const double *const *)in);
   report(p, &at, out);
   law_inputs_close(&inputs);

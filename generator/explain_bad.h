@@ -5,12 +5,11 @@
 #include <stdio.h>
 
 #include "generator/passes.h"
-#include "runtime/rows.h"
 #include "runtime/simulation.h"
 
 /* Names the first quantity of the law, with its line, that is not finite in the bond state `b`;
    when all are finite the last one with its value. */
-void explain_bad(const kernel_plan *p, const double *parameters, const rows *w, const bad_state *b,
-                 FILE *out);
+void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_class *bonds,
+                 const bad_state *b, FILE *out);
 
 #endif

@@ -14,6 +14,7 @@
 #include "generator/settings.h"
 #include "runtime/deck_value.h"
 #include "runtime/implied.h"
+#include "runtime/simulation.h"
 #include "runtime/stability.h"
 
 static const char *const law_kinds[] = {"central bond", "micropolar bond", "state"};
@@ -174,12 +175,6 @@ static bool take_values(facts *f) {
   return material_parameters(&f->material, f->law, f->values, &f->said);
 }
 
-static double rho_of(const facts *f) {
-  for (int p = 0; p < f->law->parameter_count; p++)
-    if (strcmp(f->law->parameters[p].name, "rho") == 0) return f->values[p];
-  return 0;
-}
-
 /* What single bonds tell; laws of families have none. */
 static void imply_bonds(facts *f, const rows *w) {
   implied *i = &f->implied;
@@ -196,14 +191,11 @@ static bool is_of_families(const facts *f) {
 
 static bool imply(facts *f) {
   implied *i = &f->implied;
-  const bool hexagon = strcmp(f->lattice.kind, "hexagonal") == 0 && f->lattice.horizon <= 1 &&
-                       f->lattice.shells <= 1;
-  if (f->law->kind == PL_MICROPOLAR && !hexagon) {
-    say_error("a micropolar law runs on the hexagonal lattice of nearest neighbours "
-              "only");
+  if (f->law->kind == PL_MICROPOLAR && !bravais_is_hexagon(&f->lattice)) {
+    say_error("a micropolar law runs on the hexagonal lattice of nearest neighbours only");
     return false;
   }
-  rows *w = implied_lattice_like(&f->lattice, rho_of(f));
+  rows *w = implied_lattice_like(&f->lattice, material_density(f->law, f->values));
   if (!w) {
     say_error("a particle of this lattice has no neighbours, or more than %d", ROWS_MAX_NEIGHBOURS);
     return false;
@@ -214,7 +206,7 @@ static bool imply(facts *f) {
   if (!is_of_families(f)) imply_bonds(f, w);
   if (i->has_mass) {
     implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
-    stability_limit(f->law, f->values, w, &i->step);
+    stability_limit(f->law, f->values, NULL, w, &i->step);
   }
   rows_free(w);
   return true;
@@ -363,8 +355,13 @@ static void print_dynamics(const implied *i, bool rotations) {
     printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
   printf(", transverse %.6g m/s", i->waves.transverse);
   if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
-  printf("\n  stable step           %.6g us (%s mode rules, %.6g rad/s", 1e6 * i->step.limit,
-         i->step.mode, i->step.omega_max);
+  if (i->step.least < STABILITY_LEAST) {
+    printf("\n  stable step           none: the virgin body is unstable at rest\n");
+    return;
+  }
+  printf("\n  stable step           %.6g us (%s mode%s rules, %.6g rad/s", 1e6 * i->step.limit,
+         i->step.mode, i->step.at_surface ? " at the surface of a small block" : "",
+         i->step.omega_max);
   if (i->step.damping_ratio > 0) printf(", damping ratio %.3g", i->step.damping_ratio);
   printf(")\n");
 }
@@ -537,8 +534,9 @@ static void put_implied(json *j, const facts *f) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     json_put_number(j, "transverse_speed", i->waves.transverse);
     json_put_number(j, "rotation_cutoff",
-                    f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
-    json_put_number(j, "stable_step", i->step.limit);
+               f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
+    json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
+    json_put_bool(j, "at_surface", i->step.at_surface);
     json_put_text(j, "ruling_mode", i->step.mode);
     json_put_number(j, "omega_max", i->step.omega_max);
     json_put_number(j, "damping_ratio", i->step.damping_ratio);

@@ -7,12 +7,13 @@
 #include "runtime/kernel.h"
 
 typedef struct physics_options {
-  const double *parameters;   /* SI, in the law's order: only these; NULL: around the defaults */
-  const pl_bond_class *bonds; /* NULL: hexagonal lattices of a few millimetres to centimetres */
-  const struct deck_lattice *lattice; /* laws of families; NULL: hexagonal, in space fcc with second
-                                         neighbours, spacing 10 mm */
-  double effort;                      /* share of the usual number of states; 0: 1 */
-  uint64_t seed;                      /* 0: the usual one */
+  const double *parameters; /* SI, in the law's order: only these; NULL: around the defaults */
+  /* That of a deck: only its bonds. NULL: the hexagon of nearest neighbours, in space fcc with its
+     second ones, of 10 mm (and 100 mm of thickness); laws of bonds on lattices of a quarter to four
+     times as much, too, with unequal masses. */
+  const struct deck_lattice *lattice;
+  double effort; /* share of the usual number of states; 0: 1 */
+  uint64_t seed; /* 0: the usual one */
 } physics_options;
 
 typedef struct physics_report {

@@ -10,6 +10,7 @@
 #include "generator/law_inputs.h"
 #include "generator/physics_parameters.h"
 #include "generator/random_values.h"
+#include "runtime/implied.h"
 
 /* --- probes ----------------------------------------------------------------------------------- */
 
@@ -99,6 +100,23 @@ static void open_probes(bench *b) {
   open_guards(b);
 }
 
+/* That of the deck, or some of other sizes. */
+static bool open_lattices(bench *b) {
+  deck_lattice usual = physics_usual_lattice(b->law);
+  const deck_lattice *given = b->options->lattice;
+  const double spacing = usual.spacing, thickness = usual.thickness;
+  const int count = given ? 1 : BENCH_LATTICES;
+  for (int k = 0; k < count; k++) {
+    b->lattices[k] = implied_lattice_like(given ? given : &usual, 1);
+    if (!b->lattices[k]) return false;
+    b->lattice_count++;
+    usual.spacing = spacing * pl_pow(2, draw_uniform(&b->seed, -2, 2));
+    usual.thickness = thickness * pl_pow(2, draw_uniform(&b->seed, -2, 2));
+    usual.stiffness_thickness = usual.mass_thickness = usual.thickness;
+  }
+  return true;
+}
+
 bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d) {
   *b = (bench){.law = l,
                .graph = ir_new(),
@@ -111,7 +129,7 @@ bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d
   b->micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
   b->strides = arena_alloc(b->memory, (size_t)b->width); /* as long as any of the three parts */
   memset(b->strides, 1, (size_t)b->width);
-  if (!lower_law(l, b->graph, LOWER_STEP, b->memory, &b->law_step, d) ||
+  if (!open_lattices(b) || !lower_law(l, b->graph, LOWER_STEP, b->memory, &b->law_step, d) ||
       !lower_law(l, b->graph, LOWER_FROZEN, b->memory, &b->law_frozen, d)) {
     bench_close(b);
     return false;
@@ -124,6 +142,8 @@ void bench_close(bench *b) {
   probe_free(&b->step);
   probe_free(&b->frozen);
   probe_free(&b->guards);
+  for (int k = 0; k < b->lattice_count; k++)
+    rows_free(b->lattices[k]);
   ir_free(b->graph);
   arena_free(b->memory);
 }
@@ -185,41 +205,24 @@ void bench_accept(const bench *b, double *const *states, int count) {
 /* --- parameters ------------------------------------------------------------------------------- */
 
 static void put_class(const bench *b, double *const *states, int lane, const pl_bond_class *c) {
-  const struct {
-    builtin_quantity q;
-    double value;
-  } values[] = {{QUANTITY_S, c->s},
-                {QUANTITY_SPACING, c->spacing},
-                {QUANTITY_T, c->t},
-                {QUANTITY_V, c->V},
-                {QUANTITY_M_END_I, c->mass_i},
-                {QUANTITY_M_END_J, c->mass_j},
-                {QUANTITY_M_BOND, pl_fmin(c->mass_i, c->mass_j)},
-                {QUANTITY_AREA, c->area},
-                {QUANTITY_SHELL, c->shell},
-                {QUANTITY_N_FAMILY, c->n}};
-  for (size_t k = 0; k < sizeof values / sizeof *values; k++)
-    bench_quantity(b, states, values[k].q)[lane] = values[k].value;
+  double values[QUANTITY_COUNT] = {0};
+  law_class_values(c, values);
+  for (int q = 0; q < QUANTITY_COUNT; q++)
+    if (law_motion_place((builtin_quantity)q) < 0)
+      bench_quantity(b, states, (builtin_quantity)q)[lane] = values[q];
 }
 
+/* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ, and it
+   may be a bar. */
 static pl_bond_class draw_class(bench *b, int lane, double density) {
-  double s = 0.01, t = 0.1, uneven = 1;
-  if (lane > 0) {
-    s *= pl_pow(2, draw_uniform(&b->seed, -2, 2));
-    t *= pl_pow(2, draw_uniform(&b->seed, -2, 2));
-    uneven = pl_pow(2, draw_uniform(&b->seed, -1, 1));
-  }
-  double volume = sqrt(3) / 2 * s * s * t, mass = density * volume;
-  return (pl_bond_class){.s = s,
-                         .spacing = s,
-                         .t = t,
-                         .V = volume,
-                         .mass_i = mass,
-                         .mass_j = mass * uneven,
-                         .area = s * t,
-                         .shell = 1,
-                         .n = 6,
-                         .weight = 1};
+  rows *w = b->lattices[lane ? draw_bits(&b->seed) % (uint64_t)b->lattice_count : 0];
+  const int direction = lane ? (int)(draw_bits(&b->seed) % (uint64_t)(2 * w->directions)) : 0;
+  rows_set_density(w, density);
+  pl_bond_class c = rows_bond_class(w, direction);
+  if (b->options->lattice) return c;
+  c.area = c.V / c.s;
+  if (lane) c.mass_j *= pl_pow(2, draw_uniform(&b->seed, -1, 1));
+  return c;
 }
 
 void bench_draw(bench *b, double *const *states, int lane) {
@@ -232,8 +235,7 @@ void bench_draw(bench *b, double *const *states, int lane) {
     physics_draw_parameters(l, lane > 0 ? &b->seed : NULL, values);
   for (int p = 0; p < n; p++)
     states[p][lane] = values[p];
-  pl_bond_class c = b->options->bonds ? *b->options->bonds
-                                      : draw_class(b, lane, l->rho ? values[l->rho->index] : 2000);
+  const pl_bond_class c = draw_class(b, lane, l->rho ? values[l->rho->index] : 2000);
   put_class(b, states, lane, &c);
   free(values);
 }

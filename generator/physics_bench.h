@@ -8,7 +8,10 @@
 #include "generator/lower.h"
 #include "generator/physics.h"
 
-enum { BENCH_LANES = INTERPRET_LANES };
+enum {
+  BENCH_LANES = INTERPRET_LANES,
+  BENCH_LATTICES = 16 /* without a deck; the first is the usual one */
+};
 
 /* What moves a bond: in the order of law_motion. */
 typedef enum bench_axis {
@@ -40,6 +43,8 @@ typedef struct bench {
   bool micropolar;
   const physics_options *options;
   uint64_t seed;
+  struct rows *lattices[BENCH_LATTICES];
+  int lattice_count;
   unsigned char *strides; /* ones: every input has a value for each state */
   double evaluated;       /* states so far */
   double allowed;         /* states after which the present check ends */
@@ -51,7 +56,7 @@ typedef struct bench {
   unsigned char *seen;    /* [guards.count] 1: false, 2: true */
 } bench;
 
-/* False when the law cannot be lowered (said in `d`). */
+/* False when the law cannot be lowered (said in `d`), or there is no such lattice. */
 bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d);
 void bench_close(bench *b);
 
@@ -74,7 +79,8 @@ void bench_move(const bench *b, double *const *states, int lane, motion m);
 motion bench_motion(const bench *b, double *const *states, int lane);
 void bench_virgin(const bench *b, double *const *states, int lane);
 /* Parameters and bond class of one lane: those of the options; without them a log-uniform factor of
-   0.5 to 2 on every default, kept within the bounds. The first lane of a batch has the defaults. */
+   0.5 to 2 on every default, kept within the bounds. The first lane of a batch has the defaults,
+   and the first bond of the first lattice. */
 void bench_draw(bench *b, double *const *states, int lane);
 /* New fields into the fields. */
 void bench_accept(const bench *b, double *const *states, int count);

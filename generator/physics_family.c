@@ -20,6 +20,7 @@ static void run_checks(family_bench *b) {
   if (!b->failed[DIAG_STIFFNESS]) family_check_energy(b, false);
   if (!b->failed[DIAG_STIFFNESS] && !b->failed[DIAG_CLOSED_PATH] && !b->law->nonconservative)
     family_check_energy(b, true);
+  family_check_healing(b);
   if (!energy_is_wrong(b)) family_check_dissipation(b, (int)(5 * effort));
 }
 

@@ -120,22 +120,8 @@ static bool plan_frozen(family_bench *b) {
 
 /* --- the body --------------------------------------------------------------------------------- */
 
-/* The lattice that such laws are written for, without a deck: hexagonal in the plane; in space fcc with its second
-   neighbours. */
-static deck_lattice usual_lattice(const law *l) {
-  const bool space = l->setting == SETTING_SPACE;
-  const double t = space ? 0 : 0.1;
-  return (deck_lattice){.kind = space ? "fcc" : "hexagonal",
-                        .spacing = 0.01,
-                        .shells = space ? 2 : 1,
-                        .thickness = t,
-                        .stiffness_thickness = t,
-                        .mass_thickness = t,
-                        .setting = law_setting_name(l->setting)};
-}
-
 static bool open_lattice(family_bench *b) {
-  const deck_lattice usual = usual_lattice(b->law);
+  const deck_lattice usual = physics_usual_lattice(b->law);
   const deck_lattice *d = b->options->lattice ? b->options->lattice : &usual;
   const double density = b->law->rho ? b->parameters[b->law->rho->index] : 2000;
   b->lattice = implied_lattice_like(d, density);
@@ -332,6 +318,7 @@ double family_bench_value(const family_bench *b, watched w, int where) {
 static char *found_at(const family_bench *b, double size) {
   char *text;
   size_t length;
+  bool others = false;
   FILE *out = open_memstream(&text, &length);
   fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
           b->lattice->spacing);
@@ -343,7 +330,9 @@ static char *found_at(const family_bench *b, double size) {
     if (s->has_default && b->parameters[k] == s->initial) continue;
     fprintf(out, ", %s = %.6g%s%s", s->name, b->parameters[k], strcmp(si, "1") ? " " : "",
             strcmp(si, "1") ? si : "");
+    others = others || s->has_default;
   }
+  if (others && !b->options->parameters) fputs(PHYSICS_OTHER_VALUES, out);
   fclose(out);
   return text;
 }

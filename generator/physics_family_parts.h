@@ -1,5 +1,6 @@
-/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c drives the law,
-   physics_family_energy.c judges work with states held, physics_family_paths.c histories. */
+/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c
+   drives the law, physics_family_energy.c judges work with states held, physics_family_paths.c
+   histories, physics_family_healing.c states that go back. */
 #ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
 
@@ -89,5 +90,8 @@ void family_check_energy_and_force(family_bench *b);
 /* Random histories: finite forces, bonds whose particles agree, ranges of damages, continuity, flow. */
 void family_check_histories(family_bench *b, int legs);
 void family_check_dissipation(family_bench *b, int cycles);
+
+/* A state that scales the forces may not go back toward its initial value (warning). */
+void family_check_healing(family_bench *b);
 
 #endif

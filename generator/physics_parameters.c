@@ -77,3 +77,15 @@ void physics_draw_parameters(const law *l, uint64_t *seed, double *values) {
   start_values(l, values);
   if (seed) draw_values(l, seed, values);
 }
+
+deck_lattice physics_usual_lattice(const law *l) {
+  const bool space = l->setting == SETTING_SPACE;
+  const double t = space ? 0 : 0.1;
+  return (deck_lattice){.kind = space ? "fcc" : "hexagonal",
+                        .spacing = 0.01,
+                        .shells = space ? 2 : 1,
+                        .thickness = t,
+                        .stiffness_thickness = t,
+                        .mass_thickness = t,
+                        .setting = law_setting_name(l->setting)};
+}

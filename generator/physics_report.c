@@ -5,6 +5,7 @@
 
 #include "dsl/arena.h"
 #include "generator/law_inputs.h"
+#include "generator/physics_parameters.h"
 #include "generator/physics_parts.h"
 
 const char *const physics_force_names[FORCE_COUNT] = {"N", "M_i", "M_j"};
@@ -90,6 +91,19 @@ char *physics_state_text(const physics *p, const double *column) {
 
 /* --- diagnostics ------------------------------------------------------------------------------ */
 
+/* Than the defaults. */
+static bool with_other_values(const physics *p, const double *column) {
+  const bench *b = &p->b;
+  unsigned char *read = inputs_read(b, IR_FROM_PARAMETER, b->parameter_count);
+  bool others = false;
+  for (int k = 0; k < b->parameter_count; k++) {
+    const symbol *s = b->law->parameters.items[k];
+    others = others || (read[k] && s->has_default && column[k] != s->initial);
+  }
+  free(read);
+  return others && !b->options->parameters;
+}
+
 void physics_say(physics *p, diag_code code, span where, const double *column, const char *format,
                  ...) {
   if (p->failed[code]) return;
@@ -102,7 +116,9 @@ void physics_say(physics *p, diag_code code, span where, const double *column, c
   diag_report(p->said, code, where, "%s", message);
   if (!column) return;
   char *state = physics_state_text(p, column);
-  if (*state) diag_note(p->said, (span){0, 0, UINT16_MAX}, "found at %s", state);
+  if (*state)
+    diag_note(p->said, (span){0, 0, UINT16_MAX}, "found at %s%s", state,
+              with_other_values(p, column) ? PHYSICS_OTHER_VALUES : "");
   free(state);
 }
 

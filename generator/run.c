@@ -71,39 +71,69 @@ static bool load_deck(run *r) {
   }
   int file = source_add(&r->sources, o->deck_path, text, length);
   free(text);
-  r->deck = deck_read(r->memory, &r->sources, file, o->overrides, o->override_count, &r->said);
-  return r->deck != NULL;
+  r->deck = deck_read_what_is_right(r->memory, &r->sources, file, o->overrides, o->override_count,
+                                    &r->said);
+  return true;
 }
 
-/* What the language of decks allows and a run cannot do yet. */
-static bool is_supported(run *r) {
-  if (r->deck->lattice_count < 2) return true;
-  diag_report(&r->said, DIAG_NOT_SUPPORTED, r->deck->lattices[1].item.where,
-              "a run can have one lattice, this is the second");
-  return false;
+/* A solver's law was checked when it was built. A law that breaks mechanics has no step. */
+static int check_physics(run *r, int lattice) {
+  simulation_law *l = &r->laws[lattice];
+  const bool known = r->lattice || !deck_lattice_is_irregular(&r->deck->lattices[lattice]);
+  if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, lattice)) return 0;
+  free(l->parameters);
+  l->parameters = NULL;
+  return INPUT_WRONG;
 }
 
-/* Deck, laws, simulation. All errors of the deck's materials are reported before it gives up. */
+static int load_laws(run *r) {
+  int status = 0;
+  for (int k = 0; k < r->deck->lattice_count && !status; k++) {
+    status = load_law(r, k);
+    if (!status) status = check_physics(r, k);
+  }
+  for (int k = 0; k < r->deck->material_count; k++)
+    if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
+      check_law_alone(r, &r->deck->materials[k]);
+  return status;
+}
+
+/* What is left of the deck may not say what it is. */
+static void build_lattice(run *r) {
+  const deck *k = r->deck;
+  if (k->lattice_count > 1)
+    diag_report(&r->said, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
+                "a run can have one lattice, this is the second");
+  else if (k->lattice_count == 1 && !deck_lacks(k, "body") && !deck_lacks(k, "notch"))
+    r->lattice = rows_build(k, 0, &r->said);
+}
+
+/* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is
+   wrong elsewhere. */
 static int set_up(run *r) {
-  if (!load_deck(r) || !is_supported(r)) return INPUT_WRONG;
-  choose_paths(r);
-  if (!r->options->check_only && !result_can_be_written(r)) return INPUT_WRONG;
-  size_t lattices = (size_t)r->deck->lattice_count;
+  if (!load_deck(r)) return INPUT_WRONG;
+  const size_t lattices = (size_t)r->deck->lattice_count + 1;
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
   r->laws = must_calloc(lattices, sizeof *r->laws);
   r->built_in = must_calloc(lattices, sizeof *r->built_in);
-  int status = 0;
-  for (int k = 0; k < r->deck->lattice_count; k++) {
-    int s = load_law(r, k);
-    status = s ? s : status;
-  }
-  if (status) return status;
+  choose_paths(r);
+  if (!r->options->check_only) result_can_be_written(r);
+  build_lattice(r);
+  const int status = load_laws(r);
   if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
-  if (!result_spares_inputs(r)) return INPUT_WRONG;
-  r->simulation = simulation_new(r->deck, r->laws, &r->said);
+  result_spares_inputs(r);
+  if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
+  if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
   fingerprint(r);
   return 0;
+}
+
+/* Of laws, then of the deck. */
+static void tell_all(const run *r) {
+  for (int k = 0; k < r->open_models; k++)
+    tell(r, &r->models[k].said);
+  tell(r, &r->said);
 }
 
 static void let_go(run *r) {
@@ -283,7 +313,7 @@ int run_deck(const run_options *o) {
   struct tm utc;
   strftime(r.started, sizeof r.started, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   int status = set_up(&r);
-  tell(&r, &r.said);
+  tell_all(&r);
   if (o->report && !o->check_only) diag_json_end(o->report, status == 0);
   if (!status) {
     if (!o->report || !o->check_only) announce(&r);

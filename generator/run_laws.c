@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/elementary.h"
 #include "generator/document.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
@@ -136,6 +137,21 @@ static int neighbours_of(const deck_lattice *l) {
   return 2 * bravais_family(&b, l->horizon, l->shells, list);
 }
 
+/* What a bond knows of the third direction its law must say; `for` is the word that it has. */
+static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
+  if (!l || m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+      m->tree->setting_count > 0)
+    return;
+  diag_report(
+      said, DIAG_DECK_WARNING, deck_where(&l->item, "setting"),
+      "the law of bonds `%s` does not say for which setting it is: its bonds may be those of "
+      "plane stress",
+      m->law->tree->name);
+  diag_hint(said,
+            "where its equations hold in plane strain, write `for plane_strain` into the law; "
+            "else take another one, such as `splm_elastic`");
+}
+
 /* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
@@ -154,7 +170,10 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
               "any shape add `irregular` to the law's line `for`");
     return false;
   }
-  if (model_suits(out, name, meant, sizeof meant)) return true;
+  if (model_suits(out, name, meant, sizeof meant)) {
+    warn_of_plane_strain(l, out, said);
+    return true;
+  }
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
               "the law `%s` is meant for %s, but this lattice is in %s", out->law->tree->name,
               meant, name);
@@ -168,8 +187,23 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
 /* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a central law runs as one of
    families. */
 static bool needs_families(const deck_lattice *l, const law *of) {
-  const bool hexagon = strcmp(l->kind, "hexagonal") == 0 && l->horizon <= 1 && l->shells <= 1;
-  return of->tree->law == LAW_CENTRAL_BOND && !hexagon;
+  return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
+}
+
+/* Families have one value of each parameter. */
+static bool can_vary(const deck_material *m, const law *of, bool families, diagnostics *said) {
+  if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
+  if (families) {
+    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
+                "on this lattice the central law `%s` runs as one of families, whose parameters "
+                "cannot differ from bond to bond",
+                of->tree->name);
+    diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");
+  } else
+    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
+                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
+                of->tree->name);
+  return false;
 }
 
 bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
@@ -182,15 +216,19 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
     return false;
   }
   bool good = run_open_law(m, path, out, said) && take_setting(m, l, out, said);
-  if (good && l && needs_families(l, out->law) && m->varying_count == 0)
-    good = model_plan_of_families(out);
-  else
-    good = good && plan_material(m, out, said);
   free(path);
-  return good;
+  if (!good) return false;
+  const bool families = l && needs_families(l, out->law);
+  if (!can_vary(m, out->law, families, said)) return false;
+  return families ? model_plan_of_families(out) : plan_material(m, out, said);
 }
 
 /* --- laws ------------------------------------------------------------------------------------- */
+
+static deck_material *material_of(const run *r, int lattice) {
+  const int m = deck_find_material(r->deck, r->deck->lattices[lattice].name);
+  return m < 0 ? NULL : &r->deck->materials[m];
+}
 
 static const built_in_law *find_built_in(const run_options *o, const char *model_name) {
   for (int k = 0; k < o->law_count; k++)
@@ -223,84 +261,130 @@ static bool drop_built_in_choices(run *r, deck_material *m, const built_in_law *
   return good;
 }
 
-/* Laws are checked on perfect lattices: for particles that stand on none, on that of particles as large, with the neighbours
-   that the law counts on there. */
-static deck_lattice lattice_like(const deck_lattice *d) {
+/* Mean distance of the nearest neighbour, m; 0 without bonds. */
+static double nearest_distance(const rows *w) {
+  double sum = 0, chord[3];
+  long count = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    double nearest = INFINITY;
+    for (int k = 0; k < 2 * w->directions; k++)
+      if (rows_has_neighbour(w, site, k)) nearest = pl_fmin(nearest, rows_chord(w, site, k, chord));
+    sum += isfinite(nearest) ? nearest : 0;
+    count += isfinite(nearest);
+  }
+  return count ? sum / (double)count : 0;
+}
+
+/* Laws are checked on perfect lattices: for particles `w` that stand on none, on one whose
+   particles are as far from each other, with the neighbours that the law counts on there. */
+static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   deck_lattice like = *d;
   if (!deck_lattice_is_irregular(d)) return like;
   const bool space = deck_lattice_dimensions(d) == 3;
   like.kind = space ? "fcc" : "hexagonal";
-  like.spacing = d->spacing > 0 ? d->spacing : 0.01; /* what a file will say is not known yet */
+  like.spacing = nearest_distance(w);
   like.shells = d->horizon > 0 || !space ? 0 : 2;
   like.neighbours = 0;
   return like;
 }
 
-/* The checks of `perilat check` for this deck: its parameters, its lattice, in a few milliseconds. */
-static bool obeys_mechanics(run *r, int lattice, model *opened) {
-  const deck_lattice like = lattice_like(&r->deck->lattices[lattice]), *d = &like;
-  const bool irregular = opened->law->irregular;
-  const double *parameters = r->laws[lattice].parameters;
-  const symbol *rho = opened->law->rho;
-  double volume = sqrt(3) / 2 * d->spacing * d->spacing * d->mass_thickness;
-  double mass = rho ? parameters[rho->index] * volume : 1;
-  const pl_bond_class bonds = {.s = d->spacing,
-                               .spacing = d->spacing,
-                               .t = d->stiffness_thickness,
-                               .V = volume,
-                               .mass_i = mass,
-                               .mass_j = mass,
-                               .shell = 1,
-                               .n = 6,
-                               .weight = 1};
+/* What `perilat check law.plm` judges is more than a deck needs. */
+static void warn_of_other_values(run *r, const deck_material *m, model *opened) {
+  const law_setting setting = opened->law->setting;
   diagnostics found;
   diag_begin(&found, &opened->sources);
-  opened->law->irregular = false;
-  bool good = physics_check(
-      opened->law,
-      &(physics_options){.parameters = parameters, .bonds = &bonds, .lattice = d, .effort = 0.5},
-      &found, NULL);
-  opened->law->irregular = irregular;
-  tell(r, &found);
+  opened->law->setting = law_first_setting(opened->law);
+  if (!physics_check(opened->law, NULL, &found, NULL)) {
+    diag_report(
+        &r->said, DIAG_DECK_WARNING, deck_where(&m->item, "model"),
+        "the law `%s` obeys mechanics with the values and the lattice of this deck, but not "
+        "with all that its bounds allow",
+        opened->law->tree->name);
+    diag_hint(&r->said, "`perilat check %s`, with the options chosen here, shows where",
+              opened->path);
+  }
+  opened->law->setting = setting;
   diag_clear(&found);
+}
+
+bool obeys_mechanics(run *r, int lattice) {
+  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattice);
+  const physics_options options = {
+      .parameters = r->laws[lattice].parameters, .lattice = &like, .effort = 0.5};
+  model *opened = &r->models[lattice];
+  const bool irregular = opened->law->irregular;
+  opened->law->irregular = false;
+  const bool good = physics_check(opened->law, &options, &opened->said, NULL);
+  if (good) warn_of_other_values(r, material_of(r, lattice), opened);
+  opened->law->irregular = irregular;
   return good;
 }
 
-/* 0, or an exit status. */
-int load_law(run *r, int lattice) {
-  deck_material *m =
-      &r->deck->materials[deck_find_material(r->deck, r->deck->lattices[lattice].name)];
-  const built_in_law *b = r->options->laws ? find_built_in(r->options, m->model) : NULL;
-  if (r->options->laws) {
-    if (!b) {
-      diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
-                  "this solver was built without the model `%s`", m->model);
-      return INPUT_WRONG;
-    }
-    if (!drop_built_in_choices(r, m, b)) return INPUT_WRONG;
-    r->laws[lattice].law = b->law;
-    r->built_in[lattice] = b;
-  } else {
-    model *opened = &r->models[r->open_models];
-    bool good =
-        run_open_material(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
-    if (opened->memory) tell(r, &opened->said);
-    r->open_models += opened->memory != NULL;
-    if (!good) return INPUT_WRONG;
-    char error[4 * ERROR_LENGTH];
-    const char *note;
-    r->laws[lattice].law = model_kernel(opened, r->options->interpret || r->options->check_only,
-                                        &note, error, sizeof error);
-    if (note) fprintf(stderr, "perilat: warning: %s\n", note);
-    if (!r->laws[lattice].law) {
-      say_error("%s", error);
-      return RUN_FAILED;
-    }
+/* --- opening ---------------------------------------------------------------------------------- */
+
+static bool take_built_in(run *r, deck_material *m, int lattice) {
+  const built_in_law *b = find_built_in(r->options, m->model);
+  if (!b) {
+    diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
+                "this solver was built without the model `%s`", m->model);
+    return false;
   }
-  const pl_law *kernel = r->laws[lattice].law;
-  r->laws[lattice].parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof(double));
-  if (!material_parameters(m, kernel, r->laws[lattice].parameters, &r->said)) return INPUT_WRONG;
-  bool checked =
-      r->options->laws || r->options->no_physics; /* a solver's law was checked when it was built */
-  return checked || obeys_mechanics(r, lattice, &r->models[r->open_models - 1]) ? 0 : INPUT_WRONG;
+  if (!drop_built_in_choices(r, m, b)) return false;
+  r->laws[lattice].law = b->law;
+  r->built_in[lattice] = b;
+  return true;
+}
+
+/* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of
+   families: of a small body that takes the interpreter less time than the compiler. */
+static bool is_worth_compiling(const run *r, const model *opened) {
+  enum { MANY_BONDS = 200000 };
+  return r->lattice && r->lattice->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;
+}
+
+/* 0, or an exit status. */
+static int take_model(run *r, deck_material *m, int lattice) {
+  char error[4 * ERROR_LENGTH];
+  const char *note;
+  model *opened = &r->models[r->open_models];
+  const bool good =
+      run_open_material(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
+  r->open_models += opened->memory != NULL;
+  if (!good) return INPUT_WRONG;
+  const bool interpret =
+      r->options->interpret || (r->options->check_only && !is_worth_compiling(r, opened));
+  r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
+  if (note) fprintf(stderr, "perilat: warning: %s\n", note);
+  if (r->laws[lattice].law) return 0;
+  say_error("%s", error);
+  return RUN_FAILED;
+}
+
+static bool take_parameters(run *r, const deck_material *m, int lattice) {
+  simulation_law *l = &r->laws[lattice];
+  l->parameters = must_calloc((size_t)l->law->parameter_count + 1, sizeof(double));
+  if (material_parameters(m, l->law, l->parameters, &r->said)) return true;
+  free(l->parameters);
+  l->parameters = NULL;
+  return false;
+}
+
+int load_law(run *r, int lattice) {
+  deck_material *m = material_of(r, lattice);
+  if (!m) return INPUT_WRONG; /* said already */
+  const int status = !r->options->laws              ? take_model(r, m, lattice)
+                     : take_built_in(r, m, lattice) ? 0
+                                                    : INPUT_WRONG;
+  if (status) return status;
+  return take_parameters(r, m, lattice) ? 0 : INPUT_WRONG;
+}
+
+bool check_law_alone(run *r, deck_material *m) {
+  char *path = r->options->laws ? NULL : model_find(m->model, r->options->deck_path);
+  if (!path) return false;
+  model *opened = &r->models[r->open_models++];
+  const bool good = run_open_law(m, path, opened, &r->said);
+  free(path);
+  return good;
 }

@@ -19,6 +19,7 @@ typedef struct run {
   deck *deck;
   model *models; /* [material_count] */
   int open_models;
+  rows *lattice; /* the simulation's, when there is one; NULL where it is not known */
   simulation_law *laws;          /* [lattice_count] */
   const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
   simulation *simulation;
@@ -42,8 +43,16 @@ void tell(const run *r, const diagnostics *d);
 
 /* --- run_laws.c --- */
 
-/* Opens, checks and compiles the law of a lattice and reads its parameters. 0, or an exit status. */
+/* Opens and compiles the law of a lattice and reads its parameters; what is wrong with them leaves
+   them NULL. 0, or an exit status. What a law's own file has to answer for stays in
+   models[].said. */
 int load_law(run *r, int lattice);
+/* Only says what is wrong with the law's file and its options: of a material whose lattice is not
+   known. */
+bool check_law_alone(run *r, deck_material *m);
+/* The physics checks with the deck's parameters, on its lattice, which must have been built where
+   particles stand on none. */
+bool obeys_mechanics(run *r, int lattice);
 
 /* --- run_result.c --- */
 

@@ -10,6 +10,7 @@
 #include "generator/run_parts.h"
 #include "runtime/checkpoint.h"
 #include "runtime/implied.h"
+#include "runtime/notch_depth.h"
 #include "runtime/random_field.h"
 #include "runtime/uniform_strain.h"
 
@@ -64,6 +65,74 @@ static void announce_law(const run *r, int lattice) {
       print_quantity(", largest stress ", strength, "Pa under uniform strain along x, sides held");
   }
   putchar('\n');
+}
+
+/* Per cent of the bonds of whole families that the body lacks. */
+static double lost_bonds(const rows *w) {
+  return 100 * (1 - (double)w->bond_count / ((double)w->particle_count * w->directions));
+}
+
+/* Where edges lack bonds, the body is softer than its lattice: said from 1 % on. With few bonds
+   lost it cannot be. */
+static void announce_body(const run *r, int lattice) {
+  const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const simulation_law *l = &r->laws[lattice];
+  const random_fields *f = simulation_fields(r->simulation);
+  implied_elasticity e;
+  double E[3];
+  if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
+  if ((double)w->bond_count > many) {
+    printf(
+        "  body       lacks %.2g %% of the bonds of its lattice at edges; too large to be held in "
+        "a uniform strain here\n",
+        lost_bonds(w));
+    return;
+  }
+  if (!uniform_strain_moduli(l->law, l->parameters, f ? f->value : NULL, w, E)) return;
+  bool differs = false;
+  for (int c = 0; c < 2; c++)
+    differs = differs || fabs(E[c] / e.E[c] - 1) > difference;
+  if (!differs) return;
+  fputs("  body       held in a uniform strain", stdout);
+  for (int c = 0; c < 2; c++) {
+    if (isnan(E[c])) continue;
+    print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
+    printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
+  }
+  puts(": edges and notches lack bonds");
+}
+
+static void announce_notch(const notch_depth *n, int number, bool only) {
+  char name[24] = "notch";
+  if (!only) snprintf(name, sizeof name, "notch %d", number);
+  printf("  %-10s ", name);
+  if (n->kind == NOTCH_THROUGH)
+    printf("%.4g mm deep: it cuts the body through\n", 1e3 * n->drawn);
+  else if (n->kind == NOTCH_INSIDE)
+    printf("%.4g mm long as drawn, %.4g mm from bond to bond; ligaments %.4g and %.4g mm\n",
+           1e3 * n->drawn, 1e3 * n->cut, 1e3 * n->ligament[0], 1e3 * n->ligament[1]);
+  else
+    printf("%.4g mm deep as drawn, %.4g mm to the first bond left; ligament %.4g mm\n",
+           1e3 * n->drawn, 1e3 * n->cut, 1e3 * n->ligament[0]);
+}
+
+static void announce_notches(const run *r, int lattice) {
+  enum { MOST = 8 };
+  const deck *k = r->deck;
+  int said = 0, left = 0;
+  for (int n = 0; n < k->notch_count; n++) {
+    if (said == MOST) {
+      left++;
+      continue;
+    }
+    const notch_depth depth =
+        notch_depth_of(simulation_rows(r->simulation, lattice), &k->notchs[n].shape);
+    if (depth.kind == NOTCH_NONE) continue;
+    announce_notch(&depth, n + 1, k->notch_count == 1);
+    said++;
+  }
+  if (left > 0) printf("             and %d more\n", left);
 }
 
 /* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
@@ -131,7 +200,9 @@ void announce(const run *r) {
       announce_particles(r, k);
     else
       announce_lattice(r, k);
+    announce_notches(r, k);
     announce_law(r, k);
+    announce_body(r, k);
   }
   announce_fields(r);
   if (r->deck->relaxation.increments > 0)
@@ -139,8 +210,9 @@ void announce(const run *r) {
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode rules)\n", 1e6 * limit->step,
-         limit->step / limit->limit, 1e6 * limit->limit, limit->mode);
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s rules)\n", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
@@ -262,8 +334,8 @@ void report_bad(const run *r) {
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
             "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
-    if (r->open_models > 0)
-      explain_bad(r->models[0].plan, b.parameters, simulation_rows(r->simulation, 0), &b, stderr);
+    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, 0), 0);
+    if (r->open_models > 0) explain_bad(r->models[0].plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
   fprintf(stderr,

@@ -7,6 +7,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/elementary.h"
+#include "runtime/stencil.h"
 #include "runtime/sweep_parts.h"
 
 /* LAPACK: eigenvalues and vectors of a symmetric tridiagonal matrix, ascending. */
@@ -18,8 +19,8 @@ void dstev_(const char *job, const int *n, double *diagonal, double *beside, dou
 static const double tiny = 1e-7;         /* spacings */
 static const double tiny_rate = 1e-3;    /* spacings a second */
 static const double nominal_step = 1e-9; /* s; what a step is to a law at rest */
-static const double accuracy = 1e-3;     /* of the largest eigenvalue, a frequency's square */
-enum { ROWS_A_THREAD = 8, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
+static const double accuracy = BODY_ACCURACY;
+enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6 };
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
@@ -28,17 +29,20 @@ typedef struct body {
   long size, length; /* of an array over sites; of a vector: dof of these */
   double *scale;     /* [length] 1/sqrt(mass), 0 at absent sites */
   double *probe;     /* [length] */
+  double stiffer;    /* one side of a kink at rest than the mean of both; 1 without a kink */
 } body;
 
 static double *vector_of(const body *b) {
   return must_calloc((size_t)b->length, sizeof(double));
 }
 
-static body body_new(const pl_law *law, const double *parameters, const rows *w) {
-  const int offered = omp_get_max_threads(), sensible = 1 + w->row_count / ROWS_A_THREAD;
-  const int threads = offered < sensible ? offered : sensible;
-  body b = {.size = w->size, .length = law->dof * w->size};
+static body body_new(const pl_law *law, const double *parameters, double *const *varying,
+                     const rows *w) {
+  const long offered = omp_get_max_threads(), sensible = 1 + w->bond_count / BONDS_A_THREAD;
+  const int threads = (int)(offered < sensible ? offered : sensible);
+  body b = {.size = w->size, .length = law->dof * w->size, .stiffer = 1};
   b.sweep = sweep_new(w, law, parameters, nominal_step, threads, false, true);
+  b.sweep->parameter = varying;
   b.scale = vector_of(&b);
   b.probe = vector_of(&b);
   for (int d = 0; d < law->dof; d++)
@@ -74,6 +78,27 @@ static void add_forces(const body *b, double factor, double *result) {
     }
 }
 
+/* Of the start vector, which pushes and pulls all bonds: forces that do not change their sign with
+   the motion. */
+static void find_kink(body *b, const double *x) {
+  double *sum = vector_of(b), *difference = vector_of(b);
+  for (long k = 0; k < b->length; k++)
+    b->probe[k] = b->scale[k] * x[k];
+  const double size = tiny * b->sweep->lattice->spacing / largest_of(b->probe, b->length);
+  for (int side = 1; side >= -1; side -= 2) {
+    move(b, b->sweep->displacement, side * size);
+    sweep_find_forces(b->sweep);
+    add_forces(b, 1, sum);
+    add_forces(b, side, difference);
+  }
+  move(b, b->sweep->displacement, 0);
+  const double even = sweep_dot(b->length, sum, sum),
+               odd = sweep_dot(b->length, difference, difference);
+  if (even > STENCIL_KINK * STENCIL_KINK * odd) b->stiffer = 1 + sqrt(even / odd);
+  free(sum);
+  free(difference);
+}
+
 /* result += factor M^-1/2 K M^-1/2 x, or C for K: central differences of the forces by displacements or velocities. */
 static void add_product(body *b, bool rates, double factor, const double *x, double *result) {
   double *const *moving = rates ? b->sweep->velocity : b->sweep->displacement;
@@ -82,6 +107,7 @@ static void add_product(body *b, bool rates, double factor, const double *x, dou
   const double largest = largest_of(b->probe, b->length);
   if (!(largest > 0)) return;
   const double size = (rates ? tiny_rate : tiny) * b->sweep->lattice->spacing / largest;
+  if (!rates) factor *= b->stiffer;
   for (int side = 1; side >= -1; side -= 2) {
     move(b, moving, side * size);
     sweep_find_forces(b->sweep);
@@ -90,7 +116,7 @@ static void add_product(body *b, bool rates, double factor, const double *x, dou
   move(b, moving, 0);
 }
 
-/* --- largest eigenvalue ----------------------------------------------------------------------- */
+/* --- ends of the spectrum --------------------------------------------------------------------- */
 
 typedef struct lanczos {
   body *body;
@@ -100,6 +126,7 @@ typedef struct lanczos {
   double part[MOST_STEPS]; /* of the vectors so far in the eigenvector */
   int steps;
   double value, error; /* largest eigenvalue, and how far from it there surely is one */
+  double least;        /* smallest eigenvalue, or a little more than that */
 } lanczos;
 
 static double dot(const body *b, const double *x, const double *y) {
@@ -162,12 +189,17 @@ static void look(lanczos *l) {
   memcpy(beside, l->beside, room * sizeof *beside);
   dstev_("V", &n, values, beside, vectors, &n, work, &info, 1);
   l->value = info == 0 ? values[n - 1] : NAN;
+  l->least = values[0];
   memcpy(l->part, vectors + room * (room - 1), room * sizeof *l->part);
   l->error = fabs(l->beside[n - 1] * l->part[n - 1]);
   free(values);
   free(beside);
   free(vectors);
   free(work);
+}
+
+static double size_of(const lanczos *l) {
+  return pl_fmax(fabs(l->value), fabs(l->least));
 }
 
 /* False when forces are not finite. */
@@ -180,7 +212,7 @@ static bool find_largest(lanczos *l) {
     l->steps++;
     if (!last && l->steps % LOOK_EVERY != 0) continue;
     look(l);
-    if (last || l->error <= accuracy * l->value) break;
+    if (last || l->error <= accuracy * size_of(l)) break;
   }
   return isfinite(l->value);
 }
@@ -219,16 +251,17 @@ static bool is_damped(body *b, double omega) {
   return rates > nothing * omega;
 }
 
-/* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all is where the largest
-   eigenvalue of K + p C is p^2; each round begins with the p of the last one's mode. */
-static bool find_damped(lanczos *l, double omega, step_limit *out) {
-  double p = omega, *x = vector_of(l->body);
+/* A mode x is stable up to dt = 2/p, p^2 = k + p c with k = x K x, c = x C x. The largest p of all
+   is where the largest eigenvalue of K + p C is p^2; each round begins with the p of the last one's
+   mode, the first with one that waves have. */
+static bool find_damped(lanczos *l, double omega, double known, step_limit *out) {
+  double p = known > 0 ? pl_fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
   bool good = true;
   for (int round = 0; round < MOST_ROUNDS && good; round++) {
     const double last = p;
     l->rate = p;
     good = find_largest(l);
-    if (!good) break;
+    if (!good || (known > 0 && l->value <= p * p)) break;
     find_vector(l, x);
     const double k = pl_fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
     p = pl_fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
@@ -240,18 +273,39 @@ static bool find_damped(lanczos *l, double omega, step_limit *out) {
   return good;
 }
 
-void body_limit(const pl_law *law, const double *parameters, const rows *w, step_limit *out) {
-  body b = body_new(law, parameters, w);
+/* The mode's share of the kinetic energy that turns. */
+static double turning_share(lanczos *l) {
+  const long moving = l->body->sweep->dimensions * l->body->size;
+  double *x = vector_of(l->body), turning = 0;
+  find_vector(l, x);
+  for (long k = moving; k < l->body->length; k++)
+    turning += x[k] * x[k];
+  free(x);
+  return turning;
+}
+
+static bool find_limit(lanczos *l, step_limit *out) {
+  start_vector(l->body, l->now);
+  find_kink(l->body, l->now);
+  const double known = out->limit;
+  if (!find_largest(l)) return false;
+  const double size = size_of(l);
+  out->least = size > 0 ? l->least / size : 0;
+  out->omega_max = l->value > 0 ? sqrt(l->value + pl_fmin(l->error, accuracy * l->value)) : 0;
+  out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
+  if (l->body->sweep->dof > l->body->sweep->dimensions && turning_share(l) > 0.5)
+    out->mode = "rotation";
+  return !is_damped(l->body, out->omega_max) || find_damped(l, out->omega_max, known, out);
+}
+
+void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
+                step_limit *out) {
+  body b = body_new(law, parameters, varying, w);
   lanczos l = {.body = &b, .now = vector_of(&b), .before = vector_of(&b), .next = vector_of(&b)};
-  out->limit = 0;
   out->omega_max = NAN;
-  out->damping_ratio = 0;
+  out->damping_ratio = out->least = 0;
   out->mode = "translation";
-  if (find_largest(&l)) {
-    out->omega_max = l.value > 0 ? sqrt(l.value + pl_fmin(l.error, accuracy * l.value)) : 0;
-    out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
-    if (is_damped(&b, out->omega_max) && !find_damped(&l, out->omega_max, out)) out->limit = 0;
-  }
+  if (!find_limit(&l, out)) out->limit = 0;
   free(l.now);
   free(l.before);
   free(l.next);

@@ -144,3 +144,10 @@ void bravais_chord(const bravais *b, const bravais_neighbour *n, double chord[3]
   chord[0] = chord[1] = chord[2] = 0;
   add_steps(b, 0.5 * n->halves * b->step[0], n->row * b->step[1], n->layer * b->step[2], chord);
 }
+
+bool bravais_is_hexagon(const deck_lattice *l) {
+  bravais_neighbour family[PL_MAX_DIRECTIONS];
+  bravais b;
+  return strcmp(l->kind, "hexagonal") == 0 && bravais_of(l, &b) &&
+         bravais_family(&b, l->horizon, l->shells, family) == 3;
+}

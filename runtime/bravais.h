@@ -53,6 +53,9 @@ double bravais_distance(const double p[3], const double q[3]);
 int bravais_family(const bravais *b, double horizon, int shells,
                    bravais_neighbour list[PL_MAX_DIRECTIONS]);
 
+/* The hexagonal lattice of nearest neighbours, on which laws of bonds run bond by bond. */
+bool bravais_is_hexagon(const deck_lattice *l);
+
 /* From a site to its neighbour. */
 void bravais_chord(const bravais *b, const bravais_neighbour *n, double chord[3]);
 

@@ -150,6 +150,10 @@ static bool too_many_errors(const deck_reader *r) {
   return r->d->errors > MOST_ERRORS;
 }
 
+static void lack(deck *k, int kind) {
+  k->lacks |= 1u << kind;
+}
+
 #define READ_LIST(group)                                                                           \
   static void read_##group##s(deck_reader *r, const namelist *n) {                                 \
     size_t count = (size_t)count_kind(n, DECK_GROUP_##group);                                      \
@@ -161,6 +165,7 @@ static bool too_many_errors(const deck_reader *r) {
       int errors = r->d->errors;                                                                   \
       if (read_item(r, from, DECK_GROUP_##group, &item->item)) deck_check_##group(r, from, item);  \
       item->item.faulty |= r->d->errors > errors;                                                  \
+      if (item->item.faulty) lack(r->k, DECK_GROUP_##group);                                       \
       r->k->group##_count++;                                                                       \
     }                                                                                              \
   }
@@ -179,7 +184,9 @@ DECK_LISTS(READ_LIST)
         continue;                                                                                  \
       }                                                                                            \
       first = from;                                                                                \
+      int errors = r->d->errors;                                                                   \
       if (read_item(r, from, DECK_GROUP_##group, &item->item)) deck_check_##group(r, from, item);  \
+      if (r->d->errors > errors) lack(r->k, DECK_GROUP_##group);                                   \
     }                                                                                              \
   }
 
@@ -200,6 +207,8 @@ static void report_unknown_groups(deck_reader *r, const namelist *n) {
     const namelist_group *g = &n->groups[i];
     if (deck_group_find(g->name) >= 0) continue;
     diag_report(r->d, DIAG_UNKNOWN_GROUP, g->where, "there is no group `&%s`", g->name);
+    const char *meant = nearest_name(g->name, names, deck_group_names(names));
+    if (meant) lack(r->k, deck_group_find(meant));
     if (strcmp(g->name, "cut") == 0)
       diag_hint(r->d, "a cut-out is a `&notch`, with cut_bonds = .false. when bonds may span it");
     else
@@ -245,9 +254,33 @@ static bool is_no_matter(const char *group, const char *key) {
          (strcasecmp(key, "title") == 0 || strcasecmp(key, "threads") == 0);
 }
 
-deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
-                int override_count, diagnostics *d) {
-  int errors = d->errors;
+/* A material is still good for saying what is wrong with its law. */
+static bool is_kept(const deck_item *item, deck_group_kind kind) {
+  const deck_material *m = (const deck_material *)item;
+  return !item->faulty || (kind == DECK_GROUP_material && m->model && m->lattice);
+}
+
+#define LEAVE_OUT(group)                                                                           \
+  static void leave_out_##group##s(deck *k) {                                                      \
+    int kept = 0;                                                                                  \
+    for (int i = 0; i < k->group##_count; i++)                                                     \
+      if (is_kept(&k->group##s[i].item, DECK_GROUP_##group)) k->group##s[kept++] = k->group##s[i]; \
+    k->group##_count = kept;                                                                       \
+  }
+DECK_LISTS(LEAVE_OUT)
+
+static void leave_out_faulty(deck *k) {
+#define X(group) leave_out_##group##s(k);
+  DECK_LISTS(X)
+#undef X
+}
+
+bool deck_lacks(const deck *k, const char *group) {
+  return group ? k->lacks >> deck_group_find(group) & 1 : k->lacks != 0;
+}
+
+deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
+                              const deck_override *overrides, int override_count, diagnostics *d) {
   namelist *n = namelist_read(a, sources, file, d);
   deck_present_names(n, &deck_grammar_of_decks, d);
   deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
@@ -268,5 +301,15 @@ deck *deck_read(arena *a, source_set *sources, int file, const deck_override *ov
   set_computed_defaults(&r);
   k->identity = namelist_text(a, n, is_no_matter);
   if (!n->broken && !too_many_errors(&r)) deck_check_whole(&r);
+  if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);
+  if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
+  leave_out_faulty(k);
+  return k;
+}
+
+deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                int override_count, diagnostics *d) {
+  const int errors = d->errors;
+  deck *k = deck_read_what_is_right(a, sources, file, overrides, override_count, d);
   return d->errors > errors ? NULL : k;
 }

@@ -281,6 +281,7 @@ typedef struct deck {
   const char *name;     /* of the source */
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
                            without comments, title, number of threads and checkpoints */
+  unsigned lacks;       /* groups of which items were left out: see deck_lacks */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;
@@ -313,6 +314,12 @@ typedef struct deck_override {
    "--set", so that errors in them point at their text. */
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d);
+/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
+   Faulty items are left out, but for materials whose law is known. */
+deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
+                              const deck_override *overrides, int override_count, diagnostics *d);
+/* Some item of that group ("body") may have been left out; NULL: of any group. */
+bool deck_lacks(const deck *k, const char *group);
 
 /* Every group and key with its value, unit, default and meaning, as Markdown. */
 void deck_reference(FILE *out);

@@ -413,16 +413,14 @@ void deck_check_checkpoint(deck_reader *r, const namelist_group *from, deck_chec
 
 /* A faulty item may be the one that is missed. Particles of a file need no body. */
 static bool has_body(const deck *k, const deck_lattice *lattice) {
+  if (deck_lacks(k, "body")) return true;
   for (int i = 0; i < k->body_count; i++)
-    if (k->bodys[i].item.faulty || deck_same_name(k->bodys[i].lattice, lattice->name)) return true;
+    if (deck_same_name(k->bodys[i].lattice, lattice->name)) return true;
   return deck_same_name(lattice->kind, "particles");
 }
 
 static bool has_material(const deck *k, const char *lattice) {
-  for (int i = 0; i < k->material_count; i++)
-    if (k->materials[i].item.faulty || deck_same_name(k->materials[i].lattice, lattice))
-      return true;
-  return false;
+  return deck_lacks(k, "material") || deck_find_material(k, lattice) >= 0;
 }
 
 /* Inertia and its damping are means of the relaxation. */
@@ -440,9 +438,9 @@ static void check_quasi_static(deck_reader *r) {
 void deck_check_whole(deck_reader *r) {
   const deck *k = r->k;
   const deck_item *simulation = &k->simulation.item;
-  if (simulation->where.end == 0) /* never read */
+  if (simulation->where.end == 0 && !deck_lacks(k, "simulation")) /* never read */
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
-  if (k->lattice_count == 0)
+  if (k->lattice_count == 0 && !deck_lacks(k, "lattice"))
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_quasi_static(r);
   for (int i = 0; i < k->lattice_count; i++) {

@@ -163,7 +163,8 @@ static const deck_key_info simulation_keys[] = {
      .bound = BOUND_POSITIVE,
      .fallback = "'auto'",
      AT(simulation, step),
-     .doc = "time step; `'auto'`: `step_safety` times the largest stable one"},
+     .doc = "time step; `'auto'`: `step_safety` times the largest stable one, that of small "
+            "strains"},
     {.name = "step_safety",
      .type = DECK_REAL,
      .unit = "1",

@@ -231,8 +231,7 @@ rows *implied_lattice_like(const deck_lattice *l, double rho) {
   rows *w = rows_build(&k, 0, &said);
   diag_clear(&said);
   if (!w) return NULL;
-  w->mass = rho * w->volume;
-  w->inertia = 0.4 * w->mass * (s / 2) * (s / 2);
+  rows_set_density(w, rho);
   return w;
 }
 

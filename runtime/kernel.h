@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 11
+#define PL_KERNEL_ABI 12
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -222,6 +222,7 @@ typedef struct pl_law {
   int sum_count;      /* bonds add to both ends: so many sums; 0: either end computes its bonds */
   int constant_sum_count; /* sums that the passes may keep from step to step; 0 where they keep none */
   int reads_shape;    /* the passes read `shape` */
+  int pairwise; /* a law of bonds in this form: the force of a bond depends on its ends alone */
   pl_program step;    /* new fields and the forces */
   pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
 

@@ -81,7 +81,7 @@ static void select_regions(loads *l, const deck *k, const char *lattice, diagnos
     l->regions[r].count = rows_select(l->lattice, &region->shape, &l->regions[r].particles);
     if (l->regions[r].count == 0)
       report_empty(lattice, region, l->lattice, d);
-    else if (!region_is_used(k, region->name))
+    else if (!deck_lacks(k, NULL) && !region_is_used(k, region->name))
       diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);
   }
@@ -313,6 +313,50 @@ static double factor_at(const loads *l, const sweep *w, int cause, long step) {
   return acting(l, w, cause_of(l, cause), step);
 }
 
+/* --- velocities at the start ------------------------------------------------------------------ */
+
+enum { HELD = -1 };
+
+static void mark_held(const loads *l, int *set) {
+  for (long i = 0; i < l->constraint_count; i++) {
+    const constraint *c = &l->constraints[i];
+    if (c->drive < 0 || l->deck->drives[c->drive].motion.start <= 0)
+      set[(long)c->component * l->lattice->size + c->site] = HELD;
+  }
+}
+
+/* `set` remembers which velocities are given: [dof][size], index of the group + 1, or HELD. */
+static void check_velocity(const loads *l, int index, int *set, diagnostics *d) {
+  const deck_initial_velocity *v = &l->deck->initial_velocitys[index];
+  const region_sites *at = region_of(l, v->region);
+  for (long p = 0; at && p < at->count; p++) {
+    const int64_t site = l->lattice->particle_site[at->particles[p]];
+    int *given = &set[(long)v->component * l->lattice->size + site];
+    if (*given) {
+      const bool held = *given == HELD;
+      char text[ROWS_PLACE_TEXT];
+      diag_report(d, DIAG_CONFLICT, deck_where(&v->item, "region"), "the particle at %s %s %s",
+                  place_of(l, site, text),
+                  held ? "is held from the start in" : "is given two initial velocities in",
+                  deck_component_name(l->lattice->dimensions, v->component));
+      if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
+      return;
+    }
+    *given = index + 1;
+  }
+}
+
+static void check_velocities(const loads *l, const motions *m) {
+  int *set = must_calloc((size_t)m->dof * (size_t)l->lattice->size + 1, sizeof *set);
+  mark_held(l, set);
+  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
+    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
+    if (has_component(m, v->component, deck_where(&v->item, "component")))
+      check_velocity(l, i, set, m->said);
+  }
+  free(set);
+}
+
 /* --- set-up ----------------------------------------------------------------------------------- */
 
 static void protect(loads *l, rows *w) {
@@ -337,6 +381,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
     add_end_moment(l, i, d);
   put_in_order(l, &m);
   find_holders(l, &m);
+  check_velocities(l, &m);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;
@@ -370,56 +415,19 @@ long loads_constraints_of(const loads *l, int region, int component, int32_t **i
 
 /* --- velocities at the start ------------------------------------------------------------------ */
 
-enum { HELD = -1 };
-
-static void mark_held(const loads *l, int *set) {
-  for (long i = 0; i < l->constraint_count; i++) {
-    const constraint *c = &l->constraints[i];
-    if (c->drive < 0 || l->deck->drives[c->drive].motion.start <= 0)
-      set[(long)c->component * l->lattice->size + c->site] = HELD;
-  }
-}
-
-/* `set` remembers which velocities are given: [dof][size], index of the group + 1, or HELD. */
-static bool begin_moving(const loads *l, sweep *w, int index, int *set, diagnostics *d) {
-  const deck_initial_velocity *v = &l->deck->initial_velocitys[index];
-  const region_sites *at = region_of(l, v->region);
-  const span where = deck_where(&v->item, "region");
-  if (fabs(v->value) >= w->limit[v->component]) {
+bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
+  bool good = true;
+  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
+    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
+    const region_sites *at = region_of(l, v->region);
+    for (long p = 0; at && p < at->count; p++)
+      w->velocity[v->component][l->lattice->particle_site[at->particles[p]]] = v->value;
+    if (fabs(v->value) < w->limit[v->component]) continue;
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),
                 "this velocity takes a particle further than %s in one step",
                 v->component < w->dimensions ? "a spacing" : "half a turn");
-    return false;
+    good = false;
   }
-  for (long p = 0; at && p < at->count; p++) {
-    const int64_t site = l->lattice->particle_site[at->particles[p]];
-    int *given = &set[(long)v->component * l->lattice->size + site];
-    if (*given) {
-      const bool held = *given == HELD;
-      char text[ROWS_PLACE_TEXT];
-      diag_report(d, DIAG_CONFLICT, where, "the particle at %s %s %s", place_of(l, site, text),
-                  held ? "is held from the start in" : "is given two initial velocities in",
-                  deck_component_name(l->lattice->dimensions, v->component));
-      if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
-      return false;
-    }
-    *given = index + 1;
-    w->velocity[v->component][site] = v->value;
-  }
-  return true;
-}
-
-bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
-  const motions m = {.dof = w->dof, .law = w->law->name, .said = d};
-  int *set = must_calloc((size_t)w->dof * (size_t)l->lattice->size + 1, sizeof *set);
-  bool good = true;
-  mark_held(l, set);
-  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
-    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
-    good = has_component(&m, v->component, deck_where(&v->item, "component")) &&
-           begin_moving(l, w, i, set, d) && good;
-  }
-  free(set);
   return good;
 }
 

@@ -89,11 +89,11 @@ typedef struct loads {
 } loads;
 
 /* Selects the regions, protects what is to be protected, collects supports, drives and forces. NULL
- * on errors. */
+   with diagnostics where two motions or velocities at the start are one too many. */
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
-/* Velocities that regions begin with. False with diagnostics where a particle is held or has two. */
+/* Velocities that regions begin with. False with diagnostics where one is too large for a step. */
 bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
 /* Before the first step of each increment of a quasi-static run: its loads, and what they hold. */
 void loads_increment(loads *l, const sweep *w, load_clock clock);

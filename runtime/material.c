@@ -8,6 +8,17 @@
 #include "dsl/units.h"
 #include "runtime/simulation.h"
 
+int material_rho(const pl_law *law) {
+  for (int p = 0; p < law->parameter_count; p++)
+    if (strcmp(law->parameters[p].name, "rho") == 0) return p;
+  return -1;
+}
+
+double material_density(const pl_law *law, const double *values) {
+  const int rho = material_rho(law);
+  return rho < 0 ? 0 : values[rho];
+}
+
 /* Namelists do not know case, and no two parameters of a law differ in case only. */
 static int find_parameter(const pl_law *law, const char *name) {
   for (int p = 0; p < law->parameter_count; p++)
@@ -124,7 +135,7 @@ bool material_parameters(const deck_material *m, const pl_law *law, double *valu
   bool good = true;
   for (int a = 0; a < m->assignment_count; a++)
     good = assign(&m->assignments[a], law, values, where, given, d) && good;
-  good = fill_defaults(m, law, values, given, d) && good;
+  good = !m->item.faulty && fill_defaults(m, law, values, given, d) && good;
   good = good && check_bounds(m, law, values, where, given, d);
   free(given);
   free(where);

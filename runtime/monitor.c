@@ -11,12 +11,12 @@
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-static bool counts_damage(const monitor *m) {
-  return m->deck->kind == MONITOR_DAMAGED || m->deck->kind == MONITOR_BROKEN;
+static bool counts_damage(const deck_monitor *m) {
+  return m->kind == MONITOR_DAMAGED || m->kind == MONITOR_BROKEN;
 }
 
-static bool has_component(const monitor *m) {
-  return !counts_damage(m) && m->deck->kind != MONITOR_FIELD;
+static bool has_component(const deck_monitor *m) {
+  return !counts_damage(m) && m->kind != MONITOR_FIELD;
 }
 
 static const char *unit_of(const deck_monitor *m, int dimensions) {
@@ -55,17 +55,16 @@ static void take_reactions(monitor *m, int list, const monitors *all, const char
         loads_constraints_of(all->loads, r, m->deck->component, &m->indices[list]);
 }
 
-static bool check_component(const monitor *m, const monitors *all, diagnostics *d) {
-  if (!has_component(m) || m->deck->component < all->state->dof) return true;
-  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "component"),
-              "the particles of the law `%s` do not rotate", all->state->law->name);
+static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
+  if (!has_component(m) || m->component < law->dof) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "component"),
+              "the particles of the law `%s` do not rotate", law->name);
   return false;
 }
 
-static bool check_damage(const monitor *m, const monitors *all, diagnostics *d) {
-  const pl_law *law = all->state->law;
+static bool check_damage(const deck_monitor *m, const pl_law *law, diagnostics *d) {
   if (!counts_damage(m) || damage_on_bonds(law) || damage_on_particles(law)) return true;
-  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "kind"),
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
               "the law `%s` has no damage to count", law->name);
   return false;
 }
@@ -75,27 +74,35 @@ static const pl_field *law_field(const pl_law *law, int k) {
   return k < law->field_count ? &law->fields[k] : &law->outputs[k - law->field_count];
 }
 
-static bool find_field(monitor *m, const monitors *all, diagnostics *d) {
-  const pl_law *law = all->state->law;
+static int find_field(const deck_monitor *m, const pl_law *law) {
+  for (int k = law->field_count + law->output_count - 1; k >= 0; k--) {
+    const pl_field *f = law_field(law, k);
+    if (f->place == PL_ON_PARTICLE && strcasecmp(f->name, m->field) == 0) return k;
+  }
+  return -1;
+}
+
+static bool check_field(const deck_monitor *m, const pl_law *law, diagnostics *d) {
+  if (m->kind != MONITOR_FIELD || find_field(m, law) >= 0) return true;
   const int count = law->field_count + law->output_count;
   const char **names = must_calloc((size_t)count + 1, sizeof *names);
   int there = 0;
-  m->field = -1;
-  for (int k = 0; k < count; k++) {
-    const pl_field *f = law_field(law, k);
-    if (f->place != PL_ON_PARTICLE) continue;
-    names[there++] = f->name;
-    if (strcasecmp(f->name, m->deck->field) == 0) m->field = k;
-  }
-  if (m->field < 0) {
-    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "field"),
-                "the law `%s` has no `%s` on particles", law->name, m->deck->field);
-    deck_suggest(d, m->deck->field, names, there, "a monitor can watch");
-  } else {
-    m->unit = law_field(law, m->field)->unit;
-  }
+  for (int k = 0; k < count; k++)
+    if (law_field(law, k)->place == PL_ON_PARTICLE) names[there++] = law_field(law, k)->name;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "field"),
+              "the law `%s` has no `%s` on particles", law->name, m->field);
+  deck_suggest(d, m->field, names, there, "a monitor can watch");
   free(names);
-  return m->field >= 0;
+  return false;
+}
+
+bool monitors_check(const deck *k, const pl_law *law, diagnostics *d) {
+  bool good = true;
+  for (int i = 0; i < k->monitor_count; i++) {
+    const deck_monitor *m = &k->monitors[i];
+    good = check_component(m, law, d) && check_damage(m, law, d) && check_field(m, law, d) && good;
+  }
+  return good;
 }
 
 static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
@@ -103,7 +110,7 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
   const double dt = all->interval, steps = m->deck->average / dt;
   m->zero_step = m->deck->zero_at >= 0 ? lround(pl_fmin(m->deck->zero_at / dt, 9e15)) : -1;
   m->window = 1;
-  if (counts_damage(m) || m->deck->average <= 0) return true;
+  if (counts_damage(m->deck) || m->deck->average <= 0) return true;
   if (steps <= most) {
     m->window = steps < 1 ? 1 : lround(steps);
     return true;
@@ -122,11 +129,12 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
 }
 
 static void new_monitor(monitors *all, int index, diagnostics *d) {
+  const pl_law *law = all->state->law;
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
   m->unit = unit_of(m->deck, all->state->dimensions);
   m->window = 1;
-  if (!check_component(m, all, d) || !check_damage(m, all, d) || !find_steps(m, all, d)) return;
+  if (!find_steps(m, all, d)) return;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     take_reactions(m, 0, all, m->deck->region);
@@ -144,7 +152,9 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
-    if (find_field(m, all, d)) take_sites(m, 0, all, m->deck->region);
+    m->field = find_field(m->deck, law);
+    m->unit = law_field(law, m->field)->unit;
+    take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:

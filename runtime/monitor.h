@@ -52,6 +52,9 @@ typedef struct monitors {
   long ring_size;
 } monitors;
 
+/* False with diagnostics where the deck watches what particles of the law do not have. */
+bool monitors_check(const deck *k, const pl_law *law, diagnostics *d);
+/* Of a deck that was checked. NULL with a diagnostic when a mean does not fit into memory. */
 monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
                        double interval, diagnostics *d);
 void monitors_free(monitors *m);

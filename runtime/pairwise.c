@@ -531,8 +531,10 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
     *energies[k] = sweep_doubles(w, w->lattice->size);
   list_streams(w, p);
   return (sweep_engine){.step_stages = 1,
+                        .force_stages = 1,
                         .observe_stages = 1,
                         .step = step,
+                        .forces = observe,
                         .turn = turn,
                         .observe = observe,
                         .output = output_values,

@@ -423,6 +423,14 @@ int rows_degree(const rows *w, long site) {
   return count;
 }
 
+void rows_set_density(rows *w, double rho) {
+  const double half = w->spacing / 2;
+  w->mass = rho * w->volume;
+  for (long q = 0; w->site_mass && q < w->size; q++)
+    w->site_mass[q] = rho * w->site_volume[q];
+  w->inertia = 0.4 * w->mass * half * half;
+}
+
 /* Bonds of a full family; on lists their mean. */
 static double family_size(const rows *w) {
   if (!w->list) return 2 * w->directions;

@@ -13,61 +13,28 @@
 
 /* --- set-up: mass and step -------------------------------------------------------------------- */
 
-/* A particle is a disc of half a spacing when it turns: I = (2/5) m (s/2)^2 (Asadollahi 2014). */
+/* Where the deck says which law it is. */
+static span where_of_law(const simulation *s) {
+  const deck_lattice *lattice = &s->deck->lattices[0];
+  const int m = deck_find_material(s->deck, lattice->name);
+  return m < 0 ? lattice->item.where : deck_where(&s->deck->materials[m].item, "model");
+}
+
 static bool set_mass(simulation *s, diagnostics *d) {
-  int rho = -1;
+  if (material_rho(s->law) >= 0) {
+    rows_set_density(s->lattice, material_density(s->law, s->parameters));
+    return true;
+  }
+  diag_report(d, DIAG_MISSING_KEY, where_of_law(s),
+              "the law `%s` has no parameter `rho`, so its particles have no mass", s->law->name);
   for (int p = 0; p < s->law->parameter_count; p++)
-    if (strcasecmp(s->law->parameters[p].name, "rho") == 0) rho = p;
-  if (rho < 0) {
-    const deck_lattice *lattice = &s->deck->lattices[0];
-    const int m = deck_find_material(s->deck, lattice->name);
-    diag_report(d, DIAG_MISSING_KEY, m < 0 ? lattice->item.where : s->deck->materials[m].item.where,
-                "the law `%s` has no parameter `rho`, so its particles have no mass", s->law->name);
-    diag_hint(d, "add a mass density to the law, e.g. parameter rho = 2300 [kg/m^3] in (0, inf)");
-    return false;
-  }
-  const double half = s->lattice->spacing / 2;
-  s->lattice->mass = s->parameters[rho] * s->lattice->volume;
-  for (long q = 0; s->lattice->site_mass && q < s->lattice->size; q++)
-    s->lattice->site_mass[q] = s->parameters[rho] * s->lattice->site_volume[q];
-  s->lattice->inertia = 0.4 * s->lattice->mass * half * half;
-  return true;
-}
-
-static bool are_allowed(const pl_law *law, const double *values) {
-  const size_t n = (size_t)law->parameter_count + 1;
-  double *lower = must_calloc(2 * n, sizeof *lower), *upper = lower + n;
-  unsigned char *open = must_calloc(2 * n, 1);
-  law->bounds(law, values, lower, upper, open, open + n);
-  bool good = true;
-  for (int p = 0; p < law->parameter_count; p++)
-    good &= values[p] >= lower[p] && values[p] <= upper[p];
-  free(lower);
-  free(open);
-  return good;
-}
-
-/* Where parameters differ from bond to bond, the smallest limit of lattices that have the smallest
-   or largest value of each in all bonds (with many fields: of all, or of one of them). */
-static void limit_with_fields(simulation *s) {
-  enum { MOST_AT_ONCE = 5 };
-  const random_fields *f = s->fields;
-  const size_t n = (size_t)s->law->parameter_count + 1;
-  double *values = must_calloc(n, sizeof *values);
-  const int corners = f->count <= MOST_AT_ONCE ? 1 << f->count : 2 * f->count + 2;
-  for (int c = 0; c < corners; c++) {
-    memcpy(values, s->parameters, (n - 1) * sizeof *values);
-    for (int k = 0; k < f->count; k++) {
-      const bool all = f->count <= MOST_AT_ONCE, one = !all && c < 2 * f->count;
-      const bool high = all ? c >> k & 1 : c & 1;
-      if (!one || c / 2 == k) values[s->law->varying[k]] = high ? f->largest[k] : f->smallest[k];
+    if (strcasecmp(s->law->parameters[p].name, "rho") == 0) {
+      diag_hint(d, "in a law upper and lower case differ: write `rho` for `%s`",
+                s->law->parameters[p].name);
+      return false;
     }
-    step_limit limit = {0};
-    if (!are_allowed(s->law, values)) continue;
-    stability_limit(s->law, values, s->lattice, &limit);
-    if (limit.limit < s->limit.limit) s->limit = limit;
-  }
-  free(values);
+  diag_hint(d, "add a mass density to the law, e.g. parameter rho = 2300 [kg/m^3] in (0, inf)");
+  return false;
 }
 
 /* Protection keeps damage as it is: a law that softens through a plain state is not held back by it. */
@@ -81,11 +48,33 @@ static void warn_of_protection(const simulation *s, diagnostics *d) {
         s->law->name);
 }
 
+static bool is_stable_at_rest(const simulation *s, diagnostics *d) {
+  if (s->limit.least >= STABILITY_LEAST) return true;
+  diag_report(d, DIAG_STIFFNESS, where_of_law(s),
+              "the virgin body is unstable at rest: by the law `%s` a small motion pushes its "
+              "particles on (smallest eigenvalue of its stiffness %.3g of the largest)",
+              s->law->name, s->limit.least);
+  diag_hint(d, "a bond that is longer pulls its ends together: look at the signs, and at what the "
+               "law takes for lengths and volumes of this lattice");
+  return false;
+}
+
+/* Of a dynamic run: the time of others is only an order. */
+static bool ends_after_a_step(const simulation *s, diagnostics *d) {
+  const double end = s->deck->simulation.end_time;
+  if (s->deck->relaxation.increments > 0 || s->limit.step <= end) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&s->deck->simulation.item, "end_time"),
+              "the run of %.4g s is shorter than one step of %.4g s", end, s->limit.step);
+  diag_hint(d, "give a later `end_time`, a shorter `step`, or look at the units of stiffness and "
+               "density");
+  return false;
+}
+
 static bool choose_step(simulation *s, diagnostics *d) {
   const deck_simulation *k = &s->deck->simulation;
-  stability_limit(s->law, s->parameters, s->lattice, &s->limit);
-  if (s->fields) limit_with_fields(s);
+  stability_limit(s->law, s->parameters, s->fields, s->lattice, &s->limit);
   const double limit = s->limit.limit;
+  if (!is_stable_at_rest(s, d)) return false;
   if (!(limit > 0)) {
     diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
                 "the law `%s` has no finite stiffness at rest, so that no step is stable",
@@ -102,7 +91,7 @@ static bool choose_step(simulation *s, diagnostics *d) {
     return false;
   }
   s->limit.step = k->step > 0 ? k->step : k->step_safety * limit;
-  if (isfinite(s->limit.step) && s->limit.step > 0) return true;
+  if (isfinite(s->limit.step) && s->limit.step > 0) return ends_after_a_step(s, d);
   diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
               "the law `%s` has no stiffness to choose a step from", s->law->name);
   diag_hint(d, "give `step` in &simulation");
@@ -194,11 +183,9 @@ static bool topology_serves(const simulation *s, diagnostics *d) {
 /* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest neighbours. */
 static bool lattice_serves(const simulation *s, diagnostics *d) {
   const deck_lattice *l = &s->deck->lattices[0];
-  const bool hexagonal = strcmp(l->kind, "hexagonal") == 0;
-  const bool nearest = hexagonal && s->lattice->directions == 3;
   const bool same = s->law->dimensions == s->lattice->dimensions;
   if (same && (s->law->kind == PL_STATE || s->lattice->list)) return topology_serves(s, d);
-  if (same && nearest) return true;
+  if (same && bravais_is_hexagon(l)) return true;
   if (s->law->dimensions != s->lattice->dimensions) {
     diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "the law `%s` is of %s, the lattice is in %s", s->law->name,
@@ -206,12 +193,50 @@ static bool lattice_serves(const simulation *s, diagnostics *d) {
                 s->law->dimensions == 2 ? "space" : "the plane");
     return false;
   }
+  const bool hexagonal = strcmp(l->kind, "hexagonal") == 0;
   const char *key = !hexagonal ? "kind" : l->horizon > 0 ? "horizon" : "shells";
   diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, key),
               "`%s` is a law of bonds: it runs on a hexagonal lattice of nearest neighbours",
               s->law->name);
-  diag_hint(d, "only laws of families, `law state`, run on other lattices");
+  diag_hint(d,
+            "other lattices bear laws of families, `law state`, and central laws of bonds without "
+            "random fields");
   return false;
+}
+
+static bool open_fields(simulation *s, diagnostics *d) {
+  const deck *k = s->deck;
+  if (k->field_count > 0 && s->law->kind == PL_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, k->fields[0].item.where,
+                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
+                s->law->name);
+    return false;
+  }
+  if (k->field_count == 0 && s->law->varying_count == 0) return true;
+  s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
+  return s->fields != NULL;
+}
+
+/* What asks for the values of parameters. */
+static bool open_material(simulation *s, diagnostics *d) {
+  const bool fields = open_fields(s, d), mass = set_mass(s, d);
+  if (deck_lacks(s->deck, "simulation") || deck_lacks(s->deck, "relaxation")) return false;
+  return fields && mass && choose_step(s, d) && count_steps(s, d);
+}
+
+/* Everything that can be said of the deck with this lattice, or nothing and true. Laws and
+   parameters may be missing, when they are wrong themselves. */
+static bool is_sound(simulation *s, diagnostics *d) {
+  enum { ANY_DOF = 3 };
+  const deck *k = s->deck;
+  const bool serves = s->law && lattice_serves(s, d);
+  s->loads =
+      loads_new(k, 0, s->lattice, serves ? s->law->name : "", serves ? s->law->dof : ANY_DOF, d);
+  if (!serves) return false;
+  warn_of_protection(s, d);
+  const bool frames = deck_lacks(k, "output") || frames_check(s, d),
+             watched = monitors_check(k, s->law, d);
+  return s->parameters && open_material(s, d) && s->loads && frames && watched;
 }
 
 static bool set_up(simulation *s, diagnostics *d) {
@@ -222,24 +247,9 @@ static bool set_up(simulation *s, diagnostics *d) {
                 "a run can have one lattice, this is the second");
     return false;
   }
-  s->lattice = rows_build(k, 0, d);
-  if (!s->lattice || !lattice_serves(s, d)) return false;
+  if (!s->lattice) s->lattice = rows_build(k, 0, d);
+  if (!s->lattice || !is_sound(s, d) || deck_lacks(k, NULL)) return false;
   s->bonds = rows_bonds(s->lattice);
-  if (k->field_count > 0 && s->law->kind == PL_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, k->fields[0].item.where,
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                s->law->name);
-    return false;
-  }
-  if (k->field_count > 0 || s->law->varying_count > 0) {
-    s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
-    if (!s->fields) return false;
-  }
-  if (!set_mass(s, d)) return false;
-  s->loads = loads_new(k, 0, s->lattice, s->law->name, s->law->dof, d);
-  warn_of_protection(s, d);
-  const bool fields = frames_check(s, d), step = choose_step(s, d);
-  if (!s->loads || !fields || !step || !count_steps(s, d)) return false;
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
                        k->output.energy, quasi_static);
   s->team = team_new(s->state->block_count);
@@ -261,14 +271,20 @@ static bool set_up(simulation *s, diagnostics *d) {
   return true;
 }
 
-simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d) {
+simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
+                              diagnostics *d) {
   simulation *s = must_calloc(1, sizeof *s);
   s->deck = k;
   s->law = laws[0].law;
   s->parameters = laws[0].parameters;
-  if (set_up(s, d)) return s;
+  s->lattice = lattice;
+  if (set_up(s, d) && d->errors == 0) return s;
   simulation_free(s);
   return NULL;
+}
+
+simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d) {
+  return simulation_new_on(NULL, k, laws, d);
 }
 
 void simulation_free(simulation *s) {

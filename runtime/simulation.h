@@ -23,7 +23,8 @@ typedef struct simulation simulation;
 struct profile;
 struct sweep;
 
-/* What the front end hands over for each lattice of the deck, in deck order. */
+/* What the front end hands over for each lattice of the deck, in deck order. NULL where a law or
+   its parameters are wrong: then the deck is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;
   double *parameters; /* [parameter_count] SI, defaults filled in; malloc'ed, owned by the caller. A
@@ -35,18 +36,31 @@ typedef struct simulation_law {
    entries. */
 bool material_parameters(const deck_material *m, const pl_law *law, double *values, diagnostics *d);
 
+/* Place of `rho` among the law's parameters, the density that masses are made of, or -1. In laws
+   upper and lower case differ. */
+int material_rho(const pl_law *law);
+/* Its value (kg/m^3), or 0. */
+double material_density(const pl_law *law, const double *values);
+
 typedef struct step_limit {
   double limit;         /* s: largest stable step */
   double step;          /* s: chosen */
   double omega_max;     /* rad/s */
   double damping_ratio; /* of the ruling mode */
   const char *mode;     /* "translation" or "rotation" */
+  bool at_surface;      /* the body as it stands has a faster mode than any wave of its lattice */
+  double least; /* smallest eigenvalue of the virgin body over the largest; 0: none is negative */
 } step_limit;
 
-/* NULL with diagnostics when the deck does not fit its lattices or the given step is unstable.
+/* NULL with all diagnostics when the deck does not fit its lattices or the given step is unstable,
+   and where `d` has errors already; what items that a deck lacks would have to do with is not said.
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
+/* The same on the deck's lattice as rows_build has built it, which belongs to the simulation from
+   then on; NULL: to be built. */
+simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
+                              diagnostics *d);
 void simulation_free(simulation *s);
 
 /* Random fields of the law's parameters; NULL without. */

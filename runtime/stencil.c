@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/elementary.h"
 #include "runtime/patch.h"
 
 /* Small against any strain that a law makes a difference at; with central differences what is left
@@ -38,28 +39,54 @@ static void find_forces(patch *p, double *moved) {
   patch_step(p);
 }
 
-/* Column b of the blocks, -df/d(moved), of the particle in the middle; who feels it R ahead stands at
-   -R. */
+/* Whoever feels the middle R ahead stands at -R. */
+static long site_of(const neighbourhood *n, const stencil_block *block) {
+  const long at[3] = {n->reach[0] - block->cell[0], n->reach[1] - block->cell[1],
+                      n->reach[2] - block->cell[2]};
+  return patch_site(n->p, at);
+}
+
+/* Forces on all when the particle in the middle is moved: [count][3]. */
+static void push(const neighbourhood *n, double *moved, double by, const stencil *out,
+                 double (*force)[3]) {
+  moved[patch_site(n->p, n->reach)] = by;
+  find_forces(n->p, moved);
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dimensions; a++)
+      force[k][a] = n->p->force[a][site_of(n, &out->blocks[k])];
+}
+
+/* Part by which either side of a kink at rest is stiffer than the mean of both, of blocks that
+   matter. */
+static void note_kink(stencil *out, double (*up)[3], double (*down)[3]) {
+  const double matters = 1e-3;
+  double largest = 0;
+  for (int k = 0; k < 3 * out->count; k++)
+    largest = pl_fmax(largest, fabs(up[k / 3][k % 3] - down[k / 3][k % 3]));
+  for (int k = 0; k < 3 * out->count; k++) {
+    const double odd = fabs(up[k / 3][k % 3] - down[k / 3][k % 3]),
+                 even = fabs(up[k / 3][k % 3] + down[k / 3][k % 3]);
+    if (odd > matters * largest) out->kink = pl_fmax(out->kink, even / odd);
+  }
+}
+
+/* Column b of the blocks, -df/d(moved), of the particle in the middle. */
 static void probe(const neighbourhood *n, double *const *moving, double size, int b, bool rates,
                   stencil *out) {
-  patch *p = n->p;
-  double *moved = moving[b];
-  const long middle = patch_site(p, n->reach);
-  for (int side = 1; side >= -1; side -= 2) {
-    moved[middle] = side * size;
-    find_forces(p, moved);
-    for (int k = 0; k < out->count; k++) {
+  double(*up)[3] = must_calloc(2 * (size_t)out->count, sizeof *up), (*down)[3] = up + out->count;
+  push(n, moving[b], size, out, up);
+  push(n, moving[b], -size, out, down);
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dimensions; a++) {
       stencil_block *block = &out->blocks[k];
-      const long at[3] = {n->reach[0] - block->cell[0], n->reach[1] - block->cell[1],
-                          n->reach[2] - block->cell[2]};
-      for (int a = 0; a < out->dimensions; a++) {
-        double *value = rates ? &block->damping[a][b] : &block->stiffness[a][b];
-        *value -= side * p->force[a][patch_site(p, at)] / (2 * size);
-      }
+      double *value = rates ? &block->damping[a][b] : &block->stiffness[a][b];
+      *value -= up[k][a] / (2 * size);
+      *value += down[k][a] / (2 * size);
     }
-  }
-  moved[middle] = 0;
-  patch_repeat(p, moved);
+  if (!rates) note_kink(out, up, down);
+  free(up);
+  moving[b][patch_site(n->p, n->reach)] = 0;
+  patch_repeat(n->p, moving[b]);
 }
 
 /* --- blocks ----------------------------------------------------------------------------------- */
@@ -151,6 +178,15 @@ static void set_term(wave_term *t, const stencil_block *ahead, const stencil_blo
   memcpy(t->damping.backward, behind->damping, sizeof(wave_block));
 }
 
+static void scale_stiffness(crystal *c, double factor) {
+  for (int n = 0; n < c->term_count; n++)
+    for (int k = 0; k < WAVES_MOST_DOF * WAVES_MOST_DOF; k++) {
+      c->terms[n].stiffness.self[k / 3][k % 3] *= factor;
+      c->terms[n].stiffness.forward[k / 3][k % 3] *= factor;
+      c->terms[n].stiffness.backward[k / 3][k % 3] *= factor;
+    }
+}
+
 /* Blocks that rounding left count as none. */
 crystal stencil_crystal(const pl_law *law, const double *parameters, const rows *w) {
   const double nothing = 1e-12;
@@ -168,6 +204,7 @@ crystal stencil_crystal(const pl_law *law, const double *parameters, const rows 
     if (stiffness || damping) set_term(&c.terms[c.term_count++], &s.blocks[n], &s.blocks[n + 1]);
   }
   c.damped = largest_of((const double(*)[3])s.blocks[0].damping) > nothing * critical;
+  if (s.kink > STENCIL_KINK) scale_stiffness(&c, 1 + s.kink);
   stencil_free(&s);
   return c;
 }

@@ -21,15 +21,21 @@ typedef struct stencil {
   bool finite;
   double imbalance; /* |sum of K(R)| before it was taken from K(0), over |K(0)|: a rigid motion must
                        leave no force */
+  /* Part by which one side of a kink at rest is stiffer than the mean of both, which the blocks
+     have. */
+  double kink;
 } stencil;
+
+/* What geometry and rounding leave of it is less. */
+#define STENCIL_KINK 1e-5
 
 /* K(R) and K(-R) are made each other's transpose: laws whose virgin forces have a stored energy give
    them so. */
 stencil stencil_new(const pl_law *law, const double *parameters, const rows *w);
 void stencil_free(stencil *s);
 
-/* For waves; w->mass must be set. Damping that shortens no step (of 1e-12 of the critical one) is
-   left out. */
+/* For waves; w->mass must be set. Where there is a kink at rest, the stiffness is that of its
+   stiffer side. Damping that shortens no step (of 1e-12 of the critical one) is left out. */
 crystal stencil_crystal(const pl_law *law, const double *parameters, const rows *w);
 
 /* Elastic constants by the method of long waves (Born and Huang 1954, section 26): Pa, in the order

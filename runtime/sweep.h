@@ -52,7 +52,7 @@ typedef struct sweep sweep;
 typedef struct sweep_engine {
   int step_stages, force_stages, observe_stages;
   void (*step)(sweep *w, int stage, int block);
-  void (*forces)(sweep *w, int stage, int block); /* of the present state; laws of families only */
+  void (*forces)(sweep *w, int stage, int block); /* of the present state */
   void (*fields_set)(
       sweep *w);          /* after values of fields were set from outside; NULL: nothing to do */
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
@@ -151,7 +151,7 @@ void sweep_turn(sweep *w);
  * bad. */
 bool sweep_step(sweep *w);
 
-/* Forces of the present state by a law of families, a thread for each block; nothing moves, and the fields stay. */
+/* Forces of the present state, a thread for each block; nothing moves, and the fields stay. */
 void sweep_find_forces(sweep *w);
 
 /* Observing is done in stages too: the law at the present places, aside: forces on the particles, new fields, stored energy and

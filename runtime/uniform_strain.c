@@ -9,6 +9,10 @@
 #include "runtime/shape_matrix.h"
 #include "runtime/sweep_parts.h"
 
+/* LAPACK: solves a system of linear equations. */
+void dgesv_(const int *n, const int *columns, double *a, const int *lda, int *pivot, double *b,
+            const int *ldb, int *info);
+
 enum { MOST_STRAINS = 6 };
 
 /* Small against any strain that a law makes a difference at. */
@@ -163,6 +167,98 @@ static void probe_free(probe *p) {
   for (int d = 0; d < p->dimensions; d++)
     free(p->force[d]);
   free(p->left);
+}
+
+/* --- moduli of a body on a lattice ------------------------------------------------------------ */
+
+/* A weight of the sections across one axis that is smooth and 0 at both ends of the middle part,
+   and its integral. */
+typedef struct window {
+  int axis;
+  double from, length; /* m */
+} window;
+
+static double weight_at(const window *v, double x) {
+  const double part = (x - v->from) / v->length;
+  return part <= 0 || part >= 1 ? 0 : 1 - pl_cos(2 * M_PI * part);
+}
+
+static double integral_at(const window *v, double x) {
+  const double part = pl_fmin(pl_fmax((x - v->from) / v->length, 0), 1), turn = 2 * M_PI;
+  return v->length * (part - pl_sin(turn * part) / turn);
+}
+
+/* Bonds that a section farther from an end cuts are all as they are inside: as far as the passes
+   reach. */
+static bool window_of(const pl_law *law, const rows *w, int axis, window *v) {
+  enum { FEWEST = 3 }; /* spacings that are a middle */
+  const int passes = law->kind == PL_STATE && !law->pairwise ? law->step.pass_count : 1;
+  double low = INFINITY, high = -INFINITY, at[3];
+  for (long p = 0; p < w->particle_count; p++) {
+    rows_place(w, w->particle_site[p], at);
+    low = pl_fmin(low, at[axis]);
+    high = pl_fmax(high, at[axis]);
+  }
+  const double margin = passes * w->horizon, half = 0.5 * w->spacing;
+  const bool has_middle = high - low - 2 * margin >= FEWEST * w->spacing;
+  *v = has_middle ? (window){axis, low + margin, high - low - 2 * margin}
+                  : (window){axis, low - half, high - low + 2 * half};
+  return has_middle;
+}
+
+/* Mean over the sections of the force in direction b that they carry, over their area: a section
+   carries minus the forces on all beyond it. */
+static double section_stress(const probe *p, const window *v, int b) {
+  double force = 0, area = 0, at[3];
+  for (long n = 0; n < p->lattice->particle_count; n++) {
+    const long q = p->lattice->particle_site[n];
+    rows_place(p->lattice, q, at);
+    force -= p->force[b][q] * integral_at(v, at[v->axis]);
+    area += volume_of(p->lattice, q) * weight_at(v, at[v->axis]);
+  }
+  return force / area;
+}
+
+static bool solve(int order, double *matrix, double *right) {
+  int pivot[MOST_STRAINS], one = 1, info = 0;
+  dgesv_(&order, &one, matrix, &order, pivot, right, &order, &info);
+  return info == 0;
+}
+
+/* The strain that goes with a stress along the axis alone; its modulus. */
+static double modulus_along(const double C[MOST_STRAINS][MOST_STRAINS], int strains, int axis) {
+  double matrix[MOST_STRAINS * MOST_STRAINS], strain[MOST_STRAINS] = {0};
+  strain[axis] = 1;
+  for (int c = 0; c < strains; c++)
+    for (int r = 0; r < strains; r++)
+      matrix[c * strains + r] = C[r][c];
+  return solve(strains, matrix, strain) && strain[axis] > 0 ? 1 / strain[axis] : NAN;
+}
+
+bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *const *varying,
+                           const rows *w, double E[3]) {
+  double C[MOST_STRAINS][MOST_STRAINS] = {{0}};
+  window along[3];
+  bool any = false, has_middle[3];
+  for (int a = 0; a < w->dimensions; a++)
+    any = (has_middle[a] = window_of(law, w, a, &along[a])) || any;
+  for (int a = 0; a < 3; a++)
+    E[a] = NAN;
+  if (!any) return true;
+  probe p = probe_new(law, parameters, w);
+  p.sweep->parameter = varying;
+  for (int c = 0; c < p.strains; c++) {
+    find_slopes(&p, c);
+    for (int r = 0; r < p.strains; r++)
+      C[r][c] = section_stress(&p, &along[p.first[r]], p.second[r]);
+  }
+  bool finite = true;
+  for (int a = 0; a < p.dimensions; a++) {
+    if (has_middle[a]) E[a] = modulus_along((const double(*)[MOST_STRAINS])C, p.strains, a);
+    finite = finite && (!has_middle[a] || E[a] > 0);
+  }
+  probe_free(&p);
+  return finite;
 }
 
 bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,

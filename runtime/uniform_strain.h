@@ -20,4 +20,13 @@ typedef struct uniform_response {
 bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
                              bool plane_strain, uniform_response *out);
 
+/* Young's moduli (Pa) along x, y and z of a body as it stands on a lattice: of its middle part,
+   away from the ends that each is loaded at, stress over the volume of the particles, sides free in
+   the mean. A perfect body whose bonds along the load are all there has the lattice's; what its
+   other edges lack makes it softer. `varying` as in sweep.h (NULL: none). NaN in a direction in
+   which the body is too short to have a middle. False where the law gives no finite forces or no
+   stiffness. */
+bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *const *varying,
+                           const rows *w, double E[3]);
+
 #endif

@@ -21,7 +21,7 @@ enum {
       48, /* wave vectors along each reciprocal vector; both hold the corners of the zones */
   SPACE_GRID = 24,
   STARTS = 6,      /* best grid points that are refined */
-  MOST_MOVES = 500 /* of one refinement; about 30 are needed */
+  MOST_MOVES = 500 /* of one refinement; about 45 are needed */
 };
 
 typedef double complex matrix[MOST_DOF][MOST_DOF];
@@ -244,7 +244,7 @@ static bool refine(const crystal *c, bool damped, found *f) {
                                   {1, 1}, {-1, -1}, {1, -1}, {-1, 1}};
   const int ways = c->dimensions == 2 ? 8 : 27;
   double h = 0.5 / grid_of(c);
-  for (int move = 0; move < MOST_MOVES && h > 1e-9; move++) {
+  for (int move = 0; move < MOST_MOVES && h > 1e-13; move++) {
     const found from = *f;
     for (int n = 0; n < ways; n++) { /* in the plane, then above and below it */
       const int *way = n % 9 < 8 ? plane[n % 9] : (const int[3]){0, 0, 0};

@@ -103,6 +103,208 @@ static void decks_of_families_are_checked(void **state) {
   assert_non_null(strstr(w->said, "particles of a square lattice"));
 }
 
+/* --- a law on the lattice of its deck --------------------------------------------------------- */
+
+static void write_central(const workplace *w, const char *name, const char *body) {
+  char text[1000], file[100];
+  snprintf(text, sizeof text,
+           "model %s\n  law central bond\n  parameter E = 30 [GPa] in (0, inf)\n"
+           "  parameter rho = 2400 [kg/m^3] in (0, inf)\n%send model\n",
+           name, body);
+  snprintf(file, sizeof file, "%s.plm", name);
+  write_text(w, file, text);
+}
+
+#define DECK_WITH(lattice, body, law)                                                              \
+  "&simulation  end_time = 1  /\n&output  frames = 1  /\n&lattice  name = 'l' " lattice " /\n"     \
+  "&material  lattice = 'l'  model = './" law ".plm'  /\n" body
+
+static const char block[] = "&body  lattice = 'l'  shape = 'box'  corner = 3*0  size = 3*0.05 /\n",
+                  plate[] = "&body  lattice = 'l'  shape = 'rectangle'  corner = 0, 0  size = "
+                            "2*0.05 /\n";
+
+static void bonds_are_told_the_same_wherever_a_law_is_asked(void **state) {
+  workplace *w = *state;
+  char text[1000];
+  write_central(w, "by_horizon", "  constant c = E*s*horizon\n  force N = -c*stretch\n");
+  write_central(w, "by_volume", "  force N = -E*V/s*stretch\n");
+  write_central(w, "over_both",
+                "  force N = E*V/horizon*stretch + 0*m*E/rho/s*stretch/area*s**2\n");
+  expect(w, "check by_horizon.plm", 1, "[stiffness]");
+  expect(w, "check by_volume.plm", 1, "[stiffness]");
+  expect(w, "check over_both.plm", 0, "no errors");
+  snprintf(text, sizeof text, DECK_WITH("kind = 'fcc' spacing = '10 mm'", "%s", "by_volume"),
+           block);
+  write_text(w, "fcc.nml", text);
+  expect(w, "check fcc.nml", 1, "[stiffness]");
+  expect(w, "check fcc.nml --set material.model=./by_horizon.plm", 1, "[stiffness]");
+  write_central(w, "in_space", "  force N = E*V/horizon*stretch\n");
+  expect(w, "check fcc.nml --set material.model=./in_space.plm", 0, "no errors");
+  /* a path tells it as a run does: horizon 10 mm, E V/horizon 1e-4 */
+  write_text(w, "path.nml",
+             "&material  model = './in_space.plm'  /\n"
+             "&path  quantity = 'stretch'  value = 1e-4  rise = '1 s'  /\n"
+             "&expect  quantity = 'peak N'  formula = 'E*V/s*1e-4'  tolerance = "
+             "1e-12  /\n");
+  expect(w, "drive path.nml", 0, "1 of 1 expectations hold");
+}
+
+static void a_length_of_its_own_is_judged_on_the_lattice_of_the_deck(void **state) {
+  workplace *w = *state;
+  char text[1000];
+  write_central(w, "repulsion",
+                "  parameter reach = 2 [m] in (0, inf)\n"
+                "  force N = | 1e-3*E*(length - reach)*1 [m] when length < reach\n"
+                "            | 0 [N] otherwise\n");
+  write_text(w, "points.csv", "x [m], y [m], z [m], volume [m^3]\n0, 0, 0, 1\n2, 0, 0, 1\n");
+  shell(w, "sed -i 's/law central bond/law central bond\\n  for space, irregular/' repulsion.plm");
+  snprintf(text, sizeof text,
+           DECK_WITH("kind = 'particles' setting = 'space' file = 'points.csv' neighbours = 1", "",
+                     "repulsion"));
+  write_text(w, "two.nml", text);
+  expect(w, "check repulsion.plm", 1, "[rest-force]");
+  expect(w, "check two.nml", 0, "no errors");
+  /* that the two verdicts differ both say */
+  assert_non_null(
+      strstr(w->said, "with the values and the lattice of this deck, but not with all"));
+  expect(w, "check two.nml --set material.reach=2.1", 1, "[rest-force]");
+}
+
+static void verdicts_that_depend_on_values_say_so(void **state) {
+  workplace *w = *state;
+  char text[1000];
+  write_central(w, "turning",
+                "  parameter c = 0.4 in [0, 1]\n  force N = (1 - 2*c)*E*s*t*stretch\n");
+  snprintf(text, sizeof text,
+           DECK_WITH("kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm'", "%s", "turning"),
+           plate);
+  write_text(w, "deck.nml", text);
+  expect(w, "check turning.plm", 1, "a deck is judged with its own values");
+  expect(w, "check deck.nml", 0, "but not with all that its bounds allow");
+  expect(w, "check deck.nml --set material.c=0.6", 1, "[stiffness]");
+  expect(w, "check turning.plm --set c=0.4", 0, "no errors");
+}
+
+/* --- one verdict ------------------------------------------------------------------------------ */
+
+static void commands_agree(void **state) {
+  workplace *w = *state;
+  char text[1000];
+  /* a horizon that reaches the nearest neighbours only */
+  expect(w, "info mplm_bilinear --horizon 1.2", 0, "stable step");
+  expect(w, "check beam.nml --set lattice.horizon=1.2", 0, "no errors");
+  expect(w, "info mplm_bilinear --horizon 1.8", 1, "nearest neighbours only");
+  expect(w, "check beam.nml --set lattice.horizon=1.8", 1, "central laws of bonds without random");
+  /* random fields need bonds */
+  write_central(w, "plain", "  force N = E*s*t*stretch\n");
+  snprintf(text, sizeof text,
+           DECK_WITH("kind = 'square' spacing = '10 mm' thickness = '10 mm'",
+                     "%s&field  parameter = 'E'  distribution = 'normal'  cv = 0.1  /\n", "plain"),
+           plate);
+  write_text(w, "field.nml", text);
+  expect(w, "check field.nml", 1,
+         "on this lattice the central law `plain` runs as one of families");
+  assert_non_null(strstr(w->said, "random fields need the hexagonal lattice"));
+  assert_null(strstr(w->said, "law of bonds: it runs"));
+  /* upper and lower case differ in laws */
+  expect(w, "info plain.plm", 0, "stable step           2");
+  shell(w, "sed 's/rho/Rho/' plain.plm > other.plm");
+  expect(w, "info other.plm", 0, "the law has no `rho`");
+  snprintf(text, sizeof text,
+           DECK_WITH("kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm'", "%s", "other"),
+           plate);
+  write_text(w, "other.nml", text);
+  expect(w, "check other.nml", 1, "write `rho` for `Rho`");
+}
+
+static void bonds_of_plane_strain_are_asked_for(void **state) {
+  workplace *w = *state;
+  char text[1000];
+  static const char *const laws[] = {"mplm_bilinear", "mplm_linear", "elastic_micropolar",
+                                     "elastic_central"};
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+    char command[200];
+    snprintf(command, sizeof command,
+             "check beam.nml --set lattice.setting=plane_strain --set material.model=%s", laws[k]);
+    expect(w, command, 1, "is meant for plane_stress, but this lattice is in plane_strain");
+  }
+  write_central(w, "plain", "  force N = E*s*t*stretch\n");
+  snprintf(text, sizeof text,
+           DECK_WITH("kind = 'hexagonal' spacing = '10 mm' thickness = '10 mm' setting = "
+                     "'plane_strain'",
+                     "%s", "plain"),
+           plate);
+  write_text(w, "strain.nml", text);
+  expect(w, "check strain.nml", 0, "does not say for which setting it is");
+  shell(w, "sed -i 's/law central bond/law central bond\\n  for plane_strain/' plain.plm");
+  expect(w, "check strain.nml", 0, "no errors");
+  assert_null(strstr(w->said, "warning"));
+}
+
+/* --- everything at once ----------------------------------------------------------------------- */
+
+static const char many_faults[] =
+    "&simulation  end_time = '1 ms'  /\n"
+    "&lattice     name = 'l'  kind = 'hexagonal'  spacing = '5 mm'  thickness = '10 mm'  /\n"
+    "&body        lattice = 'l'  shape = 'rectangle'  corner = 0, 0  size = 0.05, 0.02  /\n"
+    "&material    lattice = 'l'  model = 'mplm_bilinear'  S_q = 1e-4  /\n"
+    "&gravty      acceleration = 0, 1  /\n"
+    "&region      name = 'all'  shape = 'rectangle'  corner = 0, 0  size = 0.05, 0.02  /\n"
+    "&region      name = 'left'  shape = 'rectangle'  corner = 0, 0  size = 0.01, 0.02  /\n"
+    "&region      name = 'far'  shape = 'rectangle'  corner = 1, 1  size = 0.01, 0.02  /\n"
+    "&support     region = 'all'  fix = 'w'  /\n"
+    "&initial_velocity  region = 'all'  component = 'x'  value = 1  /\n"
+    "&initial_velocity  region = 'left'  component = 'x'  value = 2  /\n"
+    "&monitor     name = 'm'  kind = 'field'  region = 'all'  field = 'omg'  /\n"
+    "&output      fields = 'dmage'  /\n";
+
+/* The lines that errors and warnings name, in their order: "4 5 8". */
+static const char *lines_named(const workplace *w, const char *file, char text[200]) {
+  const size_t length = strlen(file);
+  size_t used = 0;
+  text[0] = 0;
+  for (const char *at = w->said; at; at = strchr(at, '\n') ? strchr(at, '\n') + 1 : NULL) {
+    int line, column;
+    char kind[16];
+    if (strncmp(at, file, length) != 0 ||
+        sscanf(at + length, ":%d:%d: %15[a-z]", &line, &column, kind) != 3 ||
+        strcmp(kind, "note") == 0)
+      continue;
+    used += (size_t)snprintf(text + used, 200 - used, "%s%d", used ? " " : "", line);
+  }
+  return text;
+}
+
+static void all_that_is_wrong_is_said_at_once(void **state) {
+  workplace *w = *state;
+  char text[200];
+  write_text(w, "many.nml", many_faults);
+  expect(w, "check many.nml", 1, "has no parameter `S_q`");
+  assert_string_equal(lines_named(w, "many.nml", text), "4 5 8 9 11 12 13");
+  expect(w, "run many.nml", 1, "given two initial velocities in x");
+  assert_string_equal(lines_named(w, "many.nml", text), "4 5 8 9 11 12 13");
+  /* what follows from something wrong is not said: bodies that are not known, a law that is not
+     there */
+  shell(w, "sed 's/[&]body /\\&bodyy /' many.nml > body.nml");
+  expect(w, "check body.nml", 1, "there is no group `&bodyy`");
+  assert_string_equal(lines_named(w, "body.nml", text), "3 4 5 9");
+  expect(w, "check many.nml --set material.model=nope", 1, "there is no model `nope`");
+  assert_string_equal(lines_named(w, "many.nml", text), "5 8 9 11");
+  /* a law that breaks mechanics has no step to be unstable with */
+  write_central(w, "away", "  force N = -E*s*t*stretch\n");
+  expect(w, "check many.nml --set material.model=./away.plm --set material.S_q=", 1, "[stiffness]");
+  assert_null(strstr(w->said, "unstable at rest"));
+  assert_string_equal(lines_named(w, "many.nml", text), "5 8 9 11 12 13");
+  /* the law's file first, in the order of its lines */
+  write_text(w, "two.plm",
+             "model two\n  law central bond\n  parameter E = 30 [GPa] in (0, inf)\n"
+             "  parameter rho = 2400 [kg/m^3]\n  unused_one = stretch*alfa\n"
+             "  force N = E*s*t*strech\nend model\n");
+  expect(w, "check many.nml --set material.model=./two.plm", 1, "there is no quantity `strech`");
+  assert_string_equal(lines_named(w, "././two.plm", text), "5 6");
+  assert_string_equal(lines_named(w, "many.nml", text), "5 8 9 11");
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_setup_teardown(a_path_is_shown_the_way_to_drive, set_up_workplace,
@@ -114,6 +316,17 @@ int main(void) {
       cmocka_unit_test_setup_teardown(laws_of_families_are_put_on_lattices, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(decks_of_families_are_checked, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(bonds_are_told_the_same_wherever_a_law_is_asked,
+                                      set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_length_of_its_own_is_judged_on_the_lattice_of_the_deck,
+                                      set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(verdicts_that_depend_on_values_say_so, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(commands_agree, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(bonds_of_plane_strain_are_asked_for, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(all_that_is_wrong_is_said_at_once, set_up_workplace,
                                       tear_down_workplace),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

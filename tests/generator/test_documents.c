@@ -292,19 +292,36 @@ static void the_reference_tells_of_every_key(void **state) {
   }
 }
 
-/* Word by word, but for the time that it took. */
+/* The same text; numbers to six digits, but for the time that it took. */
+static void expect_like(const char *example, const char *found) {
+  static const char wall[] = "\"wall\": ";
+  while (*example && *found) {
+    const bool number = strspn(example, "-0123456789") && strspn(found, "-0123456789");
+    if (!number) {
+      if (*example++ != *found++)
+        fail_msg("expected %.60s\nfound    %.60s", example - 1, found - 1);
+      continue;
+    }
+    const bool clock = strncmp(example - strlen(wall), wall, strlen(wall)) == 0;
+    char *rest[2];
+    const double a = strtod(example, &rest[0]), b = strtod(found, &rest[1]);
+    if (!clock && fabs(a - b) > 1e-6 * fabs(a)) fail_msg("%.17g is %.17g", a, b);
+    example = rest[0], found = rest[1];
+  }
+  assert_int_equal(*example, *found);
+}
+
 static void the_example_of_the_reference_is_real(void **state) {
   workplace *w = *state;
-  const char *begin = strstr(section_of_reference(), "```json\n");
+  char *begin = strstr(section_of_reference(), "```json\n");
   assert_non_null(begin);
-  const char *ends = strstr(begin, "\n```\n");
-  assert_non_null(ends);
   begin += strlen("```json\n");
-  write_bytes(w, "example", begin, (size_t)(ends + 1 - begin));
-  free(document_of(w, "run beam.nml --json", 0));
-  const int differ = shell(w, "grep -v '\"wall\"' example > a; grep -v '\"wall\"' document > b; "
-                              "diff a b");
-  if (differ) fail_msg("%s", w->said);
+  char *ends = strstr(begin, "\n```\n");
+  assert_non_null(ends);
+  ends[1] = 0;
+  char *found = document_of(w, "run beam.nml --json", 0);
+  expect_like(begin, found);
+  free(found);
 }
 
 /* --- the standard input ----------------------------------------------------------------------- */

@@ -22,6 +22,12 @@ unset PERILAT_MODELS
 mkdir "$work/elsewhere"
 cd "$work/elsewhere"
 
+# A build folder may stand anywhere.
+"$cmake" -S "$source" -B "$work/outside" -G "$generator" -DCMAKE_MAKE_PROGRAM="$make_program" -DCMAKE_C_COMPILER="$compiler" \
+  -DBUILD_TESTING=OFF >"$work/log" 2>&1 || { cat "$work/log"; fail "configuring a build folder outside of the source folder"; }
+cp "$build/perilat" "$work/outside/"
+"$work/outside/perilat" check elastic_central | grep -q 'no errors' || fail "the laws of a build folder outside of the source folder"
+
 # Nothing that is installed knows the folders it came from: no text, no program, no library.
 if grep -r -l -a -F -e "$source" -e "$build" "$prefix"; then
   fail "these files name the source or build folder"

@@ -17,6 +17,7 @@
 #include "generator/interval.h"
 #include "generator/model.h"
 #include "generator/physics_parts.h"
+#include "runtime/deck.h"
 
 #define FOLDER SOURCE_DIR "/tests/dsl/physics/"
 #define MODELS SOURCE_DIR "/models/"
@@ -264,16 +265,20 @@ static void the_parameters_given_decide(void **state) {
                              "  parameter k = 5 [MN] in (0, inf)\n"
                              "  parameter c = 0.1 in [0, 1]\n"
                              "  force N = k*(1 - 2*c)*stretch\nend model\n";
-  static const pl_bond_class bonds = {
-      .s = 0.01, .spacing = 0.01, .t = 0.1, .V = 1e-5, .mass_i = 0.02, .mass_j = 0.02};
+  static const deck_lattice plate = {.kind = "hexagonal",
+                                     .spacing = 0.01,
+                                     .thickness = 0.1,
+                                     .stiffness_thickness = 0.1,
+                                     .mass_thickness = 0.1,
+                                     .setting = "plane_stress"};
   model m;
   open_text(&m, text);
   const double safe[] = {5e6, 0.3}, unsafe[] = {5e6, 0.6};
-  assert_true(physics_check(m.law,
-                            &(physics_options){.parameters = safe, .bonds = &bonds, .effort = 0.5},
-                            &m.said, NULL));
+  assert_true(
+      physics_check(m.law, &(physics_options){.parameters = safe, .lattice = &plate, .effort = 0.5},
+                    &m.said, NULL));
   assert_int_equal(m.said.count, 0);
-  assert_false(physics_check(m.law, &(physics_options){.parameters = unsafe, .bonds = &bonds},
+  assert_false(physics_check(m.law, &(physics_options){.parameters = unsafe, .lattice = &plate},
                              &m.said, NULL));
   assert_int_equal(m.said.items[0].code, DIAG_STIFFNESS);
   assert_non_null(strstr(m.said.items[0].note, "c = 0.6"));

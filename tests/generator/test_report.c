@@ -113,13 +113,37 @@ static void maps_of_space_have_axes(void **state) {
   expect(w, "plot block.h5 --map displacement", 0, "written block_displacement.png");
 }
 
+/* Five rows of D3 are cut, nine are left (runtime/README.md); edges that lack bonds are named,
+   others are not. */
+static void what_sites_make_of_shapes(void **state) {
+  workplace *w = *state;
+  expect(
+      w, "check " SOURCE_DIR "/examples/notched_beam/d3_s6.35.nml", 0,
+      "\n  notch      25.4 mm deep as drawn, 27.5 mm to the first bond left; ligament 49.49 mm\n");
+  assert_non_null(strstr(w->said,
+                         "\n  body       held in a uniform strain E = 28.96 GPa along x "
+                         "(-3.5 %), E = 29.55 GPa along y (-1.5 %): edges and notches lack "
+                         "bonds\n"));
+  write_text(w, "strip.nml",
+             "&simulation  end_time = '1 ms'  /\n"
+             "&lattice  name = 'l'  kind = 'hexagonal'  spacing = '10 mm'  thickness = '10 mm'  /\n"
+             "&material  lattice = 'l'  model = 'elastic_central'  /\n"
+             "&body  lattice = 'l'  shape = 'rectangle'  corner = 0, 0  size = 1, 0.0607  /\n");
+  expect(w, "check strip.nml", 0, "no errors");
+  assert_null(strstr(w->said, "  body "));
+  expect(w, "check strip.nml --set lattice.rotation=15", 0, "GPa along x (-5.4 %)");
+  shell(w, "for k in 1 2 3 4 5 6 7 8 9 10; do echo \"&notch lattice = 'l' shape = 'segment' from = "
+           "0.0${k}1, 0.01 to = 0.0${k}1, 0.05 /\"; done >> strip.nml");
+  expect(w, "check strip.nml", 0, "  notch 1    40 mm long as drawn, ");
+  assert_non_null(strstr(w->said, "\n             and 2 more\n"));
+}
+
 int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
-      ONE(quasi_static_runs_count_increments),
-      ONE(dynamic_runs_have_times),
-      ONE(maps_know_their_increment),
-      ONE(maps_of_space_have_axes),
+      ONE(quasi_static_runs_count_increments), ONE(dynamic_runs_have_times),
+      ONE(maps_know_their_increment),          ONE(maps_of_space_have_axes),
+      ONE(what_sites_make_of_shapes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

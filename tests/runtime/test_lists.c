@@ -523,8 +523,8 @@ static void step_is_that_of_the_lattice(void **state) {
     body one = body_of(lattice_disc(0.3), damped ? 2e-6 : 0, 1e30);
     body two = body_of(as_list(one.rows), damped ? 2e-6 : 0, 1e30);
     step_limit lattice = {0}, list = {0};
-    stability_limit(&one.law, one.parameters, one.rows, &lattice);
-    stability_limit(&two.law, two.parameters, two.rows, &list);
+    stability_limit(&one.law, one.parameters, NULL, one.rows, &lattice);
+    stability_limit(&two.law, two.parameters, NULL, two.rows, &list);
     print_message("stable step: lattice %.6g s, list %.6g s; damping ratio %.4g, %.4g\n",
                   lattice.limit, list.limit, lattice.damping_ratio, list.damping_ratio);
     assert_true(fabs(list.omega_max / lattice.omega_max - 1) < 1e-3);
@@ -541,7 +541,7 @@ static void step_is_the_largest(void **state) {
   for (int k = 0; k < 2; k++) {
     body b = body_of(shaken_list(16, 16, 0.3, 12, NULL), 0, 1e30);
     step_limit limit = {0};
-    stability_limit(&b.law, b.parameters, b.rows, &limit);
+    stability_limit(&b.law, b.parameters, NULL, b.rows, &limit);
     const double dt = limit.limit * (k ? 1.005 : 0.999);
     b.w = sweep_new(b.rows, &b.law, b.parameters, dt, 2, true, true);
     uint64_t seed = 5;

