@@ -1,5 +1,6 @@
-/* What other programs read: --json writes one valid document and nothing else on the standard output, whatever happens, with
-   every key that the reference tells of; and `-`, which is the standard input. */
+/* What other programs read: --json writes one valid document and nothing else on the standard
+   output, whatever happens, with no key that the reference does not tell of; and `-`, which is the
+   standard input. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -47,6 +47,7 @@ while IFS= read -r page; do
     [ -e "$(dirname "$page")/$link" ] || fail "$page: there is no $link"
   done
 done < <(find "$prefix/share/doc/perilat" -name '*.md')
+grep -q 'No licence has been chosen yet' "$prefix/share/doc/perilat/README.md" || fail "README does not speak of the licence"
 [ "$pages" -gt 60 ] || fail "only $pages pages of documentation"
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
