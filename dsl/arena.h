@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct arena arena;
 
 arena *arena_new(void);
@@ -31,5 +35,7 @@ void *must_align(size_t alignment, size_t size);
 /* A text in memory that is written like a file (open_memstream), and its end. */
 FILE *must_open_text(char **text, size_t *length);
 void must_close_text(FILE *out);
+
+C_LINKAGE_END
 
 #endif

@@ -6,7 +6,10 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
 #include "dsl/source.h"
+
+C_LINKAGE_BEGIN
 
 typedef enum diag_code {
 #define X(code, name, severity) DIAG_##code,
@@ -62,5 +65,7 @@ const diagnostic **diag_sorted(const diagnostics *d);
 
 /* Candidate nearest to `name` (edit distance, case-insensitive first), or NULL. */
 const char *nearest_name(const char *name, const char *const *candidates, int count);
+
+C_LINKAGE_END
 
 #endif

@@ -140,3 +140,42 @@ void json_null(json *j) {
   before_value(j);
   fputs("null", j->out);
 }
+
+/* --- keys and documents ----------------------------------------------------------------------- */
+
+void json_put_text(json *j, const char *name, const char *text) {
+  json_key(j, name);
+  json_text(j, text);
+}
+void json_put_number(json *j, const char *name, double number) {
+  json_key(j, name);
+  json_number(j, number);
+}
+void json_put_integer(json *j, const char *name, long number) {
+  json_key(j, name);
+  json_integer(j, number);
+}
+void json_put_bool(json *j, const char *name, bool value) {
+  json_key(j, name);
+  json_bool(j, value);
+}
+void json_put_object(json *j, const char *name) {
+  json_key(j, name);
+  json_object(j);
+}
+void json_put_array(json *j, const char *name) {
+  json_key(j, name);
+  json_array(j);
+}
+
+void json_document(json *j, FILE *out, const char *version) {
+  json_begin(j, out);
+  json_object(j);
+  json_put_integer(j, "schema", JSON_SCHEMA);
+  json_put_text(j, "perilat", version);
+}
+
+void json_document_end(json *j) {
+  json_object_end(j);
+  json_end(j);
+}

@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 enum { JSON_DEEPEST = 16 };
 
 typedef struct json {
@@ -35,5 +39,21 @@ void json_number(json *j, double number);
 void json_integer(json *j, long number);
 void json_bool(json *j, bool value);
 void json_null(json *j);
+
+/* Key and value at once. */
+void json_put_text(json *j, const char *name, const char *text);
+void json_put_number(json *j, const char *name, double number);
+void json_put_integer(json *j, const char *name, long number);
+void json_put_bool(json *j, const char *name, bool value);
+void json_put_object(json *j, const char *name);
+void json_put_array(json *j, const char *name);
+
+/* What perilat writes for other programs: one object, which says first what form it has and who
+   wrote it. The schema is raised when a key changes its meaning or goes. */
+enum { JSON_SCHEMA = 1 };
+void json_document(json *j, FILE *out, const char *version);
+void json_document_end(json *j);
+
+C_LINKAGE_END
 
 #endif

@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct span {
   uint32_t begin; /* first byte */
   uint32_t end;   /* one past the last byte */
@@ -41,5 +45,7 @@ int source_line_number(const source_set *set, int file, uint32_t offset); /* fro
 const char *source_line(const source_set *set, int file, uint32_t offset, size_t *length);
 /* Smallest span that covers both (they must be of one file; otherwise the first is returned). */
 span span_join(span a, span b);
+
+C_LINKAGE_END
 
 #endif

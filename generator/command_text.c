@@ -13,6 +13,7 @@
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/model.h"
+#include "generator/standard_input.h"
 #include "runtime/deck_table.h"
 
 enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
@@ -71,6 +72,10 @@ static bool is_law(const char *path) {
 static int format_file(const char *path, format_mode mode) {
   char error[ERROR_LENGTH];
   size_t length;
+  if (mode == FORMAT_IN_PLACE && is_standard_input(path)) {
+    fputs("perilat: error: the standard input has no place; leave out -i\n", stderr);
+    return INPUT_WRONG;
+  }
   if (!file_suits(path, FILES(LAW), "perilat format", "a law") ||
       (mode == FORMAT_IN_PLACE && !is_law(path)))
     return INPUT_WRONG;
@@ -101,7 +106,7 @@ int command_format(int argc, char **argv) {
       mode = FORMAT_CHECK;
     else if (option_flag(argv, &at, "-i"))
       mode = FORMAT_IN_PLACE;
-    else if (argv[at][0] == '-')
+    else if (is_option_like(argv[at]))
       return option_unknown("format", argv[at]);
     else
       argv[files++] = argv[at++];
@@ -151,7 +156,7 @@ int command_explain(int argc, char **argv) {
       form = EXPLAIN_MARKDOWN;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       bad = bad || !read_choice((char *)(size_t)value, &choices[count++]);
-    else if (argv[at][0] == '-')
+    else if (is_option_like(argv[at]))
       bad = option_unknown("explain", argv[at]);
     else if (path) {
       fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n",
@@ -192,6 +197,7 @@ static void show_key(const deck_key_info *key) {
     fputs("; required", stdout);
   else if (key->fallback)
     printf("; default %s", key->fallback[0] == '=' ? key->fallback + 2 : key->fallback);
+  if (key->former) printf("; formerly %s", key->former);
   putchar('\n');
 }
 

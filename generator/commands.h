@@ -18,7 +18,7 @@
   X(new, "NAME", "",                                                                               \
     "a commented law to start from, its drive path and the deck of a small specimen",              \
     COMMAND_STATUS)                                                                                \
-  X(check, "law.plm | deck.nml | path.nml", "plm nml", "report all errors, run nothing",           \
+  X(check, "law.plm | deck.nml | path.nml | -", "plm nml", "report all errors, run nothing",       \
     COMMAND_STATUS)                                                                                \
   X(build, "law.plm | deck.nml", "plm nml",                                                        \
     "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS)                     \
@@ -33,10 +33,11 @@
     "0 the same, 1 an input is wrong, 2 different")                                                \
   X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values",              \
     COMMAND_STATUS)                                                                                \
-  X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5",                                     \
+  X(info, "law.plm | deck.nml | result.h5 | -", "plm nml h5 hdf5",                                     \
     "what a law implies, what a file holds", COMMAND_STATUS)                                       \
-  X(explain, "law.plm", "plm", "a law as equations with a table of its symbols", COMMAND_STATUS)   \
-  X(format, "law.plm ...", "plm", "lay out laws",                                                  \
+  X(explain, "law.plm | -", "plm", "a law as equations with a table of its symbols",               \
+    COMMAND_STATUS)                                                                                \
+  X(format, "law.plm ... | -", "plm", "lay out laws",                                                  \
     "0 done, 1 the input is wrong; with --check also when a file would change")                    \
   X(help, "TOPIC ...", "",                                                                             \
     "what a message's code, a word of the language, a deck group or a command means",              \
@@ -48,6 +49,7 @@
   X(command, "--threads", "N", "number of threads; the results are the same for any number")       \
   X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                  \
   X(command, "--profile", "", "say at the end where the time of the run went and what limits it")  \
+  X(command, "--json", "", "how the run ended, as one JSON document on the standard output")       \
   X(command, "--set", "group.key=value",                                                           \
     "set a value of the deck, `group.key=` its default; may be given several times")
 #define COMMAND_OPTIONS(X)                                                                         \
@@ -109,12 +111,14 @@
     "two columns of the table: what is outside of the band between them counts")                   \
   X(compare, "--history", "NAME", "compare this history only; may be given several times")         \
   X(compare, "--field", "NAME", "compare this field only; may be given several times")             \
+  X(compare, "--json", "", "as one JSON document on the standard output")                          \
   X(export, "-o", "FILE", "file of the table; the standard output if not given")                   \
   X(export, "--history", "NAME", "this history only, not all; may be given several times")         \
   X(export, "--frame", "N", "the particles of a frame, from 0; -1 is the last")                    \
   X(export, "--field", "NAME",                                                                     \
     "this field of the frame only, not all; may be given several times")                           \
   X(export, "--bonds", "", "the bonds of the frame, not its particles")                            \
+  X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
   X(info, "--lattice", "KIND", "hexagonal, square, cubic or fcc; by the law if not given")         \
@@ -123,7 +127,7 @@
   X(info, "--shells", "N", "neighbours of so many shells")                                         \
   X(info, "--set", "name=value",                                                                   \
     "set a parameter or an option of the law; may be given several times")                         \
-  X(info, "--json", "", "what a law implies as one JSON document")                                 \
+  X(info, "--json", "", "of a law or a result: as one JSON document on the standard output")       \
   X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")           \
   X(explain, "--markdown", "", "as Markdown (default)")                                            \
   X(explain, "--latex", "", "as a LaTeX document")                                                 \
@@ -150,6 +154,8 @@ COMMANDS(X)
    `--name value` and `--name=value` are the same. A missing value is reported; *bad is set. */
 int option_flag(char **argv, int *at, const char *name);
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad);
+/* Begins like an option; `-` is none, but the standard input, which some commands read. */
+bool is_option_like(const char *given);
 /* Says that `given` is no option of `program`, which knows those of `command`, with the nearest of them. Returns 1. */
 int option_unknown_in(const char *program, const char *command, const char *given);
 /* The same of `perilat command`. */

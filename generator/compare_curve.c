@@ -6,6 +6,7 @@
 
 #include "dsl/elementary.h"
 #include "generator/curve_gap.h"
+#include "generator/document.h"
 #include "generator/measured.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
@@ -65,13 +66,37 @@ static void print_range(const curve_request *q, const scale_text *s, const measu
   puts("\n  relative to the largest value of the table");
 }
 
+static void put_gap(json *w, const curve_request *q, const plot_histories *h, const curve_gap *g,
+                    double scale) {
+  json_object(w);
+  json_put_text(w, "of", q->band ? "band" : "curve");
+  json_put_text(w, "name", q->y);
+  json_put_text(w, "unit", *h->y_unit ? h->y_unit : "1");
+  json_put_bool(w, "different", relative(g->largest, scale) > q->tolerance);
+  json_put_number(w, "gap", g->largest);
+  json_put_number(w, "relative", relative(g->largest, scale));
+  json_put_number(w, "relative_rms", relative(g->rms, scale));
+  json_put_text(w, "over", q->x);
+  json_put_text(w, "over_unit", *h->x_unit ? h->x_unit : "1");
+  json_put_number(w, "from", g->from);
+  json_put_number(w, "to", g->to);
+  json_put_number(w, "at", g->x);
+  json_put_array(w, "values"); /* computed; measured, or the band's ends */
+  json_number(w, g->y);
+  json_number(w, g->low);
+  if (q->band) json_number(w, g->high);
+  json_array_end(w);
+  json_object_end(w);
+}
+
 static int report(const curve_request *q, const plot_histories *h, const measured *m,
-                  const curve_gap *g) {
+                  const curve_gap *g, json *list) {
   const double scale = m->low ? pl_fmax(largest_of(m->low, m->count), largest_of(m->high, m->count))
                               : largest_of(m->y, m->count);
   const double most = relative(g->largest, scale);
   const bool over = most > q->tolerance;
   char title[128];
+  if (list) put_gap(list, q, h, g, scale);
   snprintf(title, sizeof title, "%.60s [%.30s]%s", q->y, h->y_unit,
            q->band ? " out of the band" : "");
   printf("  %-34s %12s %12s %12s  where: computed and %s\n", "curve", "largest gap", "relative",
@@ -87,17 +112,16 @@ static int report(const curve_request *q, const plot_histories *h, const measure
   return over ? FAR : NEAR;
 }
 
-static int measure(const curve_request *q, const plot_histories *h, const measured *m) {
+static int measure(const curve_request *q, const plot_histories *h, const measured *m, json *list) {
   const curve_points points = {m->x, q->band ? m->low : m->y, q->band ? m->high : m->y, m->count};
   curve_gap g;
-  if (curve_gap_find(h->x, h->y, h->count, &points, &g)) return report(q, h, m, &g);
-  fprintf(stderr, "perilat: error: `%s` and `%s` have no range of `%s` in common\n", q->result,
-          q->table, q->x);
+  if (curve_gap_find(h->x, h->y, h->count, &points, &g)) return report(q, h, m, &g, list);
+  say_error("`%s` and `%s` have no range of `%s` in common", q->result, q->table, q->x);
   return WRONG;
 }
 
 /* A band decides alone: points of the same table are not looked at. */
-static int compare_with(const curve_request *q, const plot_histories *h) {
+static int compare_with(const curve_request *q, const plot_histories *h, json *list) {
   const measured_axes axes = {q->x, &q->y, 1, h->x_unit, h->y_unit};
   source_set sources = {NULL, 0};
   diagnostics said;
@@ -105,14 +129,14 @@ static int compare_with(const curve_request *q, const plot_histories *h) {
   diag_begin(&said, &sources);
   const bool good = measured_read(&m, "compare", q->table, q->band, &axes, &said);
   diag_print(&said, stderr);
-  const int status = good ? measure(q, h, &m) : WRONG;
+  const int status = good ? measure(q, h, &m, list) : WRONG;
   measured_free(&m);
   diag_clear(&said);
   source_clear(&sources);
   return status;
 }
 
-int compare_curve(const curve_request *given) {
+int compare_curve(const curve_request *given, json *list) {
   curve_request q = *given;
   plot_histories h;
   char error[1024];
@@ -120,9 +144,9 @@ int compare_curve(const curve_request *given) {
   q.x = q.x ? q.x : "time";
   q.y = q.y ? q.y : "load";
   if (plot_histories_read(&h, q.result, q.x, q.y, error, sizeof error))
-    status = compare_with(&q, &h);
+    status = compare_with(&q, &h, list);
   else
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
   free(h.x);
   free(h.y);
   return status;

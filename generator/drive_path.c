@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "dsl/elementary.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
@@ -260,6 +261,8 @@ static const deck_group_info groups[GROUP_COUNT] = {
 #undef X
 };
 
+const deck_grammar drive_grammar = {"path", groups, GROUP_COUNT};
+
 const deck_group_info *drive_group(const char *name) {
   for (int g = 0; g < GROUP_COUNT; g++)
     if (strcmp(groups[g].name, name) == 0) return &groups[g];
@@ -301,10 +304,9 @@ bool drive_is_deck(const char *file) {
 
 bool drive_refuse_path(const char *command, const char *file) {
   if (!drive_is_path(file)) return false;
-  fprintf(stderr,
-          "perilat: error: `%s` is a path that drives one bond, not a deck for `perilat %s`\n"
-          "  perilat drive %s\n",
-          file, command, file);
+  say_error("`%s` is a path that drives one bond, not a deck for `perilat %s`\n"
+            "  perilat drive %s",
+            file, command, file);
   return true;
 }
 
@@ -601,10 +603,9 @@ static void check_whole(const reader *r, int file) {
 
 drive_input *drive_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                         int override_count, diagnostics *d) {
-  static const deck_grammar of_paths = {"path", groups, GROUP_COUNT};
   int errors = d->errors;
   namelist *n = namelist_read(a, sources, file, d);
-  deck_set(a, sources, n, &of_paths, overrides, override_count, d);
+  deck_set(a, sources, n, &drive_grammar, overrides, override_count, d);
   drive_input *in = arena_alloc(a, sizeof *in);
   reader r = {a, sources, d, in};
   size_t most = (size_t)n->group_count + 1;

@@ -3,17 +3,21 @@
 #ifndef PERILAT_GENERATOR_MODEL_H
 #define PERILAT_GENERATOR_MODEL_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/law.h"
-#include "generator/passes.h"
 #include "generator/toolchain.h"
+
+C_LINKAGE_BEGIN
+
+typedef struct kernel_plan kernel_plan;
 
 typedef struct model {
   arena *memory;
   source_set sources;
   diagnostics said; /* all diagnostics so far; the caller prints them */
   char *path;       /* of the model file; NULL when it was not found */
-  tree *tree;
-  law *law;
+  struct tree *tree;
+  struct law *law;
   kernel_plan *plan;
   char *c_text; /* emitted C */
   char *key;
@@ -42,7 +46,8 @@ bool same_file(const char *a, const char *b);
 
 #define MODEL_LIMIT ((size_t)1 << 20) /* B: the longest law */
 
-/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: beside `beside`
+/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL; `-`, the standard input, where no deck
+   gives the name. Looked for: beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
@@ -68,7 +73,10 @@ bool model_plan_of_families(model *m);
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);
 
-/* Whole text of a file (malloc'ed, NUL-terminated), or NULL with a sentence in error. Refuses folders and files over limit. */
+/* Whole text of a file (malloc'ed, NUL-terminated), of `-` the standard input, or NULL with a sentence in error. Refuses
+   folders and files over limit. */
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

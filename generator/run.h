@@ -3,10 +3,13 @@
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics_json.h"
 #include "generator/model.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 #define DECK_LIMIT ((size_t)16 << 20) /* B: the longest deck */
 
@@ -41,8 +44,10 @@ typedef struct run_options {
   bool check_kernel; /* compare kernel and interpreter on random states first */
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
   bool profile;      /* say at the end where the time went */
+  bool json;         /* the command is asked for a document; run_deck looks at `report` */
   bool no_physics;   /* leave out the physics checks of the deck's laws */
-  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
+  diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
+                        how it ended follows them in the document */
 } run_options;
 
 /* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
@@ -62,5 +67,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
                         const built_in_law *laws, int law_count, const built_in_file *files,
                         int file_count);
+
+C_LINKAGE_END
 
 #endif

@@ -7,6 +7,7 @@
 
 #include "dsl/elementary.h"
 #include "dsl/parse.h"
+#include "generator/document.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
 #include "runtime/bravais.h"
@@ -378,7 +379,7 @@ static int take_model(run *r, deck_material *m, int lattice) {
   r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->laws[lattice].law) return 0;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   return RUN_FAILED;
 }
 

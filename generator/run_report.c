@@ -5,6 +5,7 @@
 
 #include "dsl/elementary.h"
 #include "generator/bad_bond.h"
+#include "generator/document.h"
 #include "generator/explain_bad.h"
 #include "generator/run_parts.h"
 #include "runtime/checkpoint.h"
@@ -308,14 +309,13 @@ static double last_value(const run *r, const char *name) {
 /* Where no particle is at fault. */
 static void report_bad_energy(const run *r, const bad_state *b) {
   char when[MOMENT_TEXT];
-  fprintf(stderr,
-          "perilat: error: %s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
-          "  no stable step does that: the step is too long for this body, or the law's stored "
-          "energy is "
-          "not that of its forces\n"
-          "  what was computed until then is in the result; a smaller `step_safety` tells which\n",
-          b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
-          last_value(r, "energy/stored"));
+  say_error("%s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
+            "  no stable step does that: the step is too long for this body, or the law's stored "
+            "energy is "
+            "not that of its forces\n"
+            "  what was computed until then is in the result; a smaller `step_safety` tells which",
+            b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
+            last_value(r, "energy/stored"));
 }
 
 void report_bad(const run *r) {
@@ -325,9 +325,9 @@ void report_bad(const run *r) {
     report_bad_energy(r, &b);
     return;
   }
-  fprintf(stderr, "perilat: error: %s in step %ld (%s%s) at particle %ld, %s\n", b.what, b.step,
-          r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
-          rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
+  say_error("%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
+            r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+            rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,

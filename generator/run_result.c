@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "dsl/hash.h"
+#include "generator/document.h"
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
@@ -250,7 +251,7 @@ bool open_result(run *r) {
   char error[ERROR_LENGTH];
   r->result = result_open(&h, r->options->resume, error, sizeof error);
   if (!r->result) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     return false;
   }
   whole_file_clear(r->checkpoint_path);
@@ -267,8 +268,7 @@ static bool give_up_checkpoint(const run *r) {
     fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up\n",
             r->checkpoint_path);
   else if (errno != ENOENT) {
-    fprintf(stderr, "perilat: error: cannot remove `%s` of an earlier run: %s\n",
-            r->checkpoint_path, strerror(errno));
+    say_error("cannot remove `%s` of an earlier run: %s", r->checkpoint_path, strerror(errno));
     return false;
   }
   return true;
@@ -278,7 +278,7 @@ bool begin_anew(run *r) {
   char error[ERROR_LENGTH];
   if (!give_up_checkpoint(r)) return false;
   if (result_begin(r->result, error, sizeof error)) return true;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   result_discard(r->result);
   return false;
 }
@@ -293,12 +293,12 @@ bool resume(run *r) {
   frame_mark frames;
   if (!simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
                           sizeof error)) {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    say_error("cannot resume: %s", error);
     print_misfit(r);
     return false;
   }
   if (!result_resume(r->result, &frames, error, sizeof error)) {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    say_error("cannot resume: %s", error);
     return false;
   }
   char text[MOMENT_TEXT];
@@ -326,7 +326,7 @@ bool write_frame(run *r) {
   if (good)
     simulation_frame_taken(r->simulation);
   else /* a resumed run takes it again */
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
   return good;
 }
 
@@ -339,7 +339,7 @@ bool write_checkpoint(run *r) {
   if (good)
     keep(r);
   else
-    fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
+    say_error("no checkpoint was written: %s", error);
   return good;
 }
 
@@ -378,6 +378,6 @@ bool finish_result(run *r, const run_end *end) {
                      .series_count = count};
   e.history_count = simulation_history(r->simulation, &e.time);
   const bool good = result_finish(r->result, &e, error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   return good;
 }

@@ -5,7 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 /* A text that says PL_PART is compiled in this many parts at the same time, as PL_PART 0, 1, ... (its functions are
    then seen by all parts), another one whole. */
@@ -49,5 +52,7 @@ bool toolchain_build_program(const char *c_text, const char *path, char *error, 
 bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error,
                     size_t size);
 void toolchain_unload(loaded_kernel *k);
+
+C_LINKAGE_END
 
 #endif

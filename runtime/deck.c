@@ -344,6 +344,7 @@ bool deck_lacks(const deck *k, const char *group) {
 deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
                               const deck_override *overrides, int override_count, diagnostics *d) {
   namelist *n = namelist_read(a, sources, file, d);
+  deck_present_names(n, &deck_grammar_of_decks, d);
   deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
 
   deck *k = arena_alloc(a, sizeof(*k));

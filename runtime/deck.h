@@ -9,9 +9,12 @@
 #include <stdio.h>
 
 #include "dsl/arena.h"
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/units.h"
 #include "runtime/time_function.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct deck_key { /* where a key was written, for messages about its value */
   const char *name;
@@ -40,7 +43,7 @@ typedef struct deck_lattice {
   int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */
   int seed;         /* blue_noise */
   const char *file; /* particles: as written; deck_file_path finds it */
-  volume_correction volume_correction;
+  enum volume_correction volume_correction;
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
   double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
   double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
@@ -345,5 +348,7 @@ char *deck_file_path(const char *deck_path, const char *name);
 
 /* "x", "y", and "rotation" in the plane or "z" in space. */
 const char *deck_component_name(int dimensions, int component);
+
+C_LINKAGE_END
 
 #endif

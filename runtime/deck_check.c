@@ -192,7 +192,7 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
 }
 
 void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *item) {
-  static const deck_load_kind kinds[] = {{"force", "N", false}, {"moment", "N*m", false}};
+  static const deck_load_kind kinds[] = {{"total", "N", false}, {"moment", "N*m", false}};
   deck_item_region_known(r, &item->item, item->region);
   const int kind = deck_load_kind_of(from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
@@ -214,7 +214,7 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
                 key ? key->name_where : namelist_find(from, "file")->value_where,
                 "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
                 key ? "`" : "", component_name(r, item->region, item->component));
-    diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
+    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
     return;
   }
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;

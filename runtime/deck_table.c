@@ -475,7 +475,8 @@ static const deck_key_info force_keys[] = {
      .fallback = "= 'rotation' with a moment; else required",
      NOT_KEPT,
      .doc = "direction of the load"},
-    {.name = "force",
+    {.name = "total",
+     .former = "force", /* Fortran's own reader wants no variable named like its group */
      .type = DECK_LATER,
      .unit = "N",
      NOT_KEPT,
@@ -733,7 +734,9 @@ int deck_group_find(const char *name) {
 
 int deck_key_find(const deck_group_info *g, const char *name) {
   for (int i = 0; i < g->key_count; i++)
-    if (strcasecmp(g->keys[i].name, name) == 0) return i;
+    if (strcasecmp(g->keys[i].name, name) == 0 ||
+        (g->keys[i].former && strcasecmp(g->keys[i].former, name) == 0))
+      return i;
   return -1;
 }
 
@@ -781,7 +784,7 @@ static void print_type(const deck_key_info *key, FILE *out) {
     fprintf(out, "two values, %s", shown);
     break;
   case DECK_DIRECTION:
-    fputs("three values", out);
+    fputs("three pure numbers", out);
     break;
   case DECK_PLACE:
     fprintf(out, "two values, in space three, %s", shown);
@@ -828,7 +831,9 @@ void deck_reference(FILE *out) {
       print_type(&g->keys[k], out);
       fputs(" | ", out);
       print_default(&g->keys[k], out);
-      fprintf(out, " | %s |\n", g->keys[k].doc);
+      fprintf(out, " | %s", g->keys[k].doc);
+      if (g->keys[k].former) fprintf(out, "; formerly `%s`", g->keys[k].former);
+      fputs(" |\n", out);
     }
     fputc('\n', out);
   }

@@ -5,6 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 /* Beside computed curves, in SI: points (x, y), a band (x, low, high), or both; without x over the
    whole width, a line at y[0] or a band from low[0] to high[0]. What is not there is NULL; a value
    that is no number is a gap. */
@@ -64,5 +68,7 @@ bool plot_values(const double *x, const double *y, long count, const char *x_uni
 /* Particles and bonds of one frame, or of several beside each other, deformed, with a legend and a
    scale bar in mm. */
 bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

@@ -27,8 +27,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
 #include "dsl/name_index.h"
 #include "runtime/frame_file.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct result_text {
   const char *name, *text;
@@ -167,5 +170,7 @@ char *result_read_words(result_file *f, const char *name);
 /* "threads", "wall_seconds"; NaN where it has none. */
 double result_read_number(result_file *f, const char *name);
 char *result_read_title(result_file *f);
+
+C_LINKAGE_END
 
 #endif

@@ -2,6 +2,10 @@
 #ifndef PERILAT_RUNTIME_TIME_FUNCTION_H
 #define PERILAT_RUNTIME_TIME_FUNCTION_H
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef enum time_shape {
   TIME_CONSTANT,  /* value from `start` on */
   TIME_RAMP,      /* value * (t - start)/rise, without end */
@@ -31,5 +35,7 @@ double time_function_integral(const time_function *f, double t);
 double time_function_slope(const time_function *f, double t);
 /* What comes at once at the start: the only jump that a function has. */
 double time_function_jump(const time_function *f);
+
+C_LINKAGE_END
 
 #endif

@@ -4,10 +4,13 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
+# Fortran's and C++'s own compilers read decks and headers; packages are made and judged; ParaView and h5py open results.
+export PERILAT_PACKAGES="gfortran g++ dpkg-dev lintian python3-paraview xvfb xauth python3-h5py"
+
 bash examples/first_light.sh
 
 sanitized=build-sanitize
-PERILAT_BUILD=$sanitized PERILAT_CLIENTS=ON .ci/setup -DPERILAT_SANITIZE=ON
+PERILAT_BUILD=$sanitized .ci/setup -DPERILAT_SANITIZE=ON
 ctest --test-dir "$sanitized" -L fast --output-on-failure -j 2
 
 ctest --test-dir build -LE long --output-on-failure -j 2

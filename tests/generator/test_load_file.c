@@ -166,12 +166,12 @@ static void messages_show_the_line(void **state) {
   workplace *w = *state;
   static const mistake list[] = {
       {PULSE, FORCE "file = 'pulse.csv' /",
-       "pulse.csv:2:7: error: `w` has no unit: it is a load with one, or a factor on `force`"},
-      {PULSE, FORCE "file = 'pulse.csv' /", "hint: write `w [N]`, or give `force`"},
+       "pulse.csv:2:7: error: `w` has no unit: it is a load with one, or a factor on `total`"},
+      {PULSE, FORCE "file = 'pulse.csv' /", "hint: write `w [N]`, or give `total`"},
       {"t, F [m]\n0, 1\n1, 2\n", FORCE "file = 'pulse.csv' /",
-       "pulse.csv:1:4: error: the unit of `F` is one of `N` (force) [units]\n  1 | t, F [m]"},
+       "pulse.csv:1:4: error: the unit of `F` is one of `N` (total) [units]\n  1 | t, F [m]"},
       {"t, F [kN]\n0, 1\n1, 2\n", FORCE "force = 1 file = 'pulse.csv' /",
-       "leave `force` out where the column is the load itself"},
+       "leave `total` out where the column is the load itself"},
       {"t [mm], w\n0, 1\n1, 2\n", FORCE "force = 1 file = 'pulse.csv' /",
        "the unit of `t` is one of `s`"},
       {"t, w\n0, 1\n0, 2\n", FORCE "force = 1 file = 'pulse.csv' /",

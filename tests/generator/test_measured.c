@@ -110,7 +110,14 @@ static void make_result(const workplace *w) {
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = load},
                                   {.name = "cmod", .unit = "m", .values = cmod}};
-  assert_true(result_finish(r, 1e-3, 42, time, SAMPLES, series, 3, error, sizeof error));
+  const result_ending e = {.ended = "at the end",
+                           .dt = 1e-3,
+                           .steps = 42,
+                           .time = time,
+                           .history_count = SAMPLES,
+                           .series = series,
+                           .series_count = 3};
+  assert_true(result_finish(r, &e, error, sizeof error));
   result_discard(r);
   result_close(r);
 }

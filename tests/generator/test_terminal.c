@@ -182,8 +182,8 @@ static void write_hostile_result(const workplace *w) {
   char path[400], error[1024];
   snprintf(path, sizeof path, "%s", in_workplace(w, "hostile.h5"));
   result_header h = small_header(path);
-  const result_field fields[] = {{"u\x1b[31m", "m\x1b[5m", NULL, 2, PARTICLES, "other"},
-                                 {"om\x1b[5mega", "1", "\x1b[7mconcrete", 1, BONDS, "damage"}};
+  const result_field fields[] = {{"u\x1b[31m", "m\x1b[5m", NULL, 2, PARTICLES, "other", NULL},
+                                 {"om\x1b[5mega", "1", "\x1b[7mconcrete", 1, BONDS, "damage", NULL}};
   h.title = "\x1b]0;title\x07";
   h.overrides = "simulation.title='\x1b[31m'\n";
   h.interaction = "\x1b[7mconcrete";
@@ -193,10 +193,22 @@ static void write_hostile_result(const workplace *w) {
   double u[2 * PARTICLES], omega[BONDS], t[] = {0, 1, 2};
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, (const double *const[]){u, omega}, error, sizeof error));
-  const result_series series[] = {{"load\x1b[31m", "N\x1b[32m", t, false, NULL},
-                                  {"two\nperilat: error: lines", "m", t, false, NULL},
-                                  {"\xe2\x80\xae\xc2\x9b", "a,\"b\"\n", t, true, "\x1b[35mwhy\n"}};
-  assert_true(result_finish(r, 0.1, 3, t, 3, series, 3, error, sizeof error));
+  const result_series series[] = {
+      {.name = "load\x1b[31m", .unit = "N\x1b[32m", .values = t},
+      {.name = "two\nperilat: error: lines", .unit = "m", .values = t},
+      {.name = "\xe2\x80\xae\xc2\x9b",
+       .unit = "a,\"b\"\n",
+       .values = t,
+       .judges = true,
+       .unchecked = "\x1b[35mwhy\n"}};
+  const result_ending e = {.ended = "\x1b[31mat the end",
+                           .dt = 0.1,
+                           .steps = 3,
+                           .time = t,
+                           .history_count = 3,
+                           .series = series,
+                           .series_count = 3};
+  assert_true(result_finish(r, &e, error, sizeof error));
   result_close(r);
 }
 
