@@ -6,6 +6,9 @@
 #include <stddef.h>
 
 #include "dsl/arena.h"
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct named_number {
   const char *name; /* not owned; NULL: a free place */
@@ -25,5 +28,7 @@ int name_index_find(const name_index *x, const char *name);
 /* Gives a name that is new its number; the number of one that is there already stays. Returns the number's place. */
 int *name_index_add(name_index *x, const char *name, int number);
 void name_index_clear(name_index *x);
+
+C_LINKAGE_END
 
 #endif

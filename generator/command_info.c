@@ -140,6 +140,20 @@ static void print_ending(result_file *f) {
   free(started);
 }
 
+static void put_words(json *w, const char *name, char *text) {
+  json_put_text(w, name, *text ? text : NULL);
+  free(text);
+}
+
+static void put_ending(result_file *f, json *w) {
+  static const char *const words[] = {"started", "ended", "compiler", "flags"},
+                           *const numbers[] = {"status", "steps", "wall_seconds", "threads"};
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    put_words(w, words[k], result_read_words(f, words[k]));
+  for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
+    json_put_number(w, numbers[k], result_read_number(f, numbers[k]));
+}
+
 static bool print_result(result_file *f, const char *path) {
   result_sizes s;
   bool good = read_sizes(f, path, &s);
@@ -184,6 +198,7 @@ static bool put_result(result_file *f, const char *path, json *w) {
   json_put_integer(w, "bonds", s.bonds);
   json_put_integer(w, "frames", s.frames);
   put_lines(w, "set", overrides);
+  put_ending(f, w);
   free(title);
   free(overrides);
   json_put_array(w, "histories");

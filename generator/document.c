@@ -6,6 +6,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "dsl/arena.h"
+#include "dsl/terminal.h"
 #include "generator/version.h"
 
 enum { CANNOT_WRITE = 2, LONGEST = 8192 };
@@ -28,17 +30,18 @@ void document_begin(document *d) {
   fflush(stdout);
   d->standard_output = dup(STDOUT_FILENO);
   if (d->standard_output >= 0) dup2(STDERR_FILENO, STDOUT_FILENO);
-  d->memory = open_memstream(&d->text, &d->length);
-  if (!d->memory) abort();
+  d->memory = must_open_text(&d->text, &d->length);
   json_document(&d->writer, d->memory, perilat_version);
 }
 
 static bool write_out(document *d) {
-  if (fclose(d->memory) != 0 || d->standard_output < 0) return false;
+  must_close_text(d->memory);
+  if (d->standard_output < 0) return false;
   fflush(stdout);
-  FILE *out = fdopen(d->standard_output, "w");
-  const bool good = out && fwrite(d->text, 1, d->length, out) == d->length;
-  return out && fclose(out) == 0 && good;
+  const bool back = dup2(d->standard_output, STDOUT_FILENO) >= 0;
+  close(d->standard_output);
+  terminal_expect_data();
+  return back && fwrite(d->text, 1, d->length, stdout) == d->length && fflush(stdout) == 0;
 }
 
 int document_end(document *d, int status) {
