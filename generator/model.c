@@ -12,7 +12,7 @@
 #include "runtime/clock.h"
 #include "runtime/ordinary_file.h"
 
-#define PATH_LIMIT  4096
+#define PATH_LIMIT 4096
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
   struct stat about;

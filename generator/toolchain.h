@@ -26,8 +26,9 @@ const char *toolchain_no_compiler(void);
 /* Flags of every kernel: -O3 -fno-math-errno -fno-trapping-math -ffp-contract=off ... and -march=$PERILAT_PROCESSOR, otherwise
    this one. */
 const char *toolchain_flags(void);
-/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
-   $TMPDIR. Created; never fails (an unwritable one gives that private folder, too). */
+/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a
+   private folder in $TMPDIR. Created; never fails (an unwritable one gives that private folder,
+   too). */
 const char *toolchain_cache(void);
 /* A sentence that says why the cache is not where it was to be; NULL where it is. */
 const char *toolchain_cache_trouble(void);

@@ -211,8 +211,8 @@ static bool lacks(const reader *r, span where, const char *name) {
   return hint_at_header(r);
 }
 
-/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of tables are shown, which
-   begin with the name of a column or, wrongly, with numbers. */
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
+   of tables are shown, which begin with the name of a column or, wrongly, with numbers. */
 static bool is_table(const reader *r, const char *line) {
   static const char between[] = ",; \t\r\n[\"", numbers[] = "0123456789+-.eE,; \t\r";
   if (strspn(line, numbers) == strcspn(line, "\n")) return true;

@@ -1,5 +1,5 @@
-/* Decks and laws received from somebody else: files that they name are not shown, numbers beyond all computing are refused at
-   their line, and what the machine does not give is said. */
+/* Decks and laws received from somebody else: files that they name are not shown, numbers beyond
+   all computing are refused at their line, and what the machine does not give is said. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
