@@ -54,7 +54,8 @@ static uint32_t code_point(const char *text, size_t length) {
 
 /* --- what is shown ---------------------------------------------------------------------------- */
 
-/* C1 controls are commands to many terminals; the others turn the direction of the text that follows. */
+/* C1 controls are commands to many terminals; the others turn the direction of the text that
+ * follows. */
 static bool commands(uint32_t code) {
   return (code >= 0x80 && code < 0xA0) || code == 0x061C || code == 0x200E || code == 0x200F ||
          (code >= 0x202A && code <= 0x202E) || (code >= 0x2066 && code <= 0x2069);

@@ -1,5 +1,5 @@
-/* Characters of texts in UTF-8: how long each is, how many columns of a terminal it takes, and what is shown
-   in place of one that would command the terminal or turn its text around. */
+/* Characters of texts in UTF-8: how long each is, how many columns of a terminal it takes, and what
+   is shown in place of one that would command the terminal or turn its text around. */
 #ifndef PERILAT_DSL_CHARACTERS_H
 #define PERILAT_DSL_CHARACTERS_H
 
@@ -22,7 +22,8 @@ shown_character character_shown(const char *text, size_t available);
 size_t characters_plain(const char *text, size_t available);
 /* Writes a text so. */
 void characters_show(FILE *out, const char *text, size_t length);
-/* A name on one line: line ends and tabs are written out, too. Good until the thread's fourth next call. */
+/* A name on one line: line ends and tabs are written out, too. Good until the thread's fourth next
+ * call. */
 const char *name_shown(const char *name);
 
 #endif

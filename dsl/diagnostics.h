@@ -57,7 +57,8 @@ severity diag_severity(diag_code code);
          |       ^~~~~
        hint: did you mean `alpha2`?                                       */
 void diag_print(const diagnostics *d, FILE *out);
-/* The command that explains the codes printed since the last call, on one line; nothing where there were none. */
+/* The command that explains the codes printed since the last call, on one line; nothing where there
+ * were none. */
 void diag_print_topics(FILE *out);
 
 /* Pointers to all of them in the order of their places, as printed; to be freed. */

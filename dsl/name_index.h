@@ -1,5 +1,5 @@
-/* Finds the number that belongs to a name at once, however many names there are: a hash table over names that stay where
-   they are. All zero it is empty. */
+/* Finds the number that belongs to a name at once, however many names there are: a hash table over
+   names that stay where they are. All zero it is empty. */
 #ifndef PERILAT_DSL_NAME_INDEX_H
 #define PERILAT_DSL_NAME_INDEX_H
 
@@ -25,7 +25,8 @@ typedef struct name_index {
 int *name_index_at(const name_index *x, const char *name);
 /* The same, -1 without such a name. */
 int name_index_find(const name_index *x, const char *name);
-/* Gives a name that is new its number; the number of one that is there already stays. Returns the number's place. */
+/* Gives a name that is new its number; the number of one that is there already stays. Returns the
+ * number's place. */
 int *name_index_add(name_index *x, const char *name, int number);
 void name_index_clear(name_index *x);
 

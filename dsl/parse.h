@@ -24,8 +24,8 @@ typedef struct parse_options {
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
 
-/* What a text is, by its first word behind comments: what a person has not named himself is not quoted unless it is a law,
-   or a text that laws include. */
+/* What a text is, by its first word behind comments: what a person has not named himself is not
+   quoted unless it is a law, or a text that laws include. */
 bool parse_begins_law(const char *text);
 bool parse_begins_include(const char *text); /* or holds no word at all */
 

@@ -64,8 +64,8 @@ static size_t begin_of_room(const quotation *q, size_t to, int room) {
   return at;
 }
 
-/* What is shown of a line that is longer than `whole` columns: `room` of them, the caret in the first part unless the
-   line ends before. */
+/* What is shown of a line that is longer than `whole` columns: `room` of them, the caret in the
+   first part unless the line ends before. */
 static void cut(quotation *q, int whole, int room) {
   if (end_of_room(q, 0, whole) == q->length) return;
   q->from = begin_of_room(q, q->begin, room * 3 / 8);

@@ -1,5 +1,5 @@
-/* A line of a source under a message, with the place meant underlined. On a terminal it is cut around the place to what
-   there is room for, elsewhere to what can still be read. */
+/* A line of a source under a message, with the place meant underlined. On a terminal it is cut
+   around the place to what there is room for, elsewhere to what can still be read. */
 #ifndef PERILAT_DSL_QUOTE_H
 #define PERILAT_DSL_QUOTE_H
 

@@ -1,15 +1,17 @@
-/* The program's standard output and error as a terminal has them: how wide, with colours or without, and safe from
-   what files hold. Only the program's own control sequences reach a terminal. */
+/* The program's standard output and error as a terminal has them: how wide, with colours or
+   without, and safe from what files hold. Only the program's own control sequences reach a
+   terminal. */
 #ifndef PERILAT_DSL_TERMINAL_H
 #define PERILAT_DSL_TERMINAL_H
 
 #include <stdbool.h>
 #include <stdio.h>
 
-/* From here on what is printed is shown as characters.h says, wherever it goes: messages and reports are full of names,
-   titles and units from files. For main(). */
+/* From here on what is printed is shown as characters.h says, wherever it goes: messages and
+   reports are full of names, titles and units from files. For main(). */
 void terminal_begin(void);
-/* The standard output is data, in a form of its own (JSON, CSV, a law's text): left as it is, unless a terminal shows it. */
+/* The standard output is data, in a form of its own (JSON, CSV, a law's text): left as it is,
+ * unless a terminal shows it. */
 void terminal_expect_data(void);
 
 /* Columns; 0 where `out` is no terminal. */
@@ -34,7 +36,8 @@ typedef enum terminal_paint {
 #undef X
 } terminal_paint;
 
-/* What follows stands out so, where the terminal has colours and NO_COLOR does not forbid them (no-color.org). */
+/* What follows stands out so, where the terminal has colours and NO_COLOR does not forbid them
+ * (no-color.org). */
 void terminal_paint_with(FILE *out, terminal_paint paint);
 
 #endif

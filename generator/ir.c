@@ -514,7 +514,7 @@ void ir_substitute(ir *g, const ir_node *roots, int root_count, const ir_node *f
 
 struct ir_substitution {
   ir *graph;
-  ir_node *image; /* [known] of the nodes so far; IR_NONE: not rebuilt yet */
+  ir_node *image;        /* [known] of the nodes so far; IR_NONE: not rebuilt yet */
   unsigned char *listed; /* [known] */
   ir_node *list;         /* [known] what a root needs that has no image */
   int known;

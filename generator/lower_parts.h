@@ -45,7 +45,8 @@ typedef struct lowering {
   bool failed;
   long visits;
   const frame *frame;
-  binding *bound; /* [bound_room] open addressing by symbol; a power of two and at least twice the bindings */
+  binding *bound; /* [bound_room] open addressing by symbol; a power of two and at least twice the
+                     bindings */
   size_t bound_count, bound_room;
   known_call *calls[CALL_BUCKETS];
   ir_node *new_value; /* [fields] what names read below the rule: an opaque input until the end */

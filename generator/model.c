@@ -14,7 +14,7 @@
 #include "runtime/clock.h"
 #include "runtime/ordinary_file.h"
 
-#define PATH_LIMIT  4096
+#define PATH_LIMIT 4096
 
 static char *read_standard_input(size_t limit, size_t *length, char *error, size_t size) {
   const char *why, *text = standard_input(length, &why);

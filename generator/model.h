@@ -68,8 +68,8 @@ bool model_plan(model *m);
 bool model_plan_varying(model *m, const int *varying, int varying_count);
 /* The same for a central law of bonds as a law of families. */
 bool model_plan_of_families(model *m);
-/* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or that the cache is another
-   one than was to be. NULL with `error`. */
+/* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or
+   that the cache is another one than was to be. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);
 

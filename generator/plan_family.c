@@ -184,8 +184,7 @@ static void read_from_lists(const kernel_plan *plan, const program_motion *of, r
   for (int k = 0; k < of->count; k++)
     ir_substitution_add(s, of->from[k], of->to[k]);
   for (int k = 0; k < r->count; k++)
-    if (r->items[k].node != IR_NONE)
-      r->items[k].node = ir_substitution_apply(s, r->items[k].node);
+    if (r->items[k].node != IR_NONE) r->items[k].node = ir_substitution_apply(s, r->items[k].node);
   ir_substitution_free(s);
 }
 

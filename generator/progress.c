@@ -27,8 +27,8 @@ static void time_left(const progress *p, double fraction, char *text, size_t siz
   snprintf(text, size, s < 0 ? "" : "  %ld:%02ld left", s / 60, s % 60);
 }
 
-/* One column less than there are: a full line would begin another one. The detail is cut, and where the terminal is narrow
-   there is no bar. */
+/* One column less than there are: a full line would begin another one. The detail is cut, and where
+   the terminal is narrow there is no bar. */
 static void show_line(const progress *p, double fraction, const char *detail) {
   char bar[BAR_WIDTH + 4] = "", left[40], line[400];
   const int columns = terminal_columns(stderr), room = columns - 1;

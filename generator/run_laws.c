@@ -124,7 +124,8 @@ bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *s
   return good;
 }
 
-/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those of laws are shown. */
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
+ * of laws are shown. */
 static bool named_law_is_one(const deck_material *m, const char *path, diagnostics *said) {
   char error[4 * ERROR_LENGTH];
   size_t length;

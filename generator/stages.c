@@ -128,21 +128,22 @@ static bool has_changes(const emitter *e) {
   return false;
 }
 
-/* --- what a stage computes --------------------------------------------------------------------- */
+/* --- what a stage computes -------------------------------------------------------------------- */
 
 int stages_last(const stages *s) {
   return s->count - 1 - s->changes;
 }
 
-/* Whether the pass gives a result in that stage: all in the last one but those of a change. New damage is asked for there,
-   too. */
+/* Whether the pass gives a result in that stage: all in the last one but those of a change. New
+   damage is asked for there, too. */
 static bool gives(const emitter *e, const stages *s, int stage, const pass_root *r) {
   if (stage < stages_last(s)) return false;
   if (!s->changes) return true;
   return stage > stages_last(s) ? stages_is_of_change(e, r) : is_always_computed(e, r);
 }
 
-/* The stage of changes takes results from the one before it, and computes what else that has again: it is rare. */
+/* The stage of changes takes results from the one before it, and computes what else that has again:
+ * it is rare. */
 static bool comes_from_before(const stages *s, ir_node n, int stage) {
   if (s->of[n] < 0 || s->of[n] >= stage) return false;
   return s->of[n] < stages_last(s) || s->result[n];
@@ -226,8 +227,8 @@ static int last_stage(const planner *p) {
   return last;
 }
 
-/* Stages in which nodes are needed, a bit each. Users of a node stand behind it: walked from the last node to the first, all
-   that use a node are known when it is its turn. */
+/* Stages in which nodes are needed, a bit each. Users of a node stand behind it: walked from the
+   last node to the first, all that use a node are known when it is its turn. */
 typedef struct users {
   uint64_t *now;  /* [node_count] as the lines stand */
   uint64_t *ever; /* [node_count] these, and as the lines stood before they moved */
@@ -256,7 +257,8 @@ static void need_results(const planner *p, users *u) {
       if (gives(e, p->s, stage, &e->roots[k])) need_in(u, e->roots[k].node, UINT64_C(1) << stage);
 }
 
-/* Of the stages that need a node those that take it from an earlier one. The others compute it, be it once more. */
+/* Of the stages that need a node those that take it from an earlier one. The others compute it, be
+ * it once more. */
 static uint64_t taken_by(const planner *p, ir_node n, uint64_t needed) {
   uint64_t taken = 0;
   for (int stage = 0; stage < p->s->count; stage++)
@@ -527,7 +529,8 @@ enum { NO_CUT = 1 << 20, SHORTEST_CHAIN = 50 };
 static const int longest_chains[] = {NO_CUT, 160, 140, 120, 105, 95, 85, 75, 66, SHORTEST_CHAIN};
 enum { CHAIN_COUNT = sizeof longest_chains / sizeof *longest_chains };
 
-/* The better of two plans, one of which may be missing or have too many buffers; the other one goes. */
+/* The better of two plans, one of which may be missing or have too many buffers; the other one
+ * goes. */
 static stages *cheaper(stages *a, stages *b) {
   const bool takes_b = b && b->buffers <= MOST_BUFFERS && (!a || b->cycles < a->cycles);
   stages_free(takes_b ? a : b);

@@ -31,8 +31,9 @@ const char *toolchain_no_compiler(void);
 const char *toolchain_flags(void);
 /* What the compiler says it is, "gcc (Debian 12.2.0-14) 12.2.0"; "" when it does not answer. */
 void toolchain_version(char *version, size_t size);
-/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
-   $TMPDIR. Created; never fails (an unwritable one gives that private folder, too). */
+/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a
+   private folder in $TMPDIR. Created; never fails (an unwritable one gives that private folder,
+   too). */
 const char *toolchain_cache(void);
 /* A sentence that says why the cache is not where it was to be; NULL where it is. */
 const char *toolchain_cache_trouble(void);

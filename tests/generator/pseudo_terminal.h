@@ -8,7 +8,8 @@
 
 #include "tests/generator/command_tools.h"
 
-/* Both outputs of a line of shell in the workplace, where $P is the program; to be freed. `settings`: "TERM=xterm". */
+/* Both outputs of a line of shell in the workplace, where $P is the program; to be freed.
+ * `settings`: "TERM=xterm". */
 static inline char *on_terminal(const workplace *w, int columns, const char *settings,
                                 const char *line) {
   const int terminal = posix_openpt(O_RDWR | O_NOCTTY);

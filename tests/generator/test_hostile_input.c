@@ -1,5 +1,5 @@
-/* Decks and laws received from somebody else: files that they name are not shown, numbers beyond all computing are refused at
-   their line, and what the machine does not give is said. */
+/* Decks and laws received from somebody else: files that they name are not shown, numbers beyond
+   all computing are refused at their line, and what the machine does not give is said. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -87,6 +87,8 @@ static void numbers_beyond_computing_are_refused(void **state) {
   refused_at_its_line(w, "drive.velocity=1e200", "`velocity` is too large");
   refused_at_its_line(w, "drive.rise=5e-324", "`rise` is too small");
   refused_at_its_line(w, "simulation.end_time=5e-324", "`end_time` is too small");
+  refused_at_its_line(w, "simulation.step=5e-324", "`step` is too small");
+  refused_at_its_line(w, "simulation.step_safety=1e-300", "`step_safety` is too small");
 }
 
 /* What is not refused has energies, or is said to be no run. */
@@ -107,6 +109,19 @@ static void numbers_at_the_limit_are_computed_with(void **state) {
       fail_msg("%s: status %d\n%s", settings[k], status, w->said);
   }
   expect(w, "run beam.nml --set material.rho=1e99", 1, "is shorter than one step");
+}
+
+static void energies_beyond_computing_fail_the_run(void **state) {
+  workplace *w = *state;
+  write_text(w, "huge.plm",
+             "model huge\n  law central bond\n  parameter rho = 2323 [kg/m^3]\n"
+             "  parameter K = 1 [MN] in (0, inf)\n  parameter huge = 1 in (0, inf)\n"
+             "  energy W = K*s*stretch**2*huge**4/2\n  force N = K*stretch\nend model\n");
+  assert_int_equal(shell(w, "grep -v '^&material' beam.nml > huge.nml; echo \"&material "
+                            "lattice='concrete' model='./huge.plm' /\" >> huge.nml"),
+                   0);
+  expect(w, "run huge.nml", 0, "imbalance");
+  expect(w, "run huge.nml --set material.huge=1e99", 2, "energies that are not finite");
 }
 
 /* A law whose own numbers are as small is not blamed. */
@@ -157,6 +172,7 @@ int main(void) {
       T(named_files_are_not_shown),
       T(numbers_beyond_computing_are_refused),
       T(numbers_at_the_limit_are_computed_with),
+      T(energies_beyond_computing_fail_the_run),
       T(tiny_laws_are_no_fault_of_the_compiler),
       T(a_cache_that_cannot_be_used_is_named),
       T(memory_that_there_is_not_is_not_made_up),

@@ -1,5 +1,6 @@
-/* Thousands of parameters, states, groups, monitors, histories: the time grows as their number. Processor time of four
-   times as many is compared, so that what else the machine does matters little: 4 is linear, 16 quadratic. */
+/* Thousands of parameters, states, groups, monitors, histories: the time grows as their number.
+   Processor time of four times as many is compared, so that what else the machine does matters
+   little: 4 is linear, 16 quadratic. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

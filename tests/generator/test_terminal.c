@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* nftw, posix_openpt */
-/* What a terminal shows: lines cut around the caret, which stays under its place; colours where they are wanted; the line of
-   progress; and nothing that a file would have the terminal do. */
+/* What a terminal shows: lines cut around the caret, which stays under its place; colours where
+   they are wanted; the line of progress; and nothing that a file would have the terminal do. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
