@@ -215,7 +215,12 @@ static void give_up_writing(run *r, step_status status) {
 }
 
 /* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
-static int end_stopped(const run *r, bool saved) {
+static int exit_status(step_status status, bool saved) {
+  if (status == STEP_OK) return saved ? 128 + interrupted : RUN_FAILED;
+  return status == STEP_BAD ? RUN_FAILED : 0;
+}
+
+static void print_stopped(const run *r, bool saved) {
   char now[MOMENT_TEXT], kept[MOMENT_TEXT];
   printf("stopped at %s as asked; ", moment(r, simulation_time(r->simulation), now));
   if (saved)
@@ -226,7 +231,6 @@ static int end_stopped(const run *r, bool saved) {
   else
     puts("it has no checkpoint and cannot go on");
   if (r->is_kept) print_resume(r, stdout);
-  return saved ? 128 + interrupted : RUN_FAILED;
 }
 
 static const char *name_of_ending(int status, step_status last, bool interrupted_by_user) {
@@ -247,11 +251,7 @@ static int execute(run *r) {
   const bool stopped_by_user = interrupted && status == STEP_OK;
   const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
-  const run_end end = {status,
-                       stopped_by_user      ? 128 + interrupted
-                       : status == STEP_BAD ? RUN_FAILED
-                                            : 0,
-                       seconds};
+  const run_end end = {status, exit_status(status, saved), seconds};
   written = written && finish_result(r, &end);
   if (!written) give_up_writing(r, status);
   if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
@@ -261,10 +261,10 @@ static int execute(run *r) {
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
-  const int ended = stopped_by_user ? end_stopped(r, saved) : status == STEP_BAD ? RUN_FAILED : 0;
+  if (stopped_by_user) print_stopped(r, saved);
   r->signal = stopped_by_user ? interrupted : 0;
-  r->ending = name_of_ending(ended, status, stopped_by_user);
-  return ended;
+  r->ending = name_of_ending(end.exit_status, status, stopped_by_user);
+  return end.exit_status;
 }
 
 /* --check-kernel: every compiled kernel against the interpreter, with the deck's parameters. */

@@ -70,7 +70,7 @@ bool begin_anew(run *r);
 bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-/* What the run has come to: how it ended, in words, and what it will exit with. */
+/* What the run has come to, and what it will exit with. */
 typedef struct run_end {
   step_status status;
   int exit_status;

@@ -527,7 +527,7 @@ void describe_end(const run *r, const run_end *end, char *text, size_t size) {
     describe_stop(s, why, sizeof why);
     snprintf(text, size, "stopped by &stop at %s: %s", now, why);
   } else if (end->status == STEP_OK)
-    snprintf(text, size, "interrupted at %s: the run can be resumed", now);
+    snprintf(text, size, "interrupted at %s%s", now, r->is_kept ? ": the run can be resumed" : "");
   else
     snprintf(text, size, "end of the run");
 }

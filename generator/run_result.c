@@ -186,7 +186,7 @@ static void particle_table(run *r, const rows *w, result_header *h) {
 }
 
 /* What a law says may take several lines. */
-static const char *one_line(run *r, const char *words) {
+static const char *one_line(const run *r, const char *words) {
   char *line = arena_text(r->memory, words, strlen(words));
   for (char *at = line; (at = strchr(at, '\n')); at++)
     *at = ' ';
@@ -354,15 +354,13 @@ void remove_remains(run *r) {
 }
 
 bool finish_result(run *r, const run_end *end) {
-  enum { WORDS = 512 };
   const int count = simulation_series_count(r->simulation);
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
-  char ended[WORDS], words[WORDS], error[ERROR_LENGTH];
+  char ended[512], error[ERROR_LENGTH];
   for (int k = 0; k < count; k++) {
     series[k] = (result_series){.judges = false};
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
-    simulation_series_words(r->simulation, k, words, sizeof words);
-    series[k].long_name = one_line(r, words);
+    series[k].long_name = one_line(r, simulation_series_words(r->simulation, k, r->memory));
   }
   const char *unchecked;
   const int imbalance = simulation_imbalance(r->simulation, &unchecked);

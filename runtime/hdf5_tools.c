@@ -186,7 +186,7 @@ bool h5_attach_scale(hid_t set, hid_t scale, unsigned dimension) {
   return H5DSattach_scale(set, scale, dimension) >= 0;
 }
 
-/* What is selected of the set; `shape` is its own where nothing lies in it. */
+/* The block goes where the view begins. */
 static bool map_block(hid_t view, const hsize_t *shape, int rank, hid_t set, const h5_block *of,
                       hid_t plist) {
   const hsize_t none[H5_VIEW_RANK] = {0};

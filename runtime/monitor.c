@@ -1,10 +1,7 @@
 #include "runtime/monitor.h"
 
 #include <math.h>
-#include <stdarg.h>
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <strings.h>
 
 #include "dsl/arena.h"
@@ -207,75 +204,66 @@ void monitors_free(monitors *m) {
 
 /* --- in words --------------------------------------------------------------------------------- */
 
-/* Appends to the text, as far as there is room. */
-static void add_words(char *text, size_t size, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static void add_words(char *text, size_t size, const char *format, ...) {
-  const size_t used = strlen(text);
-  va_list values;
-  va_start(values, format);
-  vsnprintf(text + used, size - used, format, values);
-  va_end(values);
-}
-
-static void add_component(const monitors *all, const monitor *m, const char *quantity, char *text,
-                          size_t size) {
+static char *component_words(const monitors *all, const monitor *m, const char *quantity,
+                             arena *a) {
   const int c = m->deck->component, dimensions = all->state->dimensions;
-  add_words(text, size, "%s %s %s", quantity, c < dimensions ? "along" : "in",
-            deck_component_name(dimensions, c));
+  return arena_printf(a, "%s %s %s", quantity, c < dimensions ? "along" : "in",
+                      deck_component_name(dimensions, c));
 }
 
-static void add_count(const monitors *all, const monitor *m, char *text, size_t size) {
-  const char *counted = damage_on_bonds(all->state->law) ? "bonds" : "particles";
-  add_words(text, size, "%s with %s %.6g", counted,
-            m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
-            m->deck->above);
+static char *difference_words(const monitors *all, const monitor *m, const char *quantity,
+                              arena *a) {
+  return arena_printf(a, "%s of `%s` less that of `%s`", component_words(all, m, quantity, a),
+                      m->deck->between[1], m->deck->between[0]);
 }
 
-static void add_field(const monitors *all, const monitor *m, char *text, size_t size) {
+static char *region_words(const monitors *all, const monitor *m, const char *quantity, arena *a) {
+  return arena_printf(a, "%s of `%s`", component_words(all, m, quantity, a), m->deck->region);
+}
+
+static char *count_words(const monitors *all, const monitor *m, arena *a) {
+  return arena_printf(a, "%s with %s %.6g",
+                      damage_on_bonds(all->state->law) ? "bonds" : "particles",
+                      m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
+                      m->deck->above);
+}
+
+static char *field_words(const monitors *all, const monitor *m, arena *a) {
   const pl_field *f = law_field(all->state->law, m->field);
-  add_words(text, size, "mean `%s` of `%s`", f->name, m->deck->region);
-  if (f->doc && *f->doc) add_words(text, size, " (%s)", f->doc);
+  char *words = arena_printf(a, "mean `%s` of `%s`", f->name, m->deck->region);
+  return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
 }
 
-static void add_quantity(const monitors *all, const monitor *m, char *text, size_t size) {
-  const deck_monitor *d = m->deck;
-  switch (d->kind) {
+static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
+  switch (m->deck->kind) {
   case MONITOR_REACTION:
-    add_component(all, m, "reaction", text, size);
-    add_words(text, size, " of `%s`", d->region);
-    return;
+    return region_words(all, m, "reaction", a);
   case MONITOR_REACTIONS:
-    add_component(all, m, "half the reaction", text, size);
-    add_words(text, size, " of `%s` less that of `%s`", d->between[1], d->between[0]);
-    return;
+    return difference_words(all, m, "half the reaction", a);
   case MONITOR_OPENING:
-    add_component(all, m, "mean displacement", text, size);
-    add_words(text, size, " of `%s` less that of `%s`", d->between[1], d->between[0]);
-    return;
+    return difference_words(all, m, "mean displacement", a);
   case MONITOR_DISPLACEMENT:
+    return region_words(all, m, "mean displacement", a);
   case MONITOR_VELOCITY:
-    add_component(all, m, d->kind == MONITOR_VELOCITY ? "mean velocity" : "mean displacement", text,
-                  size);
-    add_words(text, size, " of `%s`", d->region);
-    return;
+    return region_words(all, m, "mean velocity", a);
+  case MONITOR_FIELD:
+    return field_words(all, m, a);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
-    add_count(all, m, text, size);
-    return;
-  case MONITOR_FIELD:
-    add_field(all, m, text, size);
+    break;
   }
+  return count_words(all, m, a);
 }
 
-void monitor_words(const monitors *all, int index, char *text, size_t size) {
+char *monitor_words(const monitors *all, int index, arena *a) {
   const monitor *m = &all->items[index];
-  *text = 0;
-  add_quantity(all, m, text, size);
-  if (m->window > 1) add_words(text, size, ", mean over %.6g s", m->deck->average);
-  if (m->zero_step >= 0) add_words(text, size, ", less its value at %.6g s", m->deck->zero_at);
+  char *words = quantity_words(all, m, a);
+  if (m->window > 1) words = arena_printf(a, "%s, mean over %.6g s", words, m->deck->average);
+  if (m->zero_step >= 0)
+    words = arena_printf(a, "%s, less its value at %.6g s", words, m->deck->zero_at);
   if (m->deck->scale < 1 || m->deck->scale > 1)
-    add_words(text, size, ", times %.6g", m->deck->scale);
+    words = arena_printf(a, "%s, times %.6g", words, m->deck->scale);
+  return words;
 }
 
 /* --- values ----------------------------------------------------------------------------------- */

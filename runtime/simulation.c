@@ -446,13 +446,11 @@ const char *simulation_series(const simulation *s, int k, const char **symbol,
                      : relaxation_names[own];
 }
 
-void simulation_series_words(const simulation *s, int k, char *text, size_t size) {
+char *simulation_series_words(const simulation *s, int k, arena *a) {
   const int watched = s->monitors->count;
   const int own = k - (s->series_count - (s->relaxation ? RELAXATION_COUNT : 0));
-  if (k < watched)
-    monitor_words(s->monitors, k, text, size);
-  else
-    snprintf(text, size, "%s", own < 0 ? ledger_words[k - watched] : relaxation_words[own]);
+  if (k < watched) return monitor_words(s->monitors, k, a);
+  return arena_printf(a, "%s", own < 0 ? ledger_words[k - watched] : relaxation_words[own]);
 }
 
 int simulation_imbalance(const simulation *s, const char **unchecked) {

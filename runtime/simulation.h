@@ -130,7 +130,7 @@ long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
 /* What a series is, in words. */
-void simulation_series_words(const simulation *s, int k, char *text, size_t size);
+char *simulation_series_words(const simulation *s, int k, arena *a);
 /* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,

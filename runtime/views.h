@@ -2,8 +2,8 @@
    show fields as these want them. One unstructured grid has the particles at the beginning as its
    points and the bonds as its cells, lines. Vectors have three components.
 
-     /VTKHDF                          for VTK's own reader, by the specification of VTKHDF 2.0: a grid
-                                      with steps, all frames of a field one behind the other
+     /VTKHDF                          for VTK's own reader, by the specification of VTKHDF 2.0: a
+                                      grid with steps, all frames of a field one behind the other
      /xdmf/particles/<field>/<frame>  [N] or [N, 3], and
      /xdmf/bonds/<field>/<frame>      [M]: a set for each frame, for the sidecar (xdmf.h)  */
 #ifndef PERILAT_RUNTIME_VIEWS_H

@@ -19,6 +19,7 @@ if [ "$module" = paraview ] && [ -z "${DISPLAY:-}" ]; then
   screen=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset") # or it starts anew when a first window is closed
 fi
 
+export PYTHONDONTWRITEBYTECODE=1
 work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_clients.XXXXXX")
 trap 'rm -rf "$work"' EXIT
 cd "$work"

@@ -57,14 +57,7 @@ static void make_result(const workplace *w, const char *name, variant v) {
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = kinetic},
                                   {.name = "energy/external", .unit = "J", .values = external}};
-  assert_true(result_finish(r,
-                            &(result_ending){.dt = 1e-3,
-                                             .steps = 42,
-                                             .time = time,
-                                             .history_count = v.samples,
-                                             .series = series,
-                                             .series_count = 3},
-                            error, sizeof error));
+  assert_true(small_finish(r, time, v.samples, series, 3, error, sizeof error));
   result_discard(r);
   result_close(r);
 }

@@ -51,7 +51,7 @@ static void dynamic_runs_have_times(void **state) {
   assert_null(strstr(w->said, "increment"));
 }
 
-/* --- what results tell of their runs ------------------------------------------------------------ */
+/* --- what results tell of their runs ---------------------------------------------------------- */
 
 static void expect_ending(workplace *w, const char *name, const char *ended, int status) {
   char error[1000];
@@ -85,10 +85,11 @@ static void results_tell_how_the_run_ended(void **state) {
   expect(w, "run beam.nml --threads 1 --set \"drive.velocity=-1e5 m/s\" --set drive.rise=", 2,
          "error: ");
   expect_ending(w, "beam.h5", "failed at t = ", 2);
-  assert_int_equal(shell(w, "timeout -s INT 1 $P run beam.nml --threads 1 --set "
-                            "'simulation.end_time=100 s' --set 'output.sample=1 s'"),
-                   124);
-  expect_ending(w, "beam.h5", "interrupted at t = ", 130);
+  write_long_deck(w);
+  const pid_t run = start_long_run(w, "part.h5", NULL);
+  kill(run, SIGINT);
+  assert_int_equal(end_of(run), 128 + SIGINT);
+  expect_ending(w, "part.h5", "interrupted at t = ", 128 + SIGINT);
 }
 
 static void expect_words(const workplace *w, const char *set_name, const char *words) {

@@ -46,15 +46,7 @@ static void finish(result *r) {
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = time}};
-  assert_true(result_finish(r,
-                            &(result_ending){.ended = "end of the run",
-                                             .dt = 1e-3,
-                                             .steps = 42,
-                                             .time = time,
-                                             .history_count = SAMPLES,
-                                             .series = series,
-                                             .series_count = 2},
-                            error, sizeof error));
+  assert_true(small_finish(r, time, SAMPLES, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);
 }

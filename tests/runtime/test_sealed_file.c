@@ -76,15 +76,7 @@ static void write_large(void) {
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = time},
                                   {.name = "energy/kinetic", .unit = "J", .values = volumes}};
-  assert_true(result_finish(r,
-                            &(result_ending){.ended = "end of the run",
-                                             .dt = 1e-3,
-                                             .steps = 42,
-                                             .time = time,
-                                             .history_count = LONG,
-                                             .series = series,
-                                             .series_count = 2},
-                            error, sizeof error));
+  assert_true(small_finish(r, time, LONG, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);
 }
@@ -101,15 +93,7 @@ static void write_small(void) {
   const double time[] = {0, 1, 2, 3, 4};
   const result_series series[] = {{.name = "load", .unit = "N", .values = time},
                                   {.name = "energy/kinetic", .unit = "J", .values = time}};
-  assert_true(result_finish(r,
-                            &(result_ending){.ended = "end of the run",
-                                             .dt = 1e-3,
-                                             .steps = 42,
-                                             .time = time,
-                                             .history_count = SAMPLES,
-                                             .series = series,
-                                             .series_count = 2},
-                            error, sizeof error));
+  assert_true(small_finish(r, time, SAMPLES, series, 2, error, sizeof error));
   result_discard(r);
   result_close(r);
 }
@@ -345,8 +329,8 @@ static bool is_virtual(hid_t set, void *count) {
   return true;
 }
 
-/* A result with all that it has for other programs: what virtual sets show, dimension scales, words. All its chunks are
-   small, so that nothing is left to their sums. */
+/* A result with all that it has for other programs: virtual sets, dimension scales, words. All its
+   chunks are small, so that nothing is left to their sums. */
 static void no_byte_of_a_result_can_be_changed(void **state) {
   (void)state;
   enum { STRIDE = 29, FIELDS = 2, POINTS_AND_BONDS = 2 };
