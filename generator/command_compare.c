@@ -97,7 +97,8 @@ static void print_finding(const comparison_run *c, const finding *f) {
     printf("* %-34s %s\n", name_shown(f->name), f->incomparable);
     return;
   }
-  snprintf(title, sizeof title, "%s [%s]", name_shown(f->name), *f->unit ? name_shown(f->unit) : "1");
+  snprintf(title, sizeof title, "%s [%s]", name_shown(f->name),
+           *f->unit ? name_shown(f->unit) : "1");
   printf("%c %-34s %12.4g %12.4g%s\n", is_different(c, f) ? '*' : ' ', title, f->gap.largest,
          relative(&f->gap), f->place);
 }
@@ -235,7 +236,8 @@ static void compare_history(comparison_run *c, const time_axis *x, const char *n
     say_error("%s", good ? "a history has not as many values as times" : error);
     c->wrong = true;
   } else if (strcmp(a.unit, b.unit) != 0) {
-    report_unlike(c, name, "[%s] and [%s]: not the same unit", name_shown(a.unit), name_shown(b.unit));
+    report_unlike(c, name, "[%s] and [%s]: not the same unit", name_shown(a.unit),
+                  name_shown(b.unit));
   } else {
     gap g = gap_of_series(x, a.values, b.values);
     if (is_energy(name)) g.scale = pl_fmax(g.scale, energy);

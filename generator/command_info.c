@@ -146,8 +146,11 @@ static void put_words(json *w, const char *name, char *text) {
 }
 
 static void put_ending(result_file *f, json *w) {
-  static const char *const words[] = {"started", "ended", "compiler", "flags"},
-                           *const numbers[] = {"status", "steps", "wall_seconds", "threads"};
+  static const char *const words[] = {"started", "ended", "compiler", "flags"}, *const numbers[] = {
+                                                                                    "status",
+                                                                                    "steps",
+                                                                                    "wall_seconds",
+                                                                                    "threads"};
   for (size_t k = 0; k < sizeof words / sizeof *words; k++)
     put_words(w, words[k], result_read_words(f, words[k]));
   for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)

@@ -33,13 +33,13 @@
     "0 the same, 1 an input is wrong, 2 different")                                                \
   X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values",              \
     COMMAND_STATUS)                                                                                \
-  X(info, "law.plm | deck.nml | result.h5 | -", "plm nml h5 hdf5",                                     \
+  X(info, "law.plm | deck.nml | result.h5 | -", "plm nml h5 hdf5",                                 \
     "what a law implies, what a file holds", COMMAND_STATUS)                                       \
   X(explain, "law.plm | -", "plm", "a law as equations with a table of its symbols",               \
     COMMAND_STATUS)                                                                                \
-  X(format, "law.plm ... | -", "plm", "lay out laws",                                                  \
+  X(format, "law.plm ... | -", "plm", "lay out laws",                                              \
     "0 done, 1 the input is wrong; with --check also when a file would change")                    \
-  X(help, "TOPIC ...", "",                                                                             \
+  X(help, "TOPIC ...", "",                                                                         \
     "what a message's code, a word of the language, a deck group or a command means",              \
     COMMAND_STATUS)
 

@@ -178,13 +178,52 @@ bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const
   return good;
 }
 
-bool h5_make_scale(hid_t set, const char *name) {
-  return H5DSset_scale(set, name) >= 0;
+/* --- dimension scales ------------------------------------------------------------------------- */
+
+bool h5_scale_begin(h5_scale *s, hid_t set, const char *name) {
+  *s = (h5_scale){.set = set};
+  return H5DSset_scale(set, name) >= 0 &&
+         H5Rcreate(&s->reference, set, ".", H5R_OBJECT, H5I_INVALID_HID) >= 0;
 }
 
-bool h5_attach_scale(hid_t set, hid_t scale, unsigned dimension) {
-  return H5DSattach_scale(set, scale, dimension) >= 0;
+static bool write_attribute(hid_t set, const char *name, hid_t type, hsize_t count,
+                            const void *values) {
+  const hid_t space = H5Screate_simple(1, &count, NULL);
+  const hid_t attribute = H5Acreate2(set, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  const bool good = attribute >= 0 && H5Awrite(attribute, type, values) >= 0;
+  if (attribute >= 0) H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+  return good;
 }
+
+bool h5_scale_attach(h5_scale *s, hid_t set, int rank) {
+  hvl_t scales[H5S_MAX_RANK] = {{.len = 1, .p = &s->reference}};
+  if (s->count == s->room) {
+    s->room = 2 * s->room + 64;
+    s->users = must_realloc(s->users, s->room * sizeof *s->users);
+  }
+  h5_scale_user *user = &s->users[s->count++];
+  *user = (h5_scale_user){.dimension = 0};
+  return H5Rcreate(&user->set, set, ".", H5R_OBJECT, H5I_INVALID_HID) >= 0 &&
+         write_attribute(set, "DIMENSION_LIST", H5Tvlen_create(H5T_STD_REF_OBJ), (hsize_t)rank,
+                         scales);
+}
+
+bool h5_scale_end(h5_scale *s) {
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *s->users);
+  H5Tinsert(type, "dataset", HOFFSET(h5_scale_user, set), H5T_STD_REF_OBJ);
+  H5Tinsert(type, "dimension", HOFFSET(h5_scale_user, dimension), H5T_NATIVE_INT);
+  bool good = s->count == 0;
+  if (good)
+    H5Tclose(type);
+  else
+    good = write_attribute(s->set, "REFERENCE_LIST", type, s->count, s->users);
+  free(s->users);
+  return H5Dclose(s->set) >= 0 && good;
+}
+
+/* --- views ------------------------------------------------------------------------------------ */
 
 /* The block goes where the view begins. */
 static bool map_block(hid_t view, const hsize_t *shape, int rank, hid_t set, const h5_block *of,

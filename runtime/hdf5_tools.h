@@ -36,8 +36,24 @@ hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shap
                      const char *unit_text);
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values);
 /* Dimension scales (H5DS): a data set becomes one, which is attached to a dimension of others. */
-bool h5_make_scale(hid_t set, const char *name);
-bool h5_attach_scale(hid_t set, hid_t scale, unsigned dimension);
+typedef struct h5_scale_user {
+  hobj_ref_t set;
+  unsigned dimension;
+} h5_scale_user;
+
+typedef struct h5_scale {
+  hid_t set;
+  hobj_ref_t reference;
+  h5_scale_user *users; /* [count] */
+  size_t count, room;
+} h5_scale;
+
+/* The set is closed by h5_scale_end, which must be called whatever has come out, and writes the
+   list of users: H5DSattach_scale writes it anew each time. */
+bool h5_scale_begin(h5_scale *s, hid_t set, const char *name);
+/* Of the first of `rank` dimensions. */
+bool h5_scale_attach(h5_scale *s, hid_t set, int rank);
+bool h5_scale_end(h5_scale *s);
 
 enum { H5_VIEW_RANK = 3 }; /* at most, of a view and of what it shows */
 typedef struct h5_block {  /* of a data set of the file */

@@ -117,19 +117,20 @@ static bool write_input(hid_t file, const result_header *h) {
 }
 
 /* A data set of times is the scale of the first dimension of what stands beside it. */
-static hid_t write_times(hid_t file, const char *name, const char *long_name, const double *times,
-                         long count) {
+static bool write_times(hid_t file, const char *name, const char *long_name, const double *times,
+                        long count, h5_scale *scale) {
   const hsize_t n[1] = {(hsize_t)count};
-  if (!h5_write_doubles(file, name, times, 1, n, "s")) return -1;
+  if (!h5_write_doubles(file, name, times, 1, n, "s")) return false;
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  if (set < 0 || (h5_attribute_text(set, "long_name", long_name) && h5_make_scale(set, "time")))
-    return set;
+  if (set < 0) return false;
+  if (h5_attribute_text(set, "long_name", long_name) && h5_scale_begin(scale, set, "time"))
+    return true;
   H5Dclose(set);
-  return -1;
+  return false;
 }
 
-static bool describe(hid_t set, hid_t times, const char *long_name) {
-  return h5_attach_scale(set, times, 0) &&
+static bool describe(hid_t set, int rank, h5_scale *times, const char *long_name) {
+  return h5_scale_attach(times, set, rank) &&
          (!long_name || h5_attribute_text(set, "long_name", long_name));
 }
 
@@ -138,25 +139,26 @@ static bool write_verdict(hid_t set, const result_series *s) {
                         (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked)));
 }
 
-static bool write_series(hid_t file, hid_t times, long count, const result_series *s) {
+static bool write_series(hid_t file, h5_scale *times, long count, const result_series *s) {
   char name[512];
   const hsize_t n[1] = {(hsize_t)count};
   snprintf(name, sizeof name, "/history/%s", s->name);
   if (!h5_write_doubles(file, name, s->values, 1, n, s->unit)) return false;
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  const bool good = set >= 0 && describe(set, times, s->long_name) && write_verdict(set, s);
+  const bool good = set >= 0 && describe(set, 1, times, s->long_name) && write_verdict(set, s);
   if (set >= 0) H5Dclose(set);
   return good;
 }
 
 static bool write_history(hid_t file, const result_ending *e) {
   if (!h5_make_group(file, "/history") || !h5_make_group(file, "/history/energy")) return false;
-  const hid_t times =
-      write_times(file, "/history/time", "time of the sample", e->time, e->history_count);
-  bool good = times >= 0;
+  h5_scale times;
+  if (!write_times(file, "/history/time", "time of the sample", e->time, e->history_count, &times))
+    return false;
+  bool good = true;
   for (int k = 0; good && k < e->series_count; k++)
-    good = write_series(file, times, e->history_count, &e->series[k]);
-  return times >= 0 && H5Dclose(times) >= 0 && good;
+    good = write_series(file, &times, e->history_count, &e->series[k]);
+  return h5_scale_end(&times) && good;
 }
 
 /* The data sets of the fields, and the times of the frames, while frames are copied. */
@@ -205,11 +207,15 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
 }
 
 static bool describe_fields(hid_t file, const frame_sets *s) {
-  const hid_t times = write_times(file, "/frames/time", "time of the frame", s->times, s->count);
-  bool good = times >= 0;
-  for (int k = 0; good && k < s->header->field_count; k++)
-    good = describe(s->sets[k], times, s->header->fields[k].long_name);
-  return times >= 0 && H5Dclose(times) >= 0 && good;
+  h5_scale times;
+  if (!write_times(file, "/frames/time", "time of the frame", s->times, s->count, &times))
+    return false;
+  bool good = true;
+  for (int k = 0; good && k < s->header->field_count; k++) {
+    const result_field *f = &s->header->fields[k];
+    good = describe(s->sets[k], f->interaction ? 2 : 3, &times, f->long_name);
+  }
+  return h5_scale_end(&times) && good;
 }
 
 /* A damaged frame leaves a sentence in `error`, a full disk none. */

@@ -263,7 +263,8 @@ static bool is_table(const text_table *t, const char *row, span where, diagnosti
   for (const char *p = row, *end = row ? line_end(row) : NULL; p;)
     if (as_number(read_field(t, p, end, &p), &value)) return true;
   diag_report(d, DIAG_FILE, where, "`%s` is not a table", t->path);
-  diag_hint(d, "its first line names the columns, e.g. time [ms], F [kN]; those below hold numbers");
+  diag_hint(d,
+            "its first line names the columns, e.g. time [ms], F [kN]; those below hold numbers");
   return false;
 }
 
