@@ -29,7 +29,7 @@ take_copy() {
 configure() {
   local launcher=()
   command -v ccache >/dev/null && launcher=(-DCMAKE_C_COMPILER_LAUNCHER=ccache)
-  cmake -S "$copy" -B "$build" -G Ninja -DPERILAT_TEST_TIMEOUT=180 "${launcher[@]}" >"$log" 2>&1
+  cmake -S "$copy" -B "$build" -G Ninja "${launcher[@]}" >"$log" 2>&1
 }
 
 make_targets() { cmake --build "$build" -j "$jobs" --target "$@" >"$log" 2>&1; }
@@ -63,7 +63,7 @@ killer_of() {
   echo "$killer"
 }
 
-turn() { patch -s -p1 -d "$copy" "$@" <"$here/$name.patch" >"$log" 2>&1; }
+turn() { patch -s -f -F0 -p1 -d "$copy" "$@" <"$here/$name.patch" >"$log" 2>&1; }
 
 named_only=false
 if [ "${1:-}" = --named ]; then

@@ -223,6 +223,28 @@ static void a_moment_counts_over_a_spacing(void **state) {
   assert_true(fabs(unbalance - 1 / sqrt(5)) < 1e-9);
 }
 
+/* No particle is free, and nothing unbalanced: an increment lasts until its loads have come all the same. */
+static void loads_come_in_full(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &elastic_bar,
+             "&simulation end_time = 1 /\n"
+             "&relaxation increments = 4 tolerance = 1e-3 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+             "&material lattice = 'c' model = 'm' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.3, 0.1 /\n"
+             "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
+             "&support region = 'all' fix = 'y' /\n"
+             "&drive region = 'all' component = 'x' displacement = 4e-6 /\n"
+             "&monitor name = 'u' kind = 'displacement' region = 'all' component = 'x' /\n");
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *u = series(&r, "u");
+  for (int k = 0; k < 5; k++)
+    assert_true(fabs(u[k] - 1e-6 * k) < 1e-15);
+  small_close(&r);
+}
+
 /* --- damage ----------------------------------------------------------------------------------- */
 
 /* A plate that breaks at the notch: the force rises, falls, and little moves while it does. */
@@ -322,6 +344,7 @@ int main(void) {
       cmocka_unit_test(forces_and_gravity_grow_together),
       cmocka_unit_test(weight_is_a_load),
       cmocka_unit_test(a_moment_counts_over_a_spacing),
+      cmocka_unit_test(loads_come_in_full),
       cmocka_unit_test(a_plate_breaks_at_rest),
       cmocka_unit_test(impatience_is_counted),
       cmocka_unit_test(threads_and_resuming_change_no_bit),

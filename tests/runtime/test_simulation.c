@@ -197,6 +197,48 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   small_close(&r);
 }
 
+/* What turns a free body: its angular momentum is moment times time, here from half a step before the start on. */
+static void each_end_moment_comes_in_its_own_time(void **state) {
+  (void)state;
+  enum { TURNS = 200 };
+  small_run r;
+  must_open(&r, &elastic_bar,
+            "&simulation end_time = 1e-3 /\n"
+            "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+            "&material lattice = 'c' model = 'm' /\n"
+            "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.06 /\n"
+            "&region name = 'start' shape = 'rectangle' corner = -1, -1 size = 1.006, 2 /\n"
+            "&region name = 'end' shape = 'rectangle' corner = 0.094, -1 size = 1, 2 /\n"
+            "&end_moment region = 'start' moment = 70 start = 1 /\n"
+            "&end_moment region = 'end' moment = 0.05 /\n&output frames = 0 /\n");
+  simulation_advance(r.simulation, TURNS, NULL);
+  const sweep *w = simulation_state(r.simulation);
+  double momentum = 0;
+  for (long p = 0; p < w->lattice->particle_count; p++) {
+    const long q = w->lattice->particle_site[p];
+    momentum +=
+        w->mass[0] * (w->lattice->x[q] * w->velocity[1][q] - w->lattice->y[q] * w->velocity[0][q]);
+  }
+  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->time_step) - 1) < 1e-6);
+  small_close(&r);
+}
+
+/* Bonds of the particles within so many spacings: the first and the second of a row. */
+static void protection_reaches_over_spacings(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-4 /\n" CHAIN "&material lattice = 'c' model = 'm' /\n" POINT(
+               "left", "0", "0") "&protect region = 'left' radius = 1.01 /\n&output frames = 0 /\n",
+           5 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  const rows *w = simulation_rows(r.simulation, 0);
+  for (long p = 0; p < 5; p++)
+    assert_int_equal(w->held_bonds[w->particle_site[p]] != 0, p < 2);
+  small_close(&r);
+}
+
 /* --- loads in time ---------------------------------------------------------------------------- */
 
 static void a_drive_is_followed_exactly_from_its_start(void **state) {
@@ -522,6 +564,8 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   double when;
   assert_true(fabs(simulation_monitor_peak(r.simulation, small_series(&r, "zeroed"), &when) +
                    3e-5) < 1e-16);
+  assert_true(simulation_monitor_peak(r.simulation, small_series(&r, "speed"), &when) == 2);
+  assert_true(when == 0); /* the first of equal values */
   small_close(&r);
 }
 
@@ -588,6 +632,24 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
   assert_int_equal(frames, 2);                     /* at steps 0 and 25 */
   assert_true(simulation_frame_due(r.simulation)); /* the last state */
   simulation_frame_taken(r.simulation);
+  assert_false(simulation_frame_due(r.simulation));
+  small_close(&r);
+}
+
+/* Seven frames of a hundred steps, each at the step nearest to its time. */
+static void frames_are_taken_at_the_nearest_step(void **state) {
+  (void)state;
+  static const long expected[] = {0, 14, 29, 43, 57, 71, 86, 100};
+  char text[1024];
+  snprintf(text, sizeof text, COASTING "&output frames = 7 energy = .false. /\n", 1.0 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  for (int k = 0; k < 8; k++) {
+    assert_true(simulation_frame_due(r.simulation));
+    assert_int_equal(simulation_step_done(r.simulation), expected[k]);
+    simulation_frame_taken(r.simulation);
+    simulation_advance(r.simulation, 1000, NULL);
+  }
   assert_false(simulation_frame_due(r.simulation));
   small_close(&r);
 }
@@ -909,6 +971,8 @@ int main(void) {
       cmocka_unit_test(a_drive_is_followed_exactly_from_its_start),
       cmocka_unit_test(reactions_balance_the_momentum),
       cmocka_unit_test(loads_keep_their_bits_on_many_threads),
+      cmocka_unit_test(each_end_moment_comes_in_its_own_time),
+      cmocka_unit_test(protection_reaches_over_spacings),
       cmocka_unit_test(each_of_many_drives_goes_its_own_way),
       cmocka_unit_test(each_of_many_forces_is_its_own),
       cmocka_unit_test(a_force_on_a_held_particle_is_its_reaction),
@@ -918,6 +982,7 @@ int main(void) {
       cmocka_unit_test(means_zeros_and_scales_are_as_defined),
       cmocka_unit_test(the_reaction_between_two_regions_is_the_mean_of_both_ends),
       cmocka_unit_test(a_stop_ends_the_run_at_its_sample),
+      cmocka_unit_test(frames_are_taken_at_the_nearest_step),
       cmocka_unit_test(a_stop_waits_for_its_time),
       cmocka_unit_test(times_between_steps_are_rounded_to_the_nearest),
       cmocka_unit_test(an_interrupt_ends_an_advance_at_a_step),
