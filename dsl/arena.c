@@ -29,8 +29,13 @@ struct arena {
   chunk *first;
 };
 
+enum { UNKNOWN = 0 };
+
 static void end_without_memory(size_t size) {
-  fprintf(stderr, "perilat: out of memory (%zu bytes asked for)\n", size);
+  if (size == UNKNOWN)
+    fputs("perilat: out of memory\n", stderr);
+  else
+    fprintf(stderr, "perilat: out of memory (%zu bytes asked for)\n", size);
   exit(2);
 }
 
@@ -42,7 +47,7 @@ void *must_alloc(size_t size) {
 
 void *must_calloc(size_t count, size_t size) {
   void *memory = calloc(count ? count : 1, size ? size : 1);
-  if (!memory) end_without_memory(count * size);
+  if (!memory) end_without_memory(size && count > SIZE_MAX / size ? UNKNOWN : count * size);
   return memory;
 }
 
@@ -50,6 +55,27 @@ void *must_realloc(void *old, size_t size) {
   void *memory = realloc(old, size ? size : 1);
   if (!memory) end_without_memory(size);
   return memory;
+}
+
+char *must_copy(const char *text) {
+  return strcpy(must_alloc(strlen(text) + 1), text);
+}
+
+void *must_align(size_t alignment, size_t size) {
+  const size_t rounded = (size + alignment - 1) / alignment * alignment;
+  void *memory = rounded < size ? NULL : aligned_alloc(alignment, rounded ? rounded : alignment);
+  if (!memory) end_without_memory(size);
+  return memory;
+}
+
+FILE *must_open_text(char **text, size_t *length) {
+  FILE *out = open_memstream(text, length);
+  if (!out) end_without_memory(UNKNOWN);
+  return out;
+}
+
+void must_close_text(FILE *out) {
+  if (fclose(out) != 0) end_without_memory(UNKNOWN);
 }
 
 static void add_chunk(arena *a, size_t size) {
@@ -75,7 +101,7 @@ void arena_free(arena *a) {
 }
 
 void *arena_alloc(arena *a, size_t size) {
-  if (size > SIZE_MAX / 2) end_without_memory(size);
+  if (size > SIZE_MAX / 2) end_without_memory(UNKNOWN);
   size_t rounded = (size + ALIGNMENT - 1) / ALIGNMENT * ALIGNMENT + GAP;
   if (!a->first || a->first->size - a->first->used < rounded)
     add_chunk(a, rounded > CHUNK_SIZE ? rounded : CHUNK_SIZE);
@@ -83,6 +109,13 @@ void *arena_alloc(arena *a, size_t size) {
   ASAN_UNPOISON_MEMORY_REGION(memory, size);
   a->first->used += rounded;
   return memory;
+}
+
+void *arena_room(arena *a, const void *items, int count, size_t size) {
+  if (count & (count - 1)) return (void *)(uintptr_t)items;
+  void *larger = arena_alloc(a, (count ? 2 * (size_t)count : 1) * size);
+  if (count) memcpy(larger, items, (size_t)count * size);
+  return larger;
 }
 
 char *arena_text(arena *a, const char *text, size_t length) {

@@ -2,7 +2,10 @@
 #ifndef PERILAT_DSL_BUILTINS_H
 #define PERILAT_DSL_BUILTINS_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/tree.h"
+
+C_LINKAGE_BEGIN
 
 /* Which kinds of law may read a quantity. */
 enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 };
@@ -80,7 +83,7 @@ typedef enum builtin_function {
 
 typedef struct builtin_quantity_info {
   const char *name, *unit, *meaning;
-  shape shape;
+  enum shape shape;
   placement place;
   int kinds;
 } builtin_quantity_info;
@@ -96,5 +99,7 @@ extern const builtin_function_info builtin_functions[FUNCTION_COUNT];
 /* Index of the quantity or function called `name`, or -1. */
 int builtin_quantity_find(const char *name);
 int builtin_function_find(const char *name);
+
+C_LINKAGE_END
 
 #endif

@@ -6,9 +6,10 @@
 #include <strings.h>
 
 #include "dsl/arena.h"
+#include "dsl/quote.h"
+#include "dsl/terminal.h"
 
-/* Longer source lines are cut to this many characters around the caret. */
-enum { LINE_WIDTH = 160, LEFT_OF_CARET = 60, NAME_LENGTH = 64 };
+enum { NAME_LENGTH = 64 };
 
 /* Nobody reads more than this at once. */
 enum { MOST_PRINTED = 100 };
@@ -58,7 +59,8 @@ void diag_report(diagnostics *d, diag_code code, span where, const char *format,
   va_start(values, format);
   char *message = format_text(format, values);
   va_end(values);
-  d->items = must_realloc(d->items, ((size_t)d->count + 1) * sizeof(diagnostic));
+  if ((d->count & (d->count - 1)) == 0) /* room is the power of two at or above the count */
+    d->items = must_realloc(d->items, (d->count ? 2 * (size_t)d->count : 1) * sizeof(diagnostic));
   d->items[d->count++] = (diagnostic){.code = code, .where = where, .message = message};
   if (diag_severity(code) == SEVERITY_ERROR) d->errors++;
 }
@@ -137,67 +139,40 @@ const char *nearest_name(const char *name, const char *const *candidates, int co
 
 /* --- printing --------------------------------------------------------------------------------- */
 
-static bool continues(char byte) {
-  return ((unsigned char)byte & 0xC0) == 0x80;
-}
+static bool mentioned[DIAG_COUNT]; /* codes that have been printed */
 
 static bool located(const diagnostics *d, span where) {
   return d->sources && where.file < d->sources->count;
 }
 
-/* The line's bytes from `from` to `to`; what a terminal could take for a command becomes a blank.
- */
-static void print_bytes(FILE *out, const char *text, size_t from, size_t to) {
-  for (size_t i = from; i < to; i++) {
-    unsigned char byte = (unsigned char)text[i];
-    fputc(byte == '\t' ? '\t' : byte < 32 || byte == 127 ? ' ' : byte, out);
-  }
+static void print_painted(FILE *out, terminal_paint paint, const char *text) {
+  terminal_paint_with(out, paint);
+  fputs(text, out);
+  terminal_paint_with(out, PAINT_PLAIN);
 }
 
-/* One source line with the part of `where` that lies on it underlined. */
-static void print_line(const diagnostics *d, span where, FILE *out) {
-  size_t length;
-  const char *line = source_line(d->sources, where.file, where.begin, &length);
-  size_t line_begin = (size_t)(line - d->sources->items[where.file].text);
-  size_t begin = where.begin - line_begin < length ? where.begin - line_begin : length;
-  size_t end = where.end > line_begin + length ? length : where.end - line_begin;
-  if (where.end <= where.begin) end = begin;
-
-  size_t from = 0, to = length;
-  if (length > LINE_WIDTH) {
-    from = begin > LEFT_OF_CARET ? begin - LEFT_OF_CARET : 0;
-    to = from + LINE_WIDTH < length ? from + LINE_WIDTH : length;
-    while (from > 0 && continues(line[from]))
-      from--;
-    while (to < length && continues(line[to]))
-      to++;
-  }
-  if (end > to) end = to;
-
-  int number = source_place(d->sources, where.file, where.begin).line;
-  int digits = fprintf(out, "  %d", number);
-  fprintf(out, " | %s", from > 0 ? "..." : "");
-  print_bytes(out, line, from, to);
-  fprintf(out, "%s\n%*s | %s", to < length ? "..." : "", digits, "", from > 0 ? "   " : "");
-  for (size_t i = from; i < begin; i++)
-    if (!continues(line[i])) fputc(line[i] == '\t' ? '\t' : ' ', out);
-  fputc('^', out);
-  for (size_t i = begin + 1; i < end; i++)
-    if (!continues(line[i])) fputc('~', out);
-  fputc('\n', out);
+static void print_place(const diagnostics *d, span where, FILE *out) {
+  const place at = source_place(d->sources, where.file, where.begin);
+  terminal_paint_with(out, PAINT_PLACE);
+  fprintf(out, "%s:%d:%d: ", d->sources->items[where.file].name, at.line, at.column);
+  terminal_paint_with(out, PAINT_PLAIN);
 }
 
-static void print_one(const diagnostics *d, span where, const char *kind, const char *message,
+static const struct {
+  const char *word;
+  terminal_paint paint;
+} kinds[] = {{"error", PAINT_ERROR}, {"warning", PAINT_WARNING}, {"note", PAINT_NOTE}};
+enum { NOTE = SEVERITY_WARNING + 1 };
+
+static void print_one(const diagnostics *d, span where, int kind, const char *message,
                       const char *name, FILE *out) {
-  bool here = located(d, where);
-  if (here) {
-    place at = source_place(d->sources, where.file, where.begin);
-    fprintf(out, "%s:%d:%d: ", d->sources->items[where.file].name, at.line, at.column);
-  }
-  fprintf(out, "%s: %s", kind, message);
+  const bool here = located(d, where);
+  if (here) print_place(d, where, out);
+  print_painted(out, kinds[kind].paint, kinds[kind].word);
+  fprintf(out, ": %s", message);
   if (name) fprintf(out, " [%s]", name);
   fputc('\n', out);
-  if (here) print_line(d, where, out);
+  if (here) quote_line(d->sources, where, out);
 }
 
 static int by_place(const void *a, const void *b) {
@@ -219,11 +194,25 @@ void diag_print(const diagnostics *d, FILE *out) {
   const diagnostic **order = diag_sorted(d);
   for (int i = 0; i < d->count && i < MOST_PRINTED; i++) {
     const diagnostic *one = order[i];
-    bool error = diag_severity(one->code) == SEVERITY_ERROR;
-    print_one(d, one->where, error ? "error" : "warning", one->message, diag_name(one->code), out);
-    if (one->hint) fprintf(out, "  hint: %s\n", one->hint);
-    if (one->note) print_one(d, one->note_where, "note", one->note, NULL, out);
+    mentioned[one->code] = true;
+    print_one(d, one->where, (int)diag_severity(one->code), one->message, diag_name(one->code),
+              out);
+    if (one->hint) {
+      print_painted(out, PAINT_NOTE, "  hint");
+      fprintf(out, ": %s\n", one->hint);
+    }
+    if (one->note) print_one(d, one->note_where, NOTE, one->note, NULL, out);
   }
   if (d->count > MOST_PRINTED) fprintf(out, "and %d more like these\n", d->count - MOST_PRINTED);
   free(order);
+}
+
+void diag_print_topics(FILE *out) {
+  int count = 0;
+  for (int k = 0; k < DIAG_COUNT; k++) {
+    if (!mentioned[k]) continue;
+    fprintf(out, "%s %s", count++ ? "" : "`perilat help", diag_name((diag_code)k));
+    mentioned[k] = false;
+  }
+  if (count) fprintf(out, "` says more about %s\n", count > 1 ? "these messages" : "this message");
 }

@@ -6,7 +6,10 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
 #include "dsl/source.h"
+
+C_LINKAGE_BEGIN
 
 typedef enum diag_code {
 #define X(code, name, severity) DIAG_##code,
@@ -54,11 +57,16 @@ severity diag_severity(diag_code code);
          |       ^~~~~
        hint: did you mean `alpha2`?                                       */
 void diag_print(const diagnostics *d, FILE *out);
+/* The command that explains the codes printed since the last call, on one line; nothing where there
+ * were none. */
+void diag_print_topics(FILE *out);
 
 /* Pointers to all of them in the order of their places, as printed; to be freed. */
 const diagnostic **diag_sorted(const diagnostics *d);
 
 /* Candidate nearest to `name` (edit distance, case-insensitive first), or NULL. */
 const char *nearest_name(const char *name, const char *const *candidates, int count);
+
+C_LINKAGE_END
 
 #endif

@@ -2,26 +2,10 @@
 
 #include <stdlib.h>
 
-void diag_json_begin(diag_json *j, const char *checked, const char *version) {
-  *j = (diag_json){.text = NULL};
-  FILE *memory = open_memstream(&j->text, &j->length);
-  if (!memory) abort();
-  json *w = &j->writer;
-  json_begin(w, memory);
-  json_object(w);
-  json_key(w, "schema");
-  json_integer(w, DIAG_JSON_SCHEMA);
-  json_key(w, "perilat");
-  json_text(w, version);
-  json_key(w, "checked");
-  json_text(w, checked);
-  json_key(w, "diagnostics");
-  json_array(w);
-}
-
-static void put_integer(json *w, const char *key, long value) {
-  json_key(w, key);
-  json_integer(w, value);
+void diag_json_begin(diag_json *j, json *document, const char *checked) {
+  *j = (diag_json){.document = document};
+  json_put_text(document, "checked", checked);
+  json_put_array(document, "diagnostics");
 }
 
 static void put_where(json *w, const source_set *sources, span where) {
@@ -34,14 +18,13 @@ static void put_where(json *w, const source_set *sources, span where) {
   place first = source_place(sources, where.file, where.begin);
   place last = source_place(sources, where.file, end);
   json_object(w);
-  json_key(w, "file");
-  json_text(w, sources->items[where.file].name);
-  put_integer(w, "line", first.line);
-  put_integer(w, "column", first.column);
-  put_integer(w, "end_line", last.line);
-  put_integer(w, "end_column", last.column);
-  put_integer(w, "begin", (long)where.begin);
-  put_integer(w, "end", (long)end);
+  json_put_text(w, "file", sources->items[where.file].name);
+  json_put_integer(w, "line", first.line);
+  json_put_integer(w, "column", first.column);
+  json_put_integer(w, "end_line", last.line);
+  json_put_integer(w, "end_column", last.column);
+  json_put_integer(w, "begin", (long)where.begin);
+  json_put_integer(w, "end", (long)end);
   json_object_end(w);
 }
 
@@ -52,46 +35,34 @@ static void put_note(json *w, const diagnostics *d, const diagnostic *one) {
     return;
   }
   json_object(w);
-  json_key(w, "message");
-  json_text(w, one->note);
+  json_put_text(w, "message", one->note);
   put_where(w, d->sources, one->note_where);
   json_object_end(w);
 }
 
 void diag_json_add(diag_json *j, const diagnostics *d) {
-  json *w = &j->writer;
+  json *w = j->document;
   const diagnostic **sorted = diag_sorted(d);
   for (int i = 0; i < d->count; i++) {
     const diagnostic *one = sorted[i];
     bool error = diag_severity(one->code) == SEVERITY_ERROR;
     *(error ? &j->errors : &j->warnings) += 1;
     json_object(w);
-    json_key(w, "code");
-    json_text(w, diag_name(one->code));
-    json_key(w, "severity");
-    json_text(w, error ? "error" : "warning");
-    json_key(w, "message");
-    json_text(w, one->message);
+    json_put_text(w, "code", diag_name(one->code));
+    json_put_text(w, "severity", error ? "error" : "warning");
+    json_put_text(w, "message", one->message);
     put_where(w, d->sources, one->where);
-    json_key(w, "hint");
-    json_text(w, one->hint);
+    json_put_text(w, "hint", one->hint);
     put_note(w, d, one);
     json_object_end(w);
   }
   free(sorted);
 }
 
-void diag_json_end(diag_json *j, bool accepted, FILE *out) {
-  json *w = &j->writer;
+void diag_json_end(diag_json *j, bool accepted) {
+  json *w = j->document;
   json_array_end(w);
-  put_integer(w, "errors", j->errors);
-  put_integer(w, "warnings", j->warnings);
-  json_key(w, "accepted");
-  json_bool(w, accepted);
-  json_object_end(w);
-  json_end(w);
-  fclose(w->out);
-  fwrite(j->text, 1, j->length, out);
-  free(j->text);
-  *j = (diag_json){.text = NULL};
+  json_put_integer(w, "errors", j->errors);
+  json_put_integer(w, "warnings", j->warnings);
+  json_put_bool(w, "accepted", accepted);
 }

@@ -3,8 +3,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/characters.h"
 #include "dsl/explain_math.h"
-#include "dsl/json.h"
 #include "dsl/resolve.h"
 
 typedef struct page {

@@ -5,7 +5,10 @@
 
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
 #include "dsl/law.h"
+
+C_LINKAGE_BEGIN
 
 typedef enum explain_form {
   EXPLAIN_MARKDOWN, /* formulas in $...$ and $$...$$, as GitHub, GitLab and pandoc read them */
@@ -15,5 +18,7 @@ typedef enum explain_form {
 /* `choices` are those that `l` was checked with: cases on these options show the branch chosen alone; on other options all. */
 void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,
                  FILE *out);
+
+C_LINKAGE_END
 
 #endif

@@ -79,8 +79,7 @@ static bool is_plain(const char *name) {
 static char *plain_letters(const char *name) {
   char *text = NULL;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
-  if (!out) abort();
+  FILE *out = must_open_text(&text, &length);
   if (is_plain(name)) {
     put_letters(name, out);
   } else {
@@ -89,7 +88,7 @@ static char *plain_letters(const char *name) {
       fprintf(out, *name == '_' ? "\\_" : "%c", *name);
     fputc('}', out);
   }
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 

@@ -518,8 +518,7 @@ static void write_code(const layout *f, const line *l, FILE *out) {
 static char *write_layout(const layout *f) {
   char *text = NULL;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
-  if (!out) abort();
+  FILE *out = must_open_text(&text, &length);
   for (int k = 0; k < f->line_count; k++) {
     const line *l = &f->lines[k];
     if (l->kind == LINE_CODE) write_code(f, l, out);
@@ -527,7 +526,7 @@ static char *write_layout(const layout *f) {
     fwrite(f->text + l->comment, 1, l->comment_end - l->comment, out);
     fputc('\n', out);
   }
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 
@@ -537,16 +536,16 @@ static char *write_layout(const layout *f) {
 static char *read_nothing(void *context, const char *name, const char *from, char **found) {
   (void)context;
   (void)from;
-  *found = strdup(name);
-  return strdup("");
+  *found = must_copy(name);
+  return must_copy("");
 }
 
 /* A text to be included, read as the only one that a bare model includes. */
 static char *read_that(void *context, const char *name, const char *from, char **found) {
   const source *that = context;
   if (strcmp(name, "\x01") != 0) return read_nothing(NULL, name, from, found);
-  *found = strdup(that->name);
-  return strdup(that->text);
+  *found = must_copy(that->name);
+  return must_copy(that->text);
 }
 
 static tree *parse_text(arena *memory, source_set *sources, int file, bool is_model,
@@ -575,10 +574,9 @@ static bool holds_model_line(const source *s) {
 static char *dumped(const tree *t) {
   char *text = NULL;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
-  if (!out) abort();
+  FILE *out = must_open_text(&text, &length);
   tree_dump(t, out);
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 

@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/characters.h"
+
 void json_begin(json *j, FILE *out) {
   *j = (json){.out = out};
 }
@@ -58,41 +60,6 @@ void json_array_end(json *j) {
 }
 
 /* --- texts ------------------------------------------------------------------------------------ */
-
-static bool continues(char byte) {
-  return ((unsigned char)byte & 0xC0) == 0x80;
-}
-
-/* Neither overlong forms nor surrogates nor anything beyond U+10FFFF (Unicode 15, table 3-7). */
-static bool second_byte_allowed(unsigned char first, unsigned char second) {
-  switch (first) {
-  case 0xE0:
-    return second >= 0xA0;
-  case 0xED:
-    return second <= 0x9F;
-  case 0xF0:
-    return second >= 0x90;
-  case 0xF4:
-    return second <= 0x8F;
-  default:
-    return true;
-  }
-}
-
-size_t utf8_length(const char *text, size_t available) {
-  if (available == 0) return 0;
-  unsigned char first = (unsigned char)text[0];
-  size_t length = first < 0x80                     ? 1
-                  : first >= 0xC2 && first <= 0xDF ? 2
-                  : first >= 0xE0 && first <= 0xEF ? 3
-                  : first >= 0xF0 && first <= 0xF4 ? 4
-                                                   : 0;
-  if (length > available) return 0;
-  for (size_t i = 1; i < length; i++)
-    if (!continues(text[i])) return 0;
-  if (length > 1 && !second_byte_allowed(first, (unsigned char)text[1])) return 0;
-  return length;
-}
 
 static void put_ascii(json *j, unsigned char byte) {
   static const char named[] = "\"\"\\\\\nn\tt\rr\bb\ff";
@@ -172,4 +139,43 @@ void json_bool(json *j, bool value) {
 void json_null(json *j) {
   before_value(j);
   fputs("null", j->out);
+}
+
+/* --- keys and documents ----------------------------------------------------------------------- */
+
+void json_put_text(json *j, const char *name, const char *text) {
+  json_key(j, name);
+  json_text(j, text);
+}
+void json_put_number(json *j, const char *name, double number) {
+  json_key(j, name);
+  json_number(j, number);
+}
+void json_put_integer(json *j, const char *name, long number) {
+  json_key(j, name);
+  json_integer(j, number);
+}
+void json_put_bool(json *j, const char *name, bool value) {
+  json_key(j, name);
+  json_bool(j, value);
+}
+void json_put_object(json *j, const char *name) {
+  json_key(j, name);
+  json_object(j);
+}
+void json_put_array(json *j, const char *name) {
+  json_key(j, name);
+  json_array(j);
+}
+
+void json_document(json *j, FILE *out, const char *version) {
+  json_begin(j, out);
+  json_object(j);
+  json_put_integer(j, "schema", JSON_SCHEMA);
+  json_put_text(j, "perilat", version);
+}
+
+void json_document_end(json *j) {
+  json_object_end(j);
+  json_end(j);
 }

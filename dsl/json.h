@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 enum { JSON_DEEPEST = 16 };
 
 typedef struct json {
@@ -36,7 +40,20 @@ void json_integer(json *j, long number);
 void json_bool(json *j, bool value);
 void json_null(json *j);
 
-/* Length of the UTF-8 character at `text` (1 to 4), or 0 when the bytes there are none. */
-size_t utf8_length(const char *text, size_t available);
+/* Key and value at once. */
+void json_put_text(json *j, const char *name, const char *text);
+void json_put_number(json *j, const char *name, double number);
+void json_put_integer(json *j, const char *name, long number);
+void json_put_bool(json *j, const char *name, bool value);
+void json_put_object(json *j, const char *name);
+void json_put_array(json *j, const char *name);
+
+/* What perilat writes for other programs: one object, which says first what form it has and who
+   wrote it. The schema is raised when a key changes its meaning or goes. */
+enum { JSON_SCHEMA = 1 };
+void json_document(json *j, FILE *out, const char *version);
+void json_document_end(json *j);
+
+C_LINKAGE_END
 
 #endif

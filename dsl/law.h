@@ -4,8 +4,11 @@
 #define PERILAT_DSL_LAW_H
 
 #include "dsl/builtins.h"
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/tree.h"
+
+C_LINKAGE_BEGIN
 
 typedef enum symbol_kind {
   SYMBOL_QUANTITY, /* built in: stretch, s, ... */
@@ -31,7 +34,7 @@ typedef struct symbol {
       *rule; /* statement that gives its value in each step; NULL for built-ins, parameters */
   int index; /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
   dimension dim;
-  shape shape;
+  enum shape shape;
   placement place;
   const char *doc;       /* description or NULL */
   double initial;        /* PARAMETER: default, STATE: initial value; SI */
@@ -65,11 +68,12 @@ typedef struct law_choice {
 typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
 
 typedef struct law {
-  tree *tree;
-  law_setting setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  struct tree *tree;
+  law_setting
+      setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
   int neighbours; /* of a full family, where they are known; else 0 */
-  arena *memory; /* not owned */
+  arena *memory;  /* not owned */
   const source_set *sources;
   symbol_list parameters;
   symbol_list fields; /* states and damages, in the order declared */
@@ -100,7 +104,16 @@ double law_constant_value(const expr *e, const double *parameters);
 /* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
    what the bounds are, e.g. "(20, inf)". */
 bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
+/* The bounds as numbers, SI: lower and upper, infinite where there is none, NAN where one depends on a value that is NAN;
+   and whether the bound itself is left out. */
+typedef struct law_limits {
+  double lower, upper;
+  bool lower_open, upper_open;
+} law_limits;
+law_limits law_parameter_limits(const law *l, int p, const double *values);
 /* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
 void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
+
+C_LINKAGE_END
 
 #endif

@@ -303,6 +303,14 @@ void check_bounds(checker *ck) {
   }
 }
 
+law_limits law_parameter_limits(const law *l, int p, const double *values) {
+  const bounds *in = &l->parameters.items[p]->declared->in;
+  law_limits limits = {.lower_open = in->lower_open || !in->lower,
+                       .upper_open = in->upper_open || !in->upper};
+  limits_of(in, values, &limits.lower, &limits.upper);
+  return limits;
+}
+
 void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size) {
   const bounds *in = &l->parameters.items[p]->declared->in;
   double lower, upper;

@@ -245,6 +245,10 @@ static void read_included(parsing *p, const stmt *s) {
   char *content = p->options->read_include(p->options->context, s->text, p->chain.name, &found);
   if (!content) {
     diag_report(p->messages, DIAG_INCLUDE, s->text_where, "`%s` cannot be read", s->text);
+  } else if (!parse_begins_include(content)) {
+    diag_report(p->messages, DIAG_INCLUDE, s->text_where, "`%s` holds no functions and constants",
+                s->text);
+    diag_hint(p->messages, "the first word of such a text is `function`, `constant` or `include`");
   } else {
     const char *name = found ? found : s->text;
     name = arena_text(p->memory, name, strlen(name));
@@ -305,6 +309,34 @@ static tree *parse_checked(arena *a, source_set *sources, int file, const parse_
   free(p);
   free(included);
   return result;
+}
+
+/* Length of the word that stands first behind comments; *begin is where it begins. */
+static size_t first_word(const char *text, const char **begin) {
+  static const char blanks[] = " \t\r\f\v\n";
+  if (strncmp(text, "\xEF\xBB\xBF", 3) == 0) text += 3;
+  for (text += strspn(text, blanks); *text == '!'; text += strspn(text, blanks))
+    text += strcspn(text, "\n");
+  *begin = text;
+  return strcspn(text, " \t\r\f\v\n!");
+}
+
+static bool begins_with_word(const char *text, const char *const *any, size_t count) {
+  const char *begin;
+  const size_t length = first_word(text, &begin);
+  for (size_t k = 0; k < count; k++)
+    if (strlen(any[k]) == length && memcmp(begin, any[k], length) == 0) return true;
+  return false;
+}
+
+bool parse_begins_law(const char *text) {
+  static const char *const first[] = {"model"};
+  return begins_with_word(text, first, 1);
+}
+
+bool parse_begins_include(const char *text) {
+  static const char *const first[] = {"", "function", "constant", "include", "model"};
+  return begins_with_word(text, first, sizeof first / sizeof *first);
 }
 
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,

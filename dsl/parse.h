@@ -2,8 +2,11 @@
 #ifndef PERILAT_DSL_PARSE_H
 #define PERILAT_DSL_PARSE_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/tree.h"
+
+C_LINKAGE_BEGIN
 
 /* Answers `include "name"`: returns the text (malloc'ed, NUL-terminated) and its name for messages in
    *found (malloc'ed), or NULL when there is no such file. `from` is the including source's name. */
@@ -20,5 +23,12 @@ typedef struct parse_options {
    a text that is included twice brings them once. */
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
+
+/* What a text is, by its first word behind comments: what a person has not named himself is not
+   quoted unless it is a law, or a text that laws include. */
+bool parse_begins_law(const char *text);
+bool parse_begins_include(const char *text); /* or holds no word at all */
+
+C_LINKAGE_END
 
 #endif

@@ -6,6 +6,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct span {
   uint32_t begin; /* first byte */
   uint32_t end;   /* one past the last byte */
@@ -16,6 +20,9 @@ typedef struct source {
   char *name; /* as the user wrote it: a path or "<text>" */
   char *text; /* NUL-terminated copy */
   size_t length;
+  uint32_t *lines;      /* [line_count] where they begin */
+  uint32_t *characters; /* before every 1024th byte */
+  int line_count;
 } source;
 
 typedef struct source_set {
@@ -33,9 +40,12 @@ int source_add(source_set *set, const char *name, const char *text, size_t lengt
 void source_clear(source_set *set);
 
 place source_place(const source_set *set, int file, uint32_t offset);
+int source_line_number(const source_set *set, int file, uint32_t offset); /* from 1 */
 /* Start of the line that holds `offset`, and its length without the line end. */
 const char *source_line(const source_set *set, int file, uint32_t offset, size_t *length);
 /* Smallest span that covers both (they must be of one file; otherwise the first is returned). */
 span span_join(span a, span b);
+
+C_LINKAGE_END
 
 #endif

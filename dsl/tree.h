@@ -7,8 +7,11 @@
 #include <stdio.h>
 
 #include "dsl/arena.h"
+#include "dsl/c_linkage.h"
 #include "dsl/source.h"
 #include "dsl/units.h"
+
+C_LINKAGE_BEGIN
 
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
@@ -92,7 +95,7 @@ struct expr {
   int builtin;            /* CALL: enum builtin_function of builtins.h, or -1 */
   bool reads_old;         /* NAME of a state or damage: value of the last step */
   dimension dim;
-  shape shape;
+  enum shape shape;
   placement place;
 };
 
@@ -164,5 +167,7 @@ const char *placement_name(placement p);
 void tree_dump(const tree *t, FILE *out);
 /* Prints an expression as source text with the fewest parentheses. */
 void expr_print(const expr *e, FILE *out);
+
+C_LINKAGE_END
 
 #endif

@@ -6,6 +6,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 /* Exponents of m, kg, s, K are kept in twelfths so that square and cube roots are exact. */
 typedef struct dimension {
   short twelfths[4]; /* length, mass, time, temperature */
@@ -38,5 +42,7 @@ void dim_unit(dimension d, char *text, size_t size);
 
 /* All unit symbols, for suggestions. */
 const char *const *unit_symbols(int *count);
+
+C_LINKAGE_END
 
 #endif

@@ -8,8 +8,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "dsl/hash.h"
 #include "dsl/powers.h"
 
 #define LONGEST_NAME 60 /* characters kept of a model's name */
@@ -93,32 +91,13 @@ static bool is_taken(const char *name) {
   return false;
 }
 
-static size_t find_slot(char **slots, size_t capacity, const char *name) {
-  size_t k = (size_t)hash_more(HASH_START, name, strlen(name)) & (capacity - 1);
-  while (slots[k] && strcmp(slots[k], name) != 0)
-    k = (k + 1) & (capacity - 1);
-  return k;
-}
-
-static void grow(c_names *n) {
-  size_t capacity = n->capacity ? 2 * n->capacity : 64;
-  char **slots = must_calloc(capacity, sizeof *slots);
-  for (size_t k = 0; k < n->capacity; k++)
-    if (n->slots[k]) slots[find_slot(slots, capacity, n->slots[k])] = n->slots[k];
-  free(n->slots);
-  n->slots = slots;
-  n->capacity = capacity;
-}
-
 /* The table's own copy of `name`, or NULL when it was taken before. */
 static const char *take(c_names *n, const char *name) {
-  if (2 * (n->count + 1) > n->capacity) grow(n);
-  size_t k = find_slot(n->slots, n->capacity, name);
-  if (n->slots[k]) return NULL;
-  size_t size = strlen(name) + 1;
-  n->slots[k] = memcpy(must_alloc(size), name, size);
-  n->count++;
-  return n->slots[k];
+  if (name_index_at(&n->taken, name)) return NULL;
+  if (!n->memory) n->memory = arena_new();
+  const char *own = arena_text(n->memory, name, strlen(name));
+  name_index_add(&n->taken, own, 0);
+  return own;
 }
 
 bool c_names_reserve(c_names *n, const char *name) {
@@ -126,9 +105,8 @@ bool c_names_reserve(c_names *n, const char *name) {
 }
 
 void c_names_clear(c_names *n) {
-  for (size_t k = 0; k < n->capacity; k++)
-    free(n->slots[k]);
-  free(n->slots);
+  name_index_clear(&n->taken);
+  arena_free(n->memory);
   *n = (c_names){0};
 }
 

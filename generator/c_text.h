@@ -6,6 +6,9 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/arena.h"
+#include "dsl/name_index.h"
+
 typedef struct c_text {
   char *text; /* NUL-terminated once something was added; malloc'ed */
   size_t length, capacity;
@@ -21,8 +24,8 @@ void c_text_number(c_text *t, double value);
 
 /* The identifiers taken in one scope. */
 typedef struct c_names {
-  char **slots; /* hash table; owns the names */
-  size_t capacity, count;
+  name_index taken;
+  arena *memory; /* of the names; NULL while there are none */
 } c_names;
 
 void c_names_clear(c_names *n);

@@ -46,10 +46,14 @@ static int build_law(const char *path, const char *output, bool no_physics) {
 
 /* --- solvers ---------------------------------------------------------------------------------- */
 
-/* What the deck's only lattice is made of, with its options decided. */
+/* What the deck's only lattice is made of, with its options decided, and the tables of the deck's
+   loads. */
 typedef struct deck_law {
   model model;
   bool opened;
+  arena *memory;
+  source_set sources;
+  const deck *deck;
   char name[512];    /* as the deck gives it */
   char choices[512]; /* ";option=choice;..." */
 } deck_law;
@@ -63,12 +67,12 @@ static void list_choices(const law *l, char *text, size_t size) {
 
 /* The deck has been checked whole before: its warnings are not said again. */
 static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law *out) {
-  arena *memory = arena_new();
-  source_set sources = {NULL, 0};
   diagnostics said;
-  diag_begin(&said, &sources);
-  int file = source_add(&sources, deck_path, deck_text, strlen(deck_text));
-  deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
+  out->memory = arena_new();
+  diag_begin(&said, &out->sources);
+  int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
+  deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
+  out->deck = k;
   bool good =
       k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
@@ -78,9 +82,13 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   }
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
-  source_clear(&sources);
-  arena_free(memory);
   return good;
+}
+
+static void close_deck_law(deck_law *l) {
+  if (l->opened) model_close(&l->model);
+  source_clear(&l->sources);
+  if (l->memory) arena_free(l->memory);
 }
 
 static void put_string(c_text *out, const char *name, const char *text) {
@@ -91,17 +99,40 @@ static void put_string(c_text *out, const char *name, const char *text) {
 
 static const char solver_main[] =
     "typedef struct built_in_law {\n  const char *model;\n  const pl_law *law;\n"
-    "  const char *law_text, *c_text;\n  const char *choices;\n} built_in_law;\n"
+    "  const char *law_text, *c_text;\n  const char *choices;\n"
+    "  const char *compiler, *flags;\n} built_in_law;\n"
     "int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,\n"
-    "                        const built_in_law *laws, int law_count);\n"
+    "                        const built_in_law *laws, int law_count,\n"
+    "                        const built_in_file *files, int file_count);\n"
     "int main(int argc, char **argv) {\n"
     "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
-    "                                solver_kernel_text, solver_choices}};\n"
-    "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1);\n}\n";
+    "                                solver_kernel_text, solver_choices,\n"
+     "                                solver_compiler, solver_flags}};\n"
+    "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1,\n"
+    "                             solver_files, solver_file_count);\n}\n";
+
+/* The tables of the loads; C wants one in an array. */
+static void put_files(c_text *out, const deck_law *l) {
+  c_text_add(out,
+             "typedef struct built_in_file {\n  const char *path, *text;\n} built_in_file;\n"
+             "static const int solver_file_count = %d;\n"
+             "static const built_in_file solver_files[] = {\n",
+             l->deck->file_count);
+  for (int k = 0; k < l->deck->file_count; k++) {
+    const source *s = &l->sources.items[l->deck->files[k].source];
+    c_text_add(out, "  {");
+    c_text_string(out, s->name);
+    c_text_add(out, ", ");
+    c_text_string(out, s->text);
+    c_text_add(out, "},\n");
+  }
+  c_text_add(out, "  {0, 0}};\n");
+}
 
 /* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
 static char *solver_text(const deck_law *l, const char *deck_name, const char *deck_text) {
   c_text out = {NULL, 0, 0};
+  char compiler[512];
   c_text_add(&out, "%s\n/* --- the solver --- */\n\n", l->model.c_text);
   put_string(&out, "solver_deck_name", deck_name);
   put_string(&out, "solver_deck", deck_text);
@@ -109,15 +140,25 @@ static char *solver_text(const deck_law *l, const char *deck_name, const char *d
   put_string(&out, "solver_law_text", l->model.sources.items[0].text);
   put_string(&out, "solver_kernel_text", l->model.c_text);
   put_string(&out, "solver_choices", l->choices);
+  put_files(&out, l);
+  toolchain_version(compiler, sizeof compiler);
+  put_string(&out, "solver_compiler", compiler);
+  put_string(&out, "solver_flags", toolchain_flags());
   c_text_add(&out, "%s", solver_main);
   return out.text;
+}
+
+static bool spares_all(const char *output, const deck_law *l) {
+  bool good = spares_input(output, l->model.path);
+  for (int k = 0; good && k < l->deck->file_count; k++)
+    good = spares_input(output, l->sources.items[l->deck->files[k].source].name);
+  return good;
 }
 
 static int link_solver(const char *path, const char *deck_text, const char *output) {
   char error[ERROR_LENGTH];
   deck_law l = {.opened = false};
-  int status =
-      open_deck_law(path, deck_text, &l) && spares_input(output, l.model.path) ? 0 : INPUT_WRONG;
+  int status = open_deck_law(path, deck_text, &l) && spares_all(output, &l) ? 0 : INPUT_WRONG;
   if (!status) {
     char *text = solver_text(&l, path, deck_text);
     if (!toolchain_build_program(text, output, error, sizeof error)) {
@@ -127,7 +168,7 @@ static int link_solver(const char *path, const char *deck_text, const char *outp
     free(text);
   }
   if (!status) printf("written %s: runs the deck %s without a compiler\n", output, path);
-  if (l.opened) model_close(&l.model);
+  close_deck_law(&l);
   return status;
 }
 

@@ -1,33 +1,44 @@
-/* perilat compare: where two results differ most, history by history and field by field.
-   A difference is relative to the largest absolute value that the quantity has in either result;
-   energies are relative to the largest energy of all, since the smaller terms are differences of
-   larger ones. */
+/* perilat compare: where two results differ most, history by history and field by field; or a
+   result and a table (compare_curve.h). A difference is relative to the largest absolute value that
+   the quantity has in either result; energies are relative to the largest energy of all, since the
+   smaller terms are differences of larger ones. */
 #include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
 #include "dsl/elementary.h"
 #include "generator/commands.h"
+#include "generator/compare_curve.h"
+#include "generator/document.h"
+#include "generator/model.h"
 #include "generator/result_table.h"
+#include "runtime/text_table.h"
 
 enum { SAME = 0, WRONG = 1, DIFFERENT = 2 };
 static const char program[] = "perilat compare";
 
 typedef struct compare_request {
+  bool json;
   const char *results[2];
   int result_count;
   double tolerance;
   const char **histories, **fields; /* the only ones to look at; none given: all */
   int history_count, field_count;
+  const char *x, *y, *band;          /* of a curve beside a table */
+  const char *of_curve, *of_results; /* an option that only these know, when one was given */
 } compare_request;
 
 typedef struct comparison_run {
   const compare_request *request;
   result_file *files[2];
   int compared, different;
-  bool wrong; /* something asked for is not there */
+  bool wrong;     /* something asked for is not there */
+  const char *of; /* what is compared now: "history", "frames" */
+  json *list;     /* of the document, for each quantity; or NULL */
 } comparison_run;
 
 /* The largest difference of a quantity so far, and the largest value as its measure. */
@@ -56,23 +67,81 @@ static double relative(const gap *g) {
                                                                     : INFINITY;
 }
 
-/* Counts the quantity; prints its line up to the place, which the caller adds. */
-static bool report(comparison_run *c, const char *name, const char *unit, const gap *g) {
-  const double r = relative(g);
-  const bool over = r > c->request->tolerance;
-  char title[128];
-  snprintf(title, sizeof title, "%s [%s]", name, *unit ? unit : "1");
-  c->compared++;
-  c->different += over;
-  printf("%c %-34s %12.4g %12.4g", over ? '*' : ' ', title, g->largest, r);
-  return g->row >= 0;
+/* What is found of one quantity. */
+typedef struct finding {
+  const char *name, *unit; /* "" where it has none */
+  gap gap;
+  const char *incomparable; /* how the two are unlike, or NULL */
+  char place[256];          /* of the largest gap, in words */
+  double time, values[2];   /* there; NAN where there are none */
+  long frame;               /* or -1 */
+  const char *at;           /* "sample", "particle", "bond": the gap's row; or NULL */
+} finding;
+
+static finding finding_of(const char *name, const char *unit_text, const gap *g) {
+  return (finding){.name = name,
+                   .unit = unit_text,
+                   .gap = g ? *g : no_gap,
+                   .time = NAN,
+                   .values = {NAN, NAN},
+                   .frame = -1};
 }
 
-static bool only_in_one(comparison_run *c, const char *name, int here) {
-  printf("* %-34s only in %s\n", name, c->request->results[here]);
+static bool is_different(const comparison_run *c, const finding *f) {
+  return f->incomparable || relative(&f->gap) > c->request->tolerance;
+}
+
+static void print_finding(const comparison_run *c, const finding *f) {
+  char title[128];
+  if (f->incomparable) {
+    printf("* %-34s %s\n", name_shown(f->name), f->incomparable);
+    return;
+  }
+  snprintf(title, sizeof title, "%s [%s]", name_shown(f->name),
+           *f->unit ? name_shown(f->unit) : "1");
+  printf("%c %-34s %12.4g %12.4g%s\n", is_different(c, f) ? '*' : ' ', title, f->gap.largest,
+         relative(&f->gap), f->place);
+}
+
+static void put_finding(const comparison_run *c, const finding *f) {
+  json *w = c->list;
+  json_object(w);
+  json_put_text(w, "of", c->of);
+  json_put_text(w, "name", f->name);
+  json_put_text(w, "unit", f->incomparable ? NULL : *f->unit ? f->unit : "1");
+  json_put_bool(w, "different", is_different(c, f));
+  json_put_text(w, "incomparable", f->incomparable);
+  json_put_number(w, "gap", f->incomparable ? NAN : f->gap.largest);
+  json_put_number(w, "relative", f->incomparable ? NAN : relative(&f->gap));
+  json_put_number(w, "time", f->time);
+  json_put_number(w, "frame", f->frame >= 0 ? (double)f->frame : NAN);
+  json_put_text(w, "at", f->at);
+  json_put_number(w, "index", f->at ? (double)f->gap.row : NAN);
+  json_put_array(w, "values");
+  json_number(w, f->values[0]);
+  json_number(w, f->values[1]);
+  json_array_end(w);
+  json_object_end(w);
+}
+
+static void report(comparison_run *c, const finding *f) {
   c->compared++;
-  c->different++;
-  return false;
+  c->different += is_different(c, f);
+  print_finding(c, f);
+  if (c->list) put_finding(c, f);
+}
+
+static void report_unlike(comparison_run *c, const char *name, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void report_unlike(comparison_run *c, const char *name, const char *format, ...) {
+  char text[512];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  finding f = finding_of(name, "", NULL);
+  f.incomparable = text;
+  report(c, &f);
 }
 
 /* --- histories -------------------------------------------------------------------------------- */
@@ -85,12 +154,12 @@ typedef struct time_axis {
 } time_axis;
 
 static bool read_axis(comparison_run *c, time_axis *x) {
-  char error[1024], unit[64];
+  char error[1024], unit_text[64];
   for (int k = 0; k < 2; k++) {
-    x->time[k] = result_read_series(c->files[k], "time", &x->count[k], unit, sizeof unit, error,
-                                    sizeof error);
+    x->time[k] = result_read_series(c->files[k], "time", &x->count[k], unit_text, sizeof unit_text,
+                                    error, sizeof error);
     if (!x->time[k] || x->count[k] == 0) {
-      fprintf(stderr, "perilat: error: %s\n", x->time[k] ? "a result has no samples" : error);
+      say_error("%s", x->time[k] ? "a result has no samples" : error);
       return false;
     }
   }
@@ -147,6 +216,16 @@ static double largest_energy(const comparison_run *c) {
   return most;
 }
 
+static void locate_sample(finding *f, const time_axis *x, const double *a, const double *b) {
+  const long row = f->gap.row;
+  f->at = "sample";
+  f->time = x->time[0][row];
+  f->values[0] = a[row];
+  f->values[1] = x->same ? b[row] : value_at(x, b, f->time, &(long){0});
+  snprintf(f->place, sizeof f->place, "  t = %.6g ms: %.9g and %.9g", 1e3 * f->time, f->values[0],
+           f->values[1]);
+}
+
 static void compare_history(comparison_run *c, const time_axis *x, const char *name,
                             double energy) {
   char error[1024];
@@ -154,20 +233,17 @@ static void compare_history(comparison_run *c, const time_axis *x, const char *n
   const bool good = table_read(c->files[0], name, -1, &a, error, sizeof error) &&
                     table_read(c->files[1], name, -1, &b, error, sizeof error);
   if (!good || a.count != x->count[0] || b.count != x->count[1]) {
-    fprintf(stderr, "perilat: error: %s\n",
-            good ? "a history has not as many values as times" : error);
+    say_error("%s", good ? "a history has not as many values as times" : error);
     c->wrong = true;
   } else if (strcmp(a.unit, b.unit) != 0) {
-    printf("* %-34s [%s] and [%s]: not the same unit\n", name, a.unit, b.unit);
-    c->compared++;
-    c->different++;
+    report_unlike(c, name, "[%s] and [%s]: not the same unit", name_shown(a.unit),
+                  name_shown(b.unit));
   } else {
     gap g = gap_of_series(x, a.values, b.values);
     if (is_energy(name)) g.scale = pl_fmax(g.scale, energy);
-    if (report(c, name, a.unit, &g))
-      printf("  t = %.6g ms: %.9g and %.9g", 1e3 * x->time[0][g.row], a.values[g.row],
-             x->same ? b.values[g.row] : value_at(x, b.values, x->time[0][g.row], &(long){0}));
-    putchar('\n');
+    finding f = finding_of(name, a.unit, &g);
+    if (g.row >= 0) locate_sample(&f, x, a.values, b.values);
+    report(c, &f);
   }
   free(a.values);
   free(b.values);
@@ -178,9 +254,13 @@ static void compare_ends(comparison_run *c, const time_axis *x) {
   gap g = no_gap;
   const long last[2] = {x->count[0] - 1, x->count[1] - 1};
   widen(&g, x->time[0][last[0]], x->time[1][last[1]], 0, 0);
-  report(c, "time", "s", &g);
-  printf("  %ld samples to %.6g ms and %ld to %.6g ms; compared at the times of the first\n",
-         x->count[0], 1e3 * x->time[0][last[0]], x->count[1], 1e3 * x->time[1][last[1]]);
+  finding f = finding_of("time", "s", &g);
+  for (int k = 0; k < 2; k++)
+    f.values[k] = x->time[k][last[k]];
+  snprintf(f.place, sizeof f.place,
+           "  %ld samples to %.6g ms and %ld to %.6g ms; compared at the times of the first",
+           x->count[0], 1e3 * f.values[0], x->count[1], 1e3 * f.values[1]);
+  report(c, &f);
 }
 
 typedef void compare_one(comparison_run *c, const char *name, void *context);
@@ -196,7 +276,7 @@ static bool find_in_both(comparison_run *c, const char *group, const char *asked
              asked, name, other);
     good = false;
   }
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   return good;
 }
 
@@ -212,9 +292,7 @@ static void each_asked(comparison_run *c, const char *group, const char *const *
 }
 
 static bool has_name(const result_names *n, const char *name) {
-  for (int k = 0; k < n->count; k++)
-    if (strcmp(n->items[k], name) == 0) return true;
-  return false;
+  return name_index_at(&n->whole, name) != NULL;
 }
 
 /* Names that both have; what only one has is reported. */
@@ -226,9 +304,10 @@ static void each_name(comparison_run *c, const char *group, compare_one *compare
     if (has_name(&names[1], names[0].items[k]))
       compare(c, names[0].items[k], context);
     else
-      only_in_one(c, names[0].items[k], 0);
+      report_unlike(c, names[0].items[k], "only in %s", c->request->results[0]);
   for (int k = 0; k < names[1].count; k++)
-    if (!has_name(&names[0], names[1].items[k])) only_in_one(c, names[1].items[k], 1);
+    if (!has_name(&names[0], names[1].items[k]))
+      report_unlike(c, names[1].items[k], "only in %s", c->request->results[1]);
   for (int n = 0; n < 2; n++)
     result_names_free(&names[n]);
 }
@@ -244,6 +323,7 @@ static void compare_one_history(comparison_run *c, const char *name, void *conte
 }
 
 static void compare_histories(comparison_run *c) {
+  c->of = "history";
   history_context h = {.axis = {.until = 0}};
   if (read_axis(c, &h.axis)) {
     h.energy = largest_energy(c);
@@ -282,24 +362,29 @@ static bool same_particles(const frame_context *x) {
 }
 
 /* Half way between two particles, or where one stands. */
-static void print_middle(const frame_context *x, long i, long j) {
+static void write_middle(char *text, size_t size, const frame_context *x, long i, long j) {
   const int n = x->dimensions[0];
-  for (int c = 0; c < n; c++)
-    printf("%s%.6g", c ? ", " : "(",
-           500 * (x->reference[0][n * i + c] + x->reference[0][n * j + c]));
-  fputs(") mm", stdout);
+  size_t used = 0;
+  for (int c = 0; c < n && used < size; c++)
+    used += (size_t)snprintf(text + used, size - used, "%s%.6g%s", c ? ", " : "(",
+                             500 * (x->reference[0][n * i + c] + x->reference[0][n * j + c]),
+                             c == n - 1 ? ") mm" : "");
 }
 
-static void print_place(const frame_context *x, const char *field, const gap *g) {
-  printf("  frame %ld, t = %.6g ms, ", g->frame, 1e3 * x->time[0][g->frame]);
-  if (!table_on_bonds(field)) {
-    printf("particle %ld at ", g->row);
-    print_middle(x, g->row, g->row);
-  } else if (x->bonds && g->row < x->bond_count) {
-    const int32_t *ends = &x->bonds[2 * g->row];
-    printf("bond %ld at ", g->row);
-    print_middle(x, ends[0], ends[1]);
-  }
+static void locate_row(finding *f, const frame_context *x) {
+  const gap *g = &f->gap;
+  const bool on_bonds = table_on_bonds(f->name);
+  const bool placed = !on_bonds || (x->bonds && g->row < x->bond_count);
+  const int32_t own[2] = {(int32_t)g->row, (int32_t)g->row};
+  const int32_t *ends = on_bonds && placed ? &x->bonds[2 * g->row] : own;
+  f->frame = g->frame;
+  f->at = on_bonds ? "bond" : "particle";
+  f->time = x->time[0][g->frame];
+  int n =
+      snprintf(f->place, sizeof f->place, "  frame %ld, t = %.6g ms, ", g->frame, 1e3 * f->time);
+  if (!placed) return;
+  n += snprintf(f->place + n, sizeof f->place - (size_t)n, "%s %ld at ", f->at, g->row);
+  write_middle(f->place + n, sizeof f->place - (size_t)n, x, ends[0], ends[1]);
 }
 
 /* One field in all frames that both have. */
@@ -307,7 +392,7 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
   const frame_context *x = context;
   const long frames = x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1];
   gap g = no_gap;
-  char unit[64] = "";
+  char unit_text[64] = "";
   for (long f = 0; f < frames; f++) {
     char error[1024];
     table_values a, b = {.values = NULL};
@@ -317,22 +402,21 @@ static void compare_field(comparison_run *c, const char *name, void *context) {
         good && a.count == b.count && a.components == b.components && strcmp(a.unit, b.unit) == 0;
     for (long n = 0; fit && n < a.count * a.components; n++)
       widen(&g, a.values[n], b.values[n], f, n / a.components);
-    if (good) memcpy(unit, a.unit, sizeof unit);
+    if (good) memcpy(unit_text, a.unit, sizeof unit_text);
     free(a.values);
     free(b.values);
     if (fit) continue;
     if (good) {
-      printf("* %-34s not of the same size and unit\n", name);
-      c->compared++;
-      c->different++;
+      report_unlike(c, name, "not of the same size and unit");
     } else {
-      fprintf(stderr, "perilat: error: %s\n", error);
+      say_error("%s", error);
       c->wrong = true;
     }
     return;
   }
-  if (report(c, name, unit, &g)) print_place(x, name, &g);
-  putchar('\n');
+  finding found = finding_of(name, unit_text, &g);
+  if (g.row >= 0) locate_row(&found, x);
+  report(c, &found);
 }
 
 static void compare_frame_times(comparison_run *c, const frame_context *x) {
@@ -340,18 +424,21 @@ static void compare_frame_times(comparison_run *c, const frame_context *x) {
   for (long f = 0; f < x->frames[0] && f < x->frames[1]; f++)
     widen(&g, x->time[0][f], x->time[1][f], f, f);
   if (relative(&g) > 1e-9) {
-    report(c, "time of frames", "s", &g);
-    printf("  frame %ld: %.6g and %.6g ms\n", g.frame, 1e3 * x->time[0][g.frame],
-           1e3 * x->time[1][g.frame]);
+    finding f = finding_of("time of frames", "s", &g);
+    f.frame = g.frame;
+    for (int k = 0; k < 2; k++)
+      f.values[k] = x->time[k][g.frame];
+    snprintf(f.place, sizeof f.place, "  frame %ld: %.6g and %.6g ms", g.frame, 1e3 * f.values[0],
+             1e3 * f.values[1]);
+    report(c, &f);
   }
   if (x->frames[0] == x->frames[1]) return;
-  printf("* %-34s %ld and %ld; the first %ld are compared\n", "number of frames", x->frames[0],
-         x->frames[1], x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1]);
-  c->compared++;
-  c->different++;
+  report_unlike(c, "number of frames", "%ld and %ld; the first %ld are compared", x->frames[0],
+                x->frames[1], x->frames[0] < x->frames[1] ? x->frames[0] : x->frames[1]);
 }
 
 static void compare_frames(comparison_run *c) {
+  c->of = "frames";
   frame_context x = {.bond_count = 0};
   for (int k = 0; k < 2; k++) {
     x.reference[k] = result_read_reference(c->files[k], &x.particles[k], &x.dimensions[k]);
@@ -367,10 +454,8 @@ static void compare_frames(comparison_run *c) {
     else
       each_name(c, "/frames", compare_field, &x);
   } else {
-    printf("* %-34s %ld and %ld, or at other places: no frames are compared\n", "particles",
-           x.particles[0], x.particles[1]);
-    c->compared++;
-    c->different++;
+    report_unlike(c, "particles", "%ld and %ld, or at other places: no frames are compared",
+                  x.particles[0], x.particles[1]);
   }
   for (int k = 0; k < 2; k++) {
     free(x.reference[k]);
@@ -385,37 +470,54 @@ static bool read_tolerance(const char *text, double *tolerance) {
   char *end;
   *tolerance = strtod(text, &end);
   if (!*end && end != text && *tolerance >= 0 && isfinite(*tolerance)) return true;
-  fprintf(stderr, "perilat: error: --tolerance needs a number that is not negative, not `%s`\n",
-          text);
+  say_error("--tolerance needs a number that is not negative, not `%s`", text);
   return false;
 }
 
-static bool read_request(int argc, char **argv, compare_request *q) {
+/* One option or file. */
+static int read_one(int argc, char **argv, int *at, compare_request *q) {
   int bad = 0;
   const char *v;
-  for (int at = 0; at < argc && !bad;) {
-    if ((v = option_value(argc, argv, &at, "--tolerance", &bad)))
-      bad = bad || !read_tolerance(v, &q->tolerance);
-    else if ((v = option_value(argc, argv, &at, "--history", &bad)))
-      q->histories[q->history_count++] = v;
-    else if ((v = option_value(argc, argv, &at, "--field", &bad)))
-      q->fields[q->field_count++] = v;
-    else if (argv[at][0] == '-')
-      bad = option_unknown("compare", argv[at]);
-    else if (q->result_count == 2) {
-      fprintf(stderr, "perilat: error: `%s` takes two results; `%s` is a third one\n", program,
-              argv[at]);
-      bad = 1;
-    } else
-      q->results[q->result_count++] = argv[at++];
-  }
-  if (!bad && q->result_count < 2) {
-    fputs("perilat: error: `perilat compare` needs two results\n  perilat compare a.h5 b.h5 "
-          "--tolerance 1e-6\n",
-          stderr);
+  if ((v = option_value(argc, argv, at, "--tolerance", &bad)))
+    bad = bad || !read_tolerance(v, &q->tolerance);
+  else if ((v = option_value(argc, argv, at, "--history", &bad)))
+    q->histories[q->history_count++] = q->of_results = v;
+  else if ((v = option_value(argc, argv, at, "--field", &bad)))
+    q->fields[q->field_count++] = q->of_results = v;
+  else if ((v = option_value(argc, argv, at, "--x", &bad)))
+    q->x = q->of_curve = v;
+  else if ((v = option_value(argc, argv, at, "--y", &bad)))
+    q->y = q->of_curve = v;
+  else if ((v = option_value(argc, argv, at, "--band", &bad)))
+    q->band = q->of_curve = v;
+  else if (option_flag(argv, at, "--json"))
+    q->json = true;
+  else if (argv[*at][0] == '-')
+    bad = option_unknown("compare", argv[*at]);
+  else if (q->result_count == 2) {
+    say_error("`%s` takes two files; `%s` is a third one", program, argv[*at]);
     bad = 1;
-  }
-  return !bad;
+  } else
+    q->results[q->result_count++] = argv[(*at)++];
+  return bad;
+}
+
+static bool read_request(int argc, char **argv, compare_request *q) {
+  for (int at = 0; at < argc;)
+    if (read_one(argc, argv, &at, q)) return false;
+  if (q->result_count == 2) return true;
+  say_error("`perilat compare` needs two results, or a result and a table\n  perilat compare a.h5 "
+            "b.h5 --tolerance 1e-6\n  perilat compare a.h5 lab.csv --x cmod --y load");
+  return false;
+}
+
+/* By its ending, or because columns of it are named. */
+static bool is_table(const char *given) {
+  const char *columns;
+  char *path = text_table_split(given, &columns);
+  const bool table = columns || kind_of_file(path) == FILE_TABLE;
+  free(path);
+  return table;
 }
 
 static int conclude(const comparison_run *c) {
@@ -430,8 +532,8 @@ static int conclude(const comparison_run *c) {
   return c->different ? DIFFERENT : SAME;
 }
 
-static int compare_results(const compare_request *q) {
-  comparison_run c = {.request = q};
+static int compare_results(const compare_request *q, json *list) {
+  comparison_run c = {.request = q, .list = list};
   for (int k = 0; k < 2; k++)
     c.files[k] = table_open(program, q->results[k]);
   if (c.files[0] && c.files[1]) {
@@ -444,11 +546,48 @@ static int compare_results(const compare_request *q) {
   return conclude(&c);
 }
 
+static int compare_with_table(const compare_request *q, json *w) {
+  const curve_request curve = {q->results[0], q->results[1], q->x, q->y, q->band, q->tolerance};
+  if (!file_suits(q->results[0], FILES(RESULT), program, "a result first, then a table"))
+    return WRONG;
+  if (!q->of_results) return compare_curve(&curve, w);
+  say_error("--history and --field compare two results; with a table --x and --y name the curve");
+  return WRONG;
+}
+
+/* As text, or into the document. */
+static int compare_files(const compare_request *q, json *w) {
+  if (is_table(q->results[1]) || is_table(q->results[0])) return compare_with_table(q, w);
+  if (!q->of_curve) return compare_results(q, w);
+  if (kind_of_file(q->results[1]) != FILE_RESULT) return compare_with_table(q, w);
+  say_error("--x, --y and --band are for a result and a table");
+  return WRONG;
+}
+
+static int compare_to_json(const compare_request *q) {
+  document d;
+  document_begin(&d);
+  json_put_array(&d.writer, "results");
+  for (int k = 0; k < 2; k++)
+    json_text(&d.writer, q->results[k]);
+  json_array_end(&d.writer);
+  json_put_number(&d.writer, "tolerance", q->tolerance);
+  json_put_array(&d.writer, "quantities");
+  const int status = compare_files(q, &d.writer);
+  json_array_end(&d.writer);
+  json_put_bool(&d.writer, "same", status == SAME);
+  return document_end(&d, status);
+}
+
+static int compare_as_asked(const compare_request *q) {
+  return q->json ? compare_to_json(q) : compare_files(q, NULL);
+}
+
 int command_compare(int argc, char **argv) {
   compare_request q = {.tolerance = 0};
   q.histories = must_calloc((size_t)argc + 1, sizeof *q.histories);
   q.fields = must_calloc((size_t)argc + 1, sizeof *q.fields);
-  const int status = read_request(argc, argv, &q) ? compare_results(&q) : WRONG;
+  const int status = read_request(argc, argv, &q) ? compare_as_asked(&q) : WRONG;
   free(q.histories);
   free(q.fields);
   return status;

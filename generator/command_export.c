@@ -6,7 +6,10 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
+#include "dsl/terminal.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/model.h"
 #include "generator/result_table.h"
 #include "runtime/whole_file.h"
@@ -19,7 +22,7 @@ typedef struct export_request {
   int name_count;
   const char *of_histories,
       *of_frames; /* an option that only this table knows, when one was given */
-  bool bonds, framed;
+  bool bonds, framed, json;
   long frame;
 } export_request;
 
@@ -36,16 +39,27 @@ static void write_number(FILE *out, double value) {
   fputs(text, out);
 }
 
-/* A name with its unit; quoted as CSV wants it when a name holds what separates. */
-static void write_title(FILE *out, const table_values *v, int component) {
-  bool quoted = strpbrk(v->name, ",\"\n") != NULL;
-  if (quoted) putc('"', out);
-  for (const char *c = v->name; *c; c++) {
-    if (*c == '"') putc('"', out);
-    putc(*c, out);
+/* As RFC 4180 wants a text in quotes. */
+static void write_quoted(FILE *out, const char *text) {
+  for (; *text; text++) {
+    if (*text == '"') putc('"', out);
+    putc(*text, out);
   }
-  fprintf(out, "%s [%s]%s", table_component(v->components, component), *v->unit ? v->unit : "1",
-          quoted ? "\"" : "");
+}
+
+/* A name with its unit; quoted when one of them holds what separates. */
+static void write_title(FILE *out, const table_values *v, int component) {
+  static const char separates[] = ",\"\r\n";
+  const char *part = table_component(v->components, component), *in = *v->unit ? v->unit : "1";
+  if (!strpbrk(v->name, separates) && !strpbrk(in, separates)) {
+    fprintf(out, "%s%s [%s]", v->name, part, in);
+    return;
+  }
+  putc('"', out);
+  write_quoted(out, v->name);
+  fprintf(out, "%s [", part);
+  write_quoted(out, in);
+  fputs("]\"", out);
 }
 
 static void write_titles(FILE *out, const table_values *columns, int count) {
@@ -61,6 +75,33 @@ static void write_row(FILE *out, const table_values *columns, int count, long ro
     for (int c = 0; c < columns[k].components; c++) {
       if (k + c > 0) putc(',', out);
       write_number(out, columns[k].values[row * columns[k].components + c]);
+    }
+}
+
+/* --- as JSON ---------------------------------------------------------------------------------- */
+
+static void open_column(json *w, const char *name, const char *ending, const char *unit_name) {
+  char title[300];
+  snprintf(title, sizeof title, "%s%s", name, ending);
+  json_object(w);
+  json_put_text(w, "name", title);
+  json_put_text(w, "unit", *unit_name ? unit_name : "1");
+  json_put_array(w, "values");
+}
+
+static void close_column(json *w) {
+  json_array_end(w);
+  json_object_end(w);
+}
+
+static void put_columns(json *w, const table_values *columns, int count) {
+  for (int k = 0; k < count; k++)
+    for (int c = 0; c < columns[k].components; c++) {
+      const table_values *v = &columns[k];
+      open_column(w, v->name, table_component(v->components, c), v->unit);
+      for (long row = 0; row < v->count; row++)
+        json_number(w, v->values[row * v->components + c] + 0.0);
+      close_column(w);
     }
 }
 
@@ -94,10 +135,9 @@ static bool add_column(table *t, result_file *f, const char *name) {
   const bool good = table_read(f, name, t->frame, v, error, sizeof error);
   t->count += good;
   if (!good)
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
   else if (v->count != t->rows)
-    fprintf(stderr, "perilat: error: `%s` has %ld values where %ld are expected\n", v->name,
-            v->count, t->rows);
+    say_error("`%s` has %ld values where %ld are expected", name_shown(v->name), v->count, t->rows);
   return good && v->count == t->rows;
 }
 
@@ -116,8 +156,8 @@ static bool add_asked(table *t, result_file *f, const export_request *q) {
     const int n = result_names_find(&t->names, q->names[k]);
     const char *name = n < 0 ? q->names[k] : t->names.items[n];
     if (n >= 0 && t->frame >= 0 && table_on_bonds(name) != q->bonds) {
-      fprintf(stderr, "perilat: error: `%s` is a field of %s; %s --bonds\n", name,
-              q->bonds ? "particles" : "bonds", q->bonds ? "leave out" : "add");
+      say_error("`%s` is a field of %s; %s --bonds", name_shown(name), q->bonds ? "particles" : "bonds",
+                q->bonds ? "leave out" : "add");
       good = false;
     } else
       good = add_column(t, f, name);
@@ -129,21 +169,36 @@ static bool add_columns(table *t, result_file *f, const export_request *q) {
   return q->name_count ? add_asked(t, f, q) : add_all(t, f, q->bonds);
 }
 
-static bool export_history(result_file *f, const export_request *q, FILE *out) {
+static void write_history(FILE *out, const table *t) {
+  write_titles(out, t->columns, t->count);
+  for (long row = 0; row < t->rows; row++) {
+    putc('\n', out);
+    write_row(out, t->columns, t->count, row);
+  }
+  putc('\n', out);
+}
+
+static void put_history(json *w, const table *t) {
+  json_put_text(w, "of", "history");
+  json_put_integer(w, "rows", t->rows);
+  json_put_array(w, "columns");
+  put_columns(w, t->columns, t->count);
+  json_array_end(w);
+}
+
+static bool export_history(result_file *f, const export_request *q, FILE *out, json *w) {
   char error[1024];
   table t = table_new(f, q, -1);
   bool good = table_read(f, "time", -1, &t.columns[0], error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   if (good && !*t.columns[0].unit) strcpy(t.columns[0].unit, "s");
   t.count = good;
   t.rows = t.columns[0].count;
   good = good && add_columns(&t, f, q);
-  if (good) write_titles(out, t.columns, t.count);
-  for (long row = 0; good && row < t.rows; row++) {
-    putc('\n', out);
-    write_row(out, t.columns, t.count, row);
-  }
-  if (good) putc('\n', out);
+  if (good && w)
+    put_history(w, &t);
+  else if (good)
+    write_history(out, &t);
   table_free(&t);
   return good;
 }
@@ -180,27 +235,64 @@ static void write_frame(FILE *out, const frame_rows *rows, const table_values *c
   }
 }
 
-static bool export_frame(result_file *f, const export_request *q, FILE *out) {
-  long frames = 0, particles = 0, bonds = 0;
-  free(result_read_frame_times(f, &frames));
-  const long frame = q->frame < 0 ? frames + q->frame : q->frame;
-  if (frame < 0 || frame >= frames) {
-    fprintf(stderr, "perilat: error: `%s` has %ld frames, numbered from 0; there is no frame %ld\n",
-            q->result, frames, q->frame);
-    return false;
+static void put_whole(json *w, const char *name, const int32_t *values, int stride, long count) {
+  open_column(w, name, "", "");
+  for (long row = 0; row < count; row++)
+    json_integer(w, values ? values[stride * row] : row);
+  close_column(w);
+}
+
+static void put_frame(json *w, const frame_rows *rows, const table *t, double time) {
+  const int n = rows->dimensions, places = (rows->bonds ? 2 : 1) * n;
+  json_put_text(w, "of", rows->bonds ? "bonds" : "particles");
+  json_put_integer(w, "frame", t->frame);
+  json_put_number(w, "time", time);
+  json_put_integer(w, "rows", rows->count);
+  json_put_array(w, "columns");
+  put_whole(w, rows->bonds ? "bond" : "particle", NULL, 0, rows->count);
+  for (int e = 0; rows->bonds && e < 2; e++)
+    put_whole(w, e ? "j" : "i", rows->bonds + e, 2, rows->count);
+  for (int c = 0; c < places; c++) {
+    open_column(w, (const char[]){"xyz"[c % n], 0}, !rows->bonds ? "" : c < n ? "_i" : "_j", "m");
+    for (long row = 0; row < rows->count; row++)
+      json_number(w,
+                  rows->reference[n * (rows->bonds ? rows->bonds[2 * row + c / n] : row) + c % n]);
+    close_column(w);
   }
+  put_columns(w, t->columns, t->count);
+  json_array_end(w);
+}
+
+/* The number of the frame that is asked for; -1 after a message. */
+static long find_frame(const export_request *q, long frames) {
+  const long frame = q->frame < 0 ? frames + q->frame : q->frame;
+  if (frame >= 0 && frame < frames) return frame;
+  say_error("`%s` has %ld frames, numbered from 0; there is no frame %ld", q->result, frames,
+            q->frame);
+  return -1;
+}
+
+static bool export_frame(result_file *f, const export_request *q, FILE *out, json *w) {
+  long frames = 0, particles = 0, bonds = 0;
+  double *times = result_read_frame_times(f, &frames);
+  const long frame = find_frame(q, times ? frames : 0);
+  const double time = frame < 0 ? 0 : times[frame];
+  free(times);
+  if (frame < 0) return false;
   frame_rows rows = {.reference = NULL};
   rows.reference = result_read_reference(f, &particles, &rows.dimensions);
   if (q->bonds) rows.bonds = result_read_bonds(f, NULL, &bonds);
   rows.count = q->bonds ? bonds : particles;
   bool good = rows.reference && (rows.bonds || !q->bonds);
   if (!good)
-    fprintf(stderr, "perilat: error: `%s` does not say where its %s are\n", q->result,
-            q->bonds ? "bonds" : "particles");
+    say_error("`%s` does not say where its %s are", q->result, q->bonds ? "bonds" : "particles");
   table t = table_new(f, q, frame);
   t.rows = rows.count;
   good = good && add_columns(&t, f, q);
-  if (good) write_frame(out, &rows, t.columns, t.count);
+  if (good && w)
+    put_frame(w, &rows, &t, time);
+  else if (good)
+    write_frame(out, &rows, t.columns, t.count);
   table_free(&t);
   free(rows.reference);
   free(rows.bonds);
@@ -222,19 +314,20 @@ static bool read_request(int argc, char **argv, export_request *q) {
       q->names[q->name_count++] = q->of_frames = v;
     else if (option_flag(argv, &at, "--bonds"))
       q->bonds = true;
+    else if (option_flag(argv, &at, "--json"))
+      q->json = true;
     else if ((v = option_value(argc, argv, &at, "--frame", &bad))) {
       q->framed = true;
       errno = 0;
       q->frame = strtol(v, &end, 10);
       if (!bad && (*end || end == v || errno || labs(q->frame) > INT_MAX)) {
-        fprintf(stderr, "perilat: error: --frame needs a whole number, not `%s`\n", v);
+        say_error("--frame needs a whole number, not `%s`", v);
         bad = 1;
       }
     } else if (argv[at][0] == '-')
       bad = option_unknown("export", argv[at]);
     else if (q->result) {
-      fprintf(stderr, "perilat: error: `%s` takes one result; `%s` is a second one\n", program,
-              argv[at]);
+      say_error("`%s` takes one result; `%s` is a second one", program, argv[at]);
       bad = 1;
     } else
       q->result = argv[at++];
@@ -244,23 +337,18 @@ static bool read_request(int argc, char **argv, export_request *q) {
 
 static bool complete(const export_request *q) {
   if (!q->result)
-    fputs("perilat: error: `perilat export` needs a result file\n  perilat export result.h5 -o "
-          "history.csv\n",
-          stderr);
+    say_error("`perilat export` needs a result file\n  perilat export result.h5 -o "
+              "history.csv");
   else if (q->of_histories && (q->framed || q->of_frames))
-    fputs("perilat: error: histories and a frame are two tables; export one at a time\n", stderr);
+    say_error("histories and a frame are two tables; export one at a time");
   else if (q->of_frames && !q->framed)
-    fputs(
-        "perilat: error: --field belongs to frames; add --frame N, e.g. --frame -1 for the last\n",
-        stderr);
+    say_error("--field belongs to frames; add --frame N, e.g. --frame -1 for the last");
   else if (q->bonds && !q->framed)
-    fputs(
-        "perilat: error: --bonds belongs to frames; add --frame N, e.g. --frame -1 for the last\n",
-        stderr);
+    say_error("--bonds belongs to frames; add --frame N, e.g. --frame -1 for the last");
+  else if (q->json && q->output)
+    say_error("--json writes to the standard output; leave out -o");
   else if (q->output && same_file(q->output, q->result))
-    fprintf(stderr,
-            "perilat: error: the table would overwrite `%s`; give it another name with -o\n",
-            q->result);
+    say_error("the table would overwrite `%s`; give it another name with -o", q->result);
   else
     return true;
   return false;
@@ -268,7 +356,10 @@ static bool complete(const export_request *q) {
 
 /* 0, or the exit status 2 after a message. */
 static int write_table(const char *text, size_t length, const char *path) {
-  if (!path) return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
+  if (!path) {
+    terminal_expect_data();
+    return fwrite(text, 1, length, stdout) == length ? 0 : 2; /* main says why */
+  }
   whole_file file;
   FILE *out = whole_file_open(&file, path);
   bool good = out && fwrite(text, 1, length, out) == length;
@@ -277,29 +368,44 @@ static int write_table(const char *text, size_t length, const char *path) {
   if (good)
     printf("written %s\n", path);
   else
-    fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
+    say_error("cannot write `%s`: %s", path, strerror(errno));
   return good ? 0 : 2;
+}
+
+/* 0 or 1. */
+static int export_table(const export_request *q, FILE *out, json *w) {
+  result_file *f = table_open(program, q->result);
+  return f && table_close(f, q->framed ? export_frame(f, q, out, w) : export_history(f, q, out, w))
+             ? 0
+             : 1;
+}
+
+static int export_to_json(const export_request *q) {
+  document d;
+  document_begin(&d);
+  json_put_text(&d.writer, "result", q->result);
+  return document_end(&d, export_table(q, NULL, &d.writer));
 }
 
 /* The table is made whole before anything is written. */
 static int export_result(const export_request *q) {
-  result_file *f = table_open(program, q->result);
-  if (!f) return 1;
   char *text = NULL;
   size_t length = 0;
   FILE *out = open_memstream(&text, &length);
-  bool good = out && (q->framed ? export_frame(f, q, out) : export_history(f, q, out));
-  const bool whole = out && fclose(out) == 0;
-  good = table_close(f, good);
-  if (good && !whole) fputs("perilat: error: not enough memory for the table\n", stderr);
+  const bool good = out && export_table(q, out, NULL) == 0, whole = out && fclose(out) == 0;
+  if (good && !whole) say_error("not enough memory for the table");
   const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q->output);
   free(text);
   return status;
 }
 
+static int export_as_asked(const export_request *q) {
+  return q->json ? export_to_json(q) : export_result(q);
+}
+
 int command_export(int argc, char **argv) {
   export_request q = {.names = must_calloc((size_t)argc + 1, sizeof *q.names)};
-  const int status = read_request(argc, argv, &q) && complete(&q) ? export_result(&q) : 1;
+  const int status = read_request(argc, argv, &q) && complete(&q) ? export_as_asked(&q) : 1;
   free(q.names);
   return status;
 }

@@ -7,16 +7,27 @@
 #include <string.h>
 
 #include "dsl/arena.h"
-#include "dsl/units.h"
 #include "generator/commands.h"
+#include "generator/frame_choice.h"
+#include "generator/measured.h"
 #include "generator/model.h"
 #include "runtime/plot.h"
+#include "runtime/quantity.h"
+
+/* --data, with the --band of two of its columns; --line; --band of two values. */
+typedef struct beside_request {
+  enum { BESIDE_TABLE, BESIDE_LINE, BESIDE_LEVELS } kind;
+  const char *text, *band;
+} beside_request;
 
 typedef struct plot_request {
   const char **results, **labels, **ys;
   int result_count, label_count, y_count;
+  beside_request *besides;
+  int beside_count, table_count;
   plot_curve_options curve;
   plot_map_options map;
+  const char *frames, *frame; /* as given */
   bool is_map;
   const char *of_curves, *of_maps; /* an option that only these know, when one was given */
 } plot_request;
@@ -40,22 +51,11 @@ static bool read_whole(const char *name, const char *text, long *value) {
 
 /* "z=0.05" or "x=5 mm". */
 static bool read_slice(const char *text, plot_map_options *o) {
-  const char *axis = strchr("xyz", text[0]), *bad;
-  char *end;
-  size_t bad_length;
-  unit metre, in;
-  unit_parse("m", 1, &metre, &bad, &bad_length);
-  in = metre;
-  if (text[0] && axis && text[1] == '=') {
+  const char *axis = strchr("xyz", text[0]);
+  if (text[0] && axis && text[1] == '=' &&
+      quantity_read(text + 2, strlen(text + 2), "m", &o->slice_at)) {
     o->slice_axis = (int)(axis - "xyz");
-    o->slice_at = strtod(text + 2, &end);
-    const bool number = end != text + 2 && isfinite(o->slice_at);
-    end += strspn(end, " ");
-    if (number && (!*end || unit_parse(end, strlen(end), &in, &bad, &bad_length)) &&
-        dim_equal(in.dim, metre.dim)) {
-      o->slice_at *= in.factor;
-      return true;
-    }
+    return true;
   }
   fprintf(stderr,
           "perilat: error: --slice needs an axis and a place in m or with a unit, e.g. z=0.05 or "
@@ -83,6 +83,31 @@ static bool set_once(const char **x, const char *given) {
   return first;
 }
 
+static bool add_beside(plot_request *q, int kind, const char *text) {
+  q->table_count += kind == BESIDE_TABLE;
+  q->besides[q->beside_count++] = (beside_request){.kind = kind, .text = text};
+  return true;
+}
+
+/* Values stand for themselves; columns, by names or numbers, are those of the table before. */
+static bool add_band(plot_request *q, const char *text) {
+  const char *equals = strrchr(text, '=');
+  beside_request *last = q->beside_count ? &q->besides[q->beside_count - 1] : NULL;
+  const bool of_table = last && last->kind == BESIDE_TABLE && !last->band;
+  const bool numbers = strspn(text, "0123456789, ") == strlen(text);
+  if (quantity_begins(equals ? equals + 1 : text) && !(numbers && of_table))
+    return add_beside(q, BESIDE_LEVELS, text);
+  if (of_table) {
+    last->band = text;
+    return true;
+  }
+  fprintf(stderr,
+          "perilat: error: --band %s follows the --data of its table: --data lab.csv --band "
+          "low,high\n",
+          text);
+  return false;
+}
+
 /* One option or file; false after a message. */
 static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   int bad = 0;
@@ -105,8 +130,18 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
     q->curve.y_unit = v;
   else if ((v = special_value(argc, argv, at, "--label", &q->of_curves, &bad)))
     q->labels[q->label_count++] = v;
+  else if ((v = special_value(argc, argv, at, "--data", &q->of_curves, &bad)))
+    add_beside(q, BESIDE_TABLE, v);
+  else if ((v = special_value(argc, argv, at, "--line", &q->of_curves, &bad)))
+    add_beside(q, BESIDE_LINE, v);
+  else if ((v = special_value(argc, argv, at, "--band", &q->of_curves, &bad)))
+    bad = bad || !add_band(q, v);
   else if ((v = special_value(argc, argv, at, "--frame", &q->of_maps, &bad)))
-    bad = bad || !read_whole("--frame", v, &q->map.frame);
+    bad = bad || !read_whole("--frame", q->frame = v, &q->map.frame);
+  else if ((v = special_value(argc, argv, at, "--frames", &q->of_maps, &bad)))
+    q->frames = v;
+  else if ((v = special_value(argc, argv, at, "--mark", &q->of_maps, &bad)))
+    q->map.mark = v;
   else if ((v = special_value(argc, argv, at, "--factor", &q->of_maps, &bad)))
     bad = bad || !read_number("--factor", v, &q->map.factor);
   else if ((v = special_value(argc, argv, at, "--component", &q->of_maps, &bad))) {
@@ -121,21 +156,97 @@ static bool read_one(int argc, char **argv, int *at, plot_request *q) {
   return !bad;
 }
 
-static bool draw(plot_request *q) {
-  char error[1024];
-  bool good;
-  if (q->is_map) {
-    good = plot_map(q->results[0], &q->map, error, sizeof error);
-  } else {
-    q->curve.labels = q->label_count ? q->labels : NULL;
-    q->curve.ys = q->ys;
-    q->curve.y_count = q->y_count;
-    good = plot_curve(q->results, q->result_count, &q->curve, error, sizeof error);
+/* --- beside computed curves ------------------------------------------------------------------- */
+
+typedef struct beside_set {
+  measured *tables;
+  double (*values)[2];
+  plot_beside *items; /* they point into the others */
+} beside_set;
+
+static bool read_table(const beside_request *b, const measured_axes *axes, const char *label,
+                       measured *m, plot_beside *item) {
+  source_set sources = {NULL, 0};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  const bool good = measured_read(m, "--data", b->text, b->band, axes, &said);
+  *item = (plot_beside){label ? label : m->label, m->x, m->y, m->low, m->high, m->count};
+  diag_print(&said, stderr);
+  diag_clear(&said);
+  source_clear(&sources);
+  return good;
+}
+
+static bool read_beside(const plot_request *q, int k, const measured_axes *axes, int *tables,
+                        beside_set *s) {
+  const beside_request *b = &q->besides[k];
+  const char *const *labels = q->label_count > q->result_count ? q->labels + q->result_count : NULL;
+  double *v = s->values[k];
+  const int table = *tables;
+  s->items[k] = (plot_beside){.label = b->text, .count = 1};
+  switch (b->kind) {
+  case BESIDE_TABLE:
+    *tables += 1;
+    return read_table(b, axes, labels ? labels[table] : NULL, &s->tables[table], &s->items[k]);
+  case BESIDE_LINE:
+    s->items[k].y = v;
+    return measured_line(b->text, axes->y_unit, v);
+  default:
+    s->items[k].low = v;
+    s->items[k].high = v + 1;
+    return measured_levels(b->text, axes->y_unit, v);
   }
-  if (!good)
-    fprintf(stderr, "perilat: error: %s\n", error);
-  else
-    printf("written %s\n", q->curve.output);
+}
+
+static bool draw_curves(plot_request *q) {
+  char error[1024] = "";
+  measured_axes axes = {.x = q->curve.x, .ys = q->ys, .y_count = q->y_count};
+  const size_t room = (size_t)q->beside_count + 1;
+  beside_set s = {must_calloc(room, sizeof *s.tables), must_calloc(room, sizeof *s.values),
+                  must_calloc(room, sizeof *s.items)};
+  int tables = 0;
+  plot_histories h;
+  bool good = plot_histories_read(&h, q->results[0], axes.x, axes.ys[0], error, sizeof error);
+  axes.x_unit = h.x_unit;
+  axes.y_unit = h.y_unit;
+  for (int k = 0; good && k < q->beside_count; k++)
+    good = read_beside(q, k, &axes, &tables, &s);
+  q->curve.labels = q->label_count ? q->labels : NULL;
+  q->curve.ys = q->ys;
+  q->curve.y_count = q->y_count;
+  q->curve.beside = s.items;
+  q->curve.beside_count = q->beside_count;
+  good = good && plot_curve(q->results, q->result_count, &q->curve, error, sizeof error);
+  if (*error) fprintf(stderr, "perilat: error: %s\n", error);
+  for (int k = 0; k < tables; k++)
+    measured_free(&s.tables[k]);
+  free(h.x);
+  free(h.y);
+  free(s.tables);
+  free(s.values);
+  free(s.items);
+  return good;
+}
+
+static bool draw_map(plot_request *q) {
+  char error[1024];
+  frame_choice chosen = {.count = 0};
+  if (q->frames && !frame_choice_read(&chosen, q->results[0], q->frames)) {
+    frame_choice_free(&chosen);
+    return false;
+  }
+  q->map.frames = chosen.frames;
+  q->map.captions = (const char *const *)chosen.captions;
+  q->map.frame_count = chosen.count;
+  const bool good = plot_map(q->results[0], &q->map, error, sizeof error);
+  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  frame_choice_free(&chosen);
+  return good;
+}
+
+static bool draw(plot_request *q) {
+  const bool good = q->is_map ? draw_map(q) : draw_curves(q);
+  if (good) printf("written %s\n", q->curve.output);
   return good;
 }
 
@@ -154,9 +265,11 @@ static bool complete(const plot_request *q) {
           stderr);
   else if (q->is_map && q->result_count > 1)
     fputs("perilat: error: a map shows one result; give one file\n", stderr);
-  else if (q->label_count && q->label_count != q->result_count)
-    fprintf(stderr, "perilat: error: %d labels for %d results; give one --label a result\n",
-            q->label_count, q->result_count);
+  else if (q->label_count && q->label_count != q->result_count &&
+           q->label_count != q->result_count + q->table_count)
+    fprintf(stderr, "perilat: error: %d labels for %d results%s; give one --label a result%s\n",
+            q->label_count, q->result_count, q->table_count ? " and their tables" : "",
+            q->table_count ? ", then one a table" : "");
   else if (q->is_map && q->of_curves)
     fprintf(stderr,
             "perilat: error: %s belongs to curves, --map draws a map; leave one of them out\n",
@@ -164,6 +277,8 @@ static bool complete(const plot_request *q) {
   else if (!q->is_map && q->of_maps)
     fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n",
             q->of_maps);
+  else if (q->frame && q->frames)
+    fputs("perilat: error: --frame shows one frame, --frames several; give one of them\n", stderr);
   else if (q->map.component < -1)
     fprintf(stderr,
             "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");
@@ -172,21 +287,30 @@ static bool complete(const plot_request *q) {
   return false;
 }
 
-/* The picture must not take a result's place. */
-static bool spares_results(const plot_request *q) {
-  for (int k = 0; k < q->result_count; k++)
-    if (same_file(q->curve.output, q->results[k])) {
-      fprintf(stderr,
-              "perilat: error: the picture would overwrite `%s`; give it another name with -o\n",
-              q->results[k]);
-      return false;
-    }
-  return true;
+/* The picture must not take the place of what it is drawn from. */
+static bool spares(const plot_request *q, const char *path) {
+  if (!same_file(q->curve.output, path)) return true;
+  fprintf(stderr,
+          "perilat: error: the picture would overwrite `%s`; give it another name with -o\n", path);
+  return false;
+}
+
+static bool spares_inputs(const plot_request *q) {
+  bool good = true;
+  for (int k = 0; good && k < q->result_count; k++)
+    good = spares(q, q->results[k]);
+  for (int k = 0; good && k < q->beside_count; k++) {
+    const char *columns;
+    char *path = text_table_split(q->besides[k].text, &columns);
+    good = q->besides[k].kind != BESIDE_TABLE || spares(q, path);
+    free(path);
+  }
+  return good;
 }
 
 /* "beam_load.png", in the working folder: after the first result and what is drawn, so that pictures of other results stay. */
 static void name_output(plot_request *q, char *name, size_t size) {
-  const char *drawn = q->is_map ? q->map.field : q->y_count ? q->ys[0] : "load";
+  const char *drawn = q->is_map ? q->map.field : q->ys[0];
   const char *slash = strrchr(q->results[0], '/');
   const char *result = slash ? slash + 1 : q->results[0], *dot = strrchr(result, '.');
   const size_t stem = dot && dot > result ? (size_t)(dot - result) : strlen(result);
@@ -204,16 +328,20 @@ int command_plot(int argc, char **argv) {
   q.results = must_calloc((size_t)argc + 1, sizeof *q.results);
   q.labels = must_calloc((size_t)argc + 1, sizeof *q.labels);
   q.ys = must_calloc((size_t)argc + 1, sizeof *q.ys);
+  q.besides = must_calloc((size_t)argc + 1, sizeof *q.besides);
   bool good = true;
   for (int at = 0; at < argc && good;)
     good = read_one(argc, argv, &at, &q);
+  if (!q.curve.x) q.curve.x = "time";
+  if (q.y_count == 0) q.ys[q.y_count++] = "load";
   good = good && complete(&q);
   char *name = good ? must_calloc(strlen(q.results[0]) + 128, 1) : NULL;
   if (good && !q.curve.output) name_output(&q, name, strlen(q.results[0]) + 128);
-  good = good && spares_results(&q) && draw(&q);
+  good = good && spares_inputs(&q) && draw(&q);
   free(name);
   free(q.results);
   free(q.labels);
   free(q.ys);
+  free(q.besides);
   return good ? 0 : 1;
 }

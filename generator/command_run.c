@@ -4,14 +4,16 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/terminal.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/interval.h"
 #include "generator/model.h"
+#include "generator/passes.h"
 #include "generator/physics.h"
 #include "generator/run.h"
 #include "generator/settings.h"
-#include "generator/version.h"
 #include "runtime/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
@@ -27,8 +29,7 @@ static bool read_threads(const char *text, int *threads) {
   long value = strtol(text, &end, 10);
   *threads = (int)value;
   if (!*end && end != text && value >= 1 && value <= 1024) return true;
-  fprintf(stderr, "perilat: error: --threads needs a whole number from 1 to 1024, not `%s`\n",
-          text);
+  say_error("--threads needs a whole number from 1 to 1024, not `%s`", text);
   return false;
 }
 
@@ -52,22 +53,21 @@ static bool read_run_options(option_reader reader, const char *program, int argc
       o->overrides[o->override_count++].text = value;
     else if (reader != CHECK && option_flag(argv, &at, "--profile"))
       o->profile = true;
+    else if (reader != CHECK && option_flag(argv, &at, "--json"))
+      o->json = true;
     else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
       bad = bad || !read_threads(value, &o->threads);
     else if (reader == CHECK && (value = option_value(argc, argv, &at, "--dump", &bad)))
       check->dump = value;
     else if (reader == CHECK && (value = option_value(argc, argv, &at, "--diagnostics", &bad)))
       check->diagnostics = value;
-    else if (argv[at][0] == '-')
+    else if (reader == CHECK ? is_option_like(argv[at]) : argv[at][0] == '-')
       bad = option_unknown_in(program, names[reader], argv[at]);
     else if (reader == SOLVER) {
-      fprintf(stderr,
-              "perilat: error: `%s` runs the deck that it was built from; it takes no file\n",
-              program);
+      say_error("`%s` runs the deck that it was built from; it takes no file", program);
       bad = 1;
     } else if (o->deck_path) {
-      fprintf(stderr, "perilat: error: `%s` takes one file; `%s` is a second one\n", program,
-              argv[at]);
+      say_error("`%s` takes one file; `%s` is a second one", program, argv[at]);
       bad = 1;
     } else
       o->deck_path = argv[at++];
@@ -75,15 +75,34 @@ static bool read_run_options(option_reader reader, const char *program, int argc
   return !bad;
 }
 
+/* A solver's deck has been looked at. */
+static bool is_runnable(const run_options *o) {
+  return o->deck_text || (file_suits(o->deck_path, FILES(DECK), "perilat run", "a deck") &&
+                          !drive_refuse_path("run", o->deck_path));
+}
+
+/* The run, and with --json its document. */
+static int run_as_asked(run_options *o) {
+  if (!o->json) return is_runnable(o) ? run_deck(o) : 1;
+  document d;
+  diag_json report;
+  document_begin(&d);
+  diag_json_begin(&report, &d.writer, o->deck_path);
+  o->report = &report;
+  if (is_runnable(o)) return document_end(&d, run_deck(o));
+  diag_json_end(&report, false);
+  json_put_text(&d.writer, "status", "failed");
+  return document_end(&d, 1);
+}
+
 int command_run(int argc, char **argv) {
   run_options o = {.program = "perilat run"};
   bool good = read_run_options(RUN, "perilat run", argc, argv, &o, NULL);
   int status = 1;
   if (good && !o.deck_path)
-    fputs("perilat: error: `perilat run` needs a deck\n  perilat run deck.nml\n", stderr);
-  else if (good && file_suits(o.deck_path, FILES(DECK), "perilat run", "a deck") &&
-           !drive_refuse_path("run", o.deck_path))
-    status = run_deck(&o);
+    say_error("`perilat run` needs a deck\n  perilat run deck.nml");
+  else if (good)
+    status = run_as_asked(&o);
   free(o.overrides);
   return status;
 }
@@ -95,7 +114,7 @@ static int dump_stage(model *m, const char *stage) {
     return 0;
   }
   if (strcmp(stage, "ir") && strcmp(stage, "passes") && strcmp(stage, "c")) {
-    fprintf(stderr, "perilat: error: --dump takes tree, ir, passes or c, not `%s`\n", stage);
+    say_error("--dump takes tree, ir, passes or c, not `%s`", stage);
     return 1;
   }
   if (!m->plan && !model_plan(m)) return 1;
@@ -203,7 +222,7 @@ static int dump_deck(const run_options *o, const char *stage) {
   size_t length;
   char *text = read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
   if (!text) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     return 1;
   }
   checking c = {.memory = arena_new()};
@@ -233,7 +252,7 @@ static int check_file(const run_options *o, const char *dump) {
   if (kind == FILE_LAW)
     status = check_law(o, found ? found : o->deck_path, dump);
   else if (dump && drive_is_path(o->deck_path))
-    fputs("perilat: error: --dump shows a law; give the law's file, or a deck\n", stderr);
+    say_error("--dump shows a law; give the law's file, or a deck");
   else if (dump)
     status = dump_deck(o, dump);
   else if (drive_is_path(o->deck_path))
@@ -246,23 +265,23 @@ static int check_file(const run_options *o, const char *dump) {
 
 /* The same as one JSON document on the standard output. */
 static int check_to_json(run_options *o) {
+  document d;
   diag_json report;
-  diag_json_begin(&report, o->deck_path, perilat_version);
+  document_begin(&d);
+  diag_json_begin(&report, &d.writer, o->deck_path);
   o->report = &report;
-  int status = check_file(o, NULL);
-  diag_json_end(&report, status == 0, stdout);
-  return status;
+  const int status = check_file(o, NULL);
+  diag_json_end(&report, status == 0);
+  return document_end(&d, status);
 }
 
 static int check_as_asked(run_options *o, const check_options *asked) {
   if (!asked->diagnostics || !strcmp(asked->diagnostics, "text")) return check_file(o, asked->dump);
   if (strcmp(asked->diagnostics, "json") != 0)
-    fprintf(stderr, "perilat: error: --diagnostics takes text or json, not `%s`\n",
-            asked->diagnostics);
+    say_error("--diagnostics takes text or json, not `%s`", asked->diagnostics);
   else if (asked->dump)
-    fputs("perilat: error: --dump and --diagnostics=json both write to the standard output; give "
-          "one\n",
-          stderr);
+    say_error("--dump and --diagnostics=json both write to the standard output; give "
+              "one");
   else
     return check_to_json(o);
   return 1;
@@ -274,8 +293,7 @@ int command_check(int argc, char **argv) {
   bool good = read_run_options(CHECK, "perilat check", argc, argv, &o, &asked);
   int status = 1;
   if (good && !o.deck_path)
-    fputs("perilat: error: `perilat check` needs a law or a deck\n  perilat check law.plm\n",
-          stderr);
+    say_error("`perilat check` needs a law or a deck\n  perilat check law.plm");
   else if (good)
     status = check_as_asked(&o, &asked);
   free(o.overrides);
@@ -283,13 +301,17 @@ int command_check(int argc, char **argv) {
 }
 
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count) {
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count) {
   run_options o = {.program = argv[0],
                    .deck_path = deck_name,
                    .deck_text = deck_text,
                    .laws = laws,
-                   .law_count = law_count};
+                   .law_count = law_count,
+                   .files = files,
+                   .file_count = file_count};
   signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
+  terminal_begin();
   for (int a = 1; a < argc; a++)
     if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
       printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
@@ -298,7 +320,7 @@ int perilat_solver_main(int argc, char **argv, const char *deck_name, const char
       return 0;
     }
   bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
-  int status = good ? run_deck(&o) : 1;
+  int status = good ? run_as_asked(&o) : 1;
   free(o.overrides);
   return status;
 }

@@ -9,13 +9,14 @@
 #include "dsl/explain.h"
 #include "dsl/format.h"
 #include "dsl/help.h"
+#include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/drive.h"
 #include "generator/model.h"
+#include "generator/standard_input.h"
 #include "runtime/deck_table.h"
 
 enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
-#define LAW_LIMIT ((size_t)1 << 20)
 
 /* --- format ----------------------------------------------------------------------------------- */
 
@@ -47,7 +48,10 @@ static int put_formatted(const char *path, const char *before, const char *after
                          format_mode mode) {
   char error[ERROR_LENGTH];
   bool same = strcmp(before, after) == 0;
-  if (mode == FORMAT_PRINT) fputs(after, stdout);
+  if (mode == FORMAT_PRINT) {
+    terminal_expect_data();
+    fputs(after, stdout);
+  }
   if (mode == FORMAT_CHECK && !same)
     fprintf(stderr, "%s: not laid out as `perilat format` does\n", path);
   if (mode != FORMAT_IN_PLACE) return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
@@ -68,10 +72,14 @@ static bool is_law(const char *path) {
 static int format_file(const char *path, format_mode mode) {
   char error[ERROR_LENGTH];
   size_t length;
+  if (mode == FORMAT_IN_PLACE && is_standard_input(path)) {
+    fputs("perilat: error: the standard input has no place; leave out -i\n", stderr);
+    return INPUT_WRONG;
+  }
   if (!file_suits(path, FILES(LAW), "perilat format", "a law") ||
       (mode == FORMAT_IN_PLACE && !is_law(path)))
     return INPUT_WRONG;
-  char *text = read_text_file(path, LAW_LIMIT, &length, error, sizeof error);
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
   if (!text) {
     fprintf(stderr, "perilat: error: %s\n", error);
     return INPUT_WRONG;
@@ -98,7 +106,7 @@ int command_format(int argc, char **argv) {
       mode = FORMAT_CHECK;
     else if (option_flag(argv, &at, "-i"))
       mode = FORMAT_IN_PLACE;
-    else if (argv[at][0] == '-')
+    else if (is_option_like(argv[at]))
       return option_unknown("format", argv[at]);
     else
       argv[files++] = argv[at++];
@@ -148,7 +156,7 @@ int command_explain(int argc, char **argv) {
       form = EXPLAIN_MARKDOWN;
     else if ((value = option_value(argc, argv, &at, "--set", &bad)))
       bad = bad || !read_choice((char *)(size_t)value, &choices[count++]);
-    else if (argv[at][0] == '-')
+    else if (is_option_like(argv[at]))
       bad = option_unknown("explain", argv[at]);
     else if (path) {
       fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n",
@@ -189,6 +197,7 @@ static void show_key(const deck_key_info *key) {
     fputs("; required", stdout);
   else if (key->fallback)
     printf("; default %s", key->fallback[0] == '=' ? key->fallback + 2 : key->fallback);
+  if (key->former) printf("; formerly %s", key->former);
   putchar('\n');
 }
 
@@ -253,7 +262,9 @@ static int unknown_topic(const char *topic) {
 }
 
 int command_help(int argc, char **argv) {
-  if (argc == 1) return show_topic(argv[0]) ? 0 : unknown_topic(argv[0]);
-  fputs("perilat: error: `perilat help` takes one topic, e.g. `perilat help damage`\n", stderr);
-  return INPUT_WRONG;
+  for (int k = 0; k < argc; k++) {
+    if (k > 0) putchar('\n');
+    if (!show_topic(argv[k])) return unknown_topic(argv[k]);
+  }
+  return 0; /* main() answers `perilat help` alone */
 }

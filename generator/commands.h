@@ -7,83 +7,133 @@
 #include <stdio.h>
 
 #define COMMAND_STATUS "0 done, 1 the input is wrong, 2 the run failed"
-#define RUN_STATUS                                                                                                      \
-  COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far and a checkpoint"
-#define DRIVE_STATUS                                                                                                    \
-  "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no number"
+#define RUN_STATUS                                                                                 \
+  COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far " \
+                 "and a checkpoint"
+#define DRIVE_STATUS                                                                               \
+  "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no "     \
+  "number"
 /* X(name, files, endings, what it does, exit status): `endings` are those of the files that shells offer, blanks between. */
-#define COMMANDS(X)                                                                                                    \
-  X(new, "NAME", "", "a commented law to start from, its drive path and the deck of a small specimen", COMMAND_STATUS) \
-  X(check, "law.plm | deck.nml | path.nml", "plm nml", "report all errors, run nothing", COMMAND_STATUS)               \
-  X(build, "law.plm | deck.nml", "plm nml", "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS) \
-  X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                                                  \
-  X(drive, "[law.plm] path.nml", "plm nml", "one bond, or one particle of a law of families, along a path: table, picture, expectations", \
-    DRIVE_STATUS)                                                                                                      \
-  X(plot, "result.h5 ...", "h5 hdf5", "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)    \
-  X(compare, "a.h5 b.h5", "h5 hdf5", "where two results differ most", "0 the same, 1 an input is wrong, 2 different")  \
-  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values", COMMAND_STATUS)                  \
-  X(info, "law.plm | deck.nml | result.h5", "plm nml h5 hdf5", "what a law implies, what a file holds", COMMAND_STATUS) \
-  X(explain, "law.plm", "plm", "a law as equations with a table of its symbols", COMMAND_STATUS)                       \
-  X(format, "law.plm ...", "plm", "lay out laws", "0 done, 1 the input is wrong; with --check also when a file would change") \
-  X(help, "TOPIC", "", "what a message's code, a word of the language, a deck group or a command means", COMMAND_STATUS)
+#define COMMANDS(X)                                                                                \
+  X(new, "NAME", "",                                                                               \
+    "a commented law to start from, its drive path and the deck of a small specimen",              \
+    COMMAND_STATUS)                                                                                \
+  X(check, "law.plm | deck.nml | path.nml | -", "plm nml", "report all errors, run nothing",       \
+    COMMAND_STATUS)                                                                                \
+  X(build, "law.plm | deck.nml", "plm nml",                                                        \
+    "compile a law to a shared kernel, or a deck to a solver", COMMAND_STATUS)                     \
+  X(run, "deck.nml", "nml", "run a deck", RUN_STATUS)                                              \
+  X(drive, "[law.plm] path.nml", "plm nml",                                                        \
+    "one bond, or one particle of a law of families, along a path: table, picture, expectations",  \
+    DRIVE_STATUS)                                                                                  \
+  X(plot, "result.h5 ...", "h5 hdf5",                                                              \
+    "curves, or a map of particles or bonds, as PNG, SVG or PDF", COMMAND_STATUS)                  \
+  X(compare, "a.h5 b.h5 | lab.csv", "h5 hdf5 csv",                                                 \
+    "where two results, or a result and a table, differ most",                                     \
+    "0 the same, 1 an input is wrong, 2 different")                                                \
+  X(export, "result.h5", "h5 hdf5", "histories or a frame as comma-separated values",              \
+    COMMAND_STATUS)                                                                                \
+  X(info, "law.plm | deck.nml | result.h5 | -", "plm nml h5 hdf5",                                 \
+    "what a law implies, what a file holds", COMMAND_STATUS)                                       \
+  X(explain, "law.plm | -", "plm", "a law as equations with a table of its symbols",               \
+    COMMAND_STATUS)                                                                                \
+  X(format, "law.plm ... | -", "plm", "lay out laws",                                              \
+    "0 done, 1 the input is wrong; with --check also when a file would change")                    \
+  X(help, "TOPIC ...", "",                                                                         \
+    "what a message's code, a word of the language, a deck group or a command means",              \
+    COMMAND_STATUS)
 
 /* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells offer files, a|b|c for one
    of these words, else what it stands for. Texts of --help, suggestions, manual and completion. */
-#define OPTIONS_OF_SOLVERS(X, command)                                                                                 \
-  X(command, "--threads", "N", "number of threads; the results are the same for any number")                           \
-  X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                                      \
-  X(command, "--profile", "", "say at the end where the time of the run went and what limits it")                      \
-  X(command, "--set", "group.key=value", "set a value of the deck, `group.key=` its default; may be given several times")
-#define COMMAND_OPTIONS(X)                                                                                             \
-  X(new, "--kind", "central|micropolar", "whether ends of bonds can turn (micropolar) or not (central, the default)")  \
-  X(check, "--dump", "tree|ir|passes|c", "show what becomes of a law, or of a deck's on its lattice, at this stage")                                   \
-  X(check, "--diagnostics", "text|json", "the form of messages; json is one document on the standard output")          \
-  X(check, "--no-physics", "", "leave out the checks of mechanics")                                                    \
-  X(check, "--set", "key=value", "set group.key of a deck or a path, or a parameter or an option of a law; may be given several times") \
-  X(build, "-o", "FILE", "name of the kernel (of a law, otherwise NAME.so) or of the solver (of a deck)")              \
-  X(build, "--no-physics", "", "leave out the checks of mechanics")                                                    \
-  OPTIONS_OF_SOLVERS(X, run)                                                                                           \
-  X(run, "--check-kernel", "", "compare the compiled kernel with the interpreter first")                               \
-  X(run, "--interpret", "", "run on the interpreter: no C compiler, many times slower, the same results")              \
-  X(run, "--no-physics", "", "leave out the checks of mechanics")                                                      \
-  X(drive, "--set", "key=value", "set a parameter or an option of the law, or group.key of the path; may be given several times") \
-  X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                                         \
-  X(drive, "--csv", "FILE", "write the table as comma-separated values")                                               \
-  X(drive, "--hdf5", "FILE", "write the table as a result")                                                            \
-  X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")                                \
-  X(plot, "-o", "FILE", "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
-  X(plot, "--title", "TEXT", "title of the picture")                                                                   \
-  X(plot, "--x", "NAME", "history along x")                                                                            \
-  X(plot, "--y", "NAME", "history along y; several give several curves")                                               \
-  X(plot, "--x-unit", "UNIT", "unit along x")                                                                          \
-  X(plot, "--y-unit", "UNIT", "unit along y")                                                                          \
-  X(plot, "--label", "TEXT", "name of a result's curve, one for each result")                                          \
-  X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")                             \
-  X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                                        \
-  X(plot, "--component", "K", "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                  \
-  X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given")                     \
-  X(plot, "--slice", "z=0.05", "a slice of a body in space, half a spacing to either side; its surface if not given") \
-  X(compare, "--tolerance", "R", "largest relative difference that counts as the same (0)")                            \
-  X(compare, "--history", "NAME", "compare this history only; may be given several times")                             \
-  X(compare, "--field", "NAME", "compare this field only; may be given several times")                                 \
-  X(export, "-o", "FILE", "file of the table; the standard output if not given")                                       \
-  X(export, "--history", "NAME", "this history only, not all; may be given several times")                             \
-  X(export, "--frame", "N", "the particles of a frame, from 0; -1 is the last")                                        \
-  X(export, "--field", "NAME", "this field of the frame only, not all; may be given several times")                    \
-  X(export, "--bonds", "", "the bonds of the frame, not its particles")                                                \
-  X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                                     \
-  X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                                            \
-  X(info, "--lattice", "KIND", "hexagonal, square, cubic or fcc; by the law if not given")                             \
-  X(info, "--horizon", "H", "neighbours up to so many spacings away; the nearest ones if not given")                   \
-  X(info, "--shells", "N", "neighbours of so many shells")                                                             \
-  X(info, "--set", "name=value", "set a parameter or an option of the law; may be given several times")                \
-  X(info, "--json", "", "what a law implies as one JSON document")                                                     \
-  X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")                               \
-  X(explain, "--markdown", "", "as Markdown (default)")                                                                \
-  X(explain, "--latex", "", "as a LaTeX document")                                                                     \
-  X(explain, "--set", "option=choice", "choose an option of the law; may be given several times")                      \
-  X(format, "--check", "", "change nothing, only say which files would change (exit status 1)")                        \
-  X(format, "-i", "", "in place")                                                                                      \
+#define OPTIONS_OF_SOLVERS(X, command)                                                             \
+  X(command, "--threads", "N", "number of threads; the results are the same for any number")       \
+  X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                  \
+  X(command, "--profile", "", "say at the end where the time of the run went and what limits it")  \
+  X(command, "--json", "", "how the run ended, as one JSON document on the standard output")       \
+  X(command, "--set", "group.key=value",                                                           \
+    "set a value of the deck, `group.key=` its default; may be given several times")
+#define COMMAND_OPTIONS(X)                                                                         \
+  X(new, "--kind", "central|micropolar",                                                           \
+    "whether ends of bonds can turn (micropolar) or not (central, the default)")                   \
+  X(check, "--dump", "tree|ir|passes|c",                                                           \
+    "show what becomes of a law, or of a deck's on its lattice, at this stage")                    \
+  X(check, "--diagnostics", "text|json",                                                           \
+    "the form of messages; json is one document on the standard output")                           \
+  X(check, "--no-physics", "", "leave out the checks of mechanics")                                \
+  X(check, "--set", "key=value",                                                                   \
+    "set group.key of a deck or a path, or a parameter or an option of a law; may be given "       \
+    "several times")                                                                               \
+  X(build, "-o", "FILE",                                                                           \
+    "name of the kernel (of a law, otherwise NAME.so) or of the solver (of a deck)")               \
+  X(build, "--no-physics", "", "leave out the checks of mechanics")                                \
+  OPTIONS_OF_SOLVERS(X, run)                                                                       \
+  X(run, "--check-kernel", "", "compare the compiled kernel with the interpreter first")           \
+  X(run, "--interpret", "",                                                                        \
+    "run on the interpreter: no C compiler, many times slower, the same results")                  \
+  X(run, "--no-physics", "", "leave out the checks of mechanics")                                  \
+  X(drive, "--set", "key=value",                                                                   \
+    "set a parameter or an option of the law, or group.key of the path; may be given several "     \
+    "times")                                                                                       \
+  X(drive, "--compiled", "", "drive the compiled kernel, not the interpreter")                     \
+  X(drive, "--csv", "FILE", "write the table as comma-separated values")                           \
+  X(drive, "--hdf5", "FILE", "write the table as a result")                                        \
+  X(drive, "--picture", "FILE", "draw the curve: PNG, SVG or PDF by the name's ending")            \
+  X(plot, "-o", "FILE",                                                                            \
+    "the picture: PNG, SVG or PDF by the name's ending (RESULT_HISTORY.png, RESULT_FIELD.png)")    \
+  X(plot, "--title", "TEXT", "title of the picture")                                               \
+  X(plot, "--x", "NAME", "history along x")                                                        \
+  X(plot, "--y", "NAME", "history along y; several give several curves")                           \
+  X(plot, "--x-unit", "UNIT", "unit along x")                                                      \
+  X(plot, "--y-unit", "UNIT", "unit along y")                                                      \
+  X(plot, "--label", "TEXT", "name of a result's curve, one for each result")                      \
+  X(plot, "--data", "lab.csv",                                                                     \
+    "points of a table: columns named as the histories, or lab.csv:X,Y; may be given several "     \
+    "times")                                                                                       \
+  X(plot, "--band", "LOW,HIGH",                                                                    \
+    "a band between two columns of the --data before it, or two values, e.g. '4 kN,5 kN'")         \
+  X(plot, "--line", "VALUE",                                                                       \
+    "a line at a value, e.g. '58.88 kN' or 'f_t A = 58.88 kN'; may be given several times")        \
+  X(plot, "--map", "FIELD", "a map of this field of particles or bonds instead of curves")         \
+  X(plot, "--frame", "N", "frame of the map, from 0; -1 is the last (default)")                    \
+  X(plot, "--frames", "LIST",                                                                      \
+    "several frames in one picture: 0,5,-1, or those nearest to values: cmod=0.1mm,0.2mm")         \
+  X(plot, "--mark", "FIELD",                                                                       \
+    "dots where a field is above 0 (yielded), or above or below a value ('S_p > 1e-6')")           \
+  X(plot, "--component", "K",                                                                      \
+    "component of a vector: 0 is x, 1 is y, 2 is z; its size if not given")                        \
+  X(plot, "--factor", "F", "displacements of the map times F; so that they are seen if not given") \
+  X(plot, "--slice", "z=0.05",                                                                     \
+    "a slice of a body in space, half a spacing to either side; its surface if not given")         \
+  X(compare, "--tolerance", "R", "largest relative difference that counts as the same (0)")        \
+  X(compare, "--x", "NAME", "history along x of the curve that is compared with a table (time)")   \
+  X(compare, "--y", "NAME", "history along y (load)")                                              \
+  X(compare, "--band", "LOW,HIGH",                                                                 \
+    "two columns of the table: what is outside of the band between them counts")                   \
+  X(compare, "--history", "NAME", "compare this history only; may be given several times")         \
+  X(compare, "--field", "NAME", "compare this field only; may be given several times")             \
+  X(compare, "--json", "", "as one JSON document on the standard output")                          \
+  X(export, "-o", "FILE", "file of the table; the standard output if not given")                   \
+  X(export, "--history", "NAME", "this history only, not all; may be given several times")         \
+  X(export, "--frame", "N", "the particles of a frame, from 0; -1 is the last")                    \
+  X(export, "--field", "NAME",                                                                     \
+    "this field of the frame only, not all; may be given several times")                           \
+  X(export, "--bonds", "", "the bonds of the frame, not its particles")                            \
+  X(export, "--json", "", "as one JSON document on the standard output")                           \
+  X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
+  X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
+  X(info, "--lattice", "KIND", "hexagonal, square, cubic or fcc; by the law if not given")         \
+  X(info, "--horizon", "H",                                                                        \
+    "neighbours up to so many spacings away; the nearest ones if not given")                       \
+  X(info, "--shells", "N", "neighbours of so many shells")                                         \
+  X(info, "--set", "name=value",                                                                   \
+    "set a parameter or an option of the law; may be given several times")                         \
+  X(info, "--json", "", "of a law or a result: as one JSON document on the standard output")       \
+  X(info, "--builtins", "", "quantities and functions that laws may use; takes no file")           \
+  X(explain, "--markdown", "", "as Markdown (default)")                                            \
+  X(explain, "--latex", "", "as a LaTeX document")                                                 \
+  X(explain, "--set", "option=choice", "choose an option of the law; may be given several times")  \
+  X(format, "--check", "", "change nothing, only say which files would change (exit status 1)")    \
+  X(format, "-i", "", "in place")                                                                  \
   OPTIONS_OF_SOLVERS(X, solver)
 
 typedef struct command_entry {
@@ -104,6 +154,8 @@ COMMANDS(X)
    `--name value` and `--name=value` are the same. A missing value is reported; *bad is set. */
 int option_flag(char **argv, int *at, const char *name);
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad);
+/* Begins like an option; `-` is none, but the standard input, which some commands read. */
+bool is_option_like(const char *given);
 /* Says that `given` is no option of `program`, which knows those of `command`, with the nearest of them. Returns 1. */
 int option_unknown_in(const char *program, const char *command, const char *given);
 /* The same of `perilat command`. */

@@ -46,8 +46,7 @@ double **planes_new(int planes, long count) {
   double **p = must_calloc((size_t)planes + 1, sizeof *p);
   size_t bytes = ((size_t)count * sizeof(double) / PL_ALIGNMENT + 1) * PL_ALIGNMENT;
   for (int k = 0; k < planes; k++) {
-    p[k] = aligned_alloc(PL_ALIGNMENT, bytes);
-    if (!p[k]) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+    p[k] = must_align(PL_ALIGNMENT, bytes);
     memset(p[k], 0, bytes);
   }
   return p;

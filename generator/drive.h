@@ -107,6 +107,8 @@ drive_input *drive_read(arena *a, source_set *sources, int file, const deck_over
                         int override_count, diagnostics *d);
 /* Every group and key, as Markdown. */
 void drive_reference(FILE *out);
+/* The groups that a path may hold. */
+extern const struct deck_grammar drive_grammar;
 /* The group of paths with that name (without &), or NULL. */
 const struct deck_group_info *drive_group(const char *name);
 

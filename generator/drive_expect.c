@@ -160,8 +160,7 @@ static size_t end_line(const char *text) {
 static void write_text(const judge *j, closed_forms *f) {
   const char *law_text = j->model->sources.items[0].text;
   size_t length, cut = end_line(law_text);
-  FILE *out = open_memstream(&f->text, &length);
-  if (!out) abort();
+  FILE *out = must_open_text(&f->text, &length);
   fprintf(out, "%.*s\n", (int)cut, law_text);
   for (int k = 0; k < j->in->expect_count; k++) {
     if (!j->in->expects[k].formula) continue;
@@ -171,7 +170,7 @@ static void write_text(const judge *j, closed_forms *f) {
     fprintf(out, "%s\n", j->in->expects[k].formula);
   }
   fputs(law_text + cut, out);
-  fclose(out);
+  must_close_text(out);
 }
 
 /* A message about a closed form, at the path's line. */

@@ -6,6 +6,7 @@
 #include <strings.h>
 
 #include "dsl/elementary.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/settings.h"
 #include "runtime/deck_load.h"
@@ -13,8 +14,7 @@
 #include "runtime/deck_value.h"
 
 enum { MOST_STEPS = 1000000, MOST_CYCLES = 10000, MOST_ERRORS = 50 };
-#define LONGEST     1e100 /* s */
-#define TABLE_LIMIT ((size_t)64 << 20)
+#define LONGEST 1e100 /* s */
 
 /* --- the groups ------------------------------------------------------------------------------- */
 
@@ -156,9 +156,10 @@ static const deck_key_info path_keys[] = {
     LATER("cycles", "1", "cycles: how many; default 1"),
     LATER("wave", "",
           "cycles: `'triangle'` (default), `'sine'`, `'pulse'` (up and back to 0, never below)"),
-    LATER("file", "",
-          "table: a text file beside this one, two columns (time in s, value) apart by commas or "
-          "blanks"),
+    LATER(
+        "file", "",
+        "table: two columns of a text file beside this one, times and values, as for the loads of "
+        "a deck"),
 };
 
 static const deck_key_info output_keys[] = {
@@ -260,6 +261,8 @@ static const deck_group_info groups[GROUP_COUNT] = {
 #undef X
 };
 
+const deck_grammar drive_grammar = {"path", groups, GROUP_COUNT};
+
 const deck_group_info *drive_group(const char *name) {
   for (int g = 0; g < GROUP_COUNT; g++)
     if (strcmp(groups[g].name, name) == 0) return &groups[g];
@@ -301,10 +304,9 @@ bool drive_is_deck(const char *file) {
 
 bool drive_refuse_path(const char *command, const char *file) {
   if (!drive_is_path(file)) return false;
-  fprintf(stderr,
-          "perilat: error: `%s` is a path that drives one bond, not a deck for `perilat %s`\n"
-          "  perilat drive %s\n",
-          file, command, file);
+  say_error("`%s` is a path that drives one bond, not a deck for `perilat %s`\n"
+            "  perilat drive %s",
+            file, command, file);
   return true;
 }
 
@@ -429,101 +431,17 @@ static bool read_cycles(const reader *r, const namelist_group *g, const char *un
   return true;
 }
 
-/* Two numbers a line; lines that begin with anything else are headings. False after a message. */
-static bool parse_table(const reader *r, span where, const char *name, char *text,
-                        time_function *f) {
-  int room = 64, line = 0;
-  double *times = must_alloc((size_t)room * sizeof *times),
-         *values = must_alloc((size_t)room * sizeof *values);
-  bool good = true;
-  for (char *at = text; good && *at; line++) {
-    char *end = at + strcspn(at, "\n"), *after, *last;
-    char kept = *end;
-    *end = 0;
-    double t = strtod(at, &after), v = strtod(after + strspn(after, " \t,;"), &last);
-    if (f->count == room) {
-      room *= 2;
-      times = must_realloc(times, (size_t)room * sizeof *times);
-      values = must_realloc(values, (size_t)room * sizeof *values);
-    }
-    if (after != at) {
-      good = last != after + strspn(after, " \t,;") && isfinite(t) && isfinite(v) &&
-             (f->count ? t > times[f->count - 1] : t >= 0) && f->count < NAMELIST_MOST_VALUES;
-      times[f->count] = t;
-      values[f->count++] = v;
-    }
-    at = kept ? end + 1 : end;
-  }
-  good = good && f->count >= 2;
-  if (!good) {
-    diag_report(r->d, DIAG_BAD_VALUE, where, "line %d of `%s` is not a time and a value", line,
-                name);
-    diag_hint(
-        r->d,
-        "two columns: times in s that ascend from 0 or later, and values; at least two lines");
-  }
-  f->times = memcpy(arena_alloc(r->memory, (size_t)room * sizeof *times), times,
-                    (size_t)f->count * sizeof *times);
-  f->values = memcpy(arena_alloc(r->memory, (size_t)room * sizeof *values), values,
-                     (size_t)f->count * sizeof *values);
-  free(times);
-  free(values);
-  return good;
-}
-
-static bool read_table_file(const reader *r, const namelist_group *g, const namelist_key *key,
-                            const char *unit_text, time_function *f) {
-  double factor = 1;
-  static const deck_key_use uses[] = {
-      {"rise", 0, false}, {"times", 0, false}, {"values", 0, false}, {"history", 0, false}};
-  if (!deck_keys_fit(g, uses, 4, 0, "a path from a file", r->d) ||
-      !deck_values_counted(key, 1, r->d))
-    return false;
-  if (key->values[0].kind != NAMELIST_TEXT || !key->values[0].text[0]) {
-    diag_report(r->d, DIAG_BAD_VALUE, key->value_where,
-                "`file` is the name of a text file in quotes");
-    return false;
-  }
-  *f = (time_function){.shape = TIME_TABLE};
-  if (!read_real(r, g, "value", unit_text, BOUND_NONE, &factor) ||
-      !read_real(r, g, "start", "s", BOUND_NOT_NEGATIVE, &f->start))
-    return false;
-  const char *slash = strrchr(r->in->path, '/'), *name = key->values[0].text;
-  int folder = slash && name[0] != '/' ? (int)(slash - r->in->path) + 1 : 0;
-  const char *path = arena_printf(r->memory, "%.*s%s", folder, r->in->path, name);
-  char error[512];
-  size_t length;
-  char *text = read_text_file(path, TABLE_LIMIT, &length, error, sizeof error);
-  if (!text) {
-    diag_report(r->d, DIAG_FILE, key->value_where, "%s", error);
-    return false;
-  }
-  bool good = parse_table(r, key->value_where, name, text, f);
-  free(text);
-  double *values = arena_alloc(r->memory, ((size_t)f->count + 1) * sizeof *values);
-  for (int k = 0; k < f->count; k++)
-    values[k] = factor * f->values[k];
-  f->values = values;
-  return good;
-}
-
 /* As a deck's load; a table without `value` holds the values themselves. */
 static bool read_load(const reader *r, const namelist_group *g, const char *unit_text,
                       time_function *f) {
-  const namelist_key *value = namelist_find(g, "value");
-  namelist_value one = {.kind = NAMELIST_NUMBER, .number = 1, .where = g->where};
-  namelist_key full = {.name = "value",
-                       .name_where = g->where,
-                       .value_where = g->where,
-                       .values = &one,
-                       .value_count = 1};
+  const deck_load_kind kind = {"value", unit_text, true};
   if (!deck_keys_fit(g, other_uses, 3, 0, "a path without cycles", r->d)) return false;
-  if (!value && !namelist_find(g, "values")) {
+  if (!namelist_find(g, "value") && !namelist_find(g, "values") && !namelist_find(g, "file")) {
     diag_report(r->d, DIAG_MISSING_KEY, g->where,
                 "`&path` needs `value`, or `times` and `values`, or `file`");
     return false;
   }
-  return deck_load_read(r->memory, g, value ? value : &full, unit_text, f, r->d);
+  return deck_load_read(r->memory, g, &kind, f, r->d);
 }
 
 static bool wants_cycles(const namelist_group *g) {
@@ -542,10 +460,8 @@ static void read_path(const reader *r, const namelist_group *g) {
   if (quantity < 0) return;
   p.quantity = (drive_quantity)quantity;
   const char *unit_text = quantity_units[quantity];
-  const namelist_key *file = namelist_find(g, "file");
-  bool good = wants_cycles(g) ? read_cycles(r, g, unit_text, &p)
-              : file          ? read_table_file(r, g, file, unit_text, &p.f)
-                              : read_load(r, g, unit_text, &p.f);
+  const bool good =
+      wants_cycles(g) ? read_cycles(r, g, unit_text, &p) : read_load(r, g, unit_text, &p.f);
   if (good) r->in->pieces[r->in->piece_count++] = p;
 }
 
@@ -687,10 +603,9 @@ static void check_whole(const reader *r, int file) {
 
 drive_input *drive_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                         int override_count, diagnostics *d) {
-  static const deck_grammar of_paths = {"path", groups, GROUP_COUNT};
   int errors = d->errors;
   namelist *n = namelist_read(a, sources, file, d);
-  deck_set(a, sources, n, &of_paths, overrides, override_count, d);
+  deck_set(a, sources, n, &drive_grammar, overrides, override_count, d);
   drive_input *in = arena_alloc(a, sizeof *in);
   reader r = {a, sources, d, in};
   size_t most = (size_t)n->group_count + 1;

@@ -5,9 +5,8 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
+#include "dsl/terminal.h"
 #include "generator/drive.h"
 #include "generator/version.h"
 #include "runtime/hdf5_tools.h"
@@ -60,9 +59,8 @@ static bool is_worth_showing(const drive_table *t, int column) {
 /* Of the terminal; where there is none, of a wide page. */
 static int width_of(FILE *out) {
   enum { PAGE = 132, LEAST = 40 };
-  struct winsize size;
-  if (!isatty(fileno(out)) || ioctl(fileno(out), TIOCGWINSZ, &size) != 0) return PAGE;
-  return size.ws_col < LEAST ? PAGE : size.ws_col;
+  const int columns = terminal_columns(out);
+  return columns < LEAST ? PAGE : columns;
 }
 
 static int value_text(const drive_column *c, long row, char *text, size_t size) {

@@ -399,7 +399,8 @@ void emit_line_end(emitter *e, ir_node n) {
   span where = ir_where(e->graph, n);
   const law *l = e->plan->law;
   if (where.end && where.file == l->tree->name_where.file)
-    c_text_add(e->out, "; /* line %d */\n", source_place(l->sources, where.file, where.begin).line);
+    c_text_add(e->out, "; /* line %d */\n",
+               source_line_number(l->sources, where.file, where.begin));
   else
     c_text_add(e->out, ";\n");
 }

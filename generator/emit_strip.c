@@ -10,10 +10,10 @@
 
 /* --- one loop --------------------------------------------------------------------------------- */
 
-static bool reads(const emitter *e, ir_source from, int index) {
+static bool reads_protected(const emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++)
-    if (e->needed[n] && emit_is_input(e, n) && ir_input_source(e->graph, n) == from &&
-        ir_input_index(e->graph, n) == index)
+    if (e->needed[n] && emit_is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_ENDS &&
+        ir_input_index(e->graph, n) == ENDS_PROTECTED)
       return true;
   return false;
 }
@@ -56,10 +56,22 @@ static void write_target_array(emitter *e, pass_target target, int index, const 
   c_text_add(e->out, ";\n");
 }
 
+/* Arrays of the fields that are read, of all or of those only that the pass does not write. */
+static void write_read_fields(emitter *e, bool only_read) {
+  const int fields = e->plan->law->fields.count;
+  unsigned char *read = must_calloc((size_t)fields + 1, 1);
+  for (ir_node n = 0; n < e->node_count; n++)
+    if (e->needed[n] && emit_is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_FIELD)
+      read[ir_input_index(e->graph, n)] = 1;
+  for (int k = 0; k < e->root_count && only_read; k++)
+    if (e->roots[k].target == TO_FIELD) read[e->roots[k].index] = 0;
+  for (int f = 0; f < fields; f++)
+    if (read[f]) write_target_array(e, TO_FIELD, f, "const ");
+  free(read);
+}
+
 static void write_output_arrays(emitter *e) {
-  for (int f = 0; f < e->plan->law->fields.count; f++)
-    if (!emit_find_root(e, TO_FIELD, f) && reads(e, IR_FROM_FIELD, f))
-      write_target_array(e, TO_FIELD, f, "const ");
+  write_read_fields(e, true);
   for (int k = 0; k < e->root_count; k++)
     write_target_array(e, e->roots[k].target, e->roots[k].index, "");
 }
@@ -84,7 +96,7 @@ static void write_store(emitter *e, const pass_root *r) {
 }
 
 static void write_protected_bit(emitter *e) {
-  if (reads(e, IR_FROM_ENDS, ENDS_PROTECTED))
+  if (reads_protected(e))
     c_text_add(e->out, "  const int64_t protected_bit = PL_PROTECTED(strip->direction);\n");
 }
 
@@ -401,11 +413,6 @@ static void write_lent_arrays(emitter *e, const stages *s, const unsigned char *
   }
 }
 
-static void write_read_fields(emitter *e) {
-  for (int f = 0; f < e->plan->law->fields.count; f++)
-    if (reads(e, IR_FROM_FIELD, f)) write_target_array(e, TO_FIELD, f, "const ");
-}
-
 static void write_unusual_head(emitter *e, const stages *s, const char *name,
                                const unsigned char *kept) {
   c_text function = {0};
@@ -417,7 +424,7 @@ static void write_unusual_head(emitter *e, const stages *s, const char *name,
                      "  const int64_t present_bit = (int64_t)PL_PRESENT(strip->direction);\n");
   write_protected_bit(e);
   emit_inputs_before_loop(e);
-  write_read_fields(e);
+  write_read_fields(e, false);
   write_lent_arrays(e, s, kept);
   c_text_add(e->out, "  for (long group = 0; group < last; group += PL_LANES) {\n");
 }

@@ -7,8 +7,9 @@
 #include <strings.h>
 #include <unistd.h>
 
-#include "dsl/json.h"
+#include "generator/document.h"
 #include "generator/model.h"
+#include "generator/passes.h"
 #include "generator/run.h"
 #include "generator/settings.h"
 #include "runtime/deck_value.h"
@@ -36,6 +37,7 @@ typedef struct facts {
   arena *memory;
   source_set sources;
   diagnostics said;
+  diag_json *report; /* or NULL */
   model model;
   deck_material material;
   pl_law *law;         /* interpreted */
@@ -45,6 +47,11 @@ typedef struct facts {
   deck_lattice lattice;
   implied implied;
 } facts;
+
+static void tell(const facts *f, const diagnostics *d) {
+  if (f->report) diag_json_add(f->report, d);
+  diag_print(d, stderr);
+}
 
 static bool read_length(facts *f, const char *option, const char *text, double *value) {
   double number;
@@ -68,15 +75,14 @@ static bool read_number(const char *option, const char *text, double least, doub
     *value = number;
     return true;
   }
-  fprintf(stderr, "perilat: error: %s needs a number from %g to %g, not `%s`\n", option, least,
-          most, text);
+  say_error("%s needs a number from %g to %g, not `%s`", option, least, most, text);
   return false;
 }
 
 static bool read_family(deck_lattice *l, const info_law_options *o) {
   double shells = l->shells;
   if (o->horizon && o->shells) {
-    fputs("perilat: error: --horizon and --shells exclude each other\n", stderr);
+    say_error("--horizon and --shells exclude each other");
     return false;
   }
   if (o->horizon) l->shells = 0;
@@ -107,11 +113,9 @@ static bool choose_lattice(facts *f, const info_law_options *o, const model *m) 
   if (!o->lattice && space) d->shells = 2;
   const int dimensions = bravais_dimensions(d->kind);
   if (!dimensions) {
-    fprintf(
-        stderr,
-        "perilat: error: there is no lattice `%s`\n  --lattice takes hexagonal, square, cubic or "
-        "fcc\n",
-        d->kind);
+    say_error("there is no lattice `%s`\n  --lattice takes hexagonal, square, cubic or "
+              "fcc",
+              d->kind);
     return false;
   }
   if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &spacing)) ||
@@ -129,7 +133,7 @@ static bool choose_lattice(facts *f, const info_law_options *o, const model *m) 
 static bool open_lattice(facts *f, const info_law_options *o, const char *path) {
   model m;
   const bool opened = model_open(&m, path, NULL, 0);
-  if (!opened) diag_print(&m.said, stderr);
+  if (!opened) tell(f, &m.said);
   const bool good = opened && choose_lattice(f, o, &m);
   model_close(&m);
   return good;
@@ -145,7 +149,7 @@ static bool open_law(facts *f, const info_law_options *o) {
               settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
                             &f->said) &&
               run_open_material(&f->material, &f->lattice, NULL, &f->model, &f->said);
-  if (f->model.memory) diag_print(&f->model.said, stderr);
+  if (f->model.memory) tell(f, &f->model.said);
   free(path);
   return good;
 }
@@ -164,7 +168,7 @@ static bool take_values(facts *f) {
   for (int k = 0; k < p->count; k++) {
     const deck_assignment *a = setting_of(f, p->items[k]->name);
     f->given[k] = a || p->items[k]->has_default;
-    f->values[k] = a ? a->value : p->items[k]->initial;
+    f->values[k] = a ? a->value : f->given[k] ? p->items[k]->initial : NAN;
     if (!f->given[k] && !f->missing) f->missing = p->items[k]->name;
   }
   if (f->missing) return true;
@@ -188,16 +192,12 @@ static bool is_of_families(const facts *f) {
 static bool imply(facts *f) {
   implied *i = &f->implied;
   if (f->law->kind == PL_MICROPOLAR && !bravais_is_hexagon(&f->lattice)) {
-    fputs("perilat: error: a micropolar law runs on the hexagonal lattice of nearest neighbours "
-          "only\n",
-          stderr);
+    say_error("a micropolar law runs on the hexagonal lattice of nearest neighbours only");
     return false;
   }
   rows *w = implied_lattice_like(&f->lattice, material_density(f->law, f->values));
   if (!w) {
-    fprintf(stderr,
-            "perilat: error: a particle of this lattice has no neighbours, or more than %d\n",
-            ROWS_MAX_NEIGHBOURS);
+    say_error("a particle of this lattice has no neighbours, or more than %d", ROWS_MAX_NEIGHBOURS);
     return false;
   }
   i->neighbours = 2 * w->directions;
@@ -423,24 +423,8 @@ static void print_text(const facts *f) {
 
 /* --- as JSON ---------------------------------------------------------------------------------- */
 
-static void put_text(json *j, const char *name, const char *text) {
-  json_key(j, name);
-  json_text(j, text);
-}
-
-static void put_number(json *j, const char *name, double number) {
-  json_key(j, name);
-  json_number(j, number);
-}
-
-static void put_bool(json *j, const char *name, bool value) {
-  json_key(j, name);
-  json_bool(j, value);
-}
-
 static void put_pair(json *j, const char *name, const double pair[2]) {
-  json_key(j, name);
-  json_array(j);
+  json_put_array(j, name);
   json_number(j, pair[0]);
   json_number(j, pair[1]);
   json_array_end(j);
@@ -450,51 +434,60 @@ static void open_symbol(json *j, const symbol *s) {
   char unit_text[64];
   dim_unit(s->dim, unit_text, sizeof unit_text);
   json_object(j);
-  put_text(j, "name", s->name);
-  put_text(j, "unit", unit_text);
-  put_text(j, "description", s->doc);
+  json_put_text(j, "name", s->name);
+  json_put_text(j, "unit", unit_text);
+  json_put_text(j, "description", s->doc);
+}
+
+/* SI; null for what is without end, or depends on a value that is not known. */
+static void put_bounds(json *j, const facts *f, int p) {
+  json_key(j, "bounds");
+  if (!f->model.law->parameters.items[p]->declared->in.given) {
+    json_null(j);
+    return;
+  }
+  const law_limits limits = law_parameter_limits(f->model.law, p, f->values);
+  json_object(j);
+  json_put_number(j, "lower", limits.lower);
+  json_put_bool(j, "lower_open", limits.lower_open);
+  json_put_number(j, "upper", limits.upper);
+  json_put_bool(j, "upper_open", limits.upper_open);
+  json_object_end(j);
 }
 
 static void put_parameters(json *j, const facts *f) {
   const symbol_list *list = &f->model.law->parameters;
-  json_key(j, "parameters");
-  json_array(j);
+  json_put_array(j, "parameters");
   for (int p = 0; p < list->count; p++) {
-    char interval[128] = "";
-    if (list->items[p]->declared->in.given)
-      law_parameter_bounds(f->model.law, p, f->values, interval, sizeof interval);
     open_symbol(j, list->items[p]);
-    put_number(j, "value", f->given[p] ? f->values[p] : NAN);
-    put_text(j, "bounds", *interval ? interval : NULL);
+    json_put_number(j, "value", f->given[p] ? f->values[p] : NAN);
+    put_bounds(j, f, p);
     json_object_end(j);
   }
   json_array_end(j);
 }
 
 static void put_symbols(json *j, const char *name, const symbol_list *list) {
-  json_key(j, name);
-  json_array(j);
+  json_put_array(j, name);
   for (int k = 0; k < list->count; k++) {
     open_symbol(j, list->items[k]);
-    put_text(j, "on", placement_name(list->items[k]->place));
+    json_put_text(j, "on", placement_name(list->items[k]->place));
     json_object_end(j);
   }
   json_array_end(j);
 }
 
 static void put_options(json *j, const law *l) {
-  json_key(j, "options");
-  json_array(j);
+  json_put_array(j, "options");
   for (int k = 0; k < l->options.count; k++) {
     const stmt *declared = l->options.items[k]->declared;
     json_object(j);
-    put_text(j, "name", declared->name);
-    json_key(j, "choices");
-    json_array(j);
+    json_put_text(j, "name", declared->name);
+    json_put_array(j, "choices");
     for (int w = 0; w < declared->word_count; w++)
       json_text(j, declared->words[w]);
     json_array_end(j);
-    put_text(j, "chosen", l->chosen[k]);
+    json_put_text(j, "chosen", l->chosen[k]);
     json_object_end(j);
   }
   json_array_end(j);
@@ -502,74 +495,67 @@ static void put_options(json *j, const law *l) {
 
 static void put_cost(json *j, const facts *f) {
   const kernel_plan *p = f->model.plan;
-  json_key(j, "cost");
-  json_object(j);
-  put_number(j, "operations", p->flops_per_bond + p->divisions_per_bond);
-  put_number(j, "divisions", p->divisions_per_bond);
-  put_number(j, "bytes", (double)bytes_per_bond(p));
-  put_number(j, "passes", pass_count(p));
-  put_number(j, "computed_once", p->uniform_count);
+  json_put_object(j, "cost");
+  json_put_number(j, "operations", p->flops_per_bond + p->divisions_per_bond);
+  json_put_number(j, "divisions", p->divisions_per_bond);
+  json_put_number(j, "bytes", (double)bytes_per_bond(p));
+  json_put_number(j, "passes", pass_count(p));
+  json_put_number(j, "computed_once", p->uniform_count);
   json_object_end(j);
 }
 
 static void put_bonds(json *j, const implied *i) {
   put_pair(j, "peak_stress", i->strength);
   put_pair(j, "strain_at_peak", i->strain);
-  put_number(j, "bond_peak_force", i->bond.peak_force);
-  put_number(j, "bond_stretch_at_peak", i->bond.stretch_at_peak);
-  put_bool(j, "separates", i->bond.separates);
-  put_number(j, "bond_work_of_fracture", i->bond.energy);
-  put_number(j, "work_of_fracture", i->bond.row_energy);
+  json_put_number(j, "bond_peak_force", i->bond.peak_force);
+  json_put_number(j, "bond_stretch_at_peak", i->bond.stretch_at_peak);
+  json_put_bool(j, "separates", i->bond.separates);
+  json_put_number(j, "bond_work_of_fracture", i->bond.energy);
+  json_put_number(j, "work_of_fracture", i->bond.row_energy);
   put_pair(j, "crack_energy", i->crack);
 }
 
 /* SI units throughout; null for what is infinite, unknown or does not exist. */
 static void put_implied(json *j, const facts *f) {
   const implied *i = &f->implied;
-  json_key(j, "implied");
-  json_object(j);
-  put_text(j, "lattice", f->lattice.kind);
-  put_number(j, "neighbours", i->neighbours);
-  put_text(j, "setting", f->lattice.setting);
-  put_number(j, "spacing", f->lattice.spacing);
-  put_number(j, "thickness", f->lattice.thickness > 0 ? f->lattice.thickness : NAN);
+  json_put_object(j, "implied");
+  json_put_text(j, "lattice", f->lattice.kind);
+  json_put_number(j, "neighbours", i->neighbours);
+  json_put_text(j, "setting", f->lattice.setting);
+  json_put_number(j, "spacing", f->lattice.spacing);
+  json_put_number(j, "thickness", f->lattice.thickness > 0 ? f->lattice.thickness : NAN);
   if (i->stiff) {
     put_pair(j, "E", i->elastic.E);
     put_pair(j, "nu", i->elastic.nu);
-    put_number(j, "G", i->elastic.G);
+    json_put_number(j, "G", i->elastic.G);
   }
   if (!is_of_families(f)) put_bonds(j, i);
   if (i->has_mass) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
-    put_number(j, "transverse_speed", i->waves.transverse);
-    put_number(j, "rotation_cutoff",
+    json_put_number(j, "transverse_speed", i->waves.transverse);
+    json_put_number(j, "rotation_cutoff",
                f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
-    put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
-    put_bool(j, "at_surface", i->step.at_surface);
-    put_text(j, "ruling_mode", i->step.mode);
-    put_number(j, "omega_max", i->step.omega_max);
-    put_number(j, "damping_ratio", i->step.damping_ratio);
+    json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
+    json_put_bool(j, "at_surface", i->step.at_surface);
+    json_put_text(j, "ruling_mode", i->step.mode);
+    json_put_number(j, "omega_max", i->step.omega_max);
+    json_put_number(j, "damping_ratio", i->step.damping_ratio);
   }
   json_object_end(j);
 }
 
-static void print_json(const facts *f) {
+static void put_law(json *j, const facts *f) {
   const law *l = f->model.law;
-  json j;
-  json_begin(&j, stdout);
-  json_object(&j);
-  put_text(&j, "model", l->tree->name);
-  put_text(&j, "law", law_kinds[l->tree->law]);
-  put_text(&j, "description", l->tree->doc);
-  put_parameters(&j, f);
-  put_options(&j, l);
-  put_symbols(&j, "fields", &l->fields);
-  put_symbols(&j, "outputs", &l->outputs);
-  put_text(&j, "nonconservative", l->nonconservative);
-  put_cost(&j, f);
-  if (!f->missing) put_implied(&j, f);
-  json_object_end(&j);
-  json_end(&j);
+  json_put_text(j, "model", l->tree->name);
+  json_put_text(j, "law", law_kinds[l->tree->law]);
+  json_put_text(j, "description", l->tree->doc);
+  put_parameters(j, f);
+  put_options(j, l);
+  put_symbols(j, "fields", &l->fields);
+  put_symbols(j, "outputs", &l->outputs);
+  json_put_text(j, "nonconservative", l->nonconservative);
+  put_cost(j, f);
+  if (!f->missing) put_implied(j, f);
 }
 
 /* --- all of it -------------------------------------------------------------------------------- */
@@ -581,12 +567,13 @@ static bool learn(facts *f, const info_law_options *o) {
 }
 
 int info_law(const info_law_options *o) {
-  facts f = {.memory = arena_new()};
+  facts f = {.memory = arena_new(), .report = o->report};
   diag_begin(&f.said, &f.sources);
-  bool good = learn(&f, o);
-  diag_print(&f.said, stderr);
-  if (good && o->json)
-    print_json(&f);
+  const bool good = learn(&f, o);
+  tell(&f, &f.said);
+  if (o->report) diag_json_end(o->report, good);
+  if (good && o->report)
+    put_law(o->report->document, &f);
   else if (good)
     print_text(&f);
   if (f.law) plan_interpreted_free(f.law);

@@ -4,6 +4,8 @@
 
 #include <stdbool.h>
 
+#include "dsl/diagnostics_json.h"
+
 typedef struct info_law_options {
   const char *law;                 /* name or path */
   const char *spacing, *thickness; /* e.g. "6.35 mm"; NULL: 10 mm, 100 mm */
@@ -12,7 +14,7 @@ typedef struct info_law_options {
   const char *horizon, *shells; /* numbers; NULL: the nearest neighbours */
   const char *const *settings;  /* "name=value" */
   int setting_count;
-  bool json;
+  diag_json *report; /* the law goes to its document, after the diagnostics; NULL: as text */
 } info_law_options;
 
 /* Exit status. */

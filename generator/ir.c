@@ -19,6 +19,7 @@ typedef struct node {
   placement place;
   bool of_class; /* differs from neighbour to neighbour, but not along a row */
   bool expected; /* a condition that holds nearly always */
+  bool may_be_nan;
   const char *name;
   span where;
 } node;
@@ -189,6 +190,26 @@ bool ir_is_expected(const ir *g, ir_node n) {
   return at(g, n)->expected;
 }
 
+bool ir_makes_nan(ir_op op) {
+  switch (op) {
+  case IR_DIV:
+  case IR_SQRT:
+  case IR_INVERSE_ROOT:
+  case IR_LOG:
+  case IR_POW:
+  case IR_SIN:
+  case IR_COS:
+  case IR_TAN:
+    return true;
+  default:
+    return false;
+  }
+}
+
+bool ir_may_be_nan(const ir *g, ir_node n) {
+  return at(g, n)->may_be_nan;
+}
+
 bool ir_is_expected_choice(const ir *g, ir_node n) {
   return ir_operation(g, n) == IR_SELECT && ir_is_expected(g, ir_operand(g, n, 0));
 }
@@ -235,6 +256,9 @@ static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
     n.of_class = n.of_class || at(g, operand[k])->of_class;
   if (ir_is_reduction(op)) n.place = ON_PARTICLE;
   if (op == IR_NEIGHBOUR) n.place = ON_NEIGHBOUR;
+  n.may_be_nan = ir_makes_nan(op) && n.place > ON_BODY;
+  for (int k = 0; k < ir_arity(op); k++)
+    n.may_be_nan = n.may_be_nan || at(g, operand[k])->may_be_nan;
   return intern(g, &n);
 }
 
@@ -488,6 +512,76 @@ void ir_substitute(ir *g, const ir_node *roots, int root_count, const ir_node *f
   free(marks);
 }
 
+struct ir_substitution {
+  ir *graph;
+  ir_node *image;        /* [known] of the nodes so far; IR_NONE: not rebuilt yet */
+  unsigned char *listed; /* [known] */
+  ir_node *list;         /* [known] what a root needs that has no image */
+  int known;
+};
+
+ir_substitution *ir_substitution_new(ir *g) {
+  ir_substitution *s = must_calloc(1, sizeof *s);
+  s->graph = g;
+  return s;
+}
+
+void ir_substitution_free(ir_substitution *s) {
+  free(s->image);
+  free(s->listed);
+  free(s->list);
+  free(s);
+}
+
+/* Rebuilding makes nodes that later roots may need. */
+static void know_all(ir_substitution *s) {
+  const int count = ir_count(s->graph);
+  if (count <= s->known) return;
+  const int room = 2 * count;
+  s->image = must_realloc(s->image, (size_t)room * sizeof *s->image);
+  s->list = must_realloc(s->list, (size_t)room * sizeof *s->list);
+  s->listed = must_realloc(s->listed, (size_t)room);
+  for (int k = s->known; k < room; k++) {
+    s->image[k] = IR_NONE;
+    s->listed[k] = 0;
+  }
+  s->known = room;
+}
+
+void ir_substitution_add(ir_substitution *s, ir_node from, ir_node to) {
+  know_all(s);
+  assert(s->image[from] == IR_NONE);
+  s->image[from] = to;
+}
+
+static int by_number(const void *a, const void *b) {
+  const ir_node x = *(const ir_node *)a, y = *(const ir_node *)b;
+  return x < y ? -1 : x > y;
+}
+
+static void list_node(ir_substitution *s, ir_node n, int *count) {
+  if (s->image[n] != IR_NONE || s->listed[n]) return;
+  s->listed[n] = 1;
+  s->list[(*count)++] = n;
+}
+
+ir_node ir_substitution_apply(ir_substitution *s, ir_node root) {
+  int count = 0;
+  know_all(s);
+  list_node(s, root, &count);
+  for (int k = 0; k < count; k++) {
+    const node *n = at(s->graph, s->list[k]);
+    for (int o = 0; o < ir_arity(n->op); o++)
+      list_node(s, n->operand[o], &count);
+  }
+  qsort(s->list, (size_t)count, sizeof *s->list, by_number);
+  for (int k = 0; k < count; k++) {
+    s->image[s->list[k]] = rebuild(s->graph, s->list[k], s->image);
+    s->listed[s->list[k]] = 0;
+  }
+  return s->image[root];
+}
+
 static void count_operation(ir_op op, ir_cost *cost) {
   switch (op) {
   case IR_ADD:
@@ -570,7 +664,7 @@ static void dump_node(const ir *g, ir_node number, FILE *out) {
   if (n->place != ON_NOTHING) fprintf(out, " : %s", placement_name(n->place));
   if (n->name) fprintf(out, "  ; %s", n->name);
   if (g->sources && n->where.end > 0)
-    fprintf(out, " (line %d)", source_place(g->sources, n->where.file, n->where.begin).line);
+    fprintf(out, " (line %d)", source_line_number(g->sources, n->where.file, n->where.begin));
   fputc('\n', out);
 }
 

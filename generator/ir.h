@@ -111,6 +111,11 @@ bool ir_is_expected(const ir *g, ir_node n);
 /* Chooses by such a condition. */
 bool ir_is_expected_choice(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
+/* Whether an operation makes NaN of finite numbers: a root, logarithm, power, division or
+   trigonometric function. And whether finite inputs could make a node NaN: one of these, of
+   something that varies over the lattice, stands at or below it. Overflow is left aside. */
+bool ir_makes_nan(ir_op op);
+bool ir_may_be_nan(const ir *g, ir_node n);
 bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
 const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */
 span ir_where(const ir *g, ir_node n);             /* of the named source line; end == 0 without */
@@ -119,6 +124,13 @@ span ir_where(const ir *g, ir_node n);             /* of the named source line; 
    out[root_count]. A root may be IR_NONE here and in the walks below: it needs nothing. */
 void ir_substitute(ir *g, const ir_node *roots, int root_count, const ir_node *from,
                    const ir_node *to, int pair_count, ir_node *out);
+/* The same root by root: what one root has rebuilt stands for the next ones. Pairs may be added
+   whose `from` no root so far needs. */
+typedef struct ir_substitution ir_substitution;
+ir_substitution *ir_substitution_new(ir *g);
+void ir_substitution_add(ir_substitution *s, ir_node from, ir_node to);
+ir_node ir_substitution_apply(ir_substitution *s, ir_node root);
+void ir_substitution_free(ir_substitution *s);
 /* Marks (1 byte a node, ir_count long, zeroed by the caller) all nodes that the roots need. */
 void ir_mark(const ir *g, const ir_node *roots, int root_count, unsigned char *marks);
 

@@ -290,14 +290,17 @@ static void resolve_fields(lowering *c, lowered_law *out) {
   int fields = c->law->fields.count;
   ir_node *from = must_alloc(((size_t)fields + 1) * sizeof *from);
   ir_node *to = must_alloc(((size_t)fields + 1) * sizeof *to);
+  ir_substitution *known = ir_substitution_new(g);
   for (int k = 0; k < c->rule_count; k++) { /* every field has a rule: the checker sees to that */
     int f = c->rule_order[k];
-    ir_substitute(g, &c->rule[f], 1, from, to, k, &out->fields[f]);
+    out->fields[f] = ir_substitution_apply(known, c->rule[f]);
     lower_name_node(g, out->fields[f], c->law->fields.items[f]->name,
                     c->law->fields.items[f]->rule->where);
     from[k] = c->new_value[f];
     to[k] = out->fields[f];
+    ir_substitution_add(known, from[k], to[k]);
   }
+  ir_substitution_free(known);
   ir_node *results[] = {&out->N, &out->M_i, &out->M_j, &out->F, &out->W};
   for (size_t k = 0; k < sizeof results / sizeof *results; k++)
     if (*results[k] != IR_NONE)

@@ -18,8 +18,8 @@ typedef struct components {
 } components;
 
 typedef struct binding {
-  const symbol *symbol;
-  components value; /* count 0 while its rule is being lowered */
+  const symbol *symbol; /* NULL: a free place */
+  components value;     /* count 0 while its rule is being lowered */
 } binding;
 
 /* A call that has been expanded: the same function of the same arguments is the same value. */
@@ -45,8 +45,9 @@ typedef struct lowering {
   bool failed;
   long visits;
   const frame *frame;
-  binding *bound;
-  int bound_count, bound_capacity;
+  binding *bound; /* [bound_room] open addressing by symbol; a power of two and at least twice the
+                     bindings */
+  size_t bound_count, bound_room;
   known_call *calls[CALL_BUCKETS];
   ir_node *new_value; /* [fields] what names read below the rule: an opaque input until the end */
   ir_node *rule;      /* [fields] value of the rule, or IR_NONE before it */

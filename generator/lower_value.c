@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/hash.h"
 #include "generator/law_inputs.h"
 #include "generator/rewrite.h"
 
@@ -83,18 +84,34 @@ static components lower_quantity_name(lowering *c, const expr *e, builtin_quanti
 
 /* --- names ------------------------------------------------------------------------------------ */
 
+/* Where the symbol is bound, or would be. */
+static binding *place_of(const lowering *c, const symbol *s) {
+  size_t k = (size_t)hash_more(HASH_START, &s, sizeof s) & (c->bound_room - 1);
+  while (c->bound[k].symbol && c->bound[k].symbol != s)
+    k = (k + 1) & (c->bound_room - 1);
+  return &c->bound[k];
+}
+
 components *lower_binding_of(lowering *c, const symbol *s) {
-  for (int k = c->bound_count - 1; k >= 0; k--)
-    if (c->bound[k].symbol == s) return &c->bound[k].value;
-  return NULL;
+  binding *found = c->bound_room ? place_of(c, s) : NULL;
+  return found && found->symbol ? &found->value : NULL;
+}
+
+static void grow_bindings(lowering *c) {
+  binding *before = c->bound;
+  const size_t room = c->bound_room;
+  c->bound_room = room ? 2 * room : 64;
+  c->bound = must_calloc(c->bound_room, sizeof *c->bound);
+  for (size_t k = 0; k < room; k++)
+    if (before[k].symbol) *place_of(c, before[k].symbol) = before[k];
+  free(before);
 }
 
 void lower_bind(lowering *c, const symbol *s, components value) {
-  if (c->bound_count == c->bound_capacity) {
-    c->bound_capacity = c->bound_capacity ? 2 * c->bound_capacity : 64;
-    c->bound = must_realloc(c->bound, (size_t)c->bound_capacity * sizeof *c->bound);
-  }
-  c->bound[c->bound_count++] = (binding){s, value};
+  if (2 * (c->bound_count + 1) > c->bound_room) grow_bindings(c);
+  binding *bound = place_of(c, s);
+  c->bound_count += bound->symbol == NULL;
+  *bound = (binding){s, value};
 }
 
 void lower_name_node(ir *g, ir_node n, const char *name, span where) {
@@ -271,7 +288,7 @@ static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   }
   for (int k = 0; k < ir_arity(ir_operation(g, guard)) && ir_is_logical(g, guard); k++) {
     ir_node x = ir_operand(g, guard, k);
-    if (rewrite_may_be_nan(g, x)) value = ir_select(g, binary(g, IR_EQ, x, x), value, x);
+    if (ir_may_be_nan(g, x)) value = ir_select(g, binary(g, IR_EQ, x, x), value, x);
   }
   return value;
 }

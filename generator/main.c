@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/diagnostics.h"
+#include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/manual.h"
 #include "generator/version.h"
@@ -72,7 +73,9 @@ static int dispatch(int argc, char **argv) {
 int main(int argc, char **argv) {
   signal(SIGXFSZ,
          SIG_IGN); /* a limit on file sizes then is an error of the write, like a full disk */
+  terminal_begin();
   int status = dispatch(argc, argv);
+  diag_print_topics(stderr);
   if (fflush(stdout) == 0 && !ferror(stdout)) return status;
   fprintf(stderr, "perilat: error: cannot write to the standard output: %s\n", strerror(errno));
   return status ? status : 2;

@@ -8,14 +8,26 @@
 #include <unistd.h>
 
 #include "dsl/parse.h"
+#include "generator/document.h"
 #include "generator/emit.h"
+#include "generator/standard_input.h"
 #include "runtime/clock.h"
 #include "runtime/ordinary_file.h"
 
-#define MODEL_LIMIT ((size_t)1 << 20)
-#define PATH_LIMIT  4096
+#define PATH_LIMIT 4096
+
+static char *read_standard_input(size_t limit, size_t *length, char *error, size_t size) {
+  const char *why, *text = standard_input(length, &why);
+  if (text && *length <= limit) return memcpy(must_alloc(*length + 1), text, *length + 1);
+  if (text)
+    snprintf(error, size, "cannot read the standard input: it is longer than %zu MiB", limit >> 20);
+  else
+    snprintf(error, size, "cannot read the standard input: %s", why);
+  return NULL;
+}
 
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size) {
+  if (is_standard_input(path)) return read_standard_input(limit, length, error, size);
   struct stat about;
   const char *why = NULL;
   const int file = ordinary_file_open(path, O_RDONLY, &why);
@@ -58,19 +70,28 @@ static file_kind kind_of_text(const char *text) {
   return *text == '&' ? FILE_DECK : *text ? FILE_LAW : FILE_UNKNOWN;
 }
 
-static file_kind kind_by_content(const char *path) {
+static file_kind kind_of_bytes(const char *head, size_t n) {
   static const char signature[8] = {'\x89', 'H', 'D', 'F', '\r', '\n', '\x1a', '\n'};
+  if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0) return FILE_RESULT;
+  if (strncmp(head, "\x89PNG", 4) == 0 || strncmp(head, "%PDF", 4) == 0) return FILE_PICTURE;
+  return kind_of_text(head);
+}
+
+static file_kind kind_by_content(const char *path) {
   char head[65536];
   const char *why;
+  if (is_standard_input(path)) {
+    size_t length;
+    const char *text = standard_input(&length, &why);
+    return text ? kind_of_bytes(text, length) : FILE_UNKNOWN;
+  }
   const int file = ordinary_file_open(path, O_RDONLY, &why);
   FILE *in = file >= 0 ? fdopen(file, "rb") : NULL;
   if (!in) return FILE_UNKNOWN;
   size_t n = fread(head, 1, sizeof head - 1, in);
   fclose(in);
   head[n] = 0;
-  if (n >= sizeof signature && memcmp(head, signature, sizeof signature) == 0) return FILE_RESULT;
-  if (strncmp(head, "\x89PNG", 4) == 0 || strncmp(head, "%PDF", 4) == 0) return FILE_PICTURE;
-  return kind_of_text(head);
+  return kind_of_bytes(head, n);
 }
 
 file_kind kind_of_file(const char *path) {
@@ -93,7 +114,7 @@ bool file_suits(const char *path, unsigned kinds, const char *command, const cha
                                       [FILE_PICTURE] = "a picture"};
   const file_kind kind = kind_of_file(path);
   if (kind == FILE_UNKNOWN || kinds >> kind & 1) return true;
-  fprintf(stderr, "perilat: error: `%s` is %s; `%s` needs %s\n", path, words[kind], command, needs);
+  say_error("`%s` is %s; `%s` needs %s", path, words[kind], command, needs);
   return false;
 }
 
@@ -114,7 +135,7 @@ static char *try_path(const char *folder, const char *name) {
   char path[PATH_LIMIT];
   int n = snprintf(path, sizeof path, "%s%s%s%s", folder, *folder ? "/" : "", name,
                    ends_in(name, ".plm") ? "" : ".plm");
-  return n > 0 && (size_t)n < sizeof path && is_file(path) ? strdup(path) : NULL;
+  return n > 0 && (size_t)n < sizeof path && is_file(path) ? must_copy(path) : NULL;
 }
 
 static void folder_of(const char *path, char *folder, size_t size) {
@@ -158,7 +179,8 @@ static char *try_program_tree(const char *name) {
 
 char *model_find(const char *name, const char *beside) {
   char *found = NULL;
-  if (name[0] == '/') found = is_file(name) ? strdup(name) : NULL;
+  if (!beside && is_standard_input(name)) return must_copy(name);
+  if (name[0] == '/') found = is_file(name) ? must_copy(name) : NULL;
   if (!found && beside) {
     char folder[PATH_LIMIT];
     folder_of(beside, folder, sizeof folder);
@@ -191,7 +213,7 @@ static char *read_include(void *context, const char *name, const char *from, cha
 static void begin_model(model *m, const char *path) {
   memset(m, 0, sizeof *m);
   m->memory = arena_new();
-  m->path = strdup(path);
+  m->path = must_copy(path);
   diag_begin(&m->said, &m->sources);
 }
 
@@ -286,6 +308,8 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
   double begun = monotonic_seconds();
   if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size)) return NULL;
   m->seconds_kernel = monotonic_seconds() - begun;
+  const char *trouble = toolchain_cache_trouble();
+  if (trouble) *note = arena_printf(m->memory, "%s", trouble);
   return m->loaded.law;
 }
 

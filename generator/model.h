@@ -3,17 +3,21 @@
 #ifndef PERILAT_GENERATOR_MODEL_H
 #define PERILAT_GENERATOR_MODEL_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/law.h"
-#include "generator/passes.h"
 #include "generator/toolchain.h"
+
+C_LINKAGE_BEGIN
+
+typedef struct kernel_plan kernel_plan;
 
 typedef struct model {
   arena *memory;
   source_set sources;
   diagnostics said; /* all diagnostics so far; the caller prints them */
   char *path;       /* of the model file; NULL when it was not found */
-  tree *tree;
-  law *law;
+  struct tree *tree;
+  struct law *law;
   kernel_plan *plan;
   char *c_text; /* emitted C */
   char *key;
@@ -40,7 +44,10 @@ bool file_suits(const char *path, unsigned kinds, const char *command, const cha
 /* True when both name one existing file, by whatever path or link. */
 bool same_file(const char *a, const char *b);
 
-/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL. Looked for: beside `beside`
+#define MODEL_LIMIT ((size_t)1 << 20) /* B: the longest law */
+
+/* Path (malloc'ed) of a model given by name or by a path ending in .plm, or NULL; `-`, the standard input, where no deck
+   gives the name. Looked for: beside `beside`
    (a deck's path, may be NULL); in $PERILAT_MODELS; in models/ under the working folder and its parents; in the models of
    this program's source or installation tree. */
 char *model_find(const char *name, const char *beside);
@@ -61,11 +68,15 @@ bool model_plan(model *m);
 bool model_plan_varying(model *m, const int *varying, int varying_count);
 /* The same for a central law of bonds as a law of families. */
 bool model_plan_of_families(model *m);
-/* Kernel for the runtime: compiled; without a C compiler interpreted, and *note says so. NULL with `error`. */
+/* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or
+   that the cache is another one than was to be. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
 void model_close(model *m);
 
-/* Whole text of a file (malloc'ed, NUL-terminated), or NULL with a sentence in error. Refuses folders and files over limit. */
+/* Whole text of a file (malloc'ed, NUL-terminated), of `-` the standard input, or NULL with a sentence in error. Refuses
+   folders and files over limit. */
 char *read_text_file(const char *path, size_t limit, size_t *length, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

@@ -4,6 +4,8 @@
 
 #include "dsl/diagnostics.h"
 #include "generator/commands.h"
+#include "generator/document.h"
+#include "generator/standard_input.h"
 
 int option_flag(char **argv, int *at, const char *name) {
   if (strcmp(argv[*at], name) != 0) return 0;
@@ -54,7 +56,15 @@ const option_entry option_table[] = {
 enum { OPTION_COUNT = sizeof option_table / sizeof *option_table };
 const int option_count = OPTION_COUNT;
 
+bool is_option_like(const char *given) {
+  return given[0] == '-' && !is_standard_input(given);
+}
+
 int option_unknown_in(const char *program, const char *command, const char *given) {
+  if (is_standard_input(given)) {
+    say_error("`%s` does not read the standard input; give it a file", program);
+    return 1;
+  }
   const char *names[OPTION_COUNT];
   int count = 0;
   for (int k = 0; k < OPTION_COUNT; k++)

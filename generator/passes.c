@@ -35,10 +35,15 @@ typedef struct seen_law {
 
 /* --- substitution ----------------------------------------------------------------------------- */
 
+/* One root after the other. */
 static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, const ir_node *to,
                        int pairs) {
+  ir_substitution *s = ir_substitution_new(g);
+  for (int k = 0; k < pairs; k++)
+    ir_substitution_add(s, from[k], to[k]);
   for (int k = 0; k < count; k++)
-    if (nodes[k] != IR_NONE) ir_substitute(g, &nodes[k], 1, from, to, pairs, &nodes[k]);
+    if (nodes[k] != IR_NONE) nodes[k] = ir_substitution_apply(s, nodes[k]);
+  ir_substitution_free(s);
 }
 
 static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,

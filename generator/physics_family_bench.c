@@ -319,7 +319,7 @@ static char *found_at(const family_bench *b, double size) {
   char *text;
   size_t length;
   bool others = false;
-  FILE *out = open_memstream(&text, &length);
+  FILE *out = must_open_text(&text, &length);
   fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
           b->lattice->spacing);
   if (size > 0) fprintf(out, ", strained by %.3g", size);
@@ -333,7 +333,7 @@ static char *found_at(const family_bench *b, double size) {
     others = others || s->has_default;
   }
   if (others && !b->options->parameters) fputs(PHYSICS_OTHER_VALUES, out);
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 

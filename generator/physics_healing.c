@@ -230,7 +230,7 @@ void physics_check_healing(physics *p) {
   healing *h = must_calloc(1, sizeof *h);
   h->states = bench_states(b);
   h->few = bench_states(b);
-  for (int k = 0; k < b->field_count && !p->failed[DIAG_HEALING]; k++) {
+  for (int k = 0; k < b->field_count && !p->failed[DIAG_HEALING] && !(k && bench_tired(b)); k++) {
     if (b->law->fields.items[k]->kind != SYMBOL_STATE) continue;
     h->field = k;
     h->moved = false;

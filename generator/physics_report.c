@@ -80,12 +80,12 @@ bool physics_reads_rate(const physics *p) {
 char *physics_state_text(const physics *p, const double *column) {
   char *text;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
+  FILE *out = must_open_text(&text, &length);
   const char *separator = "";
   add_motion(&p->b, column, out, &separator);
   separator = *separator ? "; with " : "";
   add_parameters(&p->b, column, out, &separator);
-  fclose(out);
+  must_close_text(out);
   return text;
 }
 

@@ -14,6 +14,7 @@ static const double REST_TOLERANCE = 1e-12;     /* of the force at a stretch and
 static const double STIFFNESS_TOLERANCE = 1e-6; /* stretches of 1e-7 leave nine digits */
 static const double TANGENT_TOLERANCE = 1e-4;
 static const double LEAST_MOTION = 1e-12; /* about what positions in double precision can hold */
+static const double LEAST_FORCE = 1e-290; /* smaller ones have not all their digits */
 
 static const bench_axis force_axis[FORCE_COUNT] = {AXIS_STRETCH, AXIS_THETA_I, AXIS_THETA_J};
 
@@ -218,8 +219,9 @@ static void compare_slope(physics *p, tangent_test *t, int lane, bench_axis axis
     double close = (t->force[3][k][lane] - t->force[4][k][lane]) / step;
     double symbolic = t->tangent.out[k * AXIS_COUNT + (int)axis][lane];
     if (k == FORCE_N && axis == AXIS_STRETCH) symbolic += wrong;
-    double noise =
-               (1e-13 * fabs(at) + 1e-15 * (t->force_size[k] + fabs(t->intact[k][lane]))) / step,
+    double noise = (1e-13 * fabs(at) + 1e-15 * (t->force_size[k] + fabs(t->intact[k][lane])) +
+                    LEAST_FORCE) /
+                   step,
            size = pl_fmax(fabs(close), fabs(symbolic));
     if (size <= 1e-10 * t->largest[k * AXIS_COUNT + (int)axis])
       continue; /* what rounding leaves of a broken bond */

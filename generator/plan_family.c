@@ -180,9 +180,12 @@ static program_motion list_inputs(const kernel_plan *plan) {
 }
 
 static void read_from_lists(const kernel_plan *plan, const program_motion *of, root_list *r) {
+  ir_substitution *s = ir_substitution_new(plan->graph);
+  for (int k = 0; k < of->count; k++)
+    ir_substitution_add(s, of->from[k], of->to[k]);
   for (int k = 0; k < r->count; k++)
-    ir_substitute(plan->graph, &r->items[k].node, 1, of->from, of->to, of->count,
-                  &r->items[k].node);
+    if (r->items[k].node != IR_NONE) r->items[k].node = ir_substitution_apply(s, r->items[k].node);
+  ir_substitution_free(s);
 }
 
 static void motion_from_lists(const kernel_plan *plan, const program_motion *of,

@@ -1,14 +1,16 @@
 #include "generator/progress.h"
 
 #include <stdio.h>
-#include <unistd.h>
+#include <string.h>
 
+#include "dsl/terminal.h"
 #include "runtime/clock.h"
 
-enum { BAR_WIDTH = 24 };
+static const char full_bar[] = "########################", empty_bar[] = "........................";
+enum { BAR_WIDTH = sizeof full_bar - 1, NARROW = 80 };
 
 void progress_begin(progress *p, double fraction) {
-  *p = (progress){.terminal = isatty(STDERR_FILENO) == 1,
+  *p = (progress){.terminal = terminal_is_able(stderr),
                   .begun = monotonic_seconds(),
                   .from = fraction,
                   .tenths = (int)(10 * fraction)};
@@ -18,18 +20,28 @@ static double seconds_of(const progress *p) {
   return monotonic_seconds() - p->begun;
 }
 
-static void show_bar(const progress *p, double fraction, const char *detail) {
-  char bar[BAR_WIDTH + 1], left[32] = "";
-  for (int k = 0; k < BAR_WIDTH; k++)
-    bar[k] = k < (int)(fraction * BAR_WIDTH) ? '#' : '.';
-  bar[BAR_WIDTH] = 0;
-  double done = fraction - p->from;
-  if (done > 0.005) {
-    long s = (long)(seconds_of(p) * (1 - fraction) / done);
-    snprintf(left, sizeof left, "%ld:%02ld left", s / 60, s % 60);
-  }
-  fprintf(stderr, "\r[%s] %3.0f %%  %s  %s\033[K", bar, 100 * fraction, detail, left);
-  fflush(stderr);
+/* "1:05 left", empty where it cannot be told yet. */
+static void time_left(const progress *p, double fraction, char *text, size_t size) {
+  const double done = fraction - p->from;
+  const long s = done > 0.005 ? (long)(seconds_of(p) * (1 - fraction) / done) : -1;
+  snprintf(text, size, s < 0 ? "" : "  %ld:%02ld left", s / 60, s % 60);
+}
+
+/* One column less than there are: a full line would begin another one. The detail is cut, and where
+   the terminal is narrow there is no bar. */
+static void show_line(const progress *p, double fraction, const char *detail) {
+  char bar[BAR_WIDTH + 4] = "", left[40], line[400];
+  const int columns = terminal_columns(stderr), room = columns - 1;
+  time_left(p, fraction, left, sizeof left);
+  const int done = (int)(fraction * BAR_WIDTH);
+  if (columns >= NARROW) snprintf(bar, sizeof bar, "[%.*s%s] ", done, full_bar, empty_bar + done);
+  const int used = snprintf(line, sizeof line, "%s%3.0f %%", bar, 100 * fraction);
+  const int free_room = room - used - 2 - (int)strlen(left);
+  snprintf(line + used, sizeof line - (size_t)used, "  %.*s%s", free_room > 0 ? free_room : 0,
+           detail, left);
+  terminal_control(stderr, "\r");
+  fprintf(stderr, "%.*s", room, line);
+  terminal_control(stderr, "\033[K");
 }
 
 void progress_show(progress *p, double fraction, const char *detail) {
@@ -37,7 +49,7 @@ void progress_show(progress *p, double fraction, const char *detail) {
   if (p->terminal) {
     if (now - p->last_shown < 0.2) return;
     p->last_shown = now;
-    show_bar(p, fraction, detail);
+    show_line(p, fraction, detail);
   } else if ((int)(10 * fraction) > p->tenths) {
     p->tenths = (int)(10 * fraction);
     fprintf(stderr, "%3d %%  %s  (%.1f s)\n", 10 * p->tenths, detail, seconds_of(p));
@@ -45,8 +57,5 @@ void progress_show(progress *p, double fraction, const char *detail) {
 }
 
 void progress_end(progress *p) {
-  if (p->terminal) {
-    fputs("\r\033[K", stderr);
-    fflush(stderr);
-  }
+  if (p->terminal) terminal_control(stderr, "\r\033[K");
 }

@@ -3,19 +3,20 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/document.h"
 #include "generator/model.h"
 
 result_file *table_open(const char *command, const char *path) {
   if (!file_suits(path, FILES(RESULT), command, "a result, which `perilat run` makes")) return NULL;
   char error[1024];
   result_file *f = result_read(path, error, sizeof error);
-  if (!f) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!f) say_error("%s", error);
   return f;
 }
 
 bool table_close(result_file *f, bool good) {
   const char *trouble = result_trouble(f);
-  if (good && trouble) fprintf(stderr, "perilat: error: %s\n", trouble);
+  if (good && trouble) say_error("%s", trouble);
   good = good && !trouble;
   result_read_close(f);
   return good;

@@ -509,59 +509,63 @@ double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count) {
 
 /* --- NaN -------------------------------------------------------------------------------------- */
 
-static bool makes_nan(ir_op op) {
-  switch (op) {
-  case IR_DIV:
-  case IR_SQRT:
-  case IR_INVERSE_ROOT:
-  case IR_LOG:
-  case IR_POW:
-  case IR_SIN:
-  case IR_COS:
-  case IR_TAN:
-    return true;
-  default:
-    return false;
-  }
+/* Nodes that are still to be looked at, each once; a walk that has looked at very many gives up. */
+typedef struct walk {
+  const ir *graph;
+  unsigned char *met; /* [ir_count] */
+  ir_node *list;      /* [MOST_LOOKS] */
+  int count;
+} walk;
+
+enum { MOST_LOOKS = 10000 };
+
+static walk walk_from(const ir *g, ir_node n) {
+  walk w = {g, must_calloc((size_t)ir_count(g), 1), must_alloc(MOST_LOOKS * sizeof(ir_node)), 0};
+  w.met[n] = 1;
+  w.list[w.count++] = n;
+  return w;
 }
 
-/* Marks what, being NaN, surely makes n NaN: n itself, and what arithmetic alone leads from. */
-static void mark_nan_reaching(const ir *g, ir_node n, unsigned char *marks) {
-  marks[n] = 1;
-  for (ir_node k = n; k >= 0; k--) {
-    const ir_op op = ir_operation(g, k);
-    const bool passes = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_DIV ||
-                        op == IR_FMA || op == IR_NEG || op == IR_ABS || op == IR_MIN ||
-                        op == IR_MAX;
-    for (int o = 0; marks[k] && passes && o < ir_arity(op); o++)
-      marks[ir_operand(g, k, o)] = 1;
+/* False where there is no room left. */
+static bool walk_on(walk *w, ir_node n) {
+  for (int k = 0; k < ir_arity(ir_operation(w->graph, n)); k++) {
+    const ir_node operand = ir_operand(w->graph, n, k);
+    if (w->met[operand]) continue;
+    if (w->count == MOST_LOOKS) return false;
+    w->met[operand] = 1;
+    w->list[w->count++] = operand;
   }
+  return true;
+}
+
+static void walk_end(walk *w) {
+  free(w->met);
+  free(w->list);
+}
+
+static bool is_arithmetic(ir_op op) {
+  return op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_DIV || op == IR_FMA ||
+         op == IR_NEG || op == IR_ABS || op == IR_MIN || op == IR_MAX;
+}
+
+/* What, being NaN, surely makes n NaN: n itself, and what arithmetic alone leads from. */
+static walk walk_of_nan(const ir *g, ir_node n) {
+  walk w = walk_from(g, n);
+  for (int k = 0; k < w.count; k++)
+    if (is_arithmetic(ir_operation(g, w.list[k])) && !walk_on(&w, w.list[k])) break;
+  return w;
 }
 
 bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
-  const size_t count = (size_t)ir_count(g);
-  unsigned char *reaching = must_calloc(count, 1), *open = must_calloc(count, 1);
-  mark_nan_reaching(g, b, reaching);
-  open[a] = 1;
+  walk reaching = walk_of_nan(g, b), open = walk_from(g, a);
   bool follows = true;
-  for (ir_node k = a; k >= 0 && follows; k--) {
-    const ir_op op = ir_operation(g, k);
-    if (!open[k] || reaching[k] || is_uniform(g, k)) continue;
-    follows = op != IR_INPUT && !makes_nan(op);
-    for (int o = 0; o < ir_arity(op); o++)
-      open[ir_operand(g, k, o)] = 1;
+  for (int k = 0; k < open.count && follows; k++) {
+    const ir_node n = open.list[k];
+    if (reaching.met[n] || ir_place(g, n) <= ON_BODY) continue;
+    const ir_op op = ir_operation(g, n);
+    follows = op != IR_INPUT && !ir_makes_nan(op) && walk_on(&open, n);
   }
-  free(reaching);
-  free(open);
+  walk_end(&reaching);
+  walk_end(&open);
   return follows;
-}
-
-bool rewrite_may_be_nan(const ir *g, ir_node n) {
-  unsigned char *marks = must_calloc((size_t)ir_count(g), 1);
-  ir_mark(g, &n, 1, marks);
-  bool may = false;
-  for (ir_node k = 0; k <= n && !may; k++)
-    may = marks[k] && makes_nan(ir_operation(g, k)) && ir_place(g, k) > ON_BODY;
-  free(marks);
-  return may;
 }

@@ -40,11 +40,8 @@ bool rewrite_depends(const ir *g, const ir_node *roots, int root_count, const ir
 #define REWRITE_ZERO (-1.0e300)
 double rewrite_degree(const ir *g, ir_node f, const ir_node *x, int count);
 
-/* Whether finite inputs could make the node NaN: it depends on a root, logarithm, power, division or trigonometric function
-   of something that varies over the lattice. Overflow is left aside. */
-bool rewrite_may_be_nan(const ir *g, ir_node n);
-
-/* Whether b is NaN wherever a is, for reasons visible in the graph. Overflow is left aside. */
+/* Whether b is NaN wherever a is, for reasons visible in the graph near both. Overflow is left
+ * aside. */
 bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b);
 
 #endif

@@ -8,6 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "generator/document.h"
 #include "generator/kernel_check.h"
 #include "generator/model.h"
 #include "generator/progress.h"
@@ -46,10 +47,9 @@ static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
 /* --- diagnostics ------------------------------------------------------------------------------ */
 
 void tell(const run *r, const diagnostics *d) {
-  if (r->options->report)
-    diag_json_add(r->options->report, d);
-  else
-    diag_print(d, stderr);
+  const run_options *o = r->options;
+  if (o->report) diag_json_add(o->report, d);
+  if (!o->report || !o->check_only) diag_print(d, stderr);
 }
 
 /* --- setting up ------------------------------------------------------------------------------- */
@@ -59,18 +59,20 @@ static bool load_deck(run *r) {
   char error[ERROR_LENGTH];
   size_t length = o->deck_text ? strlen(o->deck_text) : 0;
   char *text = o->deck_text
-                   ? strdup(o->deck_text)
+                   ? must_copy(o->deck_text)
                    : read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
   if (!text) {
     if (o->report)
       diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s",
                   error); /* has no line to show */
     else
-      fprintf(stderr, "perilat: error: %s\n", error);
+      say_error("%s", error);
     return false;
   }
   int file = source_add(&r->sources, o->deck_path, text, length);
   free(text);
+  for (int k = 0; k < o->file_count; k++)
+    source_add(&r->sources, o->files[k].path, o->files[k].text, strlen(o->files[k].text));
   r->deck = deck_read_what_is_right(r->memory, &r->sources, file, o->overrides, o->override_count,
                                     &r->said);
   return true;
@@ -86,12 +88,11 @@ static int check_physics(run *r, int lattice) {
   return INPUT_WRONG;
 }
 
+/* No run has a second lattice. */
 static int load_laws(run *r) {
   int status = 0;
-  for (int k = 0; k < r->deck->lattice_count && !status; k++) {
-    status = load_law(r, k);
-    if (!status) status = check_physics(r, k);
-  }
+  if (r->deck->lattice_count > 0) status = load_law(r, 0);
+  if (r->deck->lattice_count > 0 && !status) status = check_physics(r, 0);
   for (int k = 0; k < r->deck->material_count; k++)
     if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
       check_law_alone(r, &r->deck->materials[k]);
@@ -214,7 +215,12 @@ static void give_up_writing(run *r, step_status status) {
 }
 
 /* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
-static int end_stopped(const run *r, bool saved) {
+static int exit_status(step_status status, bool saved) {
+  if (status == STEP_OK) return saved ? 128 + interrupted : RUN_FAILED;
+  return status == STEP_BAD ? RUN_FAILED : 0;
+}
+
+static void print_stopped(const run *r, bool saved) {
   char now[MOMENT_TEXT], kept[MOMENT_TEXT];
   printf("stopped at %s as asked; ", moment(r, simulation_time(r->simulation), now));
   if (saved)
@@ -225,7 +231,12 @@ static int end_stopped(const run *r, bool saved) {
   else
     puts("it has no checkpoint and cannot go on");
   if (r->is_kept) print_resume(r, stdout);
-  return saved ? 128 + interrupted : RUN_FAILED;
+}
+
+static const char *name_of_ending(int status, step_status last, bool interrupted_by_user) {
+  if (status == RUN_FAILED) return "failed";
+  if (interrupted_by_user) return "interrupted";
+  return last == STEP_STOPPED ? "stopped" : "end";
 }
 
 static int execute(run *r) {
@@ -236,20 +247,24 @@ static int execute(run *r) {
   bool written;
   if (r->options->profile) simulation_measure(r->simulation, &r->profile);
   step_status status = march(r, &written);
-  double seconds = monotonic_seconds() - begun;
+  const double seconds = r->wall = monotonic_seconds() - begun;
   const bool stopped_by_user = interrupted && status == STEP_OK;
   const bool saved = stopped_by_user && written && write_checkpoint(r);
   if (status == STEP_BAD) report_bad(r);
-  written = written && finish_result(r);
+  const run_end end = {status, exit_status(status, saved), seconds};
+  written = written && finish_result(r, &end);
   if (!written) give_up_writing(r, status);
   if (written && !(stopped_by_user && r->is_kept)) remove_remains(r);
   release_signals(before);
+  r->is_written = written;
   if (!written) return RUN_FAILED;
   conclude(r, seconds, simulation_step_done(r->simulation) - first);
   if (status == STEP_STOPPED) print_stop(r);
   if (r->options->profile) print_profile(r, seconds, simulation_step_done(r->simulation) - first);
-  if (stopped_by_user) return end_stopped(r, saved);
-  return status == STEP_BAD ? RUN_FAILED : 0;
+  if (stopped_by_user) print_stopped(r, saved);
+  r->signal = stopped_by_user ? interrupted : 0;
+  r->ending = name_of_ending(end.exit_status, status, stopped_by_user);
+  return end.exit_status;
 }
 
 /* --check-kernel: every compiled kernel against the interpreter, with the deck's parameters. */
@@ -282,10 +297,9 @@ static bool check_kernels(const run *r) {
 /* Before the frames are looked for, which would not be there either. */
 static bool has_checkpoint(const run *r) {
   if (access(r->checkpoint_path, F_OK) == 0) return true;
-  fprintf(stderr,
-          "perilat: error: cannot resume: there is no checkpoint `%s`\n"
-          "  a run leaves one when it is stopped or killed; run without --resume\n",
-          r->checkpoint_path);
+  say_error("cannot resume: there is no checkpoint `%s`\n"
+            "  a run leaves one when it is stopped or killed; run without --resume",
+            r->checkpoint_path);
   return false;
 }
 
@@ -299,17 +313,19 @@ static int start(run *r) {
 }
 
 int run_deck(const run_options *o) {
-  run r = {.options = o, .memory = arena_new()};
+  run r = {.options = o, .memory = arena_new(), .ending = "failed"};
   diag_begin(&r.said, &r.sources);
   time_t now = time(NULL);
   struct tm utc;
   strftime(r.started, sizeof r.started, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   int status = set_up(&r);
   tell_all(&r);
+  if (o->report && !o->check_only) diag_json_end(o->report, status == 0);
   if (!status) {
-    if (!o->report) announce(&r);
+    if (!o->report || !o->check_only) announce(&r);
     status = o->check_only ? 0 : start(&r);
   }
+  if (o->report && !o->check_only) put_run(o->report->document, &r);
   let_go(&r);
   return status;
 }

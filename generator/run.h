@@ -3,10 +3,13 @@
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics_json.h"
 #include "generator/model.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 #define DECK_LIMIT ((size_t)16 << 20) /* B: the longest deck */
 
@@ -16,7 +19,14 @@ typedef struct built_in_law {
   const pl_law *law;
   const char *law_text, *c_text;
   const char *choices; /* "onset=rankine;..." decided when it was built */
+  const char *compiler, *flags;
 } built_in_law;
+
+/* A table that a load of the built-in deck names. */
+typedef struct built_in_file {
+  const char *path; /* where the deck would find it */
+  const char *text;
+} built_in_file;
 
 typedef struct run_options {
   const char *program;      /* as it is called: "perilat run", or a solver's name */
@@ -24,6 +34,8 @@ typedef struct run_options {
   const char *deck_text;    /* built-in deck, or NULL: read the file */
   const built_in_law *laws; /* NULL: compile the deck's models */
   int law_count;
+  const built_in_file *files; /* of a built-in deck */
+  int file_count;
   deck_override *overrides;
   int override_count;
   int threads; /* 0: as the deck or the machine says */
@@ -32,8 +44,10 @@ typedef struct run_options {
   bool check_kernel; /* compare kernel and interpreter on random states first */
   bool check_only;   /* `perilat check deck.nml`: everything but the run */
   bool profile;      /* say at the end where the time went */
+  bool json;         /* the command is asked for a document; run_deck looks at `report` */
   bool no_physics;   /* leave out the physics checks of the deck's laws */
-  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
+  diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
+                        how it ended follows them in the document */
 } run_options;
 
 /* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
@@ -51,6 +65,9 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 
 /* main() of a stand-alone solver. */
 int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count);
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count);
+
+C_LINKAGE_END
 
 #endif

@@ -6,6 +6,8 @@
 #include <strings.h>
 
 #include "dsl/elementary.h"
+#include "dsl/parse.h"
+#include "generator/document.h"
 #include "generator/physics.h"
 #include "generator/run_parts.h"
 #include "runtime/bravais.h"
@@ -53,7 +55,7 @@ static bool take_choices(deck_material *m, const law *l, law_choice *choices, in
     }
     const char *choice = find_choice(option, a, said);
     good = good && choice;
-    if (choice) choices[(*count)++] = (law_choice){strdup(option->name), strdup(choice)};
+    if (choice) choices[(*count)++] = (law_choice){must_copy(option->name), must_copy(choice)};
   }
   m->assignment_count = kept;
   return good;
@@ -120,6 +122,28 @@ bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *s
   bool good = model_open(out, path, NULL, 0);
   if (good && out->law->options.count > 0) good = apply_choices(m, path, out, said);
   return good;
+}
+
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
+ * of laws are shown. */
+static bool named_law_is_one(const deck_material *m, const char *path, diagnostics *said) {
+  char error[4 * ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
+  const bool good = text && parse_begins_law(text);
+  const span where = deck_where(&m->item, "model");
+  if (!text)
+    diag_report(said, DIAG_FILE, where, "%s", error);
+  else if (!good) {
+    diag_report(said, DIAG_FILE, where, "`%s` is not a law", path);
+    diag_hint(said, "the first word of a law is `model`");
+  }
+  free(text);
+  return good;
+}
+
+static bool open_named_law(deck_material *m, const char *path, model *out, diagnostics *said) {
+  return named_law_is_one(m, path, said) && run_open_law(m, path, out, said);
 }
 
 static law_setting setting_of(const deck_lattice *l) {
@@ -214,7 +238,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
                     "`models`; PERILAT_MODELS may name another folder");
     return false;
   }
-  bool good = run_open_law(m, path, out, said) && take_setting(m, l, out, said);
+  bool good = open_named_law(m, path, out, said) && take_setting(m, l, out, said);
   free(path);
   if (!good) return false;
   const bool families = l && needs_families(l, out->law);
@@ -356,7 +380,7 @@ static int take_model(run *r, deck_material *m, int lattice) {
   r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->laws[lattice].law) return 0;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   return RUN_FAILED;
 }
 
@@ -383,7 +407,7 @@ bool check_law_alone(run *r, deck_material *m) {
   char *path = r->options->laws ? NULL : model_find(m->model, r->options->deck_path);
   if (!path) return false;
   model *opened = &r->models[r->open_models++];
-  const bool good = run_open_law(m, path, opened, &r->said);
+  const bool good = open_named_law(m, path, opened, &r->said);
   free(path);
   return good;
 }

@@ -1,9 +1,10 @@
 /* The parts of a run, inside: run.c leads; run_laws.c finds and compiles the laws of a deck, run_result.c writes, run_report.c
-   says what is going on. */
+   says what is going on, run_document.c what came out, for other programs. */
 #ifndef PERILAT_GENERATOR_RUN_PARTS_H
 #define PERILAT_GENERATOR_RUN_PARTS_H
 
 #include "generator/run.h"
+#include "runtime/profile.h"
 #include "runtime/result.h"
 #include "runtime/simulation.h"
 
@@ -30,6 +31,11 @@ typedef struct run {
   char started[32];
   double *frame_buffer;
   profile profile; /* with --profile */
+  /* How it ended: */
+  const char *ending; /* "end", "stopped", "interrupted", "failed" */
+  int signal;         /* that interrupted it, or 0 */
+  double wall;        /* s: of the march */
+  bool is_written;    /* the result */
 } run;
 
 /* Prints diagnostics, or adds them to the report that the caller has asked for. */
@@ -64,7 +70,13 @@ bool begin_anew(run *r);
 bool resume(run *r);
 bool write_frame(run *r);
 bool write_checkpoint(run *r);
-bool finish_result(run *r);
+/* What the run has come to, and what it will exit with. */
+typedef struct run_end {
+  step_status status;
+  int exit_status;
+  double seconds;
+} run_end;
+bool finish_result(run *r, const run_end *end);
 /* When what has been written is complete: no checkpoint, no frames beside the result. */
 void remove_remains(run *r);
 /* A checkpoint stands, and the frames that it counts on. */
@@ -90,6 +102,13 @@ void print_misfit(const run *r);
 void conclude(const run *r, double seconds, long steps);
 /* Which &stop ended the run early. */
 void print_stop(const run *r);
+/* "end of the run", "stopped by &stop: load was below 5 % of its peak": how a run ended. */
+void describe_end(const run *r, const run_end *end, char *text, size_t size);
+
+/* --- run_document.c --- */
+
+/* How the run ended, as entries of the open object. */
+void put_run(json *w, const run *r);
 
 /* --- run_profile.c --- */
 

@@ -5,6 +5,7 @@
 
 #include "dsl/elementary.h"
 #include "generator/bad_bond.h"
+#include "generator/document.h"
 #include "generator/explain_bad.h"
 #include "generator/run_parts.h"
 #include "runtime/checkpoint.h"
@@ -308,14 +309,13 @@ static double last_value(const run *r, const char *name) {
 /* Where no particle is at fault. */
 static void report_bad_energy(const run *r, const bad_state *b) {
   char when[MOMENT_TEXT];
-  fprintf(stderr,
-          "perilat: error: %s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
-          "  no stable step does that: the step is too long for this body, or the law's stored "
-          "energy is "
-          "not that of its forces\n"
-          "  what was computed until then is in the result; a smaller `step_safety` tells which\n",
-          b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
-          last_value(r, "energy/stored"));
+  say_error("%s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
+            "  no stable step does that: the step is too long for this body, or the law's stored "
+            "energy is "
+            "not that of its forces\n"
+            "  what was computed until then is in the result; a smaller `step_safety` tells which",
+            b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
+            last_value(r, "energy/stored"));
 }
 
 void report_bad(const run *r) {
@@ -325,9 +325,9 @@ void report_bad(const run *r) {
     report_bad_energy(r, &b);
     return;
   }
-  fprintf(stderr, "perilat: error: %s in step %ld (%s%s) at particle %ld, %s\n", b.what, b.step,
-          r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
-          rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
+  say_error("%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
+            r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+            rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
@@ -498,15 +498,36 @@ void conclude(const run *r, double seconds, long steps) {
          frames == 1 ? "" : "s");
 }
 
+/* "load was below 5 % of its peak" */
+static void describe_stop(const deck_stop *s, char *text, size_t size) {
+  const char *side = s->below ? "below" : "above";
+  if (s->of_peak)
+    snprintf(text, size, "%s was %s %.4g %% of its peak", s->monitor, side, 100 * s->level);
+  else
+    snprintf(text, size, "%s was %s %.6g", s->monitor, side, s->level);
+}
+
 /* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
 void print_stop(const run *r) {
   const deck_stop *s = simulation_stopped_by(r->simulation);
   if (!s) return;
-  char text[MOMENT_TEXT];
-  printf("  ended early at %s: %s was %s ", moment(r, simulation_time(r->simulation), text),
-         s->monitor, s->below ? "below" : "above");
-  if (s->of_peak)
-    printf("%.4g %% of its peak\n", 100 * s->level);
+  char text[MOMENT_TEXT], why[256];
+  describe_stop(s, why, sizeof why);
+  printf("  ended early at %s: %s\n", moment(r, simulation_time(r->simulation), text), why);
+}
+
+void describe_end(const run *r, const run_end *end, char *text, size_t size) {
+  const deck_stop *s = simulation_stopped_by(r->simulation);
+  char now[MOMENT_TEXT], why[256] = "";
+  moment(r, simulation_time(r->simulation), now);
+  if (end->status == STEP_BAD) {
+    const bad_state b = simulation_bad(r->simulation);
+    snprintf(text, size, "failed at %s: %s in step %ld", now, b.what, b.step);
+  } else if (end->status == STEP_STOPPED && s) {
+    describe_stop(s, why, sizeof why);
+    snprintf(text, size, "stopped by &stop at %s: %s", now, why);
+  } else if (end->status == STEP_OK)
+    snprintf(text, size, "interrupted at %s%s", now, r->is_kept ? ": the run can be resumed" : "");
   else
-    printf("%.6g\n", s->level);
+    snprintf(text, size, "end of the run");
 }

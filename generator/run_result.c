@@ -6,6 +6,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/hash.h"
+#include "generator/document.h"
 #include "generator/model.h"
 #include "generator/run_parts.h"
 #include "generator/version.h"
@@ -89,9 +91,11 @@ bool result_spares_inputs(run *r) {
   for (int k = 0; k < r->open_models; k++)
     for (int f = 0; f < r->models[k].sources.count; f++)
       good = good && result_spares(r, r->models[k].sources.items[f].name);
+  for (int k = 0; k < r->deck->file_count; k++)
+    good = good && result_spares(r, r->sources.items[r->deck->files[k].source].name);
   for (int k = 0; good && k < r->deck->lattice_count; k++) {
     if (!r->deck->lattices[k].file) continue;
-    char *particles = deck_file_path(r->deck, r->deck->lattices[k].file);
+    char *particles = deck_file_path(r->deck->name, r->deck->lattices[k].file);
     good = result_spares(r, particles);
     free(particles);
   }
@@ -103,8 +107,13 @@ void fingerprint(run *r) {
   for (int k = 0; k < r->deck->lattice_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
                         r->laws[k].law->key);
+  for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
+    const source *s = &r->sources.items[r->deck->files[k].source];
+    text = arena_printf(r->memory, "%sfile %s, contents %016" PRIx64 "\n", text,
+                        r->deck->files[k].name, hash_more(HASH_START, s->text, s->length));
+  }
   text = arena_printf(r->memory, "%s%s", text, r->deck->identity);
-  for (int k = 0; k < r->deck->lattice_count; k++) { /* a file may have changed */
+  for (int k = 0; k < r->deck->lattice_count; k++) {
     const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
     if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
   }
@@ -125,6 +134,19 @@ static result_text *collect_texts(run *r, bool c_text, int *count) {
       texts[k].text = c_text ? b->c_text : b->law_text;
     else
       texts[k].text = c_text ? m->c_text : m->sources.items[0].text;
+  }
+  return texts;
+}
+
+/* A name in HDF5 has no slash. */
+static result_text *collect_files(run *r) {
+  result_text *texts = arena_alloc(r->memory, (size_t)r->deck->file_count * sizeof *texts);
+  for (int k = 0; k < r->deck->file_count; k++) {
+    const deck_file *f = &r->deck->files[k];
+    char *name = arena_text(r->memory, f->name, strlen(f->name));
+    for (char *c = name; *c; c++)
+      if (*c == '/') *c = ':';
+    texts[k] = (result_text){name, r->sources.items[f->source].text};
   }
   return texts;
 }
@@ -163,6 +185,14 @@ static void particle_table(run *r, const rows *w, result_header *h) {
   h->bonds = pairs;
 }
 
+/* What a law says may take several lines. */
+static const char *one_line(const run *r, const char *words) {
+  char *line = arena_text(r->memory, words, strlen(words));
+  for (char *at = line; (at = strchr(at, '\n')); at++)
+    *at = ' ';
+  return line;
+}
+
 /* Fields of the frames, as the simulation offers them. */
 static void frame_table(run *r, result_header *h, const char *interaction) {
   const frame_field *offered;
@@ -174,8 +204,23 @@ static void frame_table(run *r, result_header *h, const char *interaction) {
                                offered[k].on_bonds ? interaction : NULL,
                                offered[k].components,
                                offered[k].on_bonds ? h->bond_count : h->particle_count,
-                               offered[k].kind};
+                               offered[k].kind,
+                               one_line(r, offered[k].long_name)};
   h->fields = fields;
+}
+
+/* What made the kernels: now, when the solver was built, or nothing. */
+static void name_compiler(run *r, result_header *h) {
+  char version[512];
+  const built_in_law *b = r->built_in[0];
+  if (!b) toolchain_version(version, sizeof version);
+  if (b)
+    h->compiler = b->compiler, h->flags = b->flags;
+  else if (r->models[0].loaded.law) {
+    h->compiler = arena_text(r->memory, version, strlen(version));
+    h->flags = arena_printf(r->memory, "%s", toolchain_flags());
+  } else
+    h->compiler = "none: the law was interpreted", h->flags = "";
 }
 
 static char *list_overrides(run *r) {
@@ -192,17 +237,21 @@ bool open_result(run *r) {
                      .started = r->started,
                      .version = perilat_version,
                      .kernel_key = r->laws[0].law->key,
+                     .threads = simulation_threads(r->simulation),
                      .deck_text = r->sources.items[0].text,
                      .overrides = list_overrides(r),
                      .interaction = r->deck->lattices[0].name};
   h.models = collect_texts(r, false, &h.model_count);
   h.kernels = collect_texts(r, true, &h.kernel_count);
+  h.files = collect_files(r);
+  h.file_count = r->deck->file_count;
+  name_compiler(r, &h);
   particle_table(r, simulation_rows(r->simulation, 0), &h);
   frame_table(r, &h, h.interaction);
   char error[ERROR_LENGTH];
   r->result = result_open(&h, r->options->resume, error, sizeof error);
   if (!r->result) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     return false;
   }
   whole_file_clear(r->checkpoint_path);
@@ -219,8 +268,7 @@ static bool give_up_checkpoint(const run *r) {
     fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up\n",
             r->checkpoint_path);
   else if (errno != ENOENT) {
-    fprintf(stderr, "perilat: error: cannot remove `%s` of an earlier run: %s\n",
-            r->checkpoint_path, strerror(errno));
+    say_error("cannot remove `%s` of an earlier run: %s", r->checkpoint_path, strerror(errno));
     return false;
   }
   return true;
@@ -230,7 +278,7 @@ bool begin_anew(run *r) {
   char error[ERROR_LENGTH];
   if (!give_up_checkpoint(r)) return false;
   if (result_begin(r->result, error, sizeof error)) return true;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   result_discard(r->result);
   return false;
 }
@@ -245,12 +293,12 @@ bool resume(run *r) {
   frame_mark frames;
   if (!simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
                           sizeof error)) {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    say_error("cannot resume: %s", error);
     print_misfit(r);
     return false;
   }
   if (!result_resume(r->result, &frames, error, sizeof error)) {
-    fprintf(stderr, "perilat: error: cannot resume: %s\n", error);
+    say_error("cannot resume: %s", error);
     return false;
   }
   char text[MOMENT_TEXT];
@@ -278,7 +326,7 @@ bool write_frame(run *r) {
   if (good)
     simulation_frame_taken(r->simulation);
   else /* a resumed run takes it again */
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
   return good;
 }
 
@@ -291,7 +339,7 @@ bool write_checkpoint(run *r) {
   if (good)
     keep(r);
   else
-    fprintf(stderr, "perilat: error: no checkpoint was written: %s\n", error);
+    say_error("no checkpoint was written: %s", error);
   return good;
 }
 
@@ -305,21 +353,29 @@ void remove_remains(run *r) {
   result_discard(r->result);
 }
 
-bool finish_result(run *r) {
-  int count = simulation_series_count(r->simulation);
+bool finish_result(run *r, const run_end *end) {
+  const int count = simulation_series_count(r->simulation);
   result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
-  for (int k = 0; k < count; k++)
+  char ended[512], error[ERROR_LENGTH];
+  for (int k = 0; k < count; k++) {
+    series[k] = (result_series){.judges = false};
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
+    series[k].long_name = one_line(r, simulation_series_words(r->simulation, k, r->memory));
+  }
   const char *unchecked;
   const int imbalance = simulation_imbalance(r->simulation, &unchecked);
   if (imbalance >= 0) series[imbalance].judges = true;
   if (imbalance >= 0) series[imbalance].unchecked = unchecked;
-  const double *time;
-  long samples = simulation_history(r->simulation, &time);
-  char error[ERROR_LENGTH];
-  bool good = result_finish(r->result, simulation_step_limit(r->simulation)->step,
-                            simulation_step_done(r->simulation), time, samples, series, count,
-                            error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  describe_end(r, end, ended, sizeof ended);
+  result_ending e = {.ended = ended,
+                     .status = end->exit_status,
+                     .seconds = end->seconds,
+                     .dt = simulation_step_limit(r->simulation)->step,
+                     .steps = simulation_step_done(r->simulation),
+                     .series = series,
+                     .series_count = count};
+  e.history_count = simulation_history(r->simulation, &e.time);
+  const bool good = result_finish(r->result, &e, error, sizeof error);
+  if (!good) say_error("%s", error);
   return good;
 }

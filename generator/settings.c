@@ -8,7 +8,7 @@
 
 bool settings_of_group(arena *a, const namelist_group *g, deck_material *m, diagnostics *d) {
   deck none = {.name = ""};
-  deck_reader r = {a, d, &none, false}; /* there is no lattice that it could name */
+  deck_reader r = {.memory = a, .d = d, .k = &none}; /* there is no lattice that it could name */
   int errors = d->errors;
   m->item.where = g->where;
   deck_check_material(&r, g, m);

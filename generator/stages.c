@@ -2,6 +2,7 @@
 
 #include <assert.h>
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -127,6 +128,36 @@ static bool has_changes(const emitter *e) {
   return false;
 }
 
+/* --- what a stage computes -------------------------------------------------------------------- */
+
+int stages_last(const stages *s) {
+  return s->count - 1 - s->changes;
+}
+
+/* Whether the pass gives a result in that stage: all in the last one but those of a change. New
+   damage is asked for there, too. */
+static bool gives(const emitter *e, const stages *s, int stage, const pass_root *r) {
+  if (stage < stages_last(s)) return false;
+  if (!s->changes) return true;
+  return stage > stages_last(s) ? stages_is_of_change(e, r) : is_always_computed(e, r);
+}
+
+/* The stage of changes takes results from the one before it, and computes what else that has again:
+ * it is rare. */
+static bool comes_from_before(const stages *s, ir_node n, int stage) {
+  if (s->of[n] < 0 || s->of[n] >= stage) return false;
+  return s->of[n] < stages_last(s) || s->result[n];
+}
+
+/* As stages_operands; what an earlier choice has asked is not asked again. */
+static int operands_in_stage(const emitter *e, const stages *s, ir_node n, unsigned relies,
+                             ir_node operand[3]) {
+  const int count = stages_operands(e, n, relies, operand);
+  const bool answered =
+      (relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
+  return answered ? 1 : count;
+}
+
 /* --- a plan in the making --------------------------------------------------------------------- */
 
 typedef struct planner {
@@ -196,56 +227,112 @@ static int last_stage(const planner *p) {
   return last;
 }
 
-/* first[n]: earliest stage that uses line n; last[n]: the latest; -1 without users. */
-static void find_users(const planner *p, int *first, int *last) {
+/* Stages in which nodes are needed, a bit each. Users of a node stand behind it: walked from the
+   last node to the first, all that use a node are known when it is its turn. */
+typedef struct users {
+  uint64_t *now;  /* [node_count] as the lines stand */
+  uint64_t *ever; /* [node_count] these, and as the lines stood before they moved */
+} users;
+
+static users users_new(const emitter *e) {
+  const size_t size = ((size_t)e->node_count + 1) * sizeof(uint64_t);
+  return (users){must_alloc(size), must_alloc(size)};
+}
+
+static void users_free(users *u) {
+  free(u->now);
+  free(u->ever);
+}
+
+static void need_in(users *u, ir_node n, uint64_t stages_of_use) {
+  u->now[n] |= stages_of_use;
+  u->ever[n] |= stages_of_use;
+}
+
+static void need_results(const planner *p, users *u) {
   const emitter *e = p->e;
-  unsigned char *mask = must_alloc((size_t)e->node_count + 1);
-  unsigned char *taken = must_alloc((size_t)e->node_count + 1);
-  for (ir_node n = 0; n < e->node_count; n++)
-    first[n] = last[n] = -1;
-  for (int stage = 0; stage < p->s->count; stage++) {
-    stages_mark(e, p->s, stage, SURE_OF_ALL, mask, taken);
-    for (ir_node n = 0; n < e->node_count; n++) {
-      if (!taken[n]) continue;
-      if (first[n] < 0) first[n] = stage;
-      last[n] = stage;
-    }
-  }
-  free(mask);
-  free(taken);
+  memset(u->now, 0, ((size_t)e->node_count + 1) * sizeof *u->now);
+  for (int stage = stages_last(p->s); stage < p->s->count; stage++)
+    for (int k = 0; k < e->root_count; k++)
+      if (gives(e, p->s, stage, &e->roots[k])) need_in(u, e->roots[k].node, UINT64_C(1) << stage);
+}
+
+/* Of the stages that need a node those that take it from an earlier one. The others compute it, be
+ * it once more. */
+static uint64_t taken_by(const planner *p, ir_node n, uint64_t needed) {
+  uint64_t taken = 0;
+  for (int stage = 0; stage < p->s->count; stage++)
+    if (comes_from_before(p->s, n, stage)) taken |= UINT64_C(1) << stage;
+  return needed & taken;
+}
+
+static void need_below(const planner *p, users *u, ir_node n) {
+  ir_node operand[3];
+  const int own = p->s->of[n];
+  const uint64_t needed = u->now[n] | (own >= 0 ? UINT64_C(1) << own : 0);
+  const uint64_t computed = needed & ~taken_by(p, n, needed);
+  if (!computed) return;
+  const int count = operands_in_stage(p->e, p->s, n, SURE_OF_ALL, operand);
+  for (int k = 0; k < count; k++)
+    need_in(u, operand[k], computed);
+}
+
+static void find_users(const planner *p, users *u) {
+  memset(u->ever, 0, ((size_t)p->e->node_count + 1) * sizeof *u->ever);
+  need_results(p, u);
+  for (ir_node n = p->e->node_count - 1; n >= 0; n--)
+    need_below(p, u, n);
+}
+
+/* The first and the last stage that takes a line from an earlier one; -1 without such a stage. */
+static int first_to_take(const planner *p, const users *u, ir_node n) {
+  const uint64_t taken = taken_by(p, n, u->now[n]);
+  int stage = 0;
+  while (stage < p->s->count && !(taken >> stage & 1))
+    stage++;
+  return stage < p->s->count ? stage : -1;
+}
+
+static int last_to_take(const planner *p, const uint64_t *needed, ir_node n) {
+  const uint64_t taken = taken_by(p, n, needed[n]);
+  int stage = p->s->count - 1;
+  while (stage >= 0 && !(taken >> stage & 1))
+    stage--;
+  return stage;
 }
 
 /* Lines under node n that would be kept for stage `to` on its account alone. */
-static int newly_kept(const planner *p, ir_node n, int to, const int *last) {
+static int newly_kept(const planner *p, ir_node n, int to, const users *u) {
   ir_node operand[3];
   int kept = 0;
   const int count = stages_operands(p->e, n, SURE_OF_ALL, operand);
   for (int k = 0; k < count; k++) {
     const ir_node o = operand[k];
     if (is_line(p->e, o))
-      kept += p->s->of[o] < to && last[o] < to;
+      kept += p->s->of[o] < to && last_to_take(p, u->ever, o) < to;
     else
-      kept += newly_kept(p, o, to, last);
+      kept += newly_kept(p, o, to, u);
   }
   return kept;
 }
 
-/* Moves a line to the first stage that uses it, where that saves a buffer. From the last line to the first, so that
-   whole trees move. */
+/* Whether a line moves to the first stage that takes it: where that saves a buffer. */
+static bool moves_late(const planner *p, const users *u, ir_node n, int to) {
+  return p->s->of[n] >= 0 && to > p->s->of[n] && !stages_is_expected_choice(p->e, n) &&
+         !stages_is_held_choice(p->e, n) && newly_kept(p, n, to, u) == 0;
+}
+
+/* From the last line to the first, so that whole trees move. */
 static void place_late(planner *p) {
-  const size_t size = ((size_t)p->e->node_count + 1) * sizeof(int);
-  int *first = must_alloc(size), *last = must_alloc(size);
-  find_users(p, first, last);
+  users u = users_new(p->e);
+  find_users(p, &u); /* then once more, as they move: the latest users only become later */
+  need_results(p, &u);
   for (ir_node n = p->e->node_count - 1; n >= 0; n--) {
-    if (p->s->of[n] < 0 || first[n] <= p->s->of[n] || stages_is_expected_choice(p->e, n) ||
-        stages_is_held_choice(p->e, n))
-      continue;
-    if (first[n] >= p->s->count || newly_kept(p, n, first[n], last) > 0) continue;
-    p->s->of[n] = first[n];
-    find_users(p, first, last);
+    const int to = first_to_take(p, &u, n);
+    if (moves_late(p, &u, n, to)) p->s->of[n] = to;
+    need_below(p, &u, n);
   }
-  free(first);
-  free(last);
+  users_free(&u);
 }
 
 /* Stages that all lines have left go. */
@@ -277,43 +364,48 @@ static int lent_results(const emitter *e) {
   return lent;
 }
 
-/* The buffer that holds a value of the last stage anyway: the array of a result; -1: none does. */
-static int buffer_of_result(const emitter *e, ir_node n) {
+/* Marks the results of the pass (stages.result). */
+static void mark_pass_results(const emitter *e, stages *s) {
+  for (ir_node n = 0; n < e->node_count; n++)
+    s->result[n] = 0;
   for (int k = 0, lent = 0; k < e->root_count; k++) {
+    int *of = &s->result[e->roots[k].node];
     const bool is_lent = stages_is_lent(&e->roots[k]);
-    if (is_lent && e->roots[k].node == n) return lent;
+    if (*of < 2) *of = is_lent ? 2 + lent : 1;
     lent += is_lent;
   }
-  return -1;
 }
 
 /* A buffer is free again in the last stage that reads it, whose lines load before they store. The first ones are the arrays
    of results that the last stage writes anew: up to there they cost no place in the cache. */
 static void give_buffers(planner *p) {
   const emitter *e = p->e;
-  const size_t size = ((size_t)e->node_count + 1) * sizeof(int);
-  int *first = must_alloc(size), *last = must_alloc(size), *until = must_alloc(size);
-  find_users(p, first, last);
-  const int lent = lent_results(e);
+  users u = users_new(e);
+  int *until = must_alloc(((size_t)e->node_count + 1) * sizeof(int));
+  find_users(p, &u);
+  const int lent = lent_results(e), last = stages_last(p->s);
   int given = lent;
   for (ir_node n = 0; n < e->node_count; n++)
     p->s->buffer[n] = p->s->until[n] = until[n] = -1;
-  for (int stage = 0; stage < p->s->count; stage++)
+  for (int stage = 0; stage < p->s->count; stage++) {
+    int next[2] = {0, lent}; /* buffers before are taken; the second, of those that are not lent */
     for (ir_node n = 0; n < e->node_count; n++) {
-      if (p->s->of[n] != stage || last[n] <= stage) continue;
-      const int result = stage == stages_last(p->s) ? buffer_of_result(e, n) : -1;
-      int b = last[n] > stages_last(p->s) ? lent : 0;
-      while (result < 0 && b < given && until[b] > stage)
-        b++;
-      if (b == given) given++;
-      if (result < 0) until[b] = last[n];
-      p->s->until[n] = last[n];
-      p->s->buffer[n] = result < 0 ? b : result;
+      const int user = p->s->of[n] == stage ? last_to_take(p, u.now, n) : -1;
+      if (user <= stage) continue;
+      p->s->until[n] = user;
+      p->s->buffer[n] = p->s->result[n] - 2; /* the array of a result holds the value anyway */
+      if (stage == last && p->s->buffer[n] >= 0) continue;
+      int *b = &next[user > last];
+      while (*b < given && until[*b] > stage)
+        ++*b;
+      if (*b == given) given++;
+      until[*b] = user;
+      p->s->buffer[n] = *b;
     }
+  }
   p->s->lent = lent;
   p->s->buffers = given - lent;
-  free(first);
-  free(last);
+  users_free(&u);
   free(until);
 }
 
@@ -378,12 +470,27 @@ static void mark_usual(planner *p) {
   }
 }
 
-static stages *plan_with(planner *p, int first, int later) {
-  const size_t nodes = (size_t)p->e->node_count + 1;
-  stages *s = p->s = must_calloc(1, sizeof *s);
+static stages *new_plan(const emitter *e) {
+  const size_t nodes = (size_t)e->node_count + 1;
+  stages *s = must_calloc(1, sizeof *s);
   s->of = must_alloc(nodes * sizeof *s->of);
   s->buffer = must_alloc(nodes * sizeof *s->buffer);
   s->until = must_alloc(nodes * sizeof *s->until);
+  s->result = must_alloc(nodes * sizeof *s->result);
+  mark_pass_results(e, s);
+  return s;
+}
+
+/* Real laws need a few. Buffers stand on the stack. */
+enum {
+  MOST_STAGES = 63 /* a bit each, and one that follows */,
+  MOST_BUFFERS = 200,
+  MOST_LINES = 1000
+};
+
+/* NULL where the cuts are too many. */
+static stages *plan_with(planner *p, int first, int later) {
+  stages *s = p->s = new_plan(p->e);
   place_early(p, first, later);
   for (ir_node n = 0; n < p->e->node_count; n++) {
     if (s->of[n] < 0) continue;
@@ -391,6 +498,10 @@ static stages *plan_with(planner *p, int first, int later) {
     s->conditions += stages_is_expected_choice(p->e, n);
   }
   s->count = last_stage(p) + 1;
+  if (s->count > MOST_STAGES) {
+    stages_free(s);
+    return NULL;
+  }
   s->changes = s->count > 1 && has_changes(p->e);
   s->count += s->changes;
   if (s->count > 1) place_late(p);
@@ -400,29 +511,56 @@ static stages *plan_with(planner *p, int first, int later) {
   return s;
 }
 
+/* One loop that expects nothing and needs no buffers. */
+static stages *plan_whole(planner *p) {
+  stages *s = p->s = new_plan(p->e);
+  s->count = 1;
+  for (ir_node n = 0; n < p->e->node_count; n++) {
+    s->of[n] = p->e->needed[n] && is_line(p->e, n) ? 0 : -1;
+    s->buffer[n] = s->until[n] = -1;
+  }
+  s->lent = lent_results(p->e);
+  find_costs(p);
+  s->whole_chain = s->cost[0].chain;
+  return s;
+}
+
 enum { NO_CUT = 1 << 20, SHORTEST_CHAIN = 50 };
 static const int longest_chains[] = {NO_CUT, 160, 140, 120, 105, 95, 85, 75, 66, SHORTEST_CHAIN};
 enum { CHAIN_COUNT = sizeof longest_chains / sizeof *longest_chains };
 
-/* The better of two plans; the other one goes. */
+/* The better of two plans, one of which may be missing or have too many buffers; the other one
+ * goes. */
 static stages *cheaper(stages *a, stages *b) {
-  stages *worse = a->cycles <= b->cycles ? b : a;
-  stages *better = worse == b ? a : b;
-  stages_free(worse);
-  return better;
+  const bool takes_b = b && b->buffers <= MOST_BUFFERS && (!a || b->cycles < a->cycles);
+  stages_free(takes_b ? a : b);
+  return takes_b ? b : a;
+}
+
+/* The best of many cuts. */
+static stages *search(planner *p, loop_cutting cutting, int lines) {
+  stages *best = NULL;
+  if (cutting == CUT_ALWAYS) best = cheaper(NULL, plan_with(p, SHORTEST_CHAIN, SHORTEST_CHAIN));
+  if (best) return best;
+  best = cheaper(NULL, plan_with(p, NO_CUT, NO_CUT));
+  const int whole_chain = best ? best->whole_chain : 0;
+  const bool may_cut = cutting == CUT_BY_COST && lines <= MOST_LINES;
+  for (int k = 1; k < CHAIN_COUNT && may_cut; k++)
+    for (int l = 1; l < CHAIN_COUNT; l++)
+      best = cheaper(best, plan_with(p, longest_chains[k], longest_chains[l]));
+  if (best && whole_chain) best->whole_chain = whole_chain;
+  return best;
 }
 
 stages *stages_plan(const emitter *e, loop_cutting cutting) {
   planner p = {.e = e};
   mark_usual(&p);
   p.finish = must_calloc((size_t)e->node_count + 1, sizeof *p.finish);
-  stages *best = cutting == CUT_ALWAYS ? plan_with(&p, SHORTEST_CHAIN, SHORTEST_CHAIN)
-                                       : plan_with(&p, NO_CUT, NO_CUT);
-  const int whole_chain = best->whole_chain;
-  for (int k = 1; k < CHAIN_COUNT && cutting != CUT_ALWAYS && cutting != CUT_NEVER; k++)
-    for (int l = 1; l < CHAIN_COUNT; l++)
-      best = cheaper(best, plan_with(&p, longest_chains[k], longest_chains[l]));
-  best->whole_chain = whole_chain;
+  int lines = 0;
+  for (ir_node n = 0; n < e->node_count; n++)
+    lines += is_line(e, n);
+  stages *best = search(&p, cutting, lines);
+  if (!best) best = plan_whole(&p);
   free(p.finish);
   free(p.usual);
   return best;
@@ -433,6 +571,7 @@ void stages_free(stages *s) {
   free(s->of);
   free(s->buffer);
   free(s->until);
+  free(s->result);
   free(s->cost);
   free(s);
 }
@@ -461,36 +600,12 @@ void stages_mark_kept(const emitter *e, const stages *s, unsigned char *mask) {
     mask[n] = s->buffer[n] >= 0 && s->of[n] < stages_last(s) && s->until[n] >= stages_last(s);
 }
 
-int stages_last(const stages *s) {
-  return s->count - 1 - s->changes;
-}
-
-/* Whether the pass gives a result in that stage: all in the last one but those of a change. New damage is asked for there,
-   too. */
-static bool gives(const emitter *e, const stages *s, int stage, const pass_root *r) {
-  if (stage < stages_last(s)) return false;
-  if (!s->changes) return true;
-  return stage > stages_last(s) ? stages_is_of_change(e, r) : is_always_computed(e, r);
-}
-
 /* What the stage hands on: its lines, or what the pass gives. */
 static void mark_results(const emitter *e, const stages *s, int stage, unsigned char *mask) {
   for (ir_node n = 0; n < e->node_count; n++)
     if (s->of[n] == stage) mask[n] = 1;
   for (int k = 0; k < e->root_count; k++)
     if (gives(e, s, stage, &e->roots[k])) mask[e->roots[k].node] = 1;
-}
-
-static bool is_result(const emitter *e, ir_node n) {
-  for (int k = 0; k < e->root_count; k++)
-    if (e->roots[k].node == n) return true;
-  return false;
-}
-
-/* The stage of changes takes results from the one before it, and computes what else that has again: it is rare. */
-static bool comes_from_before(const emitter *e, const stages *s, ir_node n, int stage) {
-  if (s->of[n] < 0 || s->of[n] >= stage) return false;
-  return s->of[n] < stages_last(s) || is_result(e, n);
 }
 
 void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, unsigned char *mask,
@@ -501,16 +616,14 @@ void stages_mark(const emitter *e, const stages *s, int stage, unsigned relies, 
   for (ir_node n = e->node_count - 1; n >= 0; n--) {
     if (!mask[n]) continue;
     /* what only the unexpected needs is not kept for it: it is computed again */
-    if (comes_from_before(e, s, n, stage) && (relies != SURE_OF_NOTHING || s->until[n] >= stage)) {
+    if (comes_from_before(s, n, stage) && (relies != SURE_OF_NOTHING || s->until[n] >= stage)) {
       kept_loads[n] = 1;
       mask[n] = 0;
       continue;
     }
     ir_node operand[3];
-    const int count = stages_operands(e, n, relies, operand);
-    const bool answered =
-        (relies & SURE_OF_EXPECTED) && stages_is_expected_choice(e, n) && !stages_asks(e, s, n);
-    for (int k = 0; k < (answered ? 1 : count); k++)
+    const int count = operands_in_stage(e, s, n, relies, operand);
+    for (int k = 0; k < count; k++)
       mask[operand[k]] = 1;
   }
 }

@@ -34,6 +34,8 @@ typedef struct stages {
   int *of;     /* [node_count] stage that computes a node that has a line; -1: has none */
   int *buffer; /* [node_count] where it is kept for later stages; -1: it is not */
   int *until;  /* [node_count] last stage that it is kept for; -1 */
+  int *
+      result; /* [node_count] 1: a result of the pass; 2 + k: also the k-th array that is lent; 0 */
   int lent;    /* the first buffers are arrays of results; */
   int buffers; /* so many stand behind them */
   bool changes;     /* one more stage is done only where some damage changed */

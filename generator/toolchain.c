@@ -236,21 +236,28 @@ static void read_head(const char *path, char *text, size_t size) {
 
 static bool is_usable_folder(const char *path) {
   struct stat about;
-  return stat(path, &about) == 0 && S_ISDIR(about.st_mode) && access(path, W_OK | X_OK) == 0;
+  if (stat(path, &about) != 0) return false;
+  errno = ENOTDIR;
+  return S_ISDIR(about.st_mode) && access(path, W_OK | X_OK) == 0;
 }
 
-/* Makes the folder and those above it. */
+/* Makes the folder and those above it; where that fails, errno says why. */
 static bool make_folder(const char *path) {
   char part[LONGEST_PATH];
-  if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part) return false;
+  if (snprintf(part, sizeof part, "%s", path) >= (int)sizeof part - 1) {
+    errno = ENAMETOOLONG;
+    return false;
+  }
   for (char *c = part + 1; *c; c++) {
     if (*c != '/') continue;
     *c = 0;
     mkdir(part, 0777);
     *c = '/';
   }
-  mkdir(part, 0700);
-  return is_usable_folder(path);
+  const int refused = mkdir(part, 0700) == 0 ? 0 : errno;
+  if (is_usable_folder(path)) return true;
+  if (refused && refused != EEXIST) errno = refused;
+  return false;
 }
 
 /* A folder that only this user can write to: somebody else's files there would be loaded as
@@ -271,20 +278,36 @@ static void use_temporary_folder(char *path, size_t size) {
   }
 }
 
-const char *toolchain_cache(void) {
-  static _Thread_local char path[LONGEST_PATH]; /* the answer, until the thread's next call */
+/* Where the settings want the cache; empty where they do not say. */
+static void wanted_cache(char *path, size_t size) {
   const char *given = setting("PERILAT_CACHE"), *xdg = setting("XDG_CACHE_HOME"),
              *home = setting("HOME");
-  int length = -1;
+  *path = 0;
   if (given)
-    length = snprintf(path, sizeof path, "%s", given);
+    snprintf(path, size, "%s", given);
   else if (xdg)
-    length = snprintf(path, sizeof path, "%s/perilat", xdg);
+    snprintf(path, size, "%s/perilat", xdg);
   else if (home)
-    length = snprintf(path, sizeof path, "%s/.cache/perilat", home);
-  if (length < 0 || length >= (int)sizeof path || !make_folder(path))
-    use_temporary_folder(path, sizeof path);
+    snprintf(path, size, "%s/.cache/perilat", home);
+}
+
+const char *toolchain_cache(void) {
+  static _Thread_local char path[LONGEST_PATH]; /* the answer, until the thread's next call */
+  wanted_cache(path, sizeof path);
+  if (!*path || !make_folder(path)) use_temporary_folder(path, sizeof path);
   return path;
+}
+
+const char *toolchain_cache_trouble(void) {
+  static _Thread_local char text[3 * LONGEST_PATH]; /* as above */
+  char wanted[LONGEST_PATH];
+  wanted_cache(wanted, sizeof wanted);
+  if (!*wanted || make_folder(wanted)) return NULL;
+  const char *why = strerror(errno);
+  snprintf(text, sizeof text,
+           "the cache `%s` cannot be written to (%s): compiled kernels are kept in `%s`", wanted,
+           why, toolchain_cache());
+  return text;
 }
 
 /* An empty file of a name of its own beside `path`; the same folder, so that it can be renamed. */
@@ -409,13 +432,17 @@ static void add_text(sha256 *h, const char *text) {
   sha256_add(h, text, (size_t)length);
 }
 
+void toolchain_version(char *version, size_t size) {
+  const char *compiler = toolchain_compiler();
+  *version = 0;
+  if (compiler) read_version(compiler, version, size);
+}
+
 char *toolchain_key(const char *text) {
   char path[LONGEST_PATH] = "", version[512] = "", here[8192];
   const char *compiler = toolchain_compiler();
-  if (compiler) {
-    find_program(compiler, path, sizeof path);
-    read_version(compiler, version, sizeof version);
-  }
+  if (compiler) find_program(compiler, path, sizeof path);
+  toolchain_version(version, sizeof version);
   read_processor(here, sizeof here);
   const uint64_t layout[] = {PL_KERNEL_ABI, sizeof(pl_law), sizeof(pl_strip),
                              sizeof(pl_bond_class)};

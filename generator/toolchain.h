@@ -5,7 +5,10 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+#include "dsl/c_linkage.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 /* A text that says PL_PART is compiled in this many parts at the same time, as PL_PART 0, 1, ... (its functions are
    then seen by all parts), another one whole. */
@@ -26,9 +29,14 @@ const char *toolchain_no_compiler(void);
 /* Flags of every kernel: -O3 -fno-math-errno -fno-trapping-math -ffp-contract=off ... and -march=$PERILAT_PROCESSOR, otherwise
    this one. */
 const char *toolchain_flags(void);
-/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a private folder in
-   $TMPDIR. Created; never fails (an unwritable one gives a temporary folder). */
+/* What the compiler says it is, "gcc (Debian 12.2.0-14) 12.2.0"; "" when it does not answer. */
+void toolchain_version(char *version, size_t size);
+/* Folder of the cache: $PERILAT_CACHE, else $XDG_CACHE_HOME/perilat, else ~/.cache/perilat, else a
+   private folder in $TMPDIR. Created; never fails (an unwritable one gives that private folder,
+   too). */
 const char *toolchain_cache(void);
+/* A sentence that says why the cache is not where it was to be; NULL where it is. */
+const char *toolchain_cache_trouble(void);
 
 /* Hash (hex, malloc'ed) of everything that decides a kernel: text, compiler and its version, flags, processor, ABI. */
 char *toolchain_key(const char *text);
@@ -45,5 +53,7 @@ bool toolchain_build_program(const char *c_text, const char *path, char *error, 
 bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error,
                     size_t size);
 void toolchain_unload(loaded_kernel *k);
+
+C_LINKAGE_END
 
 #endif

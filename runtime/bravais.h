@@ -6,8 +6,11 @@
 
 #include <stdbool.h>
 
+#include "dsl/c_linkage.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 /* Bonds join sites as far apart as the horizon and this part of it more. */
 #define BRAVAIS_REACH_TOLERANCE 1e-3
@@ -55,5 +58,7 @@ bool bravais_is_hexagon(const deck_lattice *l);
 
 /* From a site to its neighbour. */
 void bravais_chord(const bravais *b, const bravais_neighbour *n, double chord[3]);
+
+C_LINKAGE_END
 
 #endif

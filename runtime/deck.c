@@ -1,14 +1,17 @@
 #include "runtime/deck.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/name_index.h"
 #include "runtime/bravais.h"
 #include "runtime/deck_check.h"
 #include "runtime/deck_set.h"
 #include "runtime/deck_value.h"
 #include "runtime/namelist.h"
+#include "runtime/text_table.h"
 
 enum { MOST_ERRORS = 100 };
 
@@ -18,11 +21,33 @@ span deck_where(const deck_item *item, const char *key) {
   return item->where;
 }
 
+/* Names of the items that were there at the last search. */
+struct deck_names {
+  struct {
+    name_index of;
+    int count;
+  } kind[DECK_GROUP_COUNT];
+};
+
+static deck_names *new_names(arena *a) {
+  deck_names *n = arena_alloc(a, sizeof *n);
+  for (int k = 0; k < DECK_GROUP_COUNT; k++)
+    n->kind[k].of.memory = a;
+  return n;
+}
+
 #define FIND(group, member)                                                                        \
-  int deck_find_##group(const deck *k, const char *name) {                                         \
+  static int look_for_##group(const deck *k, const char *name) {                                   \
     for (int i = 0; i < k->group##_count; i++)                                                     \
       if (k->group##s[i].member && strcmp(k->group##s[i].member, name) == 0) return i;             \
     return -1;                                                                                     \
+  }                                                                                                \
+  int deck_find_##group(const deck *k, const char *name) {                                         \
+    if (!k->names) return look_for_##group(k, name);                                               \
+    name_index *of = &k->names->kind[DECK_GROUP_##group].of;                                       \
+    for (int *i = &k->names->kind[DECK_GROUP_##group].count; *i < k->group##_count; ++*i)          \
+      if (k->group##s[*i].member) name_index_add(of, k->group##s[*i].member, *i);                  \
+    return name_index_find(of, name);                                                              \
   }
 FIND(region, name)
 FIND(lattice, name)
@@ -38,12 +63,12 @@ int deck_lattice_dimensions(const deck_lattice *l) {
   return l->setting && strcmp(l->setting, "space") == 0 ? 3 : 2;
 }
 
-char *deck_file_path(const deck *k, const char *name) {
-  const char *slash = strrchr(k->name, '/');
-  const int folder = slash && name[0] != '/' ? (int)(slash - k->name) + 1 : 0;
+char *deck_file_path(const char *deck_path, const char *name) {
+  const char *slash = strrchr(deck_path, '/');
+  const int folder = slash && name[0] != '/' ? (int)(slash - deck_path) + 1 : 0;
   const size_t size = (size_t)folder + strlen(name) + 1;
   char *path = must_alloc(size);
-  snprintf(path, size, "%.*s%s", folder, k->name, name);
+  snprintf(path, size, "%.*s%s", folder, deck_path, name);
   return path;
 }
 
@@ -247,6 +272,43 @@ static bool all_names_known(const deck *k, const namelist *n) {
   return known;
 }
 
+/* --- files of loads --------------------------------------------------------------------------- */
+
+static int find_source(const source_set *sources, const char *name) {
+  for (int i = 0; i < sources->count; i++)
+    if (strcmp(sources->items[i].name, name) == 0) return i;
+  return -1;
+}
+
+static bool is_listed(const deck *k, int number) {
+  for (int i = 0; i < k->file_count; i++)
+    if (k->files[i].source == number) return true;
+  return false;
+}
+
+static void list_file(deck_reader *r, const namelist_value *v) {
+  const char *columns;
+  char *name = text_table_split(v->text, &columns), *path = deck_file_path(r->k->name, name);
+  const int found = find_source(r->d->sources, path);
+  if (found >= 0 && !is_listed(r->k, found))
+    r->k->files[r->k->file_count++] = (deck_file){arena_text(r->memory, name, strlen(name)), found};
+  free(path);
+  free(name);
+}
+
+/* Loads alone have a `file` that is read with the deck. */
+static void list_files(deck_reader *r, const namelist *n) {
+  r->k->files = arena_alloc(r->memory, ((size_t)n->group_count + 1) * sizeof *r->k->files);
+  for (int i = 0; i < n->group_count; i++) {
+    const int kind = deck_group_find(n->groups[i].name);
+    const namelist_key *file = namelist_find(&n->groups[i], "file");
+    if (kind < 0 || !file || file->value_count != 1 || file->values[0].kind != NAMELIST_TEXT)
+      continue;
+    const int key = deck_key_find(&deck_groups[kind], "file");
+    if (key >= 0 && deck_groups[kind].keys[key].type == DECK_LATER) list_file(r, &file->values[0]);
+  }
+}
+
 /* What may differ between a run and the run that resumes it. */
 static bool is_no_matter(const char *group, const char *key) {
   if (strcmp(group, "checkpoint") == 0) return true;
@@ -282,13 +344,15 @@ bool deck_lacks(const deck *k, const char *group) {
 deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
                               const deck_override *overrides, int override_count, diagnostics *d) {
   namelist *n = namelist_read(a, sources, file, d);
+  deck_present_names(n, &deck_grammar_of_decks, d);
   deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
 
   deck *k = arena_alloc(a, sizeof(*k));
+  k->names = new_names(a);
   k->name = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
   k->simulation.item.where.file = k->output.item.where.file = k->checkpoint.item.where.file =
       (uint16_t)file;
-  deck_reader r = {a, d, k, true};
+  deck_reader r = {.memory = a, .d = d, .k = k, .names_known = true};
   report_unknown_groups(&r, n);
 #define X(group, identity, single, open, doc)                                                      \
   r.names_known = all_names_known(k, n);                                                           \
@@ -298,11 +362,13 @@ deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   DECK_GROUPS(X)
 #undef X
   set_computed_defaults(&r);
+  list_files(&r, n);
   k->identity = namelist_text(a, n, is_no_matter);
   if (!n->broken && !too_many_errors(&r)) deck_check_whole(&r);
   if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);
   if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
   leave_out_faulty(k);
+  k->names = new_names(a); /* others have moved up */
   return k;
 }
 

@@ -1,6 +1,7 @@
 /* A deck: Fortran namelist groups read into plain structures, every value in SI, every item with
    its place in the text so that later errors (an empty region, say) can point at the line. Reading
-   a deck touches no other file and checks what can be checked without lattices or laws. */
+   a deck reads the tables of its loads, touches no other file, and checks what can be checked
+   without lattices or laws. */
 #ifndef PERILAT_RUNTIME_DECK_H
 #define PERILAT_RUNTIME_DECK_H
 
@@ -8,9 +9,12 @@
 #include <stdio.h>
 
 #include "dsl/arena.h"
+#include "dsl/c_linkage.h"
 #include "dsl/diagnostics.h"
 #include "dsl/units.h"
 #include "runtime/time_function.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct deck_key { /* where a key was written, for messages about its value */
   const char *name;
@@ -39,7 +43,7 @@ typedef struct deck_lattice {
   int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */
   int seed;         /* blue_noise */
   const char *file; /* particles: as written; deck_file_path finds it */
-  volume_correction volume_correction;
+  enum volume_correction volume_correction;
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
   double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
   double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
@@ -224,7 +228,7 @@ typedef enum monitor_kind {
   MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
   MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
   MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
-  MONITOR_REACTIONS     /* N, with `between`: half the reaction of the second less that of the first */
+  MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
 } monitor_kind;
 
 typedef struct deck_monitor {
@@ -274,11 +278,21 @@ typedef struct deck_simulation {
   int threads;        /* 0: as the machine offers */
 } deck_simulation;
 
+typedef struct deck_file { /* a table that a load was read from */
+  const char *name;        /* as written, without columns */
+  int source;              /* its text among the sources */
+} deck_file;
+
+typedef struct deck_names deck_names;
+
 typedef struct deck {
   const char *name;     /* of the source */
   const char *identity; /* text that is equal for decks that compute the same: overrides applied,
                            without comments, title, number of threads and checkpoints */
-  unsigned lacks;       /* groups of which items were left out: see deck_lacks */
+  deck_file *files;     /* each once */
+  int file_count;
+  unsigned lacks;    /* groups of which items were left out: see deck_lacks */
+  deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
   deck_simulation simulation;
   deck_relaxation relaxation;
   deck_output output;
@@ -307,8 +321,8 @@ typedef struct deck_override {
 } deck_override;
 
 /* Reads sources->items[file]. NULL on errors (all are reported). Overrides become sources of their
-   own, named
-   "--set", so that errors in them point at their text. */
+   own, named "--set", so that errors in them point at their text. Tables of loads become sources,
+   too, and one that is there already, under its path, is not read from the disk. */
 deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                 int override_count, diagnostics *d);
 /* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
@@ -328,10 +342,13 @@ int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
 
-/* A file that the deck names, beside the deck unless its name begins with `/`; malloc'ed. */
-char *deck_file_path(const deck *k, const char *name);
+/* A file that the deck at a path names, beside the deck unless its name begins with `/`;
+   malloc'ed. */
+char *deck_file_path(const char *deck_path, const char *name);
 
 /* "x", "y", and "rotation" in the plane or "z" in space. */
 const char *deck_component_name(int dimensions, int component);
+
+C_LINKAGE_END
 
 #endif

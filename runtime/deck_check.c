@@ -100,35 +100,44 @@ void deck_check_region(deck_reader *r, const namelist_group *from, deck_region *
   }
 }
 
+/* Of all regions; NULL where the region is not known. */
+static deck_motions *motions_of(deck_reader *r, const char *region) {
+  const int k = region ? deck_find_region(r->k, region) : -1;
+  if (!r->motions)
+    r->motions = arena_alloc(r->memory, ((size_t)r->k->region_count + 1) * sizeof *r->motions);
+  return k < 0 ? NULL : &r->motions[k];
+}
+
+/* Of an item in which nothing is wrong; `components` has a bit each. */
+static void note_motions(deck_reader *r, const char *region, int components, span where) {
+  deck_motions *m = motions_of(r, region);
+  r->moved |= components;
+  for (int c = 0; m && c < 3; c++)
+    if (components & 1 << c && m->of[c].end == 0) m->of[c] = where;
+}
+
 void deck_check_support(deck_reader *r, const namelist_group *from, deck_support *item) {
   (void)from;
+  const int errors = r->d->errors;
+  const span where = deck_where(&item->item, "fix");
   int fix = 0;
   deck_item_region_known(r, &item->item, item->region);
   for (int k = 0; k <= WRITTEN_ROTATION; k++) {
     if (!(item->fix & 1 << k)) continue;
-    const int component = component_of(r, deck_where(&item->item, "fix"), item->region, k);
+    const int component = component_of(r, where, item->region, k);
     if (component >= 0) fix |= 1 << component;
   }
   item->fix = fix;
+  if (r->d->errors == errors) note_motions(r, item->region, fix, where);
 }
 
 /* A particle cannot follow two motions; regions that overlap are found when their particles are
  * known. */
 static void check_other_motions(deck_reader *r, const deck_drive *item) {
-  const deck *k = r->k;
-  span where = deck_where(&item->item, "component"), other = {0};
-  bool conflict = false;
-  for (int i = 0; i < k->support_count && !conflict; i++) {
-    conflict = !k->supports[i].item.faulty && deck_same_name(k->supports[i].region, item->region) &&
-               (k->supports[i].fix & 1 << item->component);
-    other = deck_where(&k->supports[i].item, "fix");
-  }
-  for (int i = 0; i < k->drive_count && !conflict; i++) {
-    conflict = !k->drives[i].item.faulty && deck_same_name(k->drives[i].region, item->region) &&
-               k->drives[i].component == item->component;
-    other = deck_where(&k->drives[i].item, "component");
-  }
-  if (!conflict) return;
+  const span where = deck_where(&item->item, "component");
+  const deck_motions *m = motions_of(r, item->region);
+  const span other = m ? m->of[item->component] : (span){0};
+  if (other.end == 0) return;
   const char *component = component_name(r, item->region, item->component);
   diag_report(r->d, DIAG_CONFLICT, where, "`%s` of region `%s` has two motions", component,
               deck_shown(r->memory, item->region));
@@ -144,31 +153,27 @@ static void spread(const deck_reader *r, const namelist_group *from, time_functi
   f->rise = rest;
 }
 
-/* The one of two keys that was written, or NULL after a message. */
-static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
-                                  const char *second) {
-  const namelist_key *a = namelist_find(from, first), *b = namelist_find(from, second);
-  if (a && b) {
-    diag_report(r->d, DIAG_CONFLICT, b->name_where, "`%s` and `%s` exclude each other", first,
-                second);
-    diag_note(r->d, a->name_where, "`%s` is given here", first);
-  } else if (!a && !b) {
-    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` needs `%s` or `%s`", from->name, first,
-                second);
-  }
-  return a && b ? NULL : a ? a : b;
+static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_function *f) {
+  if (time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
+  const bool table = f->shape == TIME_TABLE;
+  const namelist_key *at = namelist_find(from, !table ? "displacement" : "values");
+  diag_report(r->d, DIAG_DECK_WARNING, (at ? at : namelist_find(from, "file"))->name_where,
+              table ? "this displacement begins with a jump"
+                    : "this displacement comes all at once");
+  diag_hint(r->d, table ? "let the first value be 0" : "give a `rise`, e.g. rise = '1 ms'");
 }
 
-void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
+static void complete_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
   deck_item_region_known(r, &item->item, item->region);
   if (!take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
-  const namelist_key *key = either(r, from, "velocity", "displacement");
-  if (!key) return;
-  item->is_displacement = key == namelist_find(from, "displacement");
-  const char *unit_text = item->is_displacement ? (rotates ? "1" : "m") : rotates ? "1/s" : "m/s";
-  if (!deck_load_read(r->memory, from, key, unit_text, &item->motion, r->d)) {
+  const deck_load_kind kinds[] = {{"velocity", rotates ? "1/s" : "m/s", false},
+                                  {"displacement", rotates ? "1" : "m", false}};
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  if (kind < 0) return;
+  item->is_displacement = kind == 1;
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
     if (rotates && r->d->items[r->d->count - 1].code == DIAG_UNITS)
       diag_hint(r->d, "a rotation is in rad, its velocity in rad/s");
     return;
@@ -176,17 +181,23 @@ void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *it
   warn_late(r, &item->item, "start", item->motion.start);
   if (!item->is_displacement) return;
   spread(r, from, &item->motion);
-  if (item->motion.shape != TIME_CONSTANT || r->k->relaxation.increments > 0) return;
-  diag_report(r->d, DIAG_DECK_WARNING, key->name_where, "this displacement comes all at once");
-  diag_hint(r->d, "give a `rise`, e.g. rise = '1 ms'");
+  warn_of_jump(r, from, &item->motion);
+}
+
+void deck_check_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
+  const int errors = r->d->errors;
+  complete_drive(r, from, item);
+  if (r->d->errors == errors)
+    note_motions(r, item->region, 1 << item->component, deck_where(&item->item, "component"));
 }
 
 void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *item) {
+  static const deck_load_kind kinds[] = {{"total", "N", false}, {"moment", "N*m", false}};
   deck_item_region_known(r, &item->item, item->region);
-  const namelist_key *key = either(r, from, "force", "moment");
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
-  if (!key) return;
-  bool rotates = key == namelist_find(from, "moment");
+  if (kind < 0) return;
+  const bool rotates = kind == 1;
   item->component = rotates ? WRITTEN_ROTATION : 0;
   if (component) item->component = deck_choice_read(r->memory, component, "x|y|z|rotation", r->d);
   if (item->component < 0 || !take_component(r, &item->item, item->region, &item->component))
@@ -198,19 +209,24 @@ void deck_check_force(deck_reader *r, const namelist_group *from, deck_force *it
     return;
   }
   if (rotates != is_rotation(r, item->region, item->component)) {
-    diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
-                key->name, component_name(r, item->region, item->component));
-    diag_hint(r->d, "write `%s`", rotates ? "force" : "moment");
+    const namelist_key *key = namelist_find(from, kinds[kind].key);
+    diag_report(r->d, DIAG_CONFLICT,
+                key ? key->name_where : namelist_find(from, "file")->value_where,
+                "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
+                key ? "`" : "", component_name(r, item->region, item->component));
+    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
     return;
   }
-  if (!deck_load_read(r->memory, from, key, rotates ? "N*m" : "N", &item->force, r->d)) return;
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;
   warn_late(r, &item->item, "start", item->force.start);
   spread(r, from, &item->force);
 }
 
 void deck_check_end_moment(deck_reader *r, const namelist_group *from, deck_end_moment *item) {
+  static const deck_load_kind kind = {"moment", "N*m", false};
   deck_item_region_known(r, &item->item, item->region);
-  if (!deck_load_read(r->memory, from, namelist_find(from, "moment"), "N*m", &item->moment, r->d))
+  if (deck_load_kind_of(from, &kind, 1, r->d) < 0 ||
+      !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
     return;
   warn_late(r, &item->item, "start", item->moment.start);
   spread(r, from, &item->moment);
@@ -230,7 +246,7 @@ void deck_check_damping(deck_reader *r, const namelist_group *from, deck_damping
 }
 
 void deck_check_gravity(deck_reader *r, const namelist_group *from, deck_gravity *item) {
-  if (deck_factor_read(r->memory, from, &item->factor, r->d)) {
+  if (deck_factor_read(r->memory, from, "acceleration", &item->factor, r->d)) {
     warn_late(r, &item->item, "start", item->factor.start);
     spread(r, from, &item->factor);
   }
@@ -298,11 +314,8 @@ static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
 /* Forces come from supports and drives only; without any along the component a reaction is 0 for
  * ever. */
 static void check_reaction(deck_reader *r, const deck_monitor *item) {
-  bool found = false;
-  for (int i = 0; i < r->k->support_count; i++)
-    found |= r->k->supports[i].item.faulty || r->k->supports[i].fix & 1 << item->component;
-  for (int i = 0; i < r->k->drive_count; i++)
-    found |= r->k->drives[i].item.faulty || r->k->drives[i].component == item->component;
+  const bool found =
+      deck_lacks(r->k, "support") || deck_lacks(r->k, "drive") || r->moved & 1 << item->component;
   if (found || !r->names_known) return;
   diag_report(r->d, DIAG_CONFLICT, item->item.where,
               "this reaction is always 0: no `&support` or `&drive` acts on `%s`",
@@ -364,6 +377,17 @@ static void check_level(deck_reader *r, const namelist_key *key, deck_stop *item
                 "a fraction of the peak must be greater than 0 and less than 1");
 }
 
+/* The one of two keys that was written, or NULL after a message. */
+static const namelist_key *either(deck_reader *r, const namelist_group *from, const char *first,
+                                  const char *second) {
+  const namelist_key *a = namelist_find(from, first), *b = namelist_find(from, second);
+  deck_refuse_both(r, from, first, second);
+  if (!a && !b)
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` needs `%s` or `%s`", from->name, first,
+                second);
+  return a && b ? NULL : a ? a : b;
+}
+
 void deck_check_stop(deck_reader *r, const namelist_group *from, deck_stop *item) {
   const namelist_key *of = namelist_find(from, "of"), *key = either(r, from, "below", "above");
   warn_late(r, &item->item, "after", item->after);
@@ -411,12 +435,20 @@ void deck_check_checkpoint(deck_reader *r, const namelist_group *from, deck_chec
 
 /* --- the whole deck --------------------------------------------------------------------------- */
 
+/* Lattices with bodies, a mark each. */
+static bool *find_bodies(const deck_reader *r) {
+  const deck *k = r->k;
+  bool *found = arena_alloc(r->memory, (size_t)k->lattice_count + 1);
+  for (int i = 0; i < k->body_count; i++) {
+    const int l = k->bodys[i].lattice ? deck_find_lattice(k, k->bodys[i].lattice) : -1;
+    if (l >= 0) found[l] = true;
+  }
+  return found;
+}
+
 /* A faulty item may be the one that is missed. Particles of a file need no body. */
-static bool has_body(const deck *k, const deck_lattice *lattice) {
-  if (deck_lacks(k, "body")) return true;
-  for (int i = 0; i < k->body_count; i++)
-    if (deck_same_name(k->bodys[i].lattice, lattice->name)) return true;
-  return deck_same_name(lattice->kind, "particles");
+static bool needs_body(const deck *k, const deck_lattice *lattice) {
+  return !deck_lacks(k, "body") && !deck_same_name(lattice->kind, "particles");
 }
 
 static bool has_material(const deck *k, const char *lattice) {
@@ -443,6 +475,7 @@ void deck_check_whole(deck_reader *r) {
   if (k->lattice_count == 0 && !deck_lacks(k, "lattice"))
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_quasi_static(r);
+  const bool *has_body = find_bodies(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];
     if (!lattice->name) continue;
@@ -450,7 +483,7 @@ void deck_check_whole(deck_reader *r) {
     if (!has_material(k, lattice->name))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
                   "the lattice `%s` has no `&material`", name);
-    if (!has_body(k, lattice))
+    if (needs_body(k, lattice) && !has_body[i])
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
                   name);
   }

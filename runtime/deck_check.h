@@ -6,12 +6,19 @@
 #include "runtime/deck_table.h"
 #include "runtime/namelist.h"
 
+/* Where each component of a region is held or driven first; an empty span: nowhere. */
+typedef struct deck_motions {
+  span of[3];
+} deck_motions;
+
 typedef struct deck_reader {
   arena *memory;
   diagnostics *d;
   deck *k;
   bool
       names_known; /* false when some name could not be read: then unknown names are not reported */
+  deck_motions *motions; /* [regions] */
+  int moved;             /* components of any region, a bit each */
 } deck_reader;
 
 /* Completes one item from its group; its plain keys have been read without error. The item is not

@@ -124,7 +124,7 @@ void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice
     diag_report(r->d, DIAG_BAD_VALUE, where, "a lattice's name must not hold `/`");
   int first = deck_find_lattice(r->k, item->name);
   deck_name_is_new(r, "lattice", item->name, &item->item,
-              first < 0 ? NULL : &r->k->lattices[first].item);
+                   first < 0 ? NULL : &r->k->lattices[first].item);
 }
 
 static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assignment *a) {
@@ -204,18 +204,16 @@ static void check_distribution(deck_reader *r, const namelist_group *from, const
 }
 
 static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
-  const size_t count = (size_t)m->varying_count;
-  const char **names = arena_alloc(r->memory, (count + 1) * sizeof *names);
-  span *where = arena_alloc(r->memory, (count + 1) * sizeof *where);
-  for (size_t k = 0; k < count; k++) {
-    names[k] = m->varying[k];
-    where[k] = m->varying_where[k];
-    if (strcasecmp(names[k], f->parameter) != 0) continue;
+  const int count = m->varying_count;
+  for (int k = 0; k < count; k++) {
+    if (strcasecmp(m->varying[k], f->parameter) != 0) continue;
     diag_report(r->d, DIAG_CONFLICT, deck_where(&f->item, "parameter"),
                 "`%s` has a random field already", deck_shown(r->memory, f->parameter));
-    diag_note(r->d, where[k], "it is given here");
+    diag_note(r->d, m->varying_where[k], "it is given here");
     return;
   }
+  const char **names = arena_room(r->memory, m->varying, count, sizeof *names);
+  span *where = arena_room(r->memory, m->varying_where, count, sizeof *where);
   names[count] = f->parameter;
   where[count] = deck_where(&f->item, "parameter");
   m->varying = names;
@@ -244,5 +242,6 @@ void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *it
     return;
   }
   for (int i = 0; i < r->k->material_count; i++)
-    if (deck_same_name(r->k->materials[i].lattice, item->lattice)) add_varying(r, &r->k->materials[i], item);
+    if (deck_same_name(r->k->materials[i].lattice, item->lattice))
+      add_varying(r, &r->k->materials[i], item);
 }

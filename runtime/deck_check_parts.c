@@ -1,49 +1,50 @@
 #include "runtime/deck_check_parts.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
+#include "dsl/arena.h"
 #include "runtime/deck_value.h"
 
 /* --- names ------------------------------------------------------------------------------------ */
 
-/* Names of one kind of group, for suggestions. */
-#define NAMES_OF(group)                                                                            \
-  static const char **group##_names(const deck_reader *r) {                                        \
-    const deck *k = r->k;                                                                          \
-    const char **names = arena_alloc(r->memory, ((size_t)k->group##_count + 1) * sizeof(*names));  \
-    for (int i = 0; i < k->group##_count; i++)                                                     \
-      names[i] = k->group##s[i].name;                                                              \
-    return names;                                                                                  \
-  }
-NAMES_OF(lattice)
-NAMES_OF(region)
-NAMES_OF(monitor)
-
-static bool known(deck_reader *r, bool found, span where, const char *kind, const char *name,
-                  const char **names, int count) {
-  if (found || !r->names_known) return found;
+static void report_unknown(deck_reader *r, span where, const char *kind, const char *name,
+                           const char **names, int count) {
+  char intro[32];
   diag_report(r->d, DIAG_UNKNOWN_NAME, where, "there is no %s `%s`", kind,
               deck_shown(r->memory, name));
-  char intro[32];
   snprintf(intro, sizeof(intro), "the deck's %ss are", kind);
   deck_suggest(r->d, name, names, count, intro);
-  return false;
 }
 
+/* A name must be that of a group of this kind; else the kind's names are shown. */
+#define KNOWN(group)                                                                               \
+  static bool group##_is_known(deck_reader *r, span where, const char *name) {                     \
+    const deck *k = r->k;                                                                          \
+    const bool found = deck_find_##group(k, name) >= 0;                                            \
+    if (found || !r->names_known) return found;                                                    \
+    const char **names = must_calloc((size_t)k->group##_count + 1, sizeof *names);                 \
+    for (int i = 0; i < k->group##_count; i++)                                                     \
+      names[i] = k->group##s[i].name;                                                              \
+    report_unknown(r, where, #group, name, names, k->group##_count);                               \
+    free(names);                                                                                   \
+    return false;                                                                                  \
+  }
+KNOWN(lattice)
+KNOWN(region)
+KNOWN(monitor)
+
 bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name) {
-  return known(r, deck_find_lattice(r->k, name) >= 0, deck_where(item, "lattice"), "lattice", name,
-               lattice_names(r), r->k->lattice_count);
+  return lattice_is_known(r, deck_where(item, "lattice"), name);
 }
 
 bool deck_region_known(deck_reader *r, span where, const char *name) {
-  return known(r, deck_find_region(r->k, name) >= 0, where, "region", name, region_names(r),
-               r->k->region_count);
+  return region_is_known(r, where, name);
 }
 
 bool deck_monitor_known(deck_reader *r, span where, const char *name) {
-  return known(r, deck_find_monitor(r->k, name) >= 0, where, "monitor", name, monitor_names(r),
-               r->k->monitor_count);
+  return monitor_is_known(r, where, name);
 }
 
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name) {

@@ -7,6 +7,31 @@
 
 #include "runtime/deck_value.h"
 
+/* --- former names ----------------------------------------------------------------------------- */
+
+static void present_name(namelist_group *g, const deck_key_info *info, diagnostics *d) {
+  namelist_key *old = namelist_find(g, info->former), *given = namelist_find(g, info->name);
+  if (old && given) {
+    diag_report(d, DIAG_DUPLICATE_KEY, old->name_where, "`%s` is a former name of `%s`",
+                info->former, info->name);
+    diag_note(d, given->name_where, "`%s` is given here", info->name);
+    namelist_remove_key(g, old);
+  } else if (old)
+    old->name = info->name;
+}
+
+void deck_present_names(namelist *n, const deck_grammar *grammar, diagnostics *d) {
+  for (int t = 0; t < grammar->group_count; t++)
+    for (int k = 0; k < grammar->groups[t].key_count; k++) {
+      const deck_key_info *info = &grammar->groups[t].keys[k];
+      for (int i = 0; info->former && i < n->group_count; i++)
+        if (strcmp(n->groups[i].name, grammar->groups[t].name) == 0)
+          present_name(&n->groups[i], info, d);
+    }
+}
+
+/* --- overrides -------------------------------------------------------------------------------- */
+
 typedef struct setter {
   arena *memory;
   source_set *sources;
@@ -85,7 +110,9 @@ static bool find_group_info(setter *s, const char *group) {
 static bool find_names(setter *s, const char *group) {
   const char *names[DECK_MOST_KEYS];
   if (!find_group_info(s, group)) return false;
-  if (s->group->open || deck_key_find(s->group, s->key) >= 0) return true;
+  const int known = deck_key_find(s->group, s->key);
+  if (known >= 0 && s->group->keys[known].former) s->key = s->group->keys[known].name;
+  if (s->group->open || known >= 0) return true;
   diag_report(s->d, DIAG_UNKNOWN_KEY, s->key_where, "`&%s` has no key `%s`", s->group->name,
               s->key);
   deck_suggest(s->d, s->key, names, deck_key_names(s->group, names), "its keys are");

@@ -5,6 +5,9 @@
 #include "runtime/deck_table.h"
 #include "runtime/namelist.h"
 
+/* Keys under a former name get their present one; both in one group are an error. */
+void deck_present_names(namelist *n, const deck_grammar *grammar, diagnostics *d);
+
 /* Changes the groups in place; `grammar` says which there may be. The value follows the deck's grammar; since shells remove quotes, a
    value without any that is no number or logical value is taken as a text (as several, split at
    commas, where the key takes several). Each text becomes a source named "--set". */

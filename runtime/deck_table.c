@@ -120,7 +120,7 @@
    .type = DECK_LATER,                                                                             \
    .choices = "constant|ramp|ramp and hold|cosine|table",                                          \
    .fallback = "= 'constant', in quasi-static runs a ramp over the run; 'ramp and hold' with a "    \
-               "rise, 'table' with times",                                                         \
+               "rise, 'table' with times or a file",                                               \
    NOT_KEPT,                                                                                       \
    .doc = "how the value develops in time"},                                                       \
       {.name = "start",                                                                            \
@@ -139,9 +139,15 @@
        .unit = "s",                                                                                \
        NOT_KEPT,                                                                                   \
        .doc = "table: times after `start`, ascending"},                                            \
+      {.name = "values",                                                                           \
+       .type = DECK_LATER,                                                                         \
+       .unit = "1",                                                                                \
+       NOT_KEPT,                                                                                   \
+       .doc = "table: factors on the value at those times, straight lines between"},               \
   {                                                                                                \
-    .name = "values", .type = DECK_LATER, .unit = "1", NOT_KEPT,                                   \
-    .doc = "table: factors on the value at those times, straight lines between"                    \
+    .name = "file", .type = DECK_LATER, NOT_KEPT,                                                  \
+    .doc = "table: instead of `times` and `values`, two columns of a text file beside the deck; "  \
+           "factors on the value, or with a unit and without the value the load itself"            \
   }
 
 static const deck_key_info simulation_keys[] = {
@@ -469,7 +475,8 @@ static const deck_key_info force_keys[] = {
      .fallback = "= 'rotation' with a moment; else required",
      NOT_KEPT,
      .doc = "direction of the load"},
-    {.name = "force",
+    {.name = "total",
+     .former = "force", /* Fortran's own reader wants no variable named like its group */
      .type = DECK_LATER,
      .unit = "N",
      NOT_KEPT,
@@ -487,7 +494,7 @@ static const deck_key_info end_moment_keys[] = {
     {.name = "moment",
      .type = DECK_LATER,
      .unit = "N*m",
-     .required = true,
+     .fallback = "= required, but for a file with a unit",
      NOT_KEPT,
      .doc = "full moment; counter-clockwise on the body is positive"},
     TIME_KEYS,
@@ -727,7 +734,9 @@ int deck_group_find(const char *name) {
 
 int deck_key_find(const deck_group_info *g, const char *name) {
   for (int i = 0; i < g->key_count; i++)
-    if (strcasecmp(g->keys[i].name, name) == 0) return i;
+    if (strcasecmp(g->keys[i].name, name) == 0 ||
+        (g->keys[i].former && strcasecmp(g->keys[i].former, name) == 0))
+      return i;
   return -1;
 }
 
@@ -775,7 +784,7 @@ static void print_type(const deck_key_info *key, FILE *out) {
     fprintf(out, "two values, %s", shown);
     break;
   case DECK_DIRECTION:
-    fputs("three values", out);
+    fputs("three pure numbers", out);
     break;
   case DECK_PLACE:
     fprintf(out, "two values, in space three, %s", shown);
@@ -822,7 +831,9 @@ void deck_reference(FILE *out) {
       print_type(&g->keys[k], out);
       fputs(" | ", out);
       print_default(&g->keys[k], out);
-      fprintf(out, " | %s |\n", g->keys[k].doc);
+      fprintf(out, " | %s", g->keys[k].doc);
+      if (g->keys[k].former) fprintf(out, "; formerly `%s`", g->keys[k].former);
+      fputs(" |\n", out);
     }
     fputc('\n', out);
   }

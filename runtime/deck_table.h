@@ -37,6 +37,7 @@ enum { DECK_NO_FIELD = -1, DECK_MOST_KEYS = 24 };
 
 typedef struct deck_key_info {
   const char *name;
+  const char *former; /* a name that older decks give it, or NULL; deck_present_names mends it */
   deck_type type;
   const char *unit;    /* of reals, "1" for a pure number; shown only for DECK_LATER */
   const char *choices; /* "a|b|c" */
@@ -86,7 +87,7 @@ typedef struct deck_group_info {
     "Prescribed motion of a region from `start` on; free before. Give `velocity` or "              \
     "`displacement`.")                                                                             \
   X(force, "region", false, false,                                                                 \
-    "Force on a region, shared equally by its particles. Give `force` or `moment`.")               \
+    "Force on a region, shared equally by its particles. Give `total` or `moment`.")               \
   X(end_moment, "region", false, false,                                                            \
     "Moment on a region: horizontal forces, linear in y, without resultant.")                      \
   X(protect, "region", false, false, "Bonds near a region take no damage.")                        \
@@ -116,7 +117,7 @@ typedef struct deck_grammar {
 } deck_grammar;
 extern const deck_grammar deck_grammar_of_decks;
 
-/* Position of the group or key of that name (without regard to case), or -1. */
+/* Position of the group or key of that name (without regard to case), or -1; a key also by its former name. */
 int deck_group_find(const char *name);
 int deck_key_find(const deck_group_info *g, const char *name);
 /* Names for suggestions; `names` must hold DECK_GROUP_COUNT or DECK_MOST_KEYS. Returns the count.

@@ -185,6 +185,23 @@ static bool quantity_fits(const namelist_value *v, const char *key, const deck_q
   return true;
 }
 
+/* Masses, stiffnesses and energies are products of what a deck gives: each factor must leave room
+   for the others, or they are 0 or infinite. */
+static const double least_size = 1e-40, most_size = 1e40;
+
+static bool computable(const namelist_value *v, const char *key, double value,
+                       const char *unit_text, deck_bound bound, diagnostics *d) {
+  const bool pure = strcmp(unit_text, "1") == 0;
+  const bool may_vanish =
+      bound == BOUND_NONE || bound == BOUND_NOT_NEGATIVE || (pure && bound == BOUND_POSITIVE);
+  const bool small = !may_vanish && value > 0 && value < least_size;
+  if (!small && fabs(value) <= most_size) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, v->where, "`%s` is too %s to compute with: %s is %g%s%s", key,
+              small ? "small" : "large", small ? "the least" : "the most",
+              small ? least_size : most_size, pure ? "" : " ", pure ? "" : unit_text);
+  return false;
+}
+
 static bool within(const namelist_value *v, const char *key, double value, deck_bound bound,
                    diagnostics *d) {
   bool good = bound == BOUND_POSITIVE       ? value > 0
@@ -204,7 +221,7 @@ bool deck_real_read(const namelist_value *v, const char *key, const char *unit_t
   deck_quantity q;
   if (!deck_quantity_read(v, key, &q, d) || !quantity_fits(v, key, &q, unit_text, d)) return false;
   *value = q.value;
-  return within(v, key, q.value, bound, d);
+  return within(v, key, q.value, bound, d) && computable(v, key, q.value, unit_text, bound, d);
 }
 
 /* --- typed fields ----------------------------------------------------------------------------- */

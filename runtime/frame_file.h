@@ -8,6 +8,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "dsl/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
 typedef struct frame_mark {
   int64_t count;
   uint64_t sum;
@@ -41,5 +45,7 @@ bool frame_file_each(frame_file *f, frame_taker *take, void *context, char *erro
 
 void frame_file_remove(frame_file *f); /* from the folder */
 void frame_file_close(frame_file *f);
+
+C_LINKAGE_END
 
 #endif

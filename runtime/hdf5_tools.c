@@ -1,5 +1,6 @@
 #include "runtime/hdf5_tools.h"
 
+#include <hdf5_hl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -14,10 +15,16 @@ void h5_quiet(void) {
   H5PLset_loading_state(0); /* a file must not make the library load programs */
 }
 
+/* As many attributes of the file stand where it begins, not in a heap of their own. */
+enum { ATTRIBUTES = 64 };
+
 hid_t h5_create(const char *path) {
   hid_t access = H5Pcreate(H5P_FILE_ACCESS);
   H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_LATEST);
-  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access);
+  hid_t creation = H5Pcreate(H5P_FILE_CREATE);
+  H5Pset_attr_phase_change(creation, ATTRIBUTES, ATTRIBUTES / 2);
+  hid_t file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
+  H5Pclose(creation);
   H5Pclose(access);
   return file;
 }
@@ -45,22 +52,36 @@ bool h5_attribute_text(hid_t object, const char *name, const char *text) {
   return good;
 }
 
-static bool attribute_number(hid_t object, const char *name, hid_t stored, hid_t native,
-                             const void *value) {
-  hid_t space = H5Screate(H5S_SCALAR);
+static bool attribute_values(hid_t object, const char *name, hid_t stored, hid_t native, int rank,
+                             const hsize_t *shape, const void *values) {
+  hid_t space = H5Screate_simple(rank, shape, NULL);
   hid_t a = H5Acreate2(object, name, stored, space, H5P_DEFAULT, H5P_DEFAULT);
-  bool good = a >= 0 && H5Awrite(a, native, value) >= 0;
+  bool good = a >= 0 && H5Awrite(a, native, values) >= 0;
   if (a >= 0) H5Aclose(a);
   H5Sclose(space);
   return good;
 }
 
 bool h5_attribute_double(hid_t object, const char *name, double value) {
-  return attribute_number(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
+  return attribute_values(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, 0, NULL, &value);
 }
 
 bool h5_attribute_integer(hid_t object, const char *name, int64_t value) {
-  return attribute_number(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, &value);
+  return attribute_values(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 0, NULL, &value);
+}
+
+bool h5_attribute_integers(hid_t object, const char *name, const int64_t *values, int count) {
+  const hsize_t shape[1] = {(hsize_t)count};
+  return attribute_values(object, name, H5T_STD_I64LE, H5T_NATIVE_INT64, 1, shape, values);
+}
+
+bool h5_attribute_name(hid_t object, const char *name, const char *text) {
+  hid_t type = H5Tcopy(H5T_C_S1);
+  H5Tset_size(type, strlen(text));
+  H5Tset_strpad(type, H5T_STR_NULLPAD);
+  const bool good = attribute_values(object, name, type, type, 0, NULL, text);
+  H5Tclose(type);
+  return good;
 }
 
 /* As many values as half a megabyte holds, of whole rows and frames where these are smaller. */
@@ -79,18 +100,20 @@ static bool is_empty(int rank, const hsize_t *shape) {
   return empty;
 }
 
-static hid_t make_set(hid_t file, const char *name, hid_t stored, int rank, const hsize_t *shape,
-                      const char *unit_text) {
+static void pack(hid_t creation, int rank, const hsize_t *shape) {
   enum { LEVEL = 4 };
   hsize_t chunk[H5S_MAX_RANK];
+  choose_chunk(rank, shape, chunk);
+  H5Pset_chunk(creation, rank, chunk);
+  H5Pset_shuffle(creation);
+  H5Pset_deflate(creation, LEVEL);
+  H5Pset_fletcher32(creation);
+}
+
+static hid_t make_set(hid_t file, const char *name, hid_t stored, int rank, const hsize_t *shape,
+                      bool packed, const char *unit_text) {
   hid_t space = H5Screate_simple(rank, shape, NULL), creation = H5Pcreate(H5P_DATASET_CREATE);
-  if (!is_empty(rank, shape)) {
-    choose_chunk(rank, shape, chunk);
-    H5Pset_chunk(creation, rank, chunk);
-    H5Pset_shuffle(creation);
-    H5Pset_deflate(creation, LEVEL);
-    H5Pset_fletcher32(creation);
-  }
+  if (packed && !is_empty(rank, shape)) pack(creation, rank, shape);
   hid_t set = H5Dcreate2(file, name, stored, space, H5P_DEFAULT, creation, H5P_DEFAULT);
   H5Pclose(creation);
   H5Sclose(space);
@@ -100,8 +123,8 @@ static hid_t make_set(hid_t file, const char *name, hid_t stored, int rank, cons
 }
 
 static bool write_set(hid_t file, const char *name, hid_t stored, hid_t native, const void *values,
-                      int rank, const hsize_t *shape, const char *unit_text) {
-  hid_t set = make_set(file, name, stored, rank, shape, unit_text);
+                      int rank, const hsize_t *shape, bool packed, const char *unit_text) {
+  hid_t set = make_set(file, name, stored, rank, shape, packed, unit_text);
   if (set < 0) return false;
   const bool good =
       is_empty(rank, shape) || H5Dwrite(set, native, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
@@ -110,12 +133,23 @@ static bool write_set(hid_t file, const char *name, hid_t stored, hid_t native, 
 
 bool h5_write_doubles(hid_t file, const char *name, const double *values, int rank,
                       const hsize_t *shape, const char *unit_text) {
-  return write_set(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, rank, shape, unit_text);
+  return write_set(file, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, values, rank, shape, true,
+                   unit_text);
 }
 
 bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank,
                        const hsize_t *shape) {
-  return write_set(file, name, H5T_STD_I32LE, H5T_NATIVE_INT32, values, rank, shape, NULL);
+  return write_set(file, name, H5T_STD_I32LE, H5T_NATIVE_INT32, values, rank, shape, true, NULL);
+}
+
+bool h5_write_bytes(hid_t file, const char *name, const unsigned char *values, int rank,
+                    const hsize_t *shape) {
+  return write_set(file, name, H5T_STD_U8LE, H5T_NATIVE_UCHAR, values, rank, shape, true, NULL);
+}
+
+bool h5_write_list(hid_t file, const char *name, const int64_t *values, int rank,
+                   const hsize_t *shape) {
+  return write_set(file, name, H5T_STD_I64LE, H5T_NATIVE_INT64, values, rank, shape, false, NULL);
 }
 
 bool h5_write_text(hid_t file, const char *name, const char *text) {
@@ -130,7 +164,7 @@ bool h5_write_text(hid_t file, const char *name, const char *text) {
 
 hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,
                      const char *unit_text) {
-  return make_set(file, name, H5T_IEEE_F64LE, rank, shape, unit_text);
+  return make_set(file, name, H5T_IEEE_F64LE, rank, shape, true, unit_text);
 }
 
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values) {
@@ -141,6 +175,90 @@ bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const
               H5Dwrite(set, H5T_NATIVE_DOUBLE, memory, space, H5P_DEFAULT, values) >= 0;
   H5Sclose(memory);
   H5Sclose(space);
+  return good;
+}
+
+/* --- dimension scales ------------------------------------------------------------------------- */
+
+bool h5_scale_begin(h5_scale *s, hid_t set, const char *name) {
+  *s = (h5_scale){.set = set};
+  return H5DSset_scale(set, name) >= 0 &&
+         H5Rcreate(&s->reference, set, ".", H5R_OBJECT, H5I_INVALID_HID) >= 0;
+}
+
+static bool write_attribute(hid_t set, const char *name, hid_t type, hsize_t count,
+                            const void *values) {
+  const hid_t space = H5Screate_simple(1, &count, NULL);
+  const hid_t attribute = H5Acreate2(set, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
+  const bool good = attribute >= 0 && H5Awrite(attribute, type, values) >= 0;
+  if (attribute >= 0) H5Aclose(attribute);
+  H5Sclose(space);
+  H5Tclose(type);
+  return good;
+}
+
+bool h5_scale_attach(h5_scale *s, hid_t set, int rank) {
+  hvl_t scales[H5S_MAX_RANK] = {{.len = 1, .p = &s->reference}};
+  if (s->count == s->room) {
+    s->room = 2 * s->room + 64;
+    s->users = must_realloc(s->users, s->room * sizeof *s->users);
+  }
+  h5_scale_user *user = &s->users[s->count++];
+  *user = (h5_scale_user){.dimension = 0};
+  return H5Rcreate(&user->set, set, ".", H5R_OBJECT, H5I_INVALID_HID) >= 0 &&
+         write_attribute(set, "DIMENSION_LIST", H5Tvlen_create(H5T_STD_REF_OBJ), (hsize_t)rank,
+                         scales);
+}
+
+bool h5_scale_end(h5_scale *s) {
+  const hid_t type = H5Tcreate(H5T_COMPOUND, sizeof *s->users);
+  H5Tinsert(type, "dataset", HOFFSET(h5_scale_user, set), H5T_STD_REF_OBJ);
+  H5Tinsert(type, "dimension", HOFFSET(h5_scale_user, dimension), H5T_NATIVE_INT);
+  bool good = s->count == 0;
+  if (good)
+    H5Tclose(type);
+  else
+    good = write_attribute(s->set, "REFERENCE_LIST", type, s->count, s->users);
+  free(s->users);
+  return H5Dclose(s->set) >= 0 && good;
+}
+
+/* --- views ------------------------------------------------------------------------------------ */
+
+/* The block goes where the view begins. */
+static bool map_block(hid_t view, const hsize_t *shape, int rank, hid_t set, const h5_block *of,
+                      hid_t plist) {
+  const hsize_t none[H5_VIEW_RANK] = {0};
+  hsize_t here[H5_VIEW_RANK];
+  const hid_t there = H5Dget_space(set);
+  const int from = H5Sget_simple_extent_ndims(there);
+  memcpy(here, shape, sizeof *here * (size_t)rank);
+  if (rank > 1) here[rank - 1] = of->count[from - 1];
+  const bool good =
+      H5Sselect_hyperslab(view, H5S_SELECT_SET, none, NULL, here, NULL) >= 0 &&
+      H5Sselect_hyperslab(there, H5S_SELECT_SET, of->start, NULL, of->count, NULL) >= 0 &&
+      H5Pset_virtual(plist, view, ".", of->set, there) >= 0;
+  H5Sclose(there);
+  return good;
+}
+
+bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape,
+                  const h5_block *of) {
+  const hid_t set = H5Dopen2(file, of->set, H5P_DEFAULT);
+  if (set < 0) return false;
+  const hid_t space = H5Screate_simple(rank, shape, NULL), plist = H5Pcreate(H5P_DATASET_CREATE),
+              type = H5Dget_type(set);
+  H5Pset_dset_no_attrs_hint(plist, true); /* half the size */
+  H5Pset_obj_track_times(plist, false);
+  bool good = is_empty(rank, shape) || map_block(space, shape, rank, set, of, plist);
+  H5Sselect_all(space);
+  const hid_t view =
+      good ? H5Dcreate2(file, name, type, space, H5P_DEFAULT, plist, H5P_DEFAULT) : -1;
+  good = view >= 0 && H5Dclose(view) >= 0;
+  H5Tclose(type);
+  H5Pclose(plist);
+  H5Sclose(space);
+  H5Dclose(set);
   return good;
 }
 

@@ -18,15 +18,52 @@ bool h5_write_doubles(hid_t file, const char *name, const double *values, int ra
                       const hsize_t *shape, const char *unit_text);
 bool h5_write_integers(hid_t file, const char *name, const int32_t *values, int rank,
                        const hsize_t *shape);
+bool h5_write_bytes(hid_t file, const char *name, const unsigned char *values, int rank,
+                    const hsize_t *shape);
+/* A short list of numbers, as it is: chunks would take more room than its numbers. */
+bool h5_write_list(hid_t file, const char *name, const int64_t *values, int rank,
+                   const hsize_t *shape);
 /* Texts are UTF-8 of variable length, which readers take for text, not for bytes. */
 bool h5_write_text(hid_t file, const char *name, const char *text);
 bool h5_attribute_text(hid_t object, const char *name, const char *text);
 bool h5_attribute_double(hid_t object, const char *name, double value);
 bool h5_attribute_integer(hid_t object, const char *name, int64_t value);
+bool h5_attribute_integers(hid_t object, const char *name, const int64_t *values, int count);
+/* ASCII of fixed length, as VTK wants it. */
+bool h5_attribute_name(hid_t object, const char *name, const char *text);
 /* A data set to be written frame by frame. */
 hid_t h5_make_frames(hid_t file, const char *name, int rank, const hsize_t *shape,
                      const char *unit_text);
 bool h5_write_frame(hid_t set, long frame, int rank, const hsize_t *shape, const double *values);
+/* Dimension scales (H5DS): a data set becomes one, which is attached to a dimension of others. */
+typedef struct h5_scale_user {
+  hobj_ref_t set;
+  unsigned dimension;
+} h5_scale_user;
+
+typedef struct h5_scale {
+  hid_t set;
+  hobj_ref_t reference;
+  h5_scale_user *users; /* [count] */
+  size_t count, room;
+} h5_scale;
+
+/* The set is closed by h5_scale_end, which must be called whatever has come out, and writes the
+   list of users: H5DSattach_scale writes it anew each time. */
+bool h5_scale_begin(h5_scale *s, hid_t set, const char *name);
+/* Of the first of `rank` dimensions. */
+bool h5_scale_attach(h5_scale *s, hid_t set, int rank);
+bool h5_scale_end(h5_scale *s);
+
+enum { H5_VIEW_RANK = 3 }; /* at most, of a view and of what it shows */
+typedef struct h5_block {  /* of a data set of the file */
+  const char *set;
+  hsize_t start[H5_VIEW_RANK], count[H5_VIEW_RANK];
+} h5_block;
+/* A virtual data set, which shows a block without a copy. A table may have more columns than the
+   block: these are 0. */
+bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape, const h5_block *of);
+
 /* Text attribute of fixed or variable length, cut to size; false (and "") when there is none. */
 bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size);
 /* Text of a data set that holds one, fixed or variable; malloc'ed, NULL when it holds something else. */

@@ -5,7 +5,12 @@
 #include "dsl/elementary.h"
 
 const char *const ledger_names[LEDGER_COUNT] = {
-#define X(code, name) name,
+#define X(code, name, words) name,
+    LEDGER_TERMS(X)
+#undef X
+};
+const char *const ledger_words[LEDGER_COUNT] = {
+#define X(code, name, words) words,
     LEDGER_TERMS(X)
 #undef X
 };

@@ -22,23 +22,24 @@
 #include "runtime/loads.h"
 #include "runtime/sweep.h"
 
-/* X(code, name) in the order of the history; all in J */
+/* X(code, name, words) in the order of the history; all in J */
 #define LEDGER_TERMS(X)                                                                            \
-  X(KINETIC, "energy/kinetic")                                                                     \
-  X(STORED, "energy/stored")                                                                       \
-  X(DISSIPATED_DAMAGE, "energy/dissipated_damage")                                                 \
-  X(DISSIPATED_DAMPING, "energy/dissipated_damping")                                               \
-  X(EXTERNAL, "energy/external")                                                                   \
-  X(IMBALANCE, "energy/imbalance")
+  X(KINETIC, "energy/kinetic", "kinetic energy")                                                   \
+  X(STORED, "energy/stored", "energy stored in the bonds")                                         \
+  X(DISSIPATED_DAMAGE, "energy/dissipated_damage",                                                 \
+    "energy dissipated by the law: damage, rate terms")                                            \
+  X(DISSIPATED_DAMPING, "energy/dissipated_damping", "energy dissipated by mass damping")          \
+  X(EXTERNAL, "energy/external", "work of loads and drives")                                       \
+  X(IMBALANCE, "energy/imbalance", "work of loads and drives less all other energies")
 
 typedef enum ledger_term {
-#define X(code, name) LEDGER_##code,
+#define X(code, name, words) LEDGER_##code,
   LEDGER_TERMS(X)
 #undef X
       LEDGER_COUNT
 } ledger_term;
 
-extern const char *const ledger_names[LEDGER_COUNT];
+extern const char *const ledger_names[LEDGER_COUNT], *const ledger_words[LEDGER_COUNT];
 
 typedef struct ledger {
   double initial; /* J: kinetic and stored at the first sample */

@@ -53,14 +53,15 @@ static void report_empty(const char *lattice, const deck_region *region, const r
     hint_extent(lattice, w, d);
 }
 
-static bool names_region(const char *name, const char *region) {
-  return name && strcmp(name, region) == 0;
-}
-
-static bool region_is_used(const deck *k, const char *name) {
+/* Regions that anything names, a mark each; malloc'ed. */
+static bool *find_used_regions(const deck *k) {
+  bool *used = must_calloc((size_t)k->region_count + 1, sizeof *used);
 #define USED(list, member)                                                                         \
-  for (int i = 0; i < k->list##_count; i++)                                                        \
-    if (names_region(k->list##s[i].member, name)) return true;
+  for (int i = 0; i < k->list##_count; i++) {                                                      \
+    const char *name = k->list##s[i].member;                                                       \
+    const int region = name ? deck_find_region(k, name) : -1;                                      \
+    if (region >= 0) used[region] = true;                                                          \
+  }
   USED(support, region)
   USED(drive, region)
   USED(force, region)
@@ -71,20 +72,22 @@ static bool region_is_used(const deck *k, const char *name) {
   USED(monitor, between[0])
   USED(monitor, between[1])
 #undef USED
-  return false;
+  return used;
 }
 
 static void select_regions(loads *l, const deck *k, const char *lattice, diagnostics *d) {
+  bool *used = find_used_regions(k);
   l->regions = must_calloc((size_t)k->region_count + 1, sizeof *l->regions);
   for (int r = 0; r < k->region_count; r++) {
     const deck_region *region = &k->regions[r];
     l->regions[r].count = rows_select(l->lattice, &region->shape, &l->regions[r].particles);
     if (l->regions[r].count == 0)
       report_empty(lattice, region, l->lattice, d);
-    else if (!deck_lacks(k, NULL) && !region_is_used(k, region->name))
+    else if (!deck_lacks(k, NULL) && !used[r])
       diag_report(d, DIAG_DECK_WARNING, region->item.where, "region `%s` is never used",
                   region->name);
   }
+  free(used);
 }
 
 static const region_sites *region_of(const loads *l, const char *name) {

@@ -96,6 +96,27 @@ static void print_bound(double value, bool upper, char *text, size_t size) {
     snprintf(text, size, "%.8g", value);
 }
 
+/* What a law makes of such a value may be 0 or infinite. */
+static bool is_computable(double value) {
+  return value == 0 || (fabs(value) >= 1e-100 && fabs(value) <= 1e100);
+}
+
+static bool check_sizes(const deck_material *m, const pl_law *law, const double *values,
+                        const span *where, const bool *given, diagnostics *d) {
+  bool good = true;
+  for (int p = 0; p < law->parameter_count; p++) {
+    if (is_computable(values[p])) continue;
+    const bool large = fabs(values[p]) > 1;
+    diag_report(d, DIAG_OUT_OF_BOUNDS, given[p] ? where[p] : m->item.where,
+                "`%s` = %.8g is too %s to compute with", law->parameters[p].name, values[p],
+                large ? "large" : "small");
+    diag_hint(d, large ? "no quantity of a law is larger than 1e100 in SI units"
+                       : "give 0, or a quantity of at least 1e-100 in SI units");
+    good = false;
+  }
+  return good;
+}
+
 static bool check_bounds(const deck_material *m, const pl_law *law, const double *values,
                          const span *where, const bool *given, diagnostics *d) {
   const size_t n = (size_t)law->parameter_count + 1;
@@ -136,7 +157,8 @@ bool material_parameters(const deck_material *m, const pl_law *law, double *valu
   for (int a = 0; a < m->assignment_count; a++)
     good = assign(&m->assignments[a], law, values, where, given, d) && good;
   good = !m->item.faulty && fill_defaults(m, law, values, given, d) && good;
-  good = good && check_bounds(m, law, values, where, given, d);
+  good = good && check_bounds(m, law, values, where, given, d) &&
+         check_sizes(m, law, values, where, given, d);
   free(given);
   free(where);
   return good;

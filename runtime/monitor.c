@@ -202,6 +202,70 @@ void monitors_free(monitors *m) {
   free(m);
 }
 
+/* --- in words --------------------------------------------------------------------------------- */
+
+static char *component_words(const monitors *all, const monitor *m, const char *quantity,
+                             arena *a) {
+  const int c = m->deck->component, dimensions = all->state->dimensions;
+  return arena_printf(a, "%s %s %s", quantity, c < dimensions ? "along" : "in",
+                      deck_component_name(dimensions, c));
+}
+
+static char *difference_words(const monitors *all, const monitor *m, const char *quantity,
+                              arena *a) {
+  return arena_printf(a, "%s of `%s` less that of `%s`", component_words(all, m, quantity, a),
+                      m->deck->between[1], m->deck->between[0]);
+}
+
+static char *region_words(const monitors *all, const monitor *m, const char *quantity, arena *a) {
+  return arena_printf(a, "%s of `%s`", component_words(all, m, quantity, a), m->deck->region);
+}
+
+static char *count_words(const monitors *all, const monitor *m, arena *a) {
+  return arena_printf(a, "%s with %s %.6g",
+                      damage_on_bonds(all->state->law) ? "bonds" : "particles",
+                      m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
+                      m->deck->above);
+}
+
+static char *field_words(const monitors *all, const monitor *m, arena *a) {
+  const pl_field *f = law_field(all->state->law, m->field);
+  char *words = arena_printf(a, "mean `%s` of `%s`", f->name, m->deck->region);
+  return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
+}
+
+static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    return region_words(all, m, "reaction", a);
+  case MONITOR_REACTIONS:
+    return difference_words(all, m, "half the reaction", a);
+  case MONITOR_OPENING:
+    return difference_words(all, m, "mean displacement", a);
+  case MONITOR_DISPLACEMENT:
+    return region_words(all, m, "mean displacement", a);
+  case MONITOR_VELOCITY:
+    return region_words(all, m, "mean velocity", a);
+  case MONITOR_FIELD:
+    return field_words(all, m, a);
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  return count_words(all, m, a);
+}
+
+char *monitor_words(const monitors *all, int index, arena *a) {
+  const monitor *m = &all->items[index];
+  char *words = quantity_words(all, m, a);
+  if (m->window > 1) words = arena_printf(a, "%s, mean over %.6g s", words, m->deck->average);
+  if (m->zero_step >= 0)
+    words = arena_printf(a, "%s, less its value at %.6g s", words, m->deck->zero_at);
+  if (m->deck->scale < 1 || m->deck->scale > 1)
+    words = arena_printf(a, "%s, times %.6g", words, m->deck->scale);
+  return words;
+}
+
 /* --- values ----------------------------------------------------------------------------------- */
 
 static double mean_at(const double *values, const int32_t *sites, long count) {

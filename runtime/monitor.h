@@ -58,6 +58,8 @@ bool monitors_check(const deck *k, const pl_law *law, diagnostics *d);
 monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
                        double interval, diagnostics *d);
 void monitors_free(monitors *m);
+/* "reaction along y of `loader`, times -1, mean over 0.0001 s": what a monitor watches. */
+char *monitor_words(const monitors *m, int index, arena *a);
 
 /* In dynamic runs once at the start and after every step: into the windows what is known. */
 void monitors_step(monitors *m, long step);

@@ -8,7 +8,7 @@
 #include <string.h>
 #include <strings.h>
 
-#include "dsl/json.h"
+#include "dsl/characters.h"
 #include "dsl/units.h"
 
 typedef struct reader {
@@ -107,23 +107,15 @@ static bool is_text(reader *r) {
 
 /* --- growing lists ---------------------------------------------------------------------------- */
 
-/* Room for one item more; lists grow by doubling at powers of two. */
-static void *with_room(arena *a, const void *items, int count, size_t size) {
-  if (count & (count - 1)) return (void *)(uintptr_t)items;
-  void *larger = arena_alloc(a, (count ? 2 * (size_t)count : 1) * size);
-  if (count) memcpy(larger, items, (size_t)count * size);
-  return larger;
-}
-
 namelist_group *namelist_add_group(arena *a, namelist *n, const char *name) {
-  n->groups = with_room(a, n->groups, n->group_count, sizeof(*n->groups));
+  n->groups = arena_room(a, n->groups, n->group_count, sizeof(*n->groups));
   namelist_group *g = &n->groups[n->group_count++];
   *g = (namelist_group){.name = name};
   return g;
 }
 
 namelist_key *namelist_add_key(arena *a, namelist_group *g, const char *name) {
-  g->keys = with_room(a, g->keys, g->key_count, sizeof(*g->keys));
+  g->keys = arena_room(a, g->keys, g->key_count, sizeof(*g->keys));
   namelist_key *key = &g->keys[g->key_count++];
   *key = (namelist_key){.name = name};
   return key;
@@ -141,7 +133,7 @@ namelist_key *namelist_find(const namelist_group *g, const char *name) {
 }
 
 static void add_value(reader *r, namelist_key *key, const namelist_value *value) {
-  key->values = with_room(r->memory, key->values, key->value_count, sizeof(*key->values));
+  key->values = arena_room(r->memory, key->values, key->value_count, sizeof(*key->values));
   if (key->value_count == 0) key->value_where = value->where;
   key->value_where = span_join(key->value_where, value->where);
   key->values[key->value_count++] = *value;
@@ -648,8 +640,7 @@ char *namelist_text(arena *a, const namelist *n,
                     bool (*leave_out)(const char *group, const char *key)) {
   char *text = NULL;
   size_t length = 0;
-  FILE *out = open_memstream(&text, &length);
-  if (!out) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  FILE *out = must_open_text(&text, &length);
   for (int g = 0; g < n->group_count; g++) {
     const namelist_group *group = &n->groups[g];
     if (leave_out(group->name, NULL)) continue;
@@ -664,7 +655,7 @@ char *namelist_text(arena *a, const namelist *n,
     }
     fputs(" /\n", out);
   }
-  fclose(out);
+  must_close_text(out);
   char *kept = arena_text(a, text, length);
   free(text);
   return kept;

@@ -176,7 +176,7 @@ static void keep(particle_table *t, long from, long to) {
   for (int c = 0; c < t->dimensions; c++)
     t->at[c][to] = t->at[c][from];
   if (t->volume) t->volume[to] = t->volume[from];
-  t->begin[to] = t->begin[from];
+  t->row[to] = t->row[from];
 }
 
 /* What is outside of the bodies and in notches goes. Without bodies all are meant. */
@@ -303,7 +303,7 @@ static particle_set *load(maker *m) {
   const deck_lattice *l = m->lattice;
   particle_table t;
   particle_set *set = NULL;
-  if (particle_table_read(&t, deck_file_path(m->deck, l->file), m->solid.dimensions,
+  if (particle_table_read(&t, deck_file_path(m->deck->name, l->file), m->solid.dimensions,
                           l->mass_thickness, deck_where(&l->item, "file"), m->d))
     set = from_table(m, &t);
   particle_table_free(&t);

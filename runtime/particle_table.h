@@ -1,26 +1,18 @@
-/* Particles of a file: a table of comma-separated values, or a result of an earlier run. In a table, `#` begins a comment
-   line, and the first line that is none names the columns, each perhaps with a unit: "x [mm], y [mm], volume [mm^3]".
-   It has x, y and in space z, and perhaps volume or, in the plane, area; other columns are passed over. Plain numbers are SI.
-   Of a result, the places at the beginning and the volumes are taken. */
+/* Particles of a file: a table (text_table.h) with columns x, y and in space z, and perhaps volume
+   or, in the plane, area; or a result of an earlier run, of which the places at the beginning and
+   the volumes are taken. */
 #ifndef PERILAT_RUNTIME_PARTICLE_TABLE_H
 #define PERILAT_RUNTIME_PARTICLE_TABLE_H
 
-#include <stdbool.h>
-#include <stdint.h>
-
-#include "dsl/diagnostics.h"
+#include "runtime/text_table.h"
 
 typedef struct particle_table {
   int dimensions;
   long count;
-  double *at[3];  /* [count] m; at[2] is NULL in the plane */
-  double *volume; /* [count] m^2 of the plane or m^3 of space; NULL when the file gives none */
-  char *path;     /* owned */
-  char *text;     /* of a table; NULL for a result */
-  size_t length;
-  uint32_t
-      *begin; /* [count] where the particle's line begins in the text; in a result its number */
-  int source; /* of the text among the sources once a message has pointed into it, or -1 */
+  double *at[3];   /* [count] m; at[2] is NULL in the plane */
+  double *volume;  /* [count] m^2 of the plane or m^3 of space; NULL when the file gives none */
+  long *row;       /* [count] of the table, or the particle's number in the result */
+  text_table text; /* without columns when the file is a result */
 } particle_table;
 
 /* Takes over `path` (malloc'ed). `thickness` (m) turns volumes in the plane into areas. False with diagnostics, at `where`

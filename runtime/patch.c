@@ -177,9 +177,7 @@ void patch_cut(patch *p, long site, int k) {
 /* Points at the first site. */
 static void *site_array(const patch *p, long planes, size_t each) {
   const size_t bytes = (size_t)(planes * p->size) * each;
-  char *memory =
-      aligned_alloc(PL_ALIGNMENT, (bytes + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT);
-  if (!memory) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  char *memory = must_align(PL_ALIGNMENT, bytes);
   memset(memory, 0, bytes);
   return memory + (size_t)p->lead * each;
 }

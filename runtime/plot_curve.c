@@ -5,34 +5,21 @@
 #include <string.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
 #include "dsl/elementary.h"
-#include "dsl/powers.h"
 #include "dsl/units.h"
-#include "runtime/canvas.h"
 #include "runtime/plot.h"
+#include "runtime/plot_axes.h"
+#include "runtime/plot_beside.h"
 #include "runtime/result.h"
 
-enum {
-  WIDTH = 1200,
-  HEIGHT = 800,
-  LEFT = 120,
-  RIGHT = 40,
-  TOP = 70,
-  BOTTOM = 95,
-  MOST_CURVES = 64
-};
+enum { MOST_CURVES = 64 };
 
 typedef struct curve {
   double *x, *y;
   long count;
   char label[256];
 } curve;
-
-typedef struct axis {
-  const char *name;
-  char unit_text[64];
-  double low, high, step, factor; /* shown values; shown = SI * factor */
-} axis;
 
 static const colour palette[] = {{0.00, 0.27, 0.55}, {0.80, 0.25, 0.05}, {0.10, 0.50, 0.20},
                                  {0.55, 0.20, 0.60}, {0.85, 0.55, 0.00}, {0.05, 0.55, 0.60},
@@ -56,41 +43,8 @@ static bool read_curve(result_file *f, const char *x, const char *y, curve *c, c
   return c->x && c->y;
 }
 
-/* Shown unit and the factor from SI; the user's unit must fit the history's. */
-static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double largest,
-                        char *error, size_t size) {
-  if (!wanted) {
-    snprintf(a->unit_text, sizeof a->unit_text, "%s", readable_unit(si_unit, largest, &a->factor));
-    return true;
-  }
-  unit shown, si;
-  const char *bad;
-  size_t bad_length;
-  if (!unit_parse(wanted, strlen(wanted), &shown, &bad, &bad_length) ||
-      !unit_parse(si_unit, strlen(si_unit), &si, &bad, &bad_length) ||
-      !dim_equal(shown.dim, si.dim)) {
-    snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name, si_unit, wanted);
-    return false;
-  }
-  snprintf(a->unit_text, sizeof a->unit_text, "%s", wanted);
-  a->factor = si.factor / shown.factor;
-  return true;
-}
-
-/* A power of ten in front of the unit where numbers would have many digits. */
-static void shorten_numbers(axis *a, double largest) {
-  double shown = largest * a->factor;
-  if (!(shown > 0) || (shown < 1e5 && shown >= 1e-2)) return;
-  int power = 3 * (int)floor(decade_of(shown) / 3.0);
-  char symbol[sizeof a->unit_text];
-  memcpy(symbol, a->unit_text, sizeof symbol);
-  bool pure = strcmp(symbol, "1") == 0;
-  snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
-           pure ? "" : symbol);
-  a->factor /= power_of(10, power);
-}
-
-static void range_of(const curve *curves, int count, bool of_x, double *low, double *high) {
+static void range_of(const curve *curves, int count, const plot_curve_options *o, bool of_x,
+                     double *low, double *high) {
   *low = INFINITY;
   *high = -INFINITY;
   for (int c = 0; c < count; c++)
@@ -101,89 +55,8 @@ static void range_of(const curve *curves, int count, bool of_x, double *low, dou
         *high = pl_fmax(*high, v);
       }
     }
-}
-
-/* An end beyond zero by what cannot be seen (2 pixels) is zero: an axis does not get a step for it. */
-static double without_noise(double end, double range) {
-  return fabs(end) < 2e-3 * range ? 0 : end;
-}
-
-static bool set_axis(axis *a, const char *name, const char *si_unit, const char *wanted, double low,
-                     double high, char *error, size_t size) {
-  a->name = name;
-  if (!(low <= high)) {
-    snprintf(error, size, "`%s` holds no finite value to draw", name);
-    return false;
-  }
-  if (!choose_unit(a, si_unit, wanted, pl_fmax(fabs(low), fabs(high)), error, size)) return false;
-  if (!wanted) shorten_numbers(a, pl_fmax(fabs(low), fabs(high)));
-  const double range = high - low;
-  low = without_noise(low, range) * a->factor;
-  high = without_noise(high, range) * a->factor;
-  if (low > 0 && low < 0.3 * high) low = 0;
-  if (!(high - low > 1e-12 * pl_fmax(fabs(high), 1e-300))) {
-    high = low + (fabs(low) > 0 ? fabs(low) : 1);
-  }
-  a->step = nice_step(high - low, 5);
-  a->low = a->step * floor(low / a->step + 1e-3); /* a thousandth of a step is not seen */
-  a->high = a->step * ceil(high / a->step - 1e-3);
-  return true;
-}
-
-static double along_x(const axis *a, double shown) {
-  return LEFT + (shown - a->low) / (a->high - a->low) * (WIDTH - LEFT - RIGHT);
-}
-static double along_y(const axis *a, double shown) {
-  return HEIGHT - BOTTOM - (shown - a->low) / (a->high - a->low) * (HEIGHT - TOP - BOTTOM);
-}
-
-static void draw_axes(canvas *c, const axis *x, const axis *y) {
-  const colour grid = {0.88, 0.88, 0.88}, ink = {0.1, 0.1, 0.1};
-  char text[64];
-  long nx = lround((x->high - x->low) / x->step), ny = lround((y->high - y->low) / y->step);
-  for (long k = 0; k <= nx; k++) {
-    double v = x->low + (double)k * x->step, at = along_x(x, v);
-    canvas_colour(c, grid);
-    canvas_line(c, at, TOP, at, HEIGHT - BOTTOM, 1);
-    canvas_colour(c, ink);
-    snprintf(text, sizeof text, "%.6g", fabs(v) < 1e-9 * x->step ? 0 : v);
-    canvas_text(c, at, HEIGHT - BOTTOM + 26, 19, ANCHOR_CENTRE, text);
-  }
-  for (long k = 0; k <= ny; k++) {
-    double v = y->low + (double)k * y->step, at = along_y(y, v);
-    canvas_colour(c, grid);
-    canvas_line(c, LEFT, at, WIDTH - RIGHT, at, 1);
-    canvas_colour(c, ink);
-    snprintf(text, sizeof text, "%.6g", fabs(v) < 1e-9 * y->step ? 0 : v);
-    canvas_text(c, LEFT - 12, at + 7, 19, ANCHOR_RIGHT, text);
-  }
-  canvas_colour(c, (colour){0.6, 0.6, 0.6}); /* where something is zero, inside of the frame */
-  if (x->low < 0 && x->high > 0)
-    canvas_line(c, along_x(x, 0), TOP, along_x(x, 0), HEIGHT - BOTTOM, 1);
-  if (y->low < 0 && y->high > 0)
-    canvas_line(c, LEFT, along_y(y, 0), WIDTH - RIGHT, along_y(y, 0), 1);
-  canvas_colour(c, ink);
-  canvas_line(c, LEFT, HEIGHT - BOTTOM, WIDTH - RIGHT, HEIGHT - BOTTOM, 1.5);
-  canvas_line(c, LEFT, TOP, LEFT, HEIGHT - BOTTOM, 1.5);
-}
-
-static bool is_pure(const char *unit_text) {
-  return strcmp(unit_text, "1") == 0;
-}
-
-static void name_axis(const axis *a, char *text, size_t size) {
-  const bool pure = is_pure(a->unit_text);
-  snprintf(text, size, "%.400s%s%s%s", a->name, pure ? "" : " [", pure ? "" : a->unit_text,
-           pure ? "" : "]");
-}
-
-static void draw_names(canvas *c, const axis *x, const axis *y, const char *title) {
-  char text[512];
-  name_axis(x, text, sizeof text);
-  canvas_text(c, LEFT + (WIDTH - LEFT - RIGHT) / 2.0, HEIGHT - 26, 22, ANCHOR_CENTRE, text);
-  name_axis(y, text, sizeof text);
-  canvas_text_upward(c, 36, TOP + (HEIGHT - TOP - BOTTOM) / 2.0, 22, HEIGHT - TOP - BOTTOM, text);
-  canvas_text_within(c, LEFT, 42, 24, WIDTH - LEFT - RIGHT, title);
+  for (int b = 0; b < o->beside_count; b++)
+    beside_range(&o->beside[b], of_x, low, high);
 }
 
 static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, colour ink) {
@@ -196,7 +69,7 @@ static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, 
       pen_down = false;
       continue;
     }
-    double px = along_x(x, k->x[q] * x->factor), py = along_y(y, k->y[q] * y->factor);
+    double px = axis_along_x(x, k->x[q]), py = axis_along_y(y, k->y[q]);
     if (pen_down)
       cairo_line_to(c->cr, px, py);
     else
@@ -206,70 +79,123 @@ static void draw_curve(canvas *c, const curve *k, const axis *x, const axis *y, 
   cairo_stroke(c->cr);
 }
 
-/* Samples of all curves in a rectangle of the picture. */
-static long samples_in(const curve *curves, int count, const axis *x, const axis *y, double left,
-                       double top, double width, double height) {
+/* --- legend ----------------------------------------------------------------------------------- */
+
+typedef struct diagram {
+  const curve *curves;
+  int count;
+  const plot_curve_options *o;
+  axis x, y;
+} diagram;
+
+typedef struct box {
+  double left, top, width, height;
+} box;
+
+static long points_in(const diagram *g, box b, const double *x, const double *y, long count) {
   long inside = 0;
-  for (int c = 0; c < count; c++)
-    for (long k = 0; k < curves[c].count; k++) {
-      double px = along_x(x, curves[c].x[k] * x->factor),
-             py = along_y(y, curves[c].y[k] * y->factor);
-      inside += px > left && px < left + width && py > top && py < top + height;
-    }
+  for (long k = 0; x && y && k < count; k++) {
+    const double px = axis_along_x(&g->x, x[k]), py = axis_along_y(&g->y, y[k]);
+    inside += px > b.left && px < b.left + b.width && py > b.top && py < b.top + b.height;
+  }
   return inside;
 }
 
+/* A line across the picture, or the lower end of a band, passes through the rectangle. */
+static bool level_in(const diagram *g, box b, const double *y) {
+  const double py = y ? axis_along_y(&g->y, *y) : -1;
+  return py > b.top && py < b.top + b.height;
+}
+
+/* What a rectangle of the picture would cover. */
+static long samples_in(const diagram *g, box b) {
+  enum { WIDE = 20 }; /* as many samples as a line across is worth */
+  long inside = 0;
+  for (int c = 0; c < g->count; c++)
+    inside += points_in(g, b, g->curves[c].x, g->curves[c].y, g->curves[c].count);
+  for (int k = 0; k < g->o->beside_count; k++) {
+    const plot_beside *s = &g->o->beside[k];
+    if (!s->x) inside += WIDE * (level_in(g, b, s->y) + level_in(g, b, s->low));
+    inside += points_in(g, b, s->x, s->y, s->count) + points_in(g, b, s->x, s->low, s->count) +
+              points_in(g, b, s->x, s->high, s->count);
+  }
+  return inside;
+}
+
+static const char *label_at(const diagram *g, int k) {
+  return k < g->count ? g->curves[k].label : g->o->beside[k - g->count].label;
+}
+
 /* In the corner where it covers least; the upper right one when it can be had. */
-static void draw_legend(canvas *c, const curve *curves, int count, const axis *x, const axis *y) {
-  enum { LINE = 26 };
-  double widest = 0;
-  for (int k = 0; k < count; k++)
-    widest = pl_fmax(widest, canvas_text_width(c, 19, curves[k].label));
-  const double width = pl_fmin(widest, 500) + 70, height = LINE * count + 10;
-  const double lefts[] = {WIDTH - RIGHT - width - 10, LEFT + 14},
-               tops[] = {TOP + 8, HEIGHT - BOTTOM - height - 10};
-  double left = lefts[0], top = tops[0];
-  long least = samples_in(curves, count, x, y, left, top, width, height);
+static box place_legend(const diagram *g, double width, double height) {
+  const double lefts[] = {DIAGRAM_RIGHT - width - 10, DIAGRAM_LEFT + 14},
+               tops[] = {DIAGRAM_TOP + 8, DIAGRAM_BOTTOM - height - 10};
+  box best = {lefts[0], tops[0], width, height};
+  long least = samples_in(g, best);
   for (int corner = 1; corner < 4; corner++) {
-    long inside =
-        samples_in(curves, count, x, y, lefts[corner % 2], tops[corner / 2], width, height);
+    const box b = {lefts[corner % 2], tops[corner / 2], width, height};
+    const long inside = samples_in(g, b);
     if (inside >= least) continue;
     least = inside;
-    left = lefts[corner % 2];
-    top = tops[corner / 2];
+    best = b;
   }
+  return best;
+}
+
+static void draw_legend(canvas *c, const diagram *g) {
+  enum { LINE = 26 };
+  const int count = g->count + g->o->beside_count;
+  double widest = 0;
+  for (int k = 0; k < count; k++)
+    widest = pl_fmax(widest, canvas_text_width(c, 19, label_at(g, k)));
+  const box b = place_legend(g, pl_fmin(widest, 500) + 70, LINE * count + 10);
   cairo_set_source_rgba(c->cr, 1, 1, 1, 0.85);
-  cairo_rectangle(c->cr, left, top, width, height);
+  cairo_rectangle(c->cr, b.left, b.top, b.width, b.height);
   cairo_fill(c->cr);
   for (int k = 0; k < count; k++) {
-    double line = top + LINE * k + 20;
+    const double line = b.top + LINE * k + 20;
     canvas_colour(c, palette[k % PALETTE]);
-    canvas_line(c, left + 10, line - 6, left + 46, line - 6, 3);
+    if (k < g->count)
+      canvas_line(c, b.left + 10, line - 6, b.left + 46, line - 6, 3);
+    else
+      beside_draw_sample(c, &g->o->beside[k - g->count], k - g->count, b.left + 10, line - 6);
     canvas_colour(c, (colour){0.1, 0.1, 0.1});
-    canvas_text_within(c, left + 56, line, 19, 500, curves[k].label);
+    canvas_text_within(c, b.left + 56, line, 19, 500, label_at(g, k));
   }
+}
+
+/* --- the picture ------------------------------------------------------------------------------ */
+
+/* Within the frame, and half a line more. */
+static void draw_inside(canvas *c, const diagram *g) {
+  const plot_curve_options *o = g->o;
+  cairo_save(c->cr);
+  cairo_rectangle(c->cr, DIAGRAM_LEFT - 1, DIAGRAM_TOP - 1, DIAGRAM_RIGHT - DIAGRAM_LEFT + 2,
+                  DIAGRAM_BOTTOM - DIAGRAM_TOP + 2);
+  cairo_clip(c->cr);
+  for (int k = 0; k < o->beside_count; k++)
+    beside_draw_band(c, &o->beside[k], k, &g->x, &g->y);
+  for (int k = 0; k < g->count; k++)
+    draw_curve(c, &g->curves[k], &g->x, &g->y, palette[k % PALETTE]);
+  for (int k = 0; k < o->beside_count; k++)
+    beside_draw_points(c, &o->beside[k], k, &g->x, &g->y);
+  cairo_restore(c->cr);
 }
 
 static bool draw_all(const curve *curves, int count, const plot_curve_options *o,
                      const char *x_unit, const char *y_unit, const char *title, char *error,
                      size_t size) {
-  axis x = {.name = NULL}, y = {.name = NULL};
+  diagram g = {.curves = curves, .count = count, .o = o};
   double low, high;
-  range_of(curves, count, true, &low, &high);
-  if (!set_axis(&x, o->x, x_unit, o->x_unit, low, high, error, size)) return false;
-  range_of(curves, count, false, &low, &high);
-  if (!set_axis(&y, o->y, y_unit, o->y_unit, low, high, error, size)) return false;
+  range_of(curves, count, o, true, &low, &high);
+  if (!axis_set(&g.x, o->x, x_unit, o->x_unit, low, high, error, size)) return false;
+  range_of(curves, count, o, false, &low, &high);
+  if (!axis_set(&g.y, o->y, y_unit, o->y_unit, low, high, error, size)) return false;
   canvas c;
-  if (!canvas_open(&c, o->output, WIDTH, HEIGHT, error, size)) return false;
-  draw_axes(&c, &x, &y);
-  draw_names(&c, &x, &y, title);
-  cairo_save(c.cr);
-  cairo_rectangle(c.cr, LEFT - 1, TOP - 1, WIDTH - LEFT - RIGHT + 2, HEIGHT - TOP - BOTTOM + 2);
-  cairo_clip(c.cr); /* the frame, and half a line more */
-  for (int k = 0; k < count; k++)
-    draw_curve(&c, &curves[k], &x, &y, palette[k % PALETTE]);
-  cairo_restore(c.cr);
-  if (count > 1 || o->labels) draw_legend(&c, curves, count, &x, &y);
+  if (!canvas_open(&c, o->output, DIAGRAM_WIDTH, DIAGRAM_HEIGHT, error, size)) return false;
+  axes_draw(&c, &g.x, &g.y, title);
+  draw_inside(&c, &g);
+  if (count + o->beside_count > 1 || o->labels) draw_legend(&c, &g);
   return canvas_close(&c, error, size);
 }
 
@@ -318,13 +244,14 @@ static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit,
   }
   if (strcmp(s->x_unit, x_unit) != 0)
     snprintf(error, size, "`%s` holds `%s` in another unit (%s) than `%s` (%s)", s->results[from],
-             s->o->x, x_unit, s->results[0], s->x_unit);
+             s->o->x, name_shown(x_unit), s->results[0], name_shown(s->x_unit));
   else if (strcmp(s->y_unit, y_unit) != 0)
     snprintf(error, size,
              "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit",
-             y, s->results[from], is_pure(y_unit) ? "" : "in ",
-             is_pure(y_unit) ? "a pure number" : y_unit, s->o->ys[0], s->results[0],
-             is_pure(s->y_unit) ? "" : "in ", is_pure(s->y_unit) ? "a pure number" : s->y_unit);
+             y, s->results[from], unit_is_pure(y_unit) ? "" : "in ",
+             unit_is_pure(y_unit) ? "a pure number" : name_shown(y_unit), s->o->ys[0], s->results[0],
+             unit_is_pure(s->y_unit) ? "" : "in ",
+             unit_is_pure(s->y_unit) ? "a pure number" : name_shown(s->y_unit));
   else
     return true;
   return false;
@@ -410,6 +337,19 @@ bool plot_curve(const char *const *results, int result_count, const plot_curve_o
     free(s.curves[k].x);
     free(s.curves[k].y);
   }
+  return good;
+}
+
+bool plot_histories_read(plot_histories *h, const char *path, const char *x, const char *y,
+                         char *error, size_t size) {
+  result_file *f = result_read(path, error, size);
+  curve c = {.x = NULL};
+  *h = (plot_histories){.x_unit = "1", .y_unit = "1"};
+  const bool good = f && read_curve(f, x, y, &c, h->x_unit, h->y_unit, error, size);
+  if (f) result_read_close(f);
+  h->x = c.x;
+  h->y = c.y;
+  h->count = c.count;
   return good;
 }
 

@@ -8,6 +8,7 @@
 #include "dsl/arena.h"
 #include "dsl/elementary.h"
 #include "runtime/canvas.h"
+#include "runtime/quantity.h"
 #include "runtime/result.h"
 
 /* --- reading ---------------------------------------------------------------------------------- */
@@ -18,6 +19,7 @@ void plot_frame_free(plot_frame *m) {
   free(m->values);
   free(m->damage);
   free(m->pairs);
+  free(m->marked);
 }
 
 static double bond_length(const plot_frame *m, long b) {
@@ -97,6 +99,83 @@ static bool is_stored(result_file *f, const char *field) {
   result_names_free(&fields);
   return stored;
 }
+
+/* --- marks ------------------------------------------------------------------------------------ */
+
+/* "S_p > 1e-6" is a field, a relation and a level in the field's unit; "yielded" alone is above
+   0. */
+typedef struct mark_rule {
+  char field[256];
+  bool below;
+  const char *level; /* text; NULL: 0 */
+} mark_rule;
+
+static mark_rule rule_of(const char *mark) {
+  mark_rule r = {.level = NULL};
+  size_t length = strcspn(mark, "<>");
+  if (mark[length]) r.level = mark + length + 1;
+  r.below = mark[length] == '<';
+  while (length > 0 && mark[length - 1] == ' ')
+    length--;
+  snprintf(r.field, sizeof r.field, "%.*s", (int)length, mark);
+  return r;
+}
+
+static bool level_of(const mark_rule *r, const char *unit_text, double *level, char *error,
+                     size_t size) {
+  *level = 0;
+  if (!r->level || quantity_read(r->level, strlen(r->level), unit_text, level)) return true;
+  snprintf(error, size, "`%s` is compared with a value in a unit of `%s`, not `%s`", r->field,
+           unit_text, r->level);
+  return false;
+}
+
+static double size_of(const double *v, int components) {
+  double sum = 0;
+  for (int c = 0; c < components; c++)
+    sum += v[c] * v[c];
+  return components == 1 ? v[0] : sqrt(sum);
+}
+
+/* A vector is marked by its size. */
+static bool read_marks(result_file *f, plot_frame *m, const plot_map_options *o, char *error,
+                       size_t size) {
+  const mark_rule r = rule_of(o->mark);
+  char name[512], unit_text[64] = "1";
+  long count = 0;
+  int components = 0;
+  double level;
+  if (!result_find(f, "/frames", r.field, name, sizeof name, error, size)) return false;
+  double *values = result_read_frame(f, name, o->frame, &count, &components, unit_text,
+                                     sizeof unit_text, error, size);
+  m->marks_on_bonds = strchr(name, '/') != NULL;
+  bool good = values && level_of(&r, unit_text, &level, error, size);
+  if (good && count != (m->marks_on_bonds ? m->bonds : m->particles)) {
+    snprintf(error, size, "`%s` does not have a value for each %s", name,
+             m->marks_on_bonds ? "bond" : "particle");
+    good = false;
+  }
+  if (good) m->marked = must_calloc((size_t)count + 1, sizeof *m->marked);
+  for (long k = 0; good && k < count; k++) {
+    const double v = size_of(values + k * components, components);
+    m->marked[k] = r.below ? v < level : v > level;
+  }
+  free(values);
+  return good;
+}
+
+/* Of bonds that are not shown themselves both particles are marked. */
+static void mark_particles(plot_frame *m) {
+  double *marked = must_calloc((size_t)m->particles + 1, sizeof *marked);
+  for (long b = 0; b < m->bonds; b++)
+    for (int e = 0; e < 2; e++)
+      if (m->marked[b] > 0) marked[m->pairs[2 * b + e]] = 1;
+  free(m->marked);
+  m->marked = marked;
+  m->marks_on_bonds = false;
+}
+
+/* --- reading a frame -------------------------------------------------------------------------- */
 
 /* A law may have its damage on particles. */
 static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_map_options *o) {
@@ -191,17 +270,13 @@ static bool read_frame(result_file *f, const char *path, plot_frame *m, const pl
   free(title);
   m->of_damage = strcmp(o->field, "damage") == 0;
   return read_damage(f, m, path, o, error, size) &&
-         (m->of_damage || read_values(f, m, o, error, size));
+         (m->of_damage || read_values(f, m, o, error, size)) &&
+         (!o->mark || read_marks(f, m, o, error, size));
 }
 
 double plot_frame_value(const plot_frame *m, long k, int component) {
   const double *v = &m->values[k * m->components];
-  if (m->components == 1) return v[0];
-  if (component >= 0) return v[component];
-  double sum = 0;
-  for (int c = 0; c < m->components; c++)
-    sum += v[c] * v[c];
-  return sqrt(sum);
+  return component >= 0 && m->components > 1 ? v[component] : size_of(v, m->components);
 }
 
 /* --- what is shown of a body in space --------------------------------------------------------- */
@@ -234,6 +309,10 @@ static void take_particles(plot_frame *m, const long *order, long count) {
   take_rows(&m->reference, order, count, m->dimensions);
   take_rows(&m->moved, order, count, m->dimensions);
   take_rows(&m->damage, bonds, kept, 1);
+  if (m->marks_on_bonds)
+    take_rows(&m->marked, bonds, kept, 1);
+  else
+    take_rows(&m->marked, order, count, 1);
   if (m->of_bonds)
     take_rows(&m->values, bonds, kept, m->components);
   else
@@ -411,9 +490,11 @@ bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o,
   }
   if (!good) return false;
   const bool crowded = m->of_damage && has_crowded_bonds(m);
+  const bool surface = m->dimensions == 3 && o->slice_axis < 0;
+  if (m->marked && m->marks_on_bonds && (crowded || surface)) mark_particles(m);
   if (crowded) show_on_particles(m, -1);
   if (m->dimensions == 3) describe_extents(m);
-  if (m->dimensions == 3 && o->slice_axis < 0) take_surface(m, o->component);
+  if (surface) take_surface(m, o->component);
   if (m->dimensions == 3 && o->slice_axis >= 0) good = take_slice(m, o, error, size);
   if (crowded || m->surface) m->bonds = 0;
   return good;

@@ -16,6 +16,9 @@ typedef struct plot_frame {
   double *values;            /* of the particles, or of the bonds; NULL: a map of damage */
   long value_count;
   bool of_bonds; /* the values are those of bonds */
+  /* Of the particles, or of the bonds: 1 where there is a mark, else 0; NULL without marks. */
+  double *marked;
+  bool marks_on_bonds;
   bool
       of_damage; /* damages, to be shown in their classes: of bonds, or the values as means on particles */
   bool surface; /* particles alone, from the farthest to the nearest */

@@ -1,6 +1,7 @@
-/* Map of one frame: bonds and particles where they have moved to. Damage is shown in the classes of Asadollahi
-   (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8 brown, below 1 red; separated bonds as black crack lines. Other
-   fields colour the particles or the bonds by their value. */
+/* Map of one frame, or of several side by side: bonds and particles where they have moved to.
+   Damage is shown in the classes of Asadollahi (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8
+   brown, below 1 red; separated bonds as black crack lines. Other fields colour the particles or
+   the bonds by their value. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -17,6 +18,8 @@ enum {
   HEAD = 64,
   FOOT = 84,
   AXES = 76, /* above the foot: the axes of a body in space */
+  GAP = 28,  /* between panels */
+  CAPTION = 30,
   LEAST_HEIGHT = 300,
   MOST_HEIGHT = 1500
 };
@@ -30,39 +33,93 @@ static const struct {
                {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},   {INFINITY, {0, 0, 0}, "separated"}};
 enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
 
-typedef struct map {
+static const colour mark_ink = {0.05, 0.25, 0.80};
+
+typedef struct
+    map { /* a panel: x = origin_x + (X - left) * scale, y = origin_y - (Y - bottom) * scale */
   plot_frame frame;
-  double left, bottom, scale, height; /* picture: x = MARGIN + (X - left) * scale */
-  double foot;                        /* below the body */
+  double left, bottom, scale, origin_x, origin_y;
+  char caption[128];
 } map;
+
+typedef struct sheet {
+  map *panels;
+  int count, columns;
+  double low[2], high[2];     /* what all panels show, m */
+  double scale, height, foot; /* of the picture, below the panels */
+  double caption;             /* above each panel; 0: a single one has none */
+} sheet;
 
 /* --- drawing ---------------------------------------------------------------------------------- */
 
-static bool fit_picture(map *m, char *error, size_t size) {
-  double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
-  for (long p = 0; p < m->frame.particles; p++)
+static void add_extent(const plot_frame *f, sheet *s) {
+  for (long p = 0; p < f->particles; p++)
     for (int c = 0; c < 2; c++) {
-      low[c] = pl_fmin(low[c], m->frame.moved[2 * p + c] - m->frame.spacing);
-      high[c] = pl_fmax(high[c], m->frame.moved[2 * p + c] + m->frame.spacing);
+      s->low[c] = pl_fmin(s->low[c], f->moved[2 * p + c] - f->spacing);
+      s->high[c] = pl_fmax(s->high[c], f->moved[2 * p + c] + f->spacing);
     }
-  if (!(high[0] - low[0] < 1e12) || !(high[1] - low[1] < 1e12) || !(high[0] > low[0])) {
+}
+
+static int rows_of(const sheet *s, int columns) {
+  return (s->count + columns - 1) / columns;
+}
+
+/* Pixels a metre with so many columns. */
+static double scale_with(const sheet *s, int columns) {
+  const int rows = rows_of(s, columns);
+  const double width = (WIDTH - 2 * MARGIN - (columns - 1) * GAP) / (double)columns,
+               height = (MOST_HEIGHT - HEAD - s->foot - (rows - 1) * GAP) / rows - s->caption;
+  return pl_fmin(width / (s->high[0] - s->low[0]), height / (s->high[1] - s->low[1]));
+}
+
+/* As many columns as let the panels be largest, or nearly so; each in the middle of its part of the
+   picture. */
+static void place_panels(sheet *s) {
+  for (int columns = 1; columns <= s->count; columns++) {
+    const double scale = scale_with(s, columns);
+    if (columns > 1 && scale < 0.95 * s->scale) continue;
+    s->scale = scale;
+    s->columns = columns;
+  }
+  const int rows = rows_of(s, s->columns);
+  const double high = (s->high[1] - s->low[1]) * s->scale + s->caption,
+               part = (WIDTH - 2 * MARGIN + GAP) / (double)s->columns - GAP,
+               indent = (part - (s->high[0] - s->low[0]) * s->scale) / 2;
+  s->height = pl_fmax(LEAST_HEIGHT, HEAD + s->foot + rows * high + (rows - 1) * GAP);
+  for (int k = 0; k < s->count; k++) {
+    map *m = &s->panels[k];
+    const int column = k % s->columns, below = rows - 1 - k / s->columns;
+    m->left = s->low[0];
+    m->bottom = s->low[1];
+    m->scale = s->scale;
+    m->origin_x = MARGIN + column * (part + GAP) + indent;
+    m->origin_y = s->height - s->foot - below * (high + GAP);
+  }
+}
+
+static bool fit_picture(sheet *s, char *error, size_t size) {
+  for (int c = 0; c < 2; c++) {
+    s->low[c] = INFINITY;
+    s->high[c] = -INFINITY;
+  }
+  for (int k = 0; k < s->count; k++)
+    add_extent(&s->panels[k].frame, s);
+  if (!(s->high[0] - s->low[0] < 1e12) || !(s->high[1] - s->low[1] < 1e12) ||
+      !(s->high[0] > s->low[0])) {
     snprintf(error, size, "the frame's displacements are not finite or too large to draw");
     return false;
   }
-  m->foot = FOOT + (m->frame.dimensions == 3 ? AXES : 0);
-  m->scale = pl_fmin((WIDTH - 2 * MARGIN) / (high[0] - low[0]),
-                     (MOST_HEIGHT - HEAD - m->foot) / (high[1] - low[1]));
-  m->left = low[0] - ((WIDTH - 2 * MARGIN) / m->scale - (high[0] - low[0])) / 2;
-  m->height = pl_fmax(LEAST_HEIGHT, HEAD + m->foot + (high[1] - low[1]) * m->scale);
-  m->bottom = low[1];
+  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0);
+  s->caption = s->count > 1 ? CAPTION : 0;
+  place_panels(s);
   return true;
 }
 
 static double at_x(const map *m, double x) {
-  return MARGIN + (x - m->left) * m->scale;
+  return m->origin_x + (x - m->left) * m->scale;
 }
 static double at_y(const map *m, double y) {
-  return m->height - m->foot - (y - m->bottom) * m->scale;
+  return m->origin_y - (y - m->bottom) * m->scale;
 }
 
 static int class_of(double damage) {
@@ -189,52 +246,120 @@ static void draw_bond_values(canvas *c, const map *m, int component, double low,
   }
 }
 
-static void draw_head(canvas *c, const map *m) {
-  char text[256], when[64];
-  if (m->frame.increment < 0)
-    snprintf(when, sizeof when, "t = %.5g ms", 1e3 * m->frame.time);
+/* --- marks ------------------------------------------------------------------------------------ */
+
+static void draw_mark(canvas *c, double x, double y, double radius) {
+  cairo_new_path(c->cr);
+  cairo_arc(c->cr, x, y, radius, 0, 2 * M_PI);
+  canvas_colour(c, mark_ink);
+  cairo_fill_preserve(c->cr);
+  canvas_colour(c, (colour){1, 1, 1});
+  cairo_set_line_width(c->cr, pl_fmax(0.5, 0.25 * radius));
+  cairo_stroke(c->cr);
+}
+
+/* On particles, or on the middle of bonds. */
+static void draw_marks(canvas *c, const map *m) {
+  const double radius = pl_fmax(1.6, 0.22 * m->frame.spacing * m->scale);
+  const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
+  for (long k = 0; m->frame.marked && k < count; k++) {
+    if (!(m->frame.marked[k] > 0)) continue;
+    const int32_t *ends = &m->frame.pairs[2 * k];
+    const double *i = &m->frame.moved[2 * (m->frame.marks_on_bonds ? ends[0] : k)],
+                 *j = &m->frame.moved[2 * (m->frame.marks_on_bonds ? ends[1] : k)];
+    draw_mark(c, at_x(m, (i[0] + j[0]) / 2), at_y(m, (i[1] + j[1]) / 2), radius);
+  }
+}
+
+static bool has_mark(const map *m) {
+  const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
+  for (long k = 0; m->frame.marked && k < count; k++)
+    if (m->frame.marked[k] > 0) return true;
+  return false;
+}
+
+static void draw_mark_legend(canvas *c, const sheet *s, const char *mark) {
+  const double x = MARGIN + 300, y = s->height - 64;
+  char text[256];
+  bool any = false;
+  for (int k = 0; k < s->count; k++)
+    any = any || has_mark(&s->panels[k]);
+  if (!mark) return;
+  snprintf(text, sizeof text, "%.200s%s", mark, any ? "" : ": nowhere");
+  draw_mark(c, x + 14, y, 7);
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, text);
+}
+
+/* --- head and foot ---------------------------------------------------------------------------- */
+
+static void say_when(const plot_frame *f, char *text, size_t size) {
+  if (f->increment < 0)
+    snprintf(text, size, "t = %.5g ms", 1e3 * f->time);
   else
-    snprintf(when, sizeof when, "increment %ld", m->frame.increment);
-  snprintf(text, sizeof text, "%s%s, displacements x %.6g", m->frame.view, when, m->frame.factor);
+    snprintf(text, size, "increment %ld", f->increment);
+}
+
+static void draw_head(canvas *c, const sheet *s) {
+  const plot_frame *f = &s->panels[0].frame;
+  char text[256], when[64];
+  say_when(f, when, sizeof when);
+  snprintf(text, sizeof text, "%s%s%sdisplacements x %.6g", f->view, s->count > 1 ? "" : when,
+           s->count > 1 ? "" : ", ", f->factor);
   double right = canvas_text_width(c, 19, text);
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text_within(c, MARGIN, 40, 24, WIDTH - 2 * MARGIN - right - 30, m->frame.title);
+  canvas_text_within(c, MARGIN, 40, 24, WIDTH - 2 * MARGIN - right - 30, f->title);
   canvas_text(c, WIDTH - MARGIN, 40, 19, ANCHOR_RIGHT, text);
 }
 
+static void draw_captions(canvas *c, const sheet *s) {
+  const double high = (s->high[1] - s->low[1]) * s->scale,
+               wide = (s->high[0] - s->low[0]) * s->scale;
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  for (int k = 0; k < s->count && s->count > 1; k++)
+    canvas_text_within(c, s->panels[k].origin_x, s->panels[k].origin_y - high - 10, 18, wide,
+                       s->panels[k].caption);
+}
+
 /* Arms of one length along x, y and z, as the body is seen; those toward the eye are left out. */
-static void draw_axes(canvas *c, const map *m) {
+static void draw_axes(canvas *c, const sheet *s) {
   enum { ARM = 44 };
-  const double x = MARGIN + 6, y = m->height - FOOT - 14;
-  if (m->frame.dimensions != 3) return;
+  const plot_frame *f = &s->panels[0].frame;
+  const double x = MARGIN + 6, y = s->height - FOOT - 14;
+  if (f->dimensions != 3) return;
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   for (int k = 0; k < 3; k++) {
-    const double across = m->frame.axes[k][0], up = m->frame.axes[k][1];
+    const double across = f->axes[k][0], up = f->axes[k][1];
     if (pl_hypot(across, up) < 0.1) continue;
     canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
     canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
                 (char[]){"xyz"[k], 0});
   }
-  canvas_text(c, x + 96, y, 18, ANCHOR_LEFT, m->frame.extents);
+  canvas_text(c, x + 96, y, 18, ANCHOR_LEFT, f->extents);
 }
 
-static void draw_scale_bar(canvas *c, const map *m) {
-  double length = nice_step((WIDTH - 2 * MARGIN) / m->scale, 6), y = m->height - 34;
+static void draw_scale_bar(canvas *c, const sheet *s) {
+  double length = nice_step((WIDTH - 2 * MARGIN) / (s->scale * s->columns), 6), y = s->height - 34;
   char text[64];
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_line(c, MARGIN, y, MARGIN + length * m->scale, y, 3);
+  canvas_line(c, MARGIN, y, MARGIN + length * s->scale, y, 3);
   snprintf(text, sizeof text, "%.6g mm", 1e3 * length);
   canvas_text(c, MARGIN, y + 24, 18, ANCHOR_LEFT, text);
 }
 
 /* The classes that occur. */
-static void draw_damage_legend(canvas *c, const map *m) {
-  double x = WIDTH - MARGIN, y = m->height - 30;
-  bool occurs[CLASSES] = {m->frame.bonds == 0};
+static void find_classes(const map *m, bool occurs[CLASSES]) {
   for (long b = 0; b < m->frame.bonds; b++)
     occurs[class_of_bond(m, b)] = true;
   for (long p = 0; m->frame.of_damage && m->frame.values && p < m->frame.value_count; p++)
     occurs[class_of(m->frame.values[p])] = true;
+}
+
+static void draw_damage_legend(canvas *c, const sheet *s) {
+  double x = WIDTH - MARGIN, y = s->height - 30;
+  bool occurs[CLASSES] = {s->panels[0].frame.bonds == 0};
+  for (int k = 0; k < s->count; k++)
+    find_classes(&s->panels[k], occurs);
   for (int k = CLASSES - 1; k >= 0; k--) {
     if (!occurs[k]) continue;
     x -= canvas_text_width(c, 18, classes[k].text);
@@ -246,29 +371,30 @@ static void draw_damage_legend(canvas *c, const map *m) {
     x -= 22;
   }
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
-  canvas_text(c, x, y, 18, ANCHOR_RIGHT, m->frame.damage_of);
+  canvas_text(c, x, y, 18, ANCHOR_RIGHT, s->panels[0].frame.damage_of);
 }
 
-static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o, double low,
+static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options *o, double low,
                               double high) {
-  double width = 360, x = WIDTH - MARGIN - width, y = m->height - 50, factor;
+  const plot_frame *f = &s->panels[0].frame;
+  double width = 360, x = WIDTH - MARGIN - width, y = s->height - 50, factor;
   for (int k = 0; k < 180; k++) {
     canvas_colour(c, shade(k / 179.0));
     cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
     cairo_fill(c->cr);
   }
-  const char *shown = readable_unit(m->frame.unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
+  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
   char text[256];
   canvas_colour(c, (colour){0.1, 0.1, 0.1});
   snprintf(text, sizeof text, "%.4g", low * factor);
   canvas_text(c, x, y + 34, 18, ANCHOR_LEFT, text);
   snprintf(text, sizeof text, "%.4g", high * factor);
   canvas_text(c, x + width, y + 34, 18, ANCHOR_RIGHT, text);
-  const char *part = m->frame.components == 1 ? ""
-                     : o->component == 0      ? " x"
-                     : o->component == 1      ? " y"
-                     : o->component == 2      ? " z"
-                                              : " (size)";
+  const char *part = f->components == 1  ? ""
+                     : o->component == 0 ? " x"
+                     : o->component == 1 ? " y"
+                     : o->component == 2 ? " z"
+                                         : " (size)";
   const bool pure = strcmp(shown, "1") == 0;
   snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown,
            pure ? "" : "]");
@@ -276,64 +402,111 @@ static void draw_value_legend(canvas *c, const map *m, const plot_map_options *o
 }
 
 /* Least and largest value that is drawn; false when none is a number. */
-static bool range_of(const map *m, int component, double *low, double *high) {
+static bool range_of(const sheet *s, int component, double *low, double *high) {
   *low = INFINITY;
   *high = -INFINITY;
-  for (long k = 0; k < m->frame.value_count; k++) {
-    const double v = plot_frame_value(&m->frame, k, component);
-    if (!isfinite(v)) continue;
-    *low = pl_fmin(*low, v);
-    *high = pl_fmax(*high, v);
-  }
+  for (int n = 0; n < s->count; n++)
+    for (long k = 0; k < s->panels[n].frame.value_count; k++) {
+      const double v = plot_frame_value(&s->panels[n].frame, k, component);
+      if (!isfinite(v)) continue;
+      *low = pl_fmin(*low, v);
+      *high = pl_fmax(*high, v);
+    }
   return *low <= *high;
 }
 
-static void draw_crack_legend(canvas *c, const map *m) {
-  const double x = MARGIN + 300, y = m->height - 34;
+static void draw_crack_legend(canvas *c, const sheet *s) {
+  const double x = MARGIN + 300, y = s->height - 34;
   bool any = false;
-  for (long b = 0; b < m->frame.bonds; b++)
-    any = any || is_separated(m, b);
+  for (int n = 0; n < s->count; n++)
+    for (long b = 0; b < s->panels[n].frame.bonds; b++)
+      any = any || is_separated(&s->panels[n], b);
   if (!any) return;
   canvas_colour(c, classes[SEPARATED].ink);
   canvas_line(c, x, y, x + 28, y, 5);
   canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, classes[SEPARATED].text);
 }
 
+/* --- the picture ------------------------------------------------------------------------------ */
+
 static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low,
                        double high) {
   if (m->frame.of_bonds) draw_bond_values(c, m, o->component, low, high);
   draw_particles(c, m, o->component, low, high);
   if (m->frame.damage) draw_bonds(c, m, false);
-  draw_crack_legend(c, m);
-  draw_value_legend(c, m, o, low, high);
 }
 
-static bool draw_map(map *m, const plot_map_options *o, char *error, size_t size) {
+static void draw_damage(canvas *c, const map *m, const plot_map_options *o) {
+  if (m->frame.damage) draw_bonds(c, m, true); /* damage of particles says nothing of bonds */
+  draw_particles(c, m, o->component, 0, 0);
+}
+
+static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t size) {
   double low = 0, high = 0;
-  if (!fit_picture(m, error, size)) return false;
-  const bool measured = m->frame.values && !m->frame.of_damage;
-  if (measured && !range_of(m, o->component, &low, &high)) {
+  if (!fit_picture(s, error, size)) return false;
+  const bool measured = s->panels[0].frame.values && !s->panels[0].frame.of_damage;
+  if (measured && !range_of(s, o->component, &low, &high)) {
     snprintf(error, size, "`%s` holds no finite value to draw", o->field);
     return false;
   }
   canvas c;
-  if (!canvas_open(&c, o->output, WIDTH, m->height, error, size)) return false;
-  draw_head(&c, m);
-  draw_scale_bar(&c, m);
-  draw_axes(&c, m);
-  if (measured) {
-    draw_field(&c, m, o, low, high);
-  } else {
-    if (m->frame.damage) draw_bonds(&c, m, true); /* damage of particles says nothing of bonds */
-    draw_particles(&c, m, o->component, low, high);
-    draw_damage_legend(&c, m);
+  if (!canvas_open(&c, o->output, WIDTH, s->height, error, size)) return false;
+  draw_head(&c, s);
+  draw_captions(&c, s);
+  draw_scale_bar(&c, s);
+  draw_axes(&c, s);
+  for (int k = 0; k < s->count; k++) {
+    if (measured)
+      draw_field(&c, &s->panels[k], o, low, high);
+    else
+      draw_damage(&c, &s->panels[k], o);
+    draw_marks(&c, &s->panels[k]);
   }
+  if (measured) draw_crack_legend(&c, s);
+  if (measured)
+    draw_value_legend(&c, s, o, low, high);
+  else
+    draw_damage_legend(&c, s);
+  draw_mark_legend(&c, s, o->mark);
   return canvas_close(&c, error, size);
 }
 
+/* All panels, with one factor. Their captions. */
+static bool read_panels(sheet *s, const char *path, const plot_map_options *o, double factor,
+                        char *error, size_t size) {
+  bool good = true;
+  for (int k = 0; good && k < s->count; k++) {
+    map *m = &s->panels[k];
+    plot_map_options one = *o;
+    if (o->frames) one.frame = o->frames[k];
+    one.factor = factor;
+    plot_frame_free(&m->frame);
+    good = plot_frame_read(&m->frame, path, &one, error, size);
+    if (o->captions)
+      snprintf(m->caption, sizeof m->caption, "%s", o->captions[k]);
+    else
+      say_when(&m->frame, m->caption, sizeof m->caption);
+  }
+  return good;
+}
+
+/* The smallest of the factors that the panels would have alone. */
+static double common_factor(const sheet *s) {
+  double least = INFINITY;
+  for (int k = 0; k < s->count; k++)
+    least = pl_fmin(least, s->panels[k].frame.factor);
+  return least;
+}
+
 bool plot_map(const char *path, const plot_map_options *o, char *error, size_t size) {
-  map m = {.scale = 1};
-  const bool good = plot_frame_read(&m.frame, path, o, error, size) && draw_map(&m, o, error, size);
-  plot_frame_free(&m.frame);
+  sheet s = {.count = o->frames ? o->frame_count : 1};
+  s.panels = must_calloc((size_t)s.count, sizeof *s.panels);
+  bool good = read_panels(&s, path, o, o->factor, error, size);
+  if (good && s.count > 1 && o->factor < 0)
+    good = read_panels(&s, path, o, common_factor(&s), error, size);
+  good = good && draw_sheet(&s, o, error, size);
+  for (int k = 0; k < s.count; k++)
+    plot_frame_free(&s.panels[k].frame);
+  free(s.panels);
   return good;
 }

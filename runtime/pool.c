@@ -34,8 +34,7 @@ static void add_piece(pool *p, size_t bytes) {
   piece *n = must_calloc(1, sizeof *n);
   n->before = p->last;
   n->size = round_up(bytes > least_piece ? bytes : least_piece, large_page);
-  n->memory = aligned_alloc(large_page, n->size);
-  if (!n->memory) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  n->memory = must_align(large_page, n->size);
 #if defined(MADV_HUGEPAGE)
   if (least_piece) madvise(n->memory, n->size, MADV_HUGEPAGE);
 #endif

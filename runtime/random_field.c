@@ -431,8 +431,7 @@ static bool open_sources(const deck *k, int lattice, const rows *w, const pl_law
 static double *new_plane(random_fields *r, const rows *w) {
   size_t bytes = (size_t)w->directions * (size_t)w->size * sizeof(double);
   bytes = (bytes + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
-  double *plane = aligned_alloc(PL_ALIGNMENT, bytes);
-  if (!plane) must_alloc(SIZE_MAX); /* ends the program with the usual message */
+  double *plane = must_align(PL_ALIGNMENT, bytes);
   r->bytes += bytes;
   return plane;
 }

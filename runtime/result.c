@@ -7,6 +7,7 @@
 #include "dsl/arena.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/sealed_file.h"
+#include "runtime/views.h"
 #include "runtime/whole_file.h"
 #include "runtime/xdmf.h"
 
@@ -111,30 +112,53 @@ static bool write_input(hid_t file, const result_header *h) {
   return h5_make_group(file, "/input") && h5_write_text(file, "/input/deck", h->deck_text) &&
          (!h->overrides || !*h->overrides || h5_write_text(file, "/input/set", h->overrides)) &&
          write_texts(file, "/input/models", h->models, h->model_count) &&
-         write_texts(file, "/input/kernels", h->kernels, h->kernel_count);
+         write_texts(file, "/input/kernels", h->kernels, h->kernel_count) &&
+         (h->file_count == 0 || write_texts(file, "/input/files", h->files, h->file_count));
 }
 
-static bool write_verdict(hid_t file, const char *name, const result_series *s) {
-  if (!s->judges) return true;
-  hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
-  const bool good = set >= 0 && h5_attribute_integer(set, "checked", s->unchecked == NULL) &&
-                    (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked));
+/* A data set of times is the scale of the first dimension of what stands beside it. */
+static bool write_times(hid_t file, const char *name, const char *long_name, const double *times,
+                        long count, h5_scale *scale) {
+  const hsize_t n[1] = {(hsize_t)count};
+  if (!h5_write_doubles(file, name, times, 1, n, "s")) return false;
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  if (set < 0) return false;
+  if (h5_attribute_text(set, "long_name", long_name) && h5_scale_begin(scale, set, "time"))
+    return true;
+  H5Dclose(set);
+  return false;
+}
+
+static bool describe(hid_t set, int rank, h5_scale *times, const char *long_name) {
+  return h5_scale_attach(times, set, rank) &&
+         (!long_name || h5_attribute_text(set, "long_name", long_name));
+}
+
+static bool write_verdict(hid_t set, const result_series *s) {
+  return !s->judges || (h5_attribute_integer(set, "checked", s->unchecked == NULL) &&
+                        (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked)));
+}
+
+static bool write_series(hid_t file, h5_scale *times, long count, const result_series *s) {
+  char name[512];
+  const hsize_t n[1] = {(hsize_t)count};
+  snprintf(name, sizeof name, "/history/%s", s->name);
+  if (!h5_write_doubles(file, name, s->values, 1, n, s->unit)) return false;
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);
+  const bool good = set >= 0 && describe(set, 1, times, s->long_name) && write_verdict(set, s);
   if (set >= 0) H5Dclose(set);
   return good;
 }
 
-static bool write_history(hid_t file, const double *time, long count, const result_series *series,
-                          int series_count) {
-  hsize_t n[1] = {(hsize_t)count};
-  bool good = h5_make_group(file, "/history") && h5_make_group(file, "/history/energy") &&
-              h5_write_doubles(file, "/history/time", time, 1, n, "s");
-  for (int k = 0; good && k < series_count; k++) {
-    char name[512];
-    snprintf(name, sizeof name, "/history/%s", series[k].name);
-    good = h5_write_doubles(file, name, series[k].values, 1, n, series[k].unit) &&
-           write_verdict(file, name, &series[k]);
-  }
-  return good;
+static bool write_history(hid_t file, const result_ending *e) {
+  if (!h5_make_group(file, "/history") || !h5_make_group(file, "/history/energy")) return false;
+  h5_scale times;
+  if (!write_times(file, "/history/time", "time of the sample", e->time, e->history_count, &times))
+    return false;
+  bool good = true;
+  for (int k = 0; good && k < e->series_count; k++)
+    good = write_series(file, &times, e->history_count, &e->series[k]);
+  return h5_scale_end(&times) && good;
 }
 
 /* The data sets of the fields, and the times of the frames, while frames are copied. */
@@ -182,6 +206,18 @@ static bool put_frame(void *context, int64_t frame, const double *record) {
   return good;
 }
 
+static bool describe_fields(hid_t file, const frame_sets *s) {
+  h5_scale times;
+  if (!write_times(file, "/frames/time", "time of the frame", s->times, s->count, &times))
+    return false;
+  bool good = true;
+  for (int k = 0; good && k < s->header->field_count; k++) {
+    const result_field *f = &s->header->fields[k];
+    good = describe(s->sets[k], f->interaction ? 2 : 3, &times, f->long_name);
+  }
+  return h5_scale_end(&times) && good;
+}
+
 /* A damaged frame leaves a sentence in `error`, a full disk none. */
 static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error, size_t size) {
   const int fields = r->header.field_count;
@@ -191,40 +227,35 @@ static bool write_frames(hid_t file, const result *r, frame_sets *s, char *error
     s->sets[k] = good ? make_field(file, &r->header.fields[k], s->count) : -1;
     good = s->sets[k] >= 0;
   }
-  good = good && frame_file_each(r->frames, put_frame, s, error, size);
+  good = good && frame_file_each(r->frames, put_frame, s, error, size) && describe_fields(file, s);
   for (int k = 0; k < fields; k++)
     if (s->sets[k] >= 0) good = H5Dclose(s->sets[k]) >= 0 && good;
   free(s->sets);
-  const hsize_t n[1] = {(hsize_t)s->count};
-  return good && h5_write_doubles(file, "/frames/time", s->times, 1, n, "s");
+  return good;
 }
 
-static bool write_attributes(hid_t file, const result_header *h, double dt, long steps) {
+static bool write_attributes(hid_t file, const result_header *h, const result_ending *e) {
   return h5_attribute_text(file, "perilat_version", h->version) &&
          h5_attribute_text(file, "started", h->started) &&
          h5_attribute_text(file, "title", h->title) &&
          h5_attribute_text(file, "kernel_key", h->kernel_key) &&
-         h5_attribute_double(file, "dt", dt) && h5_attribute_integer(file, "steps", steps);
+         h5_attribute_text(file, "compiler", h->compiler ? h->compiler : "") &&
+         h5_attribute_text(file, "flags", h->flags ? h->flags : "") &&
+         h5_attribute_integer(file, "threads", h->threads) &&
+         h5_attribute_text(file, "ended", e->ended ? e->ended : "") &&
+         h5_attribute_integer(file, "status", e->status) &&
+         h5_attribute_double(file, "wall_seconds", e->seconds) &&
+         h5_attribute_double(file, "dt", e->dt) && h5_attribute_integer(file, "steps", e->steps);
 }
 
-/* What is to be written, for the functions below. */
-typedef struct ending {
-  double dt;
-  long steps;
-  const double *time; /* [history_count] */
-  long history_count;
-  const result_series *series;
-  int series_count;
-} ending;
-
-static bool write_hdf5(const result *r, const ending *e, frame_sets *frames, const char *path,
-                       char *error, size_t size) {
+static bool write_hdf5(const result *r, const result_ending *e, frame_sets *frames,
+                       const char *path, char *error, size_t size) {
   const hid_t file = sealed_file_create(path);
   if (file < 0) return false;
-  const bool good = write_attributes(file, &r->header, e->dt, e->steps) &&
-                    write_input(file, &r->header) && write_particles(file, &r->header) &&
-                    write_history(file, e->time, e->history_count, e->series, e->series_count) &&
-                    write_frames(file, r, frames, error, size);
+  const bool good = write_attributes(file, &r->header, e) && write_input(file, &r->header) &&
+                    write_particles(file, &r->header) && write_history(file, e) &&
+                    write_frames(file, r, frames, error, size) &&
+                    views_write(file, &r->header, frames->count);
   if (good) return sealed_file_close(file, path);
   H5Fclose(file);
   return false;
@@ -250,9 +281,7 @@ void result_sidecar(const char *path, char *sidecar, size_t size) {
 }
 
 /* Both are written before either is put in its place. */
-bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, char *error, size_t size) {
-  const ending e = {dt, steps, time, history_count, series, series_count};
+bool result_finish(result *r, const result_ending *e, char *error, size_t size) {
   const char *path = r->header.path;
   frame_sets frames = {.header = &r->header, .count = (long)result_mark(r).count};
   char sidecar_path[WHOLE_FILE_PATH];
@@ -263,7 +292,7 @@ bool result_finish(result *r, double dt, long steps, const double *time, long hi
   if (!whole_file_begin(&file, path)) return fail(path, error, size);
   errno = 0; /* the library has no better way of saying that the disk is full */
   frames.times = must_calloc((size_t)frames.count + 1, sizeof *frames.times);
-  bool good = write_hdf5(r, &e, &frames, file.working, error, size);
+  bool good = write_hdf5(r, e, &frames, file.working, error, size);
   good = good && whole_file_begin(&sidecar, sidecar_path);
   if (good) {
     good = write_sidecar(r, &frames, sidecar.working);

@@ -3,18 +3,23 @@
    when the run ends. Layout, names and units of result.h5 are stable:
 
      /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
-                            title, dt, steps, kernel_key
+                            title, dt, steps, kernel_key, compiler, flags (of the kernels), threads,
+                            ended (how, in words), status (of exit), wall_seconds
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);
-                            /input/models/<name> law text; /input/kernels/<name> generated C
+                            /input/models/<name> law text; /input/kernels/<name> generated C;
+                            /input/files/<name> tables of loads (only then)
      /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
-     /history/time          [T] s; /history/<monitor> [T], attribute units;
+     /history/time          [T] s; /history/<monitor> [T], attributes units and long_name;
                             /history/energy/<term> [T] J
      /frames/time           [F] s; /frames/<field> [F, N, components];
-                            /frames/<interaction>/<bond field> [F, M], attributes units and kind
-                            ("state", "damage", "output" of the law, "other")  */
+                            /frames/<interaction>/<bond field> [F, M], attributes units, long_name
+                            and kind ("state", "damage", "output" of the law, "other")
+     /VTKHDF, /xdmf         the same for other programs (views.h)
+
+   The times are dimension scales of what stands beside them.  */
 #ifndef PERILAT_RUNTIME_RESULT_H
 #define PERILAT_RUNTIME_RESULT_H
 
@@ -22,7 +27,11 @@
 #include <stdint.h>
 #include <stdio.h>
 
+#include "dsl/c_linkage.h"
+#include "dsl/name_index.h"
 #include "runtime/frame_file.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct result_text {
   const char *name, *text;
@@ -35,12 +44,14 @@ typedef struct result_field { /* of a frame */
   int components;          /* 1, 2, ... */
   long count;              /* particles or bonds */
   const char *kind;        /* "state", "damage", "output" of the law; else "other" */
+  const char *long_name;   /* in words; NULL: nobody has said */
 } result_field;
 
 typedef struct result_series { /* of the history */
   const char *name;            /* "load"; "energy/kinetic" */
   const char *unit;
-  const double *values; /* [history_count] */
+  const char *long_name; /* in words; NULL: nobody has said */
+  const double *values;  /* [history_count] */
   /* Of a series that judges the run: attribute `checked` 1, or 0 where it is not known, with the sentence `unchecked`. */
   bool judges;
   const char *unchecked;
@@ -50,10 +61,14 @@ typedef struct result_header {
   const char *path;        /* of the final file */
   const char *fingerprint; /* says which run the frames belong to */
   const char *title, *started, *version, *kernel_key;
+  const char *compiler, *flags; /* of the kernels */
+  int threads;
   const char *deck_text;
   const char *overrides; /* of --set, one a line; NULL or "" without */
   const result_text *models, *kernels;
   int model_count, kernel_count;
+  const result_text *files; /* tables of loads */
+  int file_count;
   int dimensions; /* 2 or 3 */
   long particle_count;
   const double *reference; /* [N][dimensions] */
@@ -66,6 +81,18 @@ typedef struct result_header {
   const result_field *fields;
   int field_count;
 } result_header;
+
+typedef struct result_ending {
+  const char *ended; /* how, in words */
+  int status;        /* of exit */
+  double seconds;    /* wall time since the run began or was resumed */
+  double dt;
+  long steps;
+  const double *time; /* [history_count] */
+  long history_count;
+  const result_series *series;
+  int series_count;
+} result_ending;
 
 typedef struct result result;
 
@@ -86,8 +113,7 @@ bool result_sync(result *r, char *error, size_t size);
 /* The name of what is written beside the result for ParaView: RESULT.xdmf for RESULT.h5. */
 void result_sidecar(const char *path, char *sidecar, size_t size);
 /* Writes result.h5 and result.xdmf, whole or not at all; the file of the frames stays. */
-bool result_finish(result *r, double dt, long steps, const double *time, long history_count,
-                   const result_series *series, int series_count, char *error, size_t size);
+bool result_finish(result *r, const result_ending *e, char *error, size_t size);
 /* Removes the file of the frames; the result is closed afterwards all the same. */
 void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
@@ -107,6 +133,7 @@ bool result_is_quasi_static(result_file *f);
 typedef struct result_names {
   char **items;
   int count;
+  name_index whole, last; /* where a name is; where its last part is, -1 where several have it */
 } result_names;
 /* Names of what a group holds ("/history", "/bonds"), in alphabetical order. Empty where there is no such group. */
 result_names result_list(result_file *f, const char *group);
@@ -138,6 +165,12 @@ int32_t *result_read_bonds(result_file *f, const char *interaction,
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);
 char *result_read_text(result_file *f, const char *path); /* "/input/deck" */
-char *result_read_title(result_file *f);                  /* "" without one */
+/* An attribute of the result: "title", "ended"; "" where it has none (malloc'ed). */
+char *result_read_words(result_file *f, const char *name);
+/* "threads", "wall_seconds"; NaN where it has none. */
+double result_read_number(result_file *f, const char *name);
+char *result_read_title(result_file *f);
+
+C_LINKAGE_END
 
 #endif

@@ -1,6 +1,7 @@
 /* The reading half of result.h. */
 #include <errno.h>
 #include <fcntl.h>
+#include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include "dsl/arena.h"
+#include "dsl/characters.h"
 #include "dsl/diagnostics.h"
 #include "runtime/hdf5_tools.h"
 #include "runtime/ordinary_file.h"
@@ -16,11 +18,15 @@
 
 #define VALUES_LIMIT ((hsize_t)1 << 32) /* of one read: 32 GiB of doubles */
 
+typedef enum named_group { HISTORIES, FIELDS, NAMED_GROUPS } named_group;
+
 struct result_file {
   hid_t file;
   hid_t field; /* the set of frames that was read last, open for the next frame; -1: none */
   char path[1024], field_name[512];
   char trouble[1600];
+  result_names known[NAMED_GROUPS]; /* listed when they are first asked for */
+  bool listed[NAMED_GROUPS];
 };
 
 /* --- opening ---------------------------------------------------------------------------------- */
@@ -85,11 +91,14 @@ result_file *result_read(const char *path, char *error, size_t size) {
 }
 
 void result_read_close(result_file *f) {
+  for (int k = 0; k < NAMED_GROUPS; k++)
+    result_names_free(&f->known[k]);
   if (f->field >= 0) H5Dclose(f->field);
   H5Fclose(f->file);
   free(f);
 }
 
+static const result_names *names_in(result_file *f, const char *group);
 const char *result_trouble(const result_file *f) {
   return f->trouble[0] ? f->trouble : NULL;
 }
@@ -104,10 +113,7 @@ static void report_unreadable(result_file *f, hid_t set) {
 }
 
 bool result_is_quasi_static(result_file *f) {
-  result_names series = result_members(f, "/history");
-  const bool found = result_names_find(&series, "relaxation_steps") >= 0;
-  result_names_free(&series);
-  return found;
+  return result_names_find(names_in(f, "/history"), "relaxation_steps") >= 0;
 }
 
 /* Every part of the path must exist before H5Dopen may be asked. */
@@ -171,7 +177,8 @@ static void *read_whole(result_file *f, hid_t set, hid_t type, size_t width, int
 
 static void add_name(result_names *n, const char *folder, const char *name) {
   const size_t size = strlen(folder) + strlen(name) + 2;
-  n->items = must_realloc(n->items, ((size_t)n->count + 1) * sizeof *n->items);
+  if ((n->count & (n->count - 1)) == 0) /* room is the power of two at or above the count */
+    n->items = must_realloc(n->items, (n->count ? 2 * (size_t)n->count : 1) * sizeof *n->items);
   char *item = n->items[n->count++] = must_alloc(size);
   snprintf(item, size, "%s%s%s", folder, *folder ? "/" : "", name);
 }
@@ -180,7 +187,9 @@ void result_names_free(result_names *n) {
   for (int k = 0; k < n->count; k++)
     free(n->items[k]);
   free(n->items);
-  *n = (result_names){NULL, 0};
+  name_index_clear(&n->whole);
+  name_index_clear(&n->last);
+  *n = (result_names){0};
 }
 
 static herr_t list_one(hid_t group, const char *name, const H5L_info_t *info, void *names) {
@@ -190,7 +199,7 @@ static herr_t list_one(hid_t group, const char *name, const H5L_info_t *info, vo
 }
 
 result_names result_list(result_file *f, const char *group) {
-  result_names n = {NULL, 0};
+  result_names n = {0};
   if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0) return n;
   hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
   if (g < 0) return n;
@@ -205,8 +214,21 @@ static bool is_group(const result_file *f, const char *path) {
   return g >= 0;
 }
 
+static const char *last_part(const char *name) {
+  const char *slash = strrchr(name, '/');
+  return slash ? slash + 1 : name;
+}
+
+static void index_names(result_names *n) {
+  for (int k = 0; k < n->count; k++) {
+    name_index_add(&n->whole, n->items[k], k);
+    int *of_part = name_index_add(&n->last, last_part(n->items[k]), k);
+    if (*of_part != k) *of_part = -1;
+  }
+}
+
 result_names result_members(result_file *f, const char *group) {
-  result_names all = {NULL, 0}, outer = result_list(f, group);
+  result_names all = {0}, outer = result_list(f, group);
   for (int k = 0; k < outer.count; k++) {
     char path[512];
     if (strcmp(outer.items[k], "time") == 0) continue;
@@ -221,21 +243,20 @@ result_names result_members(result_file *f, const char *group) {
     result_names_free(&inner);
   }
   result_names_free(&outer);
+  index_names(&all);
   return all;
 }
 
-static const char *last_part(const char *name) {
-  const char *slash = strrchr(name, '/');
-  return slash ? slash + 1 : name;
+static const result_names *names_in(result_file *f, const char *group) {
+  const named_group k = strcmp(group, "/frames") == 0 ? FIELDS : HISTORIES;
+  if (!f->listed[k]) f->known[k] = result_members(f, group);
+  f->listed[k] = true;
+  return &f->known[k];
 }
 
 int result_names_find(const result_names *n, const char *given) {
-  int found = -1, count = 0;
-  for (int k = 0; k < n->count; k++) {
-    if (strcmp(n->items[k], given) == 0) return k;
-    if (strcmp(last_part(n->items[k]), given) == 0 && !count++) found = k;
-  }
-  return count == 1 ? found : -1;
+  const int found = name_index_find(&n->whole, given);
+  return found >= 0 ? found : name_index_find(&n->last, given);
 }
 
 /* The nearest name, in full or its last part. */
@@ -266,27 +287,26 @@ static void add_names(char *text, size_t size, const result_names *n, int which)
   int count = 0;
   for (int k = 0; k < n->count; k++)
     if (which & (strchr(n->items[k], '/') ? OF_BONDS : OF_PARTICLES))
-      add_text(text, size, "%s%s", count++ ? ", " : "", n->items[k]);
+      add_text(text, size, "%s%s", count++ ? ", " : "", name_shown(n->items[k]));
   if (!count) add_text(text, size, "none");
 }
 
 static void no_such_name(result_file *f, const char *group, const char *given, char *error,
                          size_t size) {
   const bool of_frames = strcmp(group, "/frames") == 0;
-  result_names n = result_members(f, group);
-  const char *near = near_name(&n, given);
+  const result_names *n = names_in(f, group);
+  const char *near = near_name(n, given);
   snprintf(error, size, "`%s` has no %s `%s`; ", f->path, of_frames ? "field" : "history", given);
-  if (near) add_text(error, size, "did you mean `%s`? ", near);
+  if (near) add_text(error, size, "did you mean `%s`? ", name_shown(near));
   if (of_frames) {
     add_text(error, size, "fields of particles: ");
-    add_names(error, size, &n, OF_PARTICLES);
+    add_names(error, size, n, OF_PARTICLES);
     add_text(error, size, "; of bonds: ");
-    add_names(error, size, &n, OF_BONDS);
+    add_names(error, size, n, OF_BONDS);
   } else {
     add_text(error, size, "it has ");
-    add_names(error, size, &n, OF_PARTICLES | OF_BONDS);
+    add_names(error, size, n, OF_PARTICLES | OF_BONDS);
   }
-  result_names_free(&n);
 }
 
 /* Opens a history or a field, by its full name or a part that says which. Negative after a sentence. */
@@ -299,17 +319,16 @@ static hid_t open_named(result_file *f, const char *group, const char *given, ch
   if (!result_find(f, group, given, name, sizeof name, error, size)) return -1;
   snprintf(path, sizeof path, "%s/%s", group, name);
   set = open_set(f, path);
-  if (set < 0) no_such_name(f, group, given, error, size);
+  if (set < 0) snprintf(error, size, "`%s` of `%s` cannot be read", name_shown(name), f->path);
   return set;
 }
 
 bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
                  char *error, size_t error_size) {
-  result_names n = result_members(f, group);
-  const int k = result_names_find(&n, given);
+  const result_names *n = names_in(f, group);
+  const int k = result_names_find(n, given);
   const bool is_time = k < 0 && strcmp(group, "/history") == 0 && strcmp(given, "time") == 0;
-  snprintf(name, size, "%s", k < 0 ? given : n.items[k]);
-  result_names_free(&n);
+  snprintf(name, size, "%s", k < 0 ? given : n->items[k]);
   if (k < 0 && !is_time) no_such_name(f, group, given, error, error_size);
   return k >= 0 || is_time;
 }
@@ -510,9 +529,25 @@ char *result_read_text(result_file *f, const char *path) {
   return text;
 }
 
+char *result_read_words(result_file *f, const char *name) {
+  char words[1024];
+  h5_read_attribute_text(f->file, name, words, sizeof words);
+  char *copy = must_calloc(strlen(words) + 1, 1);
+  return strcpy(copy, words);
+}
+
+double result_read_number(result_file *f, const char *name) {
+  double value = NAN;
+  if (H5Aexists(f->file, name) <= 0) return value;
+  const hid_t a = H5Aopen(f->file, name, H5P_DEFAULT), space = a >= 0 ? H5Aget_space(a) : -1;
+  if (space < 0 || H5Sget_simple_extent_npoints(space) != 1 ||
+      H5Aread(a, H5T_NATIVE_DOUBLE, &value) < 0)
+    value = NAN;
+  if (space >= 0) H5Sclose(space);
+  if (a >= 0) H5Aclose(a);
+  return value;
+}
+
 char *result_read_title(result_file *f) {
-  char title[512];
-  h5_read_attribute_text(f->file, "title", title, sizeof title);
-  char *copy = must_calloc(strlen(title) + 1, 1);
-  return strcpy(copy, title);
+  return result_read_words(f, "title");
 }

@@ -20,9 +20,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "dsl/c_linkage.h"
 #include "runtime/bravais.h"
 #include "runtime/deck.h"
 #include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
 
 /* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the bonds of a particle those
    it owns have different numbers below `directions`, those others own have different numbers from there on, and
@@ -165,5 +168,7 @@ rows_bond *rows_bonds(const rows *w);
 
 /* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks describe. */
 uint64_t rows_fingerprint(const rows *w);
+
+C_LINKAGE_END
 
 #endif

@@ -109,7 +109,7 @@ seal_state sealed_file_state(int file) {
 }
 
 bool sealed_file_is_marked(hid_t file) {
-  return H5Aexists(file, attribute_name) > 0;
+  return H5Aexists(file, attribute_name) != 0; /* also where that cannot be told */
 }
 
 /* --- writing ---------------------------------------------------------------------------------- */

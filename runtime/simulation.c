@@ -141,6 +141,9 @@ static int choose_threads(const simulation *s) {
 
 enum { RELAXATION_COUNT = 2 };
 static const char *const relaxation_names[] = {"relaxation_steps", "relaxation_unbalance"};
+static const char *const relaxation_words[] = {
+    "steps of the increment",
+    "unbalanced force at the end of the increment over reactions or loads"};
 
 static void new_history(simulation *s) {
   s->series_count = s->monitors->count + (s->deck->output.energy ? LEDGER_COUNT : 0) +
@@ -441,6 +444,13 @@ const char *simulation_series(const simulation *s, int k, const char **symbol,
   return k < watched ? s->deck->monitors[k].name
          : own < 0   ? ledger_names[k - watched]
                      : relaxation_names[own];
+}
+
+char *simulation_series_words(const simulation *s, int k, arena *a) {
+  const int watched = s->monitors->count;
+  const int own = k - (s->series_count - (s->relaxation ? RELAXATION_COUNT : 0));
+  if (k < watched) return monitor_words(s->monitors, k, a);
+  return arena_printf(a, "%s", own < 0 ? ledger_words[k - watched] : relaxation_words[own]);
 }
 
 int simulation_imbalance(const simulation *s, const char **unchecked) {

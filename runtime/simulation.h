@@ -11,14 +11,17 @@
 
 #include <signal.h>
 
+#include "dsl/c_linkage.h"
 #include "runtime/deck.h"
 #include "runtime/frame_file.h"
 #include "runtime/kernel.h"
-#include "runtime/profile.h"
 #include "runtime/rows.h"
-#include "runtime/sweep.h"
+
+C_LINKAGE_BEGIN
 
 typedef struct simulation simulation;
+struct profile;
+struct sweep;
 
 /* What the front end hands over for each lattice of the deck, in deck order. NULL where a law or
    its parameters are wrong: then the deck is checked as far as it does not depend on them. */
@@ -74,10 +77,10 @@ double simulation_time(const simulation *s);   /* s, as the deck's loads count i
 double simulation_memory(const simulation *s); /* bytes */
 int simulation_threads(const simulation *s);   /* that will work on it */
 /* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay. */
-void simulation_measure(simulation *s, profile *p);
+void simulation_measure(simulation *s, struct profile *p);
 /* The arrays of the state, for tools and tests; before the first step they may be set (an initial
  * velocity, say). */
-sweep *simulation_state(simulation *s);
+struct sweep *simulation_state(simulation *s);
 
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);
@@ -126,6 +129,8 @@ bad_state simulation_bad(const simulation *s);
 long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
+/* What a series is, in words. */
+char *simulation_series_words(const simulation *s, int k, arena *a);
 /* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
@@ -137,7 +142,8 @@ typedef struct frame_field {
   const char *name, *unit;
   bool on_bonds;
   int components;
-  const char *kind; /* "state", "damage", "output" of the law; else "other" */
+  const char *kind;      /* "state", "damage", "output" of the law; else "other" */
+  const char *long_name; /* in words: the law's, where it is of the law */
 } frame_field;
 int simulation_frame_fields(const simulation *s, const frame_field **fields);
 void simulation_frame_values(simulation *s, int field, double *values);
@@ -153,5 +159,7 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
                      const frame_mark *frames, char *error, size_t size);
 bool simulation_restore(simulation *s, const char *path, const char *fingerprint,
                         frame_mark *frames, char *error, size_t size);
+
+C_LINKAGE_END
 
 #endif

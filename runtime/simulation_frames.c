@@ -10,6 +10,10 @@
 
 /* --- what frames hold ------------------------------------------------------------------------- */
 
+enum { OWN_FIELDS = 6 };
+static const char *const own_fields[OWN_FIELDS] = {"displacement", "velocity", "rotation",
+                                                   "force",        "damage",   "dissipated"};
+
 bool frames_want(const simulation *s, const char *name) {
   const deck_output *o = &s->deck->output;
   for (int k = 0; k < o->field_count; k++)
@@ -31,49 +35,76 @@ static void offer(simulation *s, bool offered, frame_field field, frame_source f
   s->frame_sources[s->frame_field_count++] = from;
 }
 
+static const char *words_of(const char *doc, const char *otherwise) {
+  return doc && *doc ? doc : otherwise;
+}
+
+/* What is stored of any law. */
+static void offer_own(simulation *s, bool all, bool damage) {
+  const pl_law *law = s->law;
+  double *const *u = s->state->displacement;
+  const int dimensions = s->state->dimensions;
+  offer(s, all || frames_want(s, "displacement"),
+        (frame_field){"displacement", "m", false, dimensions, "other", "displacement"},
+        (frame_source){FROM_STATE, u, 0});
+  offer(s, all || frames_want(s, "velocity"),
+        (frame_field){"velocity", "m/s", false, dimensions, "other",
+                      "velocity: the mean of those half a step before and after"},
+        (frame_source){FROM_VELOCITY, NULL, 0});
+  offer(s, law->dof > law->dimensions && (all || frames_want(s, "rotation")),
+        (frame_field){"rotation", "rad", false, 1, "other", "rotation, counter-clockwise"},
+        (frame_source){FROM_STATE, u + 2, 0});
+  offer(s, frames_want(s, "force"),
+        (frame_field){"force", "N", false, dimensions, "other", "sum of the forces of the bonds"},
+        (frame_source){FROM_STATE, s->state->force, 0});
+  offer(s, damage,
+        (frame_field){"damage", "1", false, 1, "damage",
+                      damage_on_particles(law)
+                          ? "the largest damage of the particle"
+                          : "mean damage of the bonds that the particle began with"},
+        (frame_source){FROM_DAMAGE, NULL, 0});
+  offer(s, s->state->dissipated_state && (all || frames_want(s, "dissipated")),
+        (frame_field){"dissipated", "J", false, 1, "other",
+                      "energy lost in the bonds to the right of the particle and above it"},
+        (frame_source){FROM_DISSIPATED, NULL, 0});
+}
+
+static void offer_law(simulation *s, bool all, bool damage) {
+  const pl_law *law = s->law;
+  for (int k = 0; k < law->field_count; k++) {
+    const pl_field *f = &law->fields[k];
+    const bool damages = f->kind == PL_FIELD_DAMAGE;
+    offer(s, all || frames_want(s, f->name) || (damages && damage),
+          (frame_field){f->name, f->unit, on_bonds(f), 1, damages ? "damage" : "state",
+                        words_of(f->doc, damages ? "damage of the law" : "state of the law")},
+          (frame_source){FROM_FIELD, NULL, k});
+  }
+  for (int k = 0; k < law->output_count; k++) {
+    const pl_field *o = &law->outputs[k];
+    offer(s, frames_want(s, o->name),
+          (frame_field){o->name, o->unit, on_bonds(o), 1, "output",
+                        words_of(o->doc, "output of the law")},
+          (frame_source){FROM_OUTPUT, NULL, k});
+  }
+  for (int k = 0; k < law->varying_count; k++) {
+    const pl_parameter *p = &law->parameters[law->varying[k]];
+    offer(
+        s, frames_want(s, p->name),
+        (frame_field){p->name, p->unit, true, 1, "other", words_of(p->doc, "parameter of the law")},
+        (frame_source){FROM_PARAMETER, NULL, k});
+  }
+}
+
 void frames_choose(simulation *s) {
   const pl_law *law = s->law;
   const bool all = s->deck->output.field_count == 0;
-  const size_t most =
-      6 + (size_t)law->field_count + (size_t)law->output_count + (size_t)law->varying_count;
+  const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
+  const size_t most = OWN_FIELDS + (size_t)law->field_count + (size_t)law->output_count +
+                      (size_t)law->varying_count;
   s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
-  double *const *u = s->state->displacement;
-  offer(s, all || frames_want(s, "displacement"),
-        (frame_field){"displacement", "m", false, s->state->dimensions, "other"},
-        (frame_source){FROM_STATE, u, 0});
-  offer(s, all || frames_want(s, "velocity"),
-        (frame_field){"velocity", "m/s", false, s->state->dimensions, "other"},
-        (frame_source){FROM_VELOCITY, NULL, 0});
-  offer(s, law->dof > law->dimensions && (all || frames_want(s, "rotation")),
-        (frame_field){"rotation", "rad", false, 1, "other"}, (frame_source){FROM_STATE, u + 2, 0});
-  offer(s, frames_want(s, "force"),
-        (frame_field){"force", "N", false, s->state->dimensions, "other"},
-        (frame_source){FROM_STATE, s->state->force, 0});
-  const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
-  offer(s, damage, (frame_field){"damage", "1", false, 1, "damage"},
-        (frame_source){FROM_DAMAGE, NULL, 0});
-  offer(s, s->state->dissipated_state && (all || frames_want(s, "dissipated")),
-        (frame_field){"dissipated", "J", false, 1, "other"},
-        (frame_source){FROM_DISSIPATED, NULL, 0});
-  for (int f = 0; f < law->field_count; f++) {
-    const char *name = law->fields[f].name;
-    const bool damages = law->fields[f].kind == PL_FIELD_DAMAGE;
-    offer(s, all || frames_want(s, name) || (damages && damage),
-          (frame_field){name, law->fields[f].unit, on_bonds(&law->fields[f]), 1,
-                        damages ? "damage" : "state"},
-          (frame_source){FROM_FIELD, NULL, f});
-  }
-  for (int o = 0; o < law->output_count; o++)
-    offer(s, frames_want(s, law->outputs[o].name),
-          (frame_field){law->outputs[o].name, law->outputs[o].unit, on_bonds(&law->outputs[o]), 1,
-                        "output"},
-          (frame_source){FROM_OUTPUT, NULL, o});
-  for (int k = 0; k < law->varying_count; k++) {
-    const pl_parameter *p = &law->parameters[law->varying[k]];
-    offer(s, frames_want(s, p->name), (frame_field){p->name, p->unit, true, 1, "other"},
-          (frame_source){FROM_PARAMETER, NULL, k});
-  }
+  offer_own(s, all, damage);
+  offer_law(s, all, damage);
 }
 
 /* Known names that this run cannot give. */
@@ -83,10 +114,6 @@ static bool is_absent(const simulation *s, const char *name) {
   return strcasecmp(name, "dissipated") == 0 &&
          (!s->deck->output.energy || s->law->kind == PL_STATE);
 }
-
-enum { OWN_FIELDS = 6 };
-static const char *const own_fields[OWN_FIELDS] = {"displacement", "velocity", "rotation",
-                                                   "force",        "damage",   "dissipated"};
 
 /* Names that this run can store, or with `all` that some run can; to be freed. */
 static const char **field_names(const simulation *s, bool all, int *count) {
@@ -210,8 +237,8 @@ static void output_values(simulation *s, int output, double *values) {
 static void velocities(const simulation *s, int components, double *values) {
   for (long p = 0; p < s->lattice->particle_count; p++)
     for (int c = 0; c < components; c++)
-      values[p * components + c] = loads_velocity(
-          s->loads, s->state, c, s->lattice->particle_site[p], (long)s->at.step);
+      values[p * components + c] =
+          loads_velocity(s->loads, s->state, c, s->lattice->particle_site[p], (long)s->at.step);
 }
 
 void simulation_frame_values(simulation *s, int field, double *values) {

@@ -7,6 +7,7 @@
 #include "runtime/ledger.h"
 #include "runtime/loads.h"
 #include "runtime/monitor.h"
+#include "runtime/profile.h"
 #include "runtime/random_field.h"
 #include "runtime/relaxation.h"
 #include "runtime/simulation.h"

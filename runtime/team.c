@@ -23,9 +23,7 @@ struct team {
 };
 
 static void *new_lines(size_t size) {
-  void *p = aligned_alloc(LINE, (size + LINE - 1) / LINE * LINE);
-  if (!p) must_alloc(SIZE_MAX); /* ends the program with the usual message */
-  return p;
+  return must_align(LINE, size);
 }
 
 team *team_new(int blocks) {

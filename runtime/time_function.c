@@ -27,13 +27,18 @@ static double table_at(const time_function *f, double t) {
 
 /* Trapezoids, which are exact for straight pieces; held values before the first and after the last
  * point. */
+void time_table_integrals(const double *times, const double *values, int count, double *integrals) {
+  double sum = values[0] * times[0];
+  for (int k = 0; k < count; k++) {
+    integrals[k] = sum;
+    if (k + 1 < count) sum += (values[k] + values[k + 1]) / 2 * (times[k + 1] - times[k]);
+  }
+}
+
 static double table_integral(const time_function *f, double t) {
-  int last = table_piece(f, t);
+  const int last = table_piece(f, t);
   if (last < 0) return f->values[0] * t;
-  double sum = f->values[0] * f->times[0];
-  for (int k = 0; k < last; k++)
-    sum += (f->values[k] + f->values[k + 1]) / 2 * (f->times[k + 1] - f->times[k]);
-  return sum + (f->values[last] + table_at(f, t)) / 2 * (t - f->times[last]);
+  return f->integrals[last] + (f->values[last] + table_at(f, t)) / 2 * (t - f->times[last]);
 }
 
 double time_function_at(const time_function *f, double t) {

@@ -1,4 +1,6 @@
-/* The XDMF sidecar of a result: frames as a time series of particles and of bonds, for ParaView. */
+/* The XDMF sidecar of a result, for ParaView: a time series of one grid (views.h). It names whole
+   data sets of at most two dimensions and nothing else: of cut or combined ones, and of collections
+   within collections, ParaView's first reader (Xdmf3) shows nothing. */
 #ifndef PERILAT_RUNTIME_XDMF_H
 #define PERILAT_RUNTIME_XDMF_H
 

@@ -9,10 +9,10 @@ draw() { # ending of the names, picture, title
   local angle
   for angle in 0 15 30; do
     [[ -s rot$angle$1.h5 ]] || "$perilat" run "rot$angle$1.nml"
-    "$perilat" plot "rot$angle$1.h5" --map damage --factor 20 -o "rot$angle$1_damage.png"
+    "$perilat" plot "rot$angle$1.h5" --map damage --factor 20 --mark yielded -o "rot$angle$1_damage.png"
   done
   "$perilat" plot "rot0$1.h5" "rot15$1.h5" "rot30$1.h5" --x displacement --y load --title "$3" \
-    --label "0 degrees" --label "15 degrees" --label "30 degrees" -o "$2"
+    --label "0 degrees" --label "15 degrees" --label "30 degrees" --line "theory = 193 kN" -o "$2"
 }
 
 draw ""         thesis.png    "Brazilian disc, law as published"

@@ -10,4 +10,5 @@ for angle in 0 15 30; do
   "$perilat" plot "rot$angle.h5" --map damage --frame 20 --factor 100 -o "rot${angle}_damage.png"
 done
 "$perilat" plot rot0.h5 rot15.h5 rot30.h5 --x displacement --y load --title "Split cylinder" \
-  --label "0 degrees" --label "15 degrees" --label "30 degrees" -o curves.png
+  --label "0 degrees" --label "15 degrees" --label "30 degrees" --line "theory = 236 kN" \
+  --band "laboratory = 204 kN, 236 kN" -o curves.png

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Runs the beams whose results are missing and draws all curves, load over crack mouth opening: all_curves.png, and one
-# picture for each depth. Another program than ../../build/perilat or the one installed: PERILAT=path bash plot_all.sh
+# Runs the beams whose results are missing and draws all curves, load over crack mouth opening and over load-point displacement:
+# all_curves.png, all_lpd.png, and one picture of each for each depth; and six stages of the crack in D9, d9_stages.png. Another program than ../../build/perilat or the one installed: PERILAT=path bash plot_all.sh
 set -euo pipefail
 cd "$(dirname "$0")"
 perilat=${PERILAT:-../../build/perilat}
@@ -18,17 +18,21 @@ curves() {
   done
 }
 
-draw() { # beginning of the names, picture, title
+draw() { # beginning of the names, beginning of the pictures, title
   local -a files
   mapfile -t files < <(curves "$1")
-  "$perilat" plot "${files[@]}" --x cmod --y load --title "$3" -o "$2"
+  "$perilat" plot "${files[@]}" --x cmod --y load --title "$3" -o "$2_curves.png"
+  "$perilat" plot "${files[@]}" --x lpd --y load --title "$3" -o "$2_lpd.png"
 }
 
 for beam in "${beams[@]}"; do
   [[ -s $beam.h5 ]] || "$perilat" run "$beam.nml"
 done
 
-draw d  all_curves.png "Notched beams"
-draw d3 d3_curves.png  "Notched beam D3"
-draw d6 d6_curves.png  "Notched beam D6"
-draw d9 d9_curves.png  "Notched beam D9"
+draw d  all "Notched beams"
+draw d3 d3  "Notched beam D3"
+draw d6 d6  "Notched beam D6"
+draw d9 d9  "Notched beam D9"
+
+[[ -s d9_long.h5 ]] || "$perilat" run d9_s12.7.nml --set "stop.after=70 ms" --set output.result=d9_long.h5
+"$perilat" plot d9_long.h5 --map damage --frames cmod=0.128mm,0.288mm,0.607mm,0.915mm,1.221mm,1.376mm -o d9_stages.png

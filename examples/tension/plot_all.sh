@@ -10,7 +10,7 @@ for angle in 0 15 30; do
   "$perilat" plot "rot$angle.h5" --map damage --factor 50 -o "rot${angle}_damage.png"
 done
 "$perilat" plot rot0.h5 rot15.h5 rot30.h5 --x displacement --y load --title "Prism in tension" \
-  --label "0 degrees" --label "15 degrees" --label "30 degrees" -o curves.png
+  --label "0 degrees" --label "15 degrees" --label "30 degrees" --line "f_t A = 58.88 kN" -o curves.png
 [[ -s rot0_quasi_static.h5 ]] || "$perilat" run rot0_quasi_static.nml
 "$perilat" plot rot0.h5 rot0_quasi_static.h5 --x displacement --y load --label dynamic --label quasi-static \
   -o quasi_static.png

@@ -130,8 +130,8 @@ static void control_characters_do_not_reach_the_terminal(void **state) {
   sheet_begin(&s, "a\033[31mb\n");
   diag_report(&s.d, DIAG_BAD_CHARACTER, (span){1, 2, 0}, "this character");
   prints(&s, "law.plm:1:2: error: this character [bad-character]\n"
-             "  1 | a [31mb\n"
-             "    |  ^\n");
+             "  1 | a\\x1b[31mb\n"
+             "    |  ^~~~\n");
 }
 
 static void long_lines_are_cut_around_the_caret(void **state) {

@@ -142,13 +142,25 @@ static int add_program(diag_json *j, const char *name) {
   return count;
 }
 
-static char *document(diag_json *j, bool accepted) {
-  char *text = NULL;
+/* A document in memory. */
+typedef struct written {
+  json writer;
+  FILE *out;
+  char *text;
   size_t length;
-  FILE *out = open_memstream(&text, &length);
-  diag_json_end(j, accepted, out);
-  assert_int_equal(fclose(out), 0);
-  return text;
+} written;
+
+static void begin(written *d, diag_json *j, const char *checked) {
+  d->out = open_memstream(&d->text, &d->length);
+  json_document(&d->writer, d->out, "0");
+  diag_json_begin(j, &d->writer, checked);
+}
+
+static char *document(written *d, diag_json *j) {
+  diag_json_end(j, false);
+  json_document_end(&d->writer);
+  assert_int_equal(fclose(d->out), 0);
+  return d->text;
 }
 
 static void a_dozen_programs_have_the_documented_form(void **state) {
@@ -160,10 +172,11 @@ static void a_dozen_programs_have_the_documented_form(void **state) {
                                       "syntax_crlf.plm",      "syntax_include_content.plm",
                                       "syntax_utf8.plm",      "units_sum.plm"};
   diag_json j;
-  diag_json_begin(&j, "a dozen", "0");
+  written d;
+  begin(&d, &j, "a dozen");
   for (size_t i = 0; i < sizeof names / sizeof names[0]; i++)
     add_program(&j, names[i]);
-  char *text = document(&j, false);
+  char *text = document(&d, &j);
   assert_valid(text);
   assert_golden(SOURCE_DIR "/tests/dsl/golden/diagnostics.json", text);
   free(text);
@@ -183,10 +196,11 @@ static void every_bad_program_gives_valid_json(void **state) {
   assert_true(found.gl_pathc > 80);
   for (size_t i = 0; i < found.gl_pathc; i++) {
     diag_json j;
-    diag_json_begin(&j, "x", "0");
+    written d;
+    begin(&d, &j, "x");
     int messages = add_program(&j, strrchr(found.gl_pathv[i], '/') + 1);
     assert_int_equal(j.errors + j.warnings, messages);
-    char *text = document(&j, false);
+    char *text = document(&d, &j);
     assert_valid(text);
     assert_int_equal(count_of(text, "\"severity\": "), messages);
     free(text);
@@ -263,24 +277,20 @@ static void the_example_of_the_reference_is_real(void **state) {
   char *begin = strstr(page, "\n```json\n"), *ends = begin ? strstr(begin, "\n```\n") : NULL;
   assert_non_null(ends);
   ends[1] = 0;
-  source_set sources = {0};
-  diagnostics d;
-  diag_begin(&d, &sources);
-  arena *memory = arena_new();
-  static const char text[] = "model spring\n  law central bond\n  parameter EA = 2 [MN]\n  force N "
-                             "= EA*strech\nend model\n";
-  int file = source_add(&sources, "law.plm", text, sizeof text - 1);
-  tree *t = parse_model(memory, &sources, file, NULL, &d);
-  law_check(memory, t, &sources, NULL, 0, &d);
-  diag_json j;
-  diag_json_begin(&j, "law.plm", "0.1.0");
-  diag_json_add(&j, &d);
-  char *found = document(&j, false);
+  char folder[] = "json_XXXXXX", line[4096];
+  assert_non_null(mkdtemp(folder));
+  snprintf(line, sizeof line, "%s/law.plm", folder);
+  write_file(line, "model spring\n  law central bond\n  parameter EA = 2 [MN]\n  force N = "
+                   "EA*strech\nend model\n");
+  int status;
+  snprintf(line, sizeof line, "cd %s && %s check law.plm --diagnostics=json", folder,
+           PERILAT_PROGRAM);
+  char *found = run_command(line, &status);
+  assert_int_equal(status, 1);
   assert_string_equal(found, begin + strlen("\n```json\n"));
   free(found);
-  arena_free(memory);
-  diag_clear(&d);
-  source_clear(&sources);
+  snprintf(line, sizeof line, "rm -r %s", folder);
+  free(run_command(line, &status));
   free(page);
 }
 

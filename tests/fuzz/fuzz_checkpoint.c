@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "runtime/checkpoint.h"
+#include "runtime/sweep.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/runtime/small_run.h"
 

@@ -75,7 +75,15 @@ static void write_right(const char *path) {
   MUST(r && result_begin(r, error, sizeof error) &&
        result_frame(r, 0, values, error, sizeof error) &&
        result_frame(r, 1, values, error, sizeof error));
-  MUST(result_finish(r, 1e-3, 42, time, SAMPLES, series, 2, error, sizeof error));
+  MUST(result_finish(r,
+                     &(result_ending){.ended = "end of the run",
+                                      .dt = 1e-3,
+                                      .steps = 42,
+                                      .time = time,
+                                      .history_count = SAMPLES,
+                                      .series = series,
+                                      .series_count = 2},
+                     error, sizeof error));
   result_discard(r);
   result_close(r);
 }

@@ -1,9 +1,11 @@
-/* Text of a table of particles. The first byte of an input says whether the lattice is in the plane, whether it has a body and
-   whether a spacing. A set and errors exclude each other; what is in the set is finite, positive and, without volumes of its
-   own, adds up to the body; places of messages lie in the text. */
+/* Text of a table: of particles, then of a load. The first byte of an input says whether the
+   lattice is in the plane, whether it has a body and whether a spacing. A set and errors exclude
+   each other; what is in the set is finite, positive and, without volumes of its own, adds up to
+   the body; times of a load ascend; places of messages lie in the text. */
 #include <math.h>
 #include <string.h>
 
+#include "runtime/deck_load.h"
 #include "runtime/particle_set.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/memory_file.h"
@@ -33,6 +35,37 @@ static bool has_volumes(const char *text) {
   return strcasestr(text, "volume") || strcasestr(text, "area");
 }
 
+static void check_places(const diagnostics *d) {
+  for (int n = 0; n < d->count; n++)
+    MUST(d->items[n].where.file < d->sources->count &&
+         d->items[n].where.end <= d->sources->items[d->items[n].where.file].length);
+}
+
+static void try_load(const char *table, size_t size, unsigned how) {
+  const deck_load_kind kinds[] = {{"velocity", "m/s", how & WITH_BODY},
+                                  {"displacement", "m", false}};
+  char text[400];
+  source_set sources = {0};
+  diagnostics d;
+  arena *memory = arena_new();
+  snprintf(text, sizeof text, "&drive file = 't.csv%s' %s /", how & IN_SPACE ? ":2,1" : "",
+           how & WITH_SPACING ? "velocity = 2" : "");
+  diag_begin(&d, &sources);
+  source_add(&sources, "t.csv", table, size);
+  const namelist *n =
+      namelist_read(memory, &sources, source_add(&sources, "fuzz.nml", text, strlen(text)), &d);
+  time_function f;
+  const int kind = deck_load_kind_of(&n->groups[0], kinds, 2, &d);
+  const bool good = kind >= 0 && deck_load_read(memory, &n->groups[0], &kinds[kind], &f, &d);
+  MUST(good == (d.errors == 0));
+  for (int k = 0; good && k < f.count; k++)
+    MUST(isfinite(f.values[k]) && f.times[k] >= 0 && (k == 0 || f.times[k] > f.times[k - 1]));
+  check_places(&d);
+  diag_clear(&d);
+  source_clear(&sources);
+  arena_free(memory);
+}
+
 static void try_text(const char *text, unsigned how) {
   const bool space = how & IN_SPACE;
   deck_lattice l = {.name = "c",
@@ -54,9 +87,7 @@ static void try_text(const char *text, unsigned how) {
   source_add(&sources, "fuzz.nml", lattice_text, sizeof lattice_text - 1);
   particle_set *set = particle_set_make(&k, 0, &d);
   MUST((set == NULL) == (d.errors > 0));
-  for (int n = 0; n < d.count; n++)
-    MUST(d.items[n].where.file < sources.count &&
-         d.items[n].where.end <= sources.items[d.items[n].where.file].length);
+  check_places(&d);
   if (set) check_set(set, how & WITH_BODY && !has_volumes(text) ? (space ? 24 : 12) : 0);
   particle_set_free(set);
   diag_clear(&d);
@@ -74,6 +105,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
   memcpy(text, data + 1, size - 1);
   memory_file_set(&file, data + 1, size - 1);
   try_text(text, *data);
+  try_load(text, size - 1, *data);
   free(text);
   return 0;
 }

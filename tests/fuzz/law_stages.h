@@ -46,10 +46,13 @@ static void check_places(const diagnostics *d) {
 
 static void print_all(const diagnostics *d) {
   diag_print(d, nowhere());
+  json document;
+  json_document(&document, nowhere(), "0");
   diag_json j;
-  diag_json_begin(&j, "law.plm", "0");
+  diag_json_begin(&j, &document, "law.plm");
   diag_json_add(&j, d);
-  diag_json_end(&j, d->errors == 0, nowhere());
+  diag_json_end(&j, d->errors == 0);
+  json_document_end(&document);
 }
 
 /* The text laid out has the tree of the text, and stays as it is when laid out again. */

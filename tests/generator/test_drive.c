@@ -292,7 +292,8 @@ static void bad_paths_are_explained(void **state) {
       {ELASTIC "&path quantity = 'stretch' times = 1, 0 values = 0, 1 /",
        "later than the one before"},
       {ELASTIC "&path quantity = 'stretch' file = 'missing.csv' /", "cannot read `missing.csv`"},
-      {ELASTIC "&path quantity = 'stretch' file = 'drive_test.nml' /", "is not a time and a value"},
+      {ELASTIC "&path quantity = 'stretch' file = 'drive_test.nml' /",
+       "`drive_test.nml` is not a table"},
       {ELASTIC "&path quantity = 'stretch' value = -1.5 rise = 1 /", "the bond has no length left"},
       {ELASTIC "&bond spacing = '5 mm' /\n" TO_MICRO, "a path has one `&bond`"},
       {ELASTIC "&simulation steps = 0 /\n" TO_MICRO, "`steps` must be at least 1"},
@@ -403,13 +404,22 @@ static void times_meet_corners(void **state) {
   close_path(&p);
 }
 
+/* Without `value` the table holds the stretch itself, else factors. */
 static void a_table_comes_from_a_file(void **state) {
   (void)state;
-  write_file("drive_table.csv", "time [s], stretch\n0, 0\n0.5; 1e-4\n2 5e-5\n");
-  drive(ELASTIC "&path quantity = 'stretch' file = 'drive_table.csv' value = 2 /\n"
-                "&expect quantity = 'N' at_time = 0.5 formula = 'EA*2e-4' /\n&expect quantity = "
-                "'N' formula = 'EA*1e-4' /\n",
-        "", 0, "2 of 2");
+  static const char *const tables[] = {"time [s], stretch\n0, 0\n0.5, 1e-4\n2, 5e-5\n",
+                                       "0; 0\n0.5; 1e-4\n2; 5e-5\n",
+                                       "time [ms] stretch [%]\n0 0\n500 1e-2\n2000 5e-3\n"};
+  for (int k = 0; k < 3; k++) {
+    write_file("drive_table.csv", tables[k]);
+    drive(ELASTIC "&path quantity = 'stretch' file = 'drive_table.csv' value = 2 /\n"
+                  "&expect quantity = 'N' at_time = 0.5 formula = 'EA*2e-4' /\n&expect quantity = "
+                  "'N' formula = 'EA*1e-4' /\n",
+          "", 0, "2 of 2");
+    drive(ELASTIC "&path quantity = 'stretch' file = 'drive_table.csv' /\n"
+                  "&expect quantity = 'N' at_time = 0.5 formula = 'EA*1e-4' /\n",
+          "", 0, "1 of 1");
+  }
 }
 
 /* A rate of 10 1/s = rate_0 gives half of zeta, whatever the path does. */

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Installs into a folder of its own and works from there: laws by name, a run, a solver, a C program by CMake and one by pkg-config.
-# Arguments: build folder, source folder, C compiler, CMake, its generator, and the program that it builds with.
+# Installs into a folder of its own and works from there: laws by name, a run, a solver, the public headers, programs in C and
+# C++ by CMake and by pkg-config. Arguments: build folder, source folder, C compiler, CMake, its generator, and the program
+# that it builds with.
 set -euo pipefail
 build=$1 source=$2 compiler=$3 cmake=$4 generator=$5 make_program=$6
 
@@ -27,8 +28,8 @@ cd "$work/elsewhere"
 cp "$build/perilat" "$work/outside/"
 "$work/outside/perilat" check elastic_central | grep -q 'no errors' || fail "the laws of a build folder outside of the source folder"
 
-# The installed tool does not lean on the folders it came from.
-if grep -r -l -F -e "$source/" -e "$build/" "$prefix/lib"*/cmake "$prefix/lib"*/pkgconfig "$prefix/share"; then
+# Nothing that is installed knows the folders it came from: no text, no program, no library.
+if grep -r -l -a -F -e "$source" -e "$build" "$prefix"; then
   fail "these files name the source or build folder"
 fi
 
@@ -46,6 +47,7 @@ while IFS= read -r page; do
     [ -e "$(dirname "$page")/$link" ] || fail "$page: there is no $link"
   done
 done < <(find "$prefix/share/doc/perilat" -name '*.md')
+grep -q 'No licence has been chosen yet' "$prefix/share/doc/perilat/README.md" || fail "README does not speak of the licence"
 [ "$pages" -gt 60 ] || fail "only $pages pages of documentation"
 "$perilat" check "$prefix/share/perilat/examples/notched_beam/d3_s6.35.nml" | grep -q 'no errors'
 
@@ -57,6 +59,23 @@ PATH=/nonexistent ./solver --set "simulation.end_time=0.1 ms" --set output.resul
 "$perilat" compare run.h5 solver.h5 | grep -q '^same'
 "$perilat" new mine >new.log
 "$perilat" drive mine_drive.nml | grep -q '5 of 5 expectations hold'
+
+# Public headers say all that they need, in either language; inner ones stay behind.
+cpp=${CXX:-c++}
+command -v "$cpp" >/dev/null || cpp=
+include=$prefix/include/perilat
+headers=0
+while IFS= read -r header; do
+  headers=$((headers + 1))
+  [ "$header" = dsl/diagnostic_codes.h ] && continue # a list of X, for those that say what X is
+  echo "#include \"$header\"" >one.c
+  "$compiler" -std=c11 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C11"
+  [ -z "$cpp" ] || "$cpp" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C++17"
+done < <(cd "$include" && find . -name '*.h' | sed 's/^..//')
+[ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/model.h" ] || fail "$headers headers"
+for inner in runtime/sweep.h runtime/simulation_parts.h generator/passes.h generator/run_parts.h dsl/parsing.h; do
+  [ ! -e "$include/$inner" ] || fail "$inner is installed"
+done
 
 # A C program against the libraries: the law is found, checked, and driven through the runtime's reader of results.
 cat >use.c <<'END'
@@ -83,19 +102,76 @@ int main(int argc, char **argv) {
 END
 cat >CMakeLists.txt <<'END'
 cmake_minimum_required(VERSION 3.20)
-project(use LANGUAGES C)
+project(use LANGUAGES C ${CPP})
 set(CMAKE_C_STANDARD 11)
+set(CMAKE_CXX_STANDARD 17)
 find_package(perilat 0.1 REQUIRED)
 if(NOT EXISTS ${PERILAT_MODELS_DIR}/elastic_central.plm OR NOT EXISTS ${PERILAT_EXECUTABLE})
   message(FATAL_ERROR "the package does not say where its models and command are")
 endif()
 add_executable(use use.c)
 target_link_libraries(use PRIVATE perilat::generator)
+if(CPP)
+  add_executable(host host.cpp)
+  target_link_libraries(host PRIVATE perilat::generator)
+endif()
+END
+# A C++ program that checks a law, runs a deck, and steps a simulation of its own.
+cat >host.cpp <<'END'
+#include <cstdio>
+#include <cstring>
+
+#include "generator/model.h"
+#include "generator/run.h"
+#include "runtime/deck.h"
+#include "runtime/result.h"
+#include "runtime/simulation.h"
+
+static const char deck_text[] = "&simulation end_time = '0.1 ms' /\n"
+                                "&lattice name = 'a' kind = 'hexagonal' spacing = '10 mm' thickness = '100 mm' /\n"
+                                "&material lattice = 'a' model = 'elastic_central' /\n"
+                                "&body lattice = 'a' shape = 'rectangle' corner = 0, 0 size = '50 mm', '50 mm' /\n"
+                                "&gravity acceleration = 0, -9.81 /\n";
+
+int main(int argc, char **argv) {
+  run_options options = {};
+  options.program = argv[0];
+  options.deck_path = argc == 2 ? argv[1] : "";
+  options.check_only = true;
+  const bool right = run_deck(&options) == 0;
+  arena *memory = arena_new();
+  source_set sources = {};
+  diagnostics said;
+  diag_begin(&said, &sources);
+  const int file = source_add(&sources, "host", deck_text, std::strlen(deck_text));
+  deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
+  model m = {};
+  long steps = 0;
+  if (k && run_open_material(&k->materials[0], &k->lattices[0], nullptr, &m, &said)) {
+    char error[1000];
+    const char *note;
+    double values[16];
+    const pl_law *law = model_kernel(&m, true, &note, error, sizeof error);
+    simulation_law laws = {law, values};
+    simulation *s = law && material_parameters(&k->materials[0], law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
+    while (s && simulation_advance(s, 100, nullptr) == STEP_OK)
+      ;
+    steps = s ? simulation_step_done(s) : 0;
+    if (s) simulation_free(s);
+  }
+  diag_print(&said, stderr);
+  std::printf("%s, %s steps\n", right ? "right" : "wrong", steps > 0 ? "some" : "no");
+  if (m.memory) model_close(&m);
+  diag_clear(&said);
+  source_clear(&sources);
+  arena_free(memory);
+  return right && steps > 0 ? 0 : 1;
+}
 END
 export PERILAT_MODELS=$prefix/share/perilat/models
 expected="elastic_central has 2 parameters; 281 particles"
 "$cmake" -S . -B cmake-build -G "$generator" -DCMAKE_MAKE_PROGRAM="$make_program" -DCMAKE_C_COMPILER="$compiler" \
-  -DCMAKE_PREFIX_PATH="$prefix" >cmake.log 2>&1 || { cat cmake.log; fail "configuring with the CMake package"; }
+  -DCMAKE_PREFIX_PATH="$prefix" ${cpp:+-DCPP=CXX} >cmake.log 2>&1 || { cat cmake.log; fail "configuring with the CMake package"; }
 "$cmake" --build cmake-build >cmake.log 2>&1 || { cat cmake.log; fail "building with the CMake package"; }
 [ "$(./cmake-build/use elastic_central run.h5)" = "$expected" ] || fail "the program built by CMake"
 
@@ -104,10 +180,17 @@ export PKG_CONFIG_PATH=$pc
 [ -f "$(pkg-config --variable=modelsdir perilat | sed 's/\\//g')/elastic_central.plm" ] || fail "modelsdir of pkg-config"
 eval "\"$compiler\" -std=gnu11 use.c -o use $(pkg-config --cflags --libs perilat)"
 [ "$(./use elastic_central run.h5)" = "$expected" ] || fail "the program built by pkg-config"
+if [ -n "$cpp" ]; then
+  ./cmake-build/host deck.nml 2>&1 | grep -q 'right, some steps' || fail "the C++ program built by CMake"
+  eval "\"$cpp\" -std=c++17 -Wall -Wextra -Werror host.cpp -o host $(pkg-config --cflags --libs perilat)"
+  ./host deck.nml | grep -q 'right, some steps' || fail "the C++ program built by pkg-config"
+else
+  echo "no C++ compiler: the headers were not tried in C++"
+fi
 
 # Manual and completion.
 for page in perilat perilat-run perilat-new; do
-  [ -s "$prefix/share/man/man1/$page.1" ] || fail "no man page $page"
+  gzip -t "$prefix/share/man/man1/$page.1.gz" || fail "no man page $page"
 done
 bash -n "$prefix/share/bash-completion/completions/perilat"
 [ -s "$prefix/share/zsh/site-functions/_perilat" ] && [ -s "$prefix/share/fish/vendor_completions.d/perilat.fish" ]

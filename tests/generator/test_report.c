@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/hdf5_tools.h"
 #include "runtime/plot_frame.h"
 #include "tests/generator/command_tools.h"
 
@@ -48,6 +49,90 @@ static void dynamic_runs_have_times(void **state) {
   assert_non_null(strstr(w->said, "time       1 ms in "));
   assert_non_null(strstr(w->said, " N at t = "));
   assert_null(strstr(w->said, "increment"));
+}
+
+/* --- what results tell of their runs ---------------------------------------------------------- */
+
+static void expect_ending(workplace *w, const char *name, const char *ended, int status) {
+  char error[1000];
+  result_file *f = result_read(in_workplace(w, name), error, sizeof error);
+  if (!f) fail_msg("%s", error);
+  char *words = result_read_words(f, "ended");
+  if (strncmp(words, ended, strlen(ended)) != 0 || !*ended) fail_msg("said: %s", words);
+  assert_true(result_read_number(f, "status") == status);
+  assert_true(result_read_number(f, "wall_seconds") > 0);
+  assert_true(result_read_number(f, "threads") == 1);
+  assert_true(isnan(result_read_number(f, "nothing")) && isnan(result_read_number(f, "ended")));
+  free(words);
+  result_read_close(f);
+  char line[400];
+  snprintf(line, sizeof line, "info %s", name);
+  expect(w, line, 0, ended);
+}
+
+static void results_tell_how_the_run_ended(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --threads 1", 0, "written");
+  expect_ending(w, "beam.h5", "end of the run", 0);
+  expect(w, "info beam.h5", 0, " -O3 ");
+  expect(w, "run beam.nml --threads 1 --interpret", 0, "written");
+  expect(w, "info beam.h5", 0, "Compiler of the law: none: the law was interpreted\n");
+  assert_int_equal(
+      shell(w, "(cat beam.nml; echo \"&stop monitor = 'load' above = 1000 /\") > s.nml"), 0);
+  expect(w, "run s.nml --threads 1", 0, "ended early");
+  expect_ending(w, "beam.h5", "stopped by &stop at t = 0.", 0);
+  expect(w, "info beam.h5", 0, " ms: load was above 1000 (status 0); ");
+  expect(w, "run beam.nml --threads 1 --set \"drive.velocity=-1e5 m/s\" --set drive.rise=", 2,
+         "error: ");
+  expect_ending(w, "beam.h5", "failed at t = ", 2);
+  write_long_deck(w);
+  const pid_t run = start_long_run(w, "part.h5", NULL);
+  kill(run, SIGINT);
+  assert_int_equal(end_of(run), 128 + SIGINT);
+  expect_ending(w, "part.h5", "interrupted at t = ", 128 + SIGINT);
+}
+
+static void expect_words(const workplace *w, const char *set_name, const char *words) {
+  char found[300];
+  h5_quiet();
+  const hid_t file = H5Fopen(in_workplace(w, "beam.h5"), H5F_ACC_RDONLY, H5P_DEFAULT);
+  const hid_t set = H5Dopen2(file, set_name, H5P_DEFAULT);
+  assert_true(set >= 0 && h5_read_attribute_text(set, "long_name", found, sizeof found));
+  assert_string_equal(found, words);
+  H5Dclose(set);
+  H5Fclose(file);
+}
+
+static void quantities_are_told_in_words(void **state) {
+  static const char monitors[] =
+      "&monitor  name = 'ends'  kind = 'reaction'  between = 'left', 'right'  component = 'y'  /\n"
+      "&monitor  name = 'turn'  kind = 'displacement'  region = 'right'  component = 'rotation'  "
+      "zero_at = '0.5 ms'  /\n"
+      "&monitor  name = 'speed'  kind = 'velocity'  region = 'right'  component = 'x'  average = "
+      "'0.1 ms'  /\n"
+      "&monitor  name = 'span'  kind = 'opening'  between = 'left', 'right'  component = 'x'  /\n"
+      "&monitor  name = 'hurt'  kind = 'damaged'  above = 0.25  /\n"
+      "&monitor  name = 'gone'  kind = 'broken'  /\n";
+  workplace *w = *state;
+  char *deck = calloc(sizeof small_deck + sizeof monitors, 1);
+  strcat(strcat(deck, small_deck), monitors);
+  write_text(w, "beam.nml", deck);
+  free(deck);
+  expect(w, "run beam.nml", 0, "written");
+  expect_words(w, "/history/load", "reaction along y of `loader`, times -1");
+  expect_words(w, "/history/ends", "half the reaction along y of `right` less that of `left`");
+  expect_words(w, "/history/turn",
+               "mean displacement in rotation of `right`, less its value at 0.0005 s");
+  expect_words(w, "/history/speed", "mean velocity along x of `right`, mean over 0.0001 s");
+  expect_words(w, "/history/span", "mean displacement along x of `right` less that of `left`");
+  expect_words(w, "/history/hurt", "bonds with more damage than 0.25");
+  expect_words(w, "/history/gone", "bonds with a damage of at least 1");
+  expect_words(w, "/history/energy/external", "work of loads and drives");
+  expect_words(w, "/history/time", "time of the sample");
+  expect_words(w, "/frames/damage", "mean damage of the bonds that the particle began with");
+  expect_words(w, "/frames/concrete/omega",
+               "Loss of stiffness that puts the force on the softening curve (eq 3.15). A bond "
+               "with omega = 1 is gone in tension and in compression.");
 }
 
 static void read_map(const workplace *w, const char *name, const plot_map_options *o,
@@ -142,6 +227,7 @@ int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
       ONE(quasi_static_runs_count_increments), ONE(dynamic_runs_have_times),
+      ONE(results_tell_how_the_run_ended),     ONE(quantities_are_told_in_words),
       ONE(maps_know_their_increment),          ONE(maps_of_space_have_axes),
       ONE(what_sites_make_of_shapes),
   };

@@ -497,8 +497,11 @@ static void an_unwritable_cache_gives_a_temporary_one(void **state) {
   char *kept = kept_setting("TMPDIR");
   setenv("TMPDIR", p->folder, 1);
   setenv("PERILAT_CACHE", "/dev/null/cache", 1);
-  const char *cache = toolchain_cache();
+  const char *cache = toolchain_cache(), *trouble = toolchain_cache_trouble();
   struct stat about;
+  assert_non_null(
+      strstr(trouble, "the cache `/dev/null/cache` cannot be written to (Not a directory)"));
+  assert_non_null(strstr(trouble, cache));
   assert_memory_equal(cache, p->folder, strlen(p->folder));
   assert_int_equal(stat(cache, &about), 0);
   assert_int_equal(about.st_mode & 0777, 0700);
@@ -525,6 +528,7 @@ static void a_temporary_cache_that_others_can_write_is_not_used(void **state) {
 }
 
 static void assert_cache_is(const char *folder, const char *below) {
+  assert_null(toolchain_cache_trouble());
   const char *cache = toolchain_cache();
   assert_memory_equal(cache, folder, strlen(folder));
   assert_string_equal(cache + strlen(folder), below);

@@ -9,6 +9,7 @@
 #include <cmocka.h>
 
 #include "runtime/checkpoint.h"
+#include "runtime/sweep.h"
 #include "tests/runtime/small_run.h"
 
 static const char path[] = "test_checkpoint.state";

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
@@ -25,7 +26,7 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
       "&region name = 'mid' shape = 'point' at = 0.05, 0.03 within = 0.006 /\n"
       "&support region = 'left' fix = 'xy' /\n"
       "&drive region = 'right' component = 'x' velocity = 0.2 rise = 1e-5 start = 6e-5 /\n"
-      "&force region = 'mid' component = 'y' force = 500 history = 'ramp' rise = 1e-4 /\n"
+      "&force region = 'mid' component = 'y' total = 500 history = 'ramp' rise = 1e-4 /\n"
       "&damping rate = 3000 from = 2e-6 until = 1.1e-4 /\n"
       "&gravity acceleration = 500, -2000 rise = 1.5e-4 /\n"
       "&initial_velocity region = 'mid' component = 'y' value = 0.02 /\n"

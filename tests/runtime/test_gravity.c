@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/sweep.h"
 #include "tests/runtime/small_run.h"
 
 #define SPACING   0.01
@@ -108,7 +109,7 @@ static double imbalance(double safety) {
            "&support region = 'foot' fix = 'xy' /\n"
            "&gravity acceleration = 2000, -9000 start = 5e-5 rise = 1e-4 /\n"
            "&drive region = 'side' component = 'x' velocity = 0.05 start = 1e-4 rise = 1e-5 /\n"
-           "&force region = 'side' component = 'y' force = 100 rise = 1e-5 /\n"
+           "&force region = 'side' component = 'y' total = 100 rise = 1e-5 /\n"
            "&damping rate = 3000 until = 2e-4 /\n&output frames = 0 sample = 1e-6 /\n",
            safety);
   small_run r;

@@ -14,6 +14,7 @@
 #include "runtime/scattered.h"
 #include "runtime/shape_matrix.h"
 #include "runtime/stability.h"
+#include "runtime/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/scattered_points.h"
 

@@ -349,7 +349,7 @@ static const char *put_result(const double reference[2 * PARTICLES]) {
   assert_non_null(r);
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, values, error, sizeof error));
-  assert_true(result_finish(r, 1, 1, time, 1, NULL, 0, error, sizeof error));
+  assert_true(small_finish(r, time, 1, NULL, 0, error, sizeof error));
   result_discard(r);
   result_close(r);
   return path;

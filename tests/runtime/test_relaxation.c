@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
@@ -160,7 +161,7 @@ static void forces_and_gravity_grow_together(void **state) {
              "&region name = 'top' shape = 'rectangle' corner = 0, 0.185 size = 0.1, 0.015 /\n"
              "&region name = 'foot' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.005 /\n"
              "&support region = 'top' fix = 'xy' /\n"
-             "&force region = 'foot' component = 'y' force = -40 /\n"
+             "&force region = 'foot' component = 'y' total = -40 /\n"
              "&gravity acceleration = 0, -10 /\n"
              "&monitor name = 'top' kind = 'reaction' region = 'top' component = 'y' /\n"
              "&monitor name = 'foot' kind = 'displacement' region = 'foot' component = 'y' /\n");

@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/sweep.h"
 #include "tests/runtime/small_run.h"
 
 #define SPACING   0.01
@@ -120,7 +121,7 @@ static double pushed_damped(double t, double start) {
                          (1 - exp(-d * since) * (cos(w * since) + d / w * sin(w * since)));
 }
 
-#define PUSH FIXED "&force region = 'right' component = 'x' force = 100 start = %.17g /\n"
+#define PUSH FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g /\n"
 
 /* The same by two forces on one particle. */
 #define TWO_PUSH                                                                                   \
@@ -154,7 +155,7 @@ static void a_table_may_begin_with_a_jump(void **state) {
   (void)state;
   char groups[512];
   snprintf(groups, sizeof groups,
-           FIXED "&force region = 'right' component = 'x' force = 100 start = %%.17g times = 0, "
+           FIXED "&force region = 'right' component = 'x' total = 100 start = %%.17g times = 0, "
                  "%.17g values = 1, 0.5 /\n",
            end_time());
   for (int k = 0; k < 3; k++)
@@ -385,7 +386,7 @@ static void rounding_does_not_make_an_impulse_a_reaction(void **state) {
 static void ramps_act_as_they_are(void **state) {
   (void)state;
   const motion m = {
-      FIXED "&force region = 'right' component = 'x' force = 100 start = %.17g rise = 1e-5 /\n",
+      FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g rise = 1e-5 /\n",
       40.3, "u", NULL, 1};
   small_run r = open_run(&m, STEPS);
   const sweep *w = simulation_state(r.simulation);

@@ -102,7 +102,7 @@ static void a_chain_stretches_by_its_closed_form(void **state) {
           "right", "0.05",
           "0") "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
                "&support region = 'left' fix = 'x' /\n&support region = 'all' fix = 'y' /\n"
-               "&force region = 'right' component = 'x' force = '1 kN' history = 'cosine' rise = "
+               "&force region = 'right' component = 'x' total = '1 kN' history = 'cosine' rise = "
                "'1 ms' /\n"
                "&damping rate = '40000 1/s' /\n"
                "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' /\n"
@@ -135,7 +135,7 @@ static void a_cantilever_bends_by_its_closed_form(void **state) {
       "&material lattice = 'c' model = 'm' /\n" POINT("left", "0", "0") POINT(
           "right", "0.04",
           "0") "&support region = 'left' fix = 'x', 'y', 'rotation' /\n"
-               "&force region = 'right' component = 'y' force = %g history = 'cosine' rise = '10 "
+               "&force region = 'right' component = 'y' total = %g history = 'cosine' rise = '10 "
                "ms' /\n"
                "&damping rate = '8000 1/s' /\n"
                "&monitor name = 'shear' kind = 'reaction' region = 'left' component = 'y' /\n"
@@ -286,8 +286,8 @@ static void reactions_balance_the_momentum(void **state) {
       "&region name = 'middle' shape = 'disc' centre = 0.05, 0.03 radius = 0.012 /\n"
       "&support region = 'left' fix = 'xy' /\n"
       "&drive region = 'right' component = 'x' velocity = 0.1 rise = 1e-5 /\n"
-      "&force region = 'middle' component = 'y' force = -300 /\n"
-      "&force region = 'right' component = 'x' force = 200 /\n"
+      "&force region = 'middle' component = 'y' total = -300 /\n"
+      "&force region = 'right' component = 'x' total = 200 /\n"
       "&damping rate = 1000 until = 5e-5 /\n"
       "&output frames = 0 /\n";
   small_run r;
@@ -344,9 +344,9 @@ static void loads_keep_their_bits_on_many_threads(void **state) {
       "&region name = 'middle' shape = 'disc' centre = 0, 0 radius = 0.03 /\n"
       "&support region = 'left' fix = 'x', 'rotation' /\n"
       "&drive region = 'right' component = 'x' velocity = 0.1 start = 1e-5 rise = 1e-5 /\n"
-      "&force region = 'middle' component = 'y' force = -300 history = 'ramp and hold' rise = 1e-4 "
+      "&force region = 'middle' component = 'y' total = -300 history = 'ramp and hold' rise = 1e-4 "
       "/\n"
-      "&force region = 'right' component = 'x' force = 200 /\n"
+      "&force region = 'right' component = 'x' total = 200 /\n"
       "&end_moment region = 'middle' moment = 3 /\n"
       "&gravity acceleration = 0, -9.81 /\n"
       "&damping rate = 1000 until = 5e-5 /\n"

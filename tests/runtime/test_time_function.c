@@ -11,13 +11,18 @@
 #include "runtime/time_function.h"
 
 static const double times[] = {0.1, 0.4, 0.5, 0.9}, values[] = {2, -1, -1, 3};
+static double integrals[4];
 
 static const time_function constant = {.shape = TIME_CONSTANT, .value = 3, .start = 0.25};
 static const time_function ramp = {.shape = TIME_RAMP, .value = 3, .start = 0.25, .rise = 0.5};
 static const time_function hold = {.shape = TIME_RAMP_HOLD, .value = 3, .start = 0.25, .rise = 0.5};
 static const time_function cosine = {.shape = TIME_COSINE, .value = 3, .start = 0.25, .rise = 0.5};
-static const time_function table = {
-    .shape = TIME_TABLE, .start = 0.25, .times = times, .values = values, .count = 4};
+static const time_function table = {.shape = TIME_TABLE,
+                                    .start = 0.25,
+                                    .times = times,
+                                    .values = values,
+                                    .integrals = integrals,
+                                    .count = 4};
 static const time_function *const all[] = {&constant, &ramp, &hold, &cosine, &table};
 
 static void near(double got, double expected) {
@@ -97,6 +102,7 @@ static void rises_meet_their_plateau(void **state) {
 }
 
 int main(void) {
+  time_table_integrals(times, values, 4, integrals);
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(values_at_marked_points), cmocka_unit_test(integrals_are_exact),
       cmocka_unit_test(slopes_are_those_of_the_values), cmocka_unit_test(rises_meet_their_plateau)};

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "generator/model.h"
+#include "generator/passes.h"
 #include "generator/run.h"
 #include "runtime/pairwise.h"
 #include "runtime/simulation.h"

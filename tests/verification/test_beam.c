@@ -72,6 +72,30 @@ static void the_peak_is_that_of_the_reference(void **state) {
   deck_case_close(&c);
 }
 
+/* Displacement of the loaded particle: what its drive has gone since the first phase, 20 mm/s
+   reached evenly in 0.2 ms. */
+static void the_load_point_moves_as_it_is_driven(void **state) {
+  (void)state;
+  deck_case c;
+  const char *const rise = "simulation.end_time=3 ms";
+  open_beam(&c, &rise, 1);
+  assert_int_equal(deck_case_go(&c), STEP_END);
+  const double *time;
+  const long samples = simulation_history(c.simulation, &time);
+  const double *lpd = deck_case_series(&c, "lpd");
+  double before = 0; /* lifted by the end moments */
+  for (long k = 0; k < samples; k++) {
+    const double since = time[k] - 2e-3, rising = fmin(since, 0.2e-3);
+    if (since < 0) before = lpd[k];
+    if (since < 0) continue;
+    const double gone = 20e-3 * (rising * rising / 0.4e-3 + since - rising);
+    assert_true(fabs(lpd[k] - gone) <
+                2e-12); /* zero is at the nearest step: half of 0.3 us makes 1.2e-12 */
+  }
+  assert_true(time[samples - 1] > 2.99e-3 && before < -1e-7);
+  deck_case_close(&c);
+}
+
 /* --- mirror images ---------------------------------------------------------------------------- */
 
 /* Largest difference between particles mirrored about midspan, over the largest displacement. */
@@ -209,6 +233,7 @@ static void the_ledger_closes_to_first_order(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_peak_is_that_of_the_reference),
+      cmocka_unit_test(the_load_point_moves_as_it_is_driven),
       cmocka_unit_test(left_is_the_image_of_right),
       cmocka_unit_test(the_description_does_not_matter),
       cmocka_unit_test(the_ledger_closes_to_first_order),

@@ -1,0 +1,91 @@
+"""h5py reads what a result tells of itself: how it came about, what each quantity is, times as dimension scales; and the group
+/VTKHDF holds, by the rules of its specification, the frames that `perilat export` tells. Argument: the folder with the results."""
+import sys
+
+import h5py
+
+from exported import FRAMES, SPECIMENS, Frame
+
+VTK_LINE = 3
+WORDS = {  # the law's, where it has them
+    "plane": "Loss of stiffness that puts the force on the softening curve (eq 3.15). "
+             "A bond with omega = 1 is gone in tension and in compression.",
+    "space": "damage of the law",
+    "irregular": "1: broken",
+}
+
+
+def check_ending(file, specimen):
+    told = file.attrs
+    assert told["ended"] == "end of the run" and told["status"] == 0, specimen
+    assert told["threads"] >= 1 and told["wall_seconds"] > 0 and told["steps"] > 0, specimen
+    assert told["compiler"] and "-O3" in told["flags"], specimen
+
+
+def data_sets(group):
+    found = []
+    group.visititems(lambda name, item: found.append(item) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def check_words(file, specimen):
+    for group in ("history", "frames"):
+        times = file[group]["time"]
+        assert times.attrs["CLASS"] == b"DIMENSION_SCALE", (specimen, group)
+        others = [item for item in data_sets(file[group]) if item != times]
+        assert others, (specimen, group)
+        for item in others + [times]:
+            words = item.attrs["long_name"]
+            assert isinstance(words, str) and words and item.attrs["units"], (specimen, item.name)
+        for item in others:
+            assert item.dims[0][0] == times and item.shape[0] == times.shape[0], (specimen, item.name)
+    (bonds,) = (item for item in file["frames"].values() if isinstance(item, h5py.Group))
+    assert bonds["omega"].attrs["long_name"] == WORDS[specimen], specimen
+
+
+def grid_of_step(vtk, step):
+    """One step as VTK reads it: offsets of the step, then parts. Here there is one part, and names of its arrays."""
+    steps = vtk["Steps"]
+    assert steps["NumberOfParts"][step] == 1
+    part = steps["PartOffsets"][step]
+    points, cells, ids = (int(vtk["NumberOf" + what][part]) for what in ("Points", "Cells", "ConnectivityIds"))
+    point, cell, first = (int(steps[what + "Offsets"][step].item()) for what in ("Point", "Cell", "ConnectivityId"))
+    offsets = vtk["Offsets"][part + cell:part + cell + cells + 1].tolist()
+    connectivity = vtk["Connectivity"][first:first + ids].tolist()
+    assert len(offsets) == cells + 1 and offsets[-1] == ids == len(connectivity)
+    assert vtk["Types"].dtype == "u1" and set(vtk["Types"][cell:cell + cells]) == {VTK_LINE}
+    arrays = {}
+    for data, count in (("PointData", points), ("CellData", cells)):
+        for name, values in vtk[data].items():
+            at = int(steps[data + "Offsets"][name][step])
+            arrays[data, name] = values[at:at + count].tolist()
+            assert len(arrays[data, name]) == count, name
+    places = vtk["Points"][point:point + points].tolist()
+    return places, [connectivity[a:b] for a, b in zip(offsets, offsets[1:])], arrays
+
+
+def tuples(rows):
+    return list(map(tuple, rows))
+
+
+def check_vtkhdf(file, specimen, frames):
+    vtk = file["VTKHDF"]
+    version, kind = vtk.attrs["Version"], vtk.attrs["Type"]
+    assert list(version) == [2, 0] and kind == b"UnstructuredGrid", (version, kind)
+    assert vtk["Steps"].attrs["NSteps"] == FRAMES and (vtk["Steps/Values"][:] == file["frames/time"][:]).all()
+    for step, frame in enumerate(frames):
+        places, cells, arrays = grid_of_step(vtk, step)
+        assert tuples(places) == frame.places and tuples(cells) == frame.ends, (specimen, step)
+        assert tuples(arrays["PointData", "displacement"]) == frame.displacement, (specimen, step)
+        assert arrays["PointData", "damage"] == frame.damage, (specimen, step)
+        assert arrays["CellData", "omega"] == frame.omega, (specimen, step)
+    shown = data_sets(vtk["PointData"]) + data_sets(vtk["CellData"]) + data_sets(file["xdmf"]) + [vtk["Points"]]
+    assert all(item.is_virtual for item in shown), "no copies"
+
+
+for specimen in SPECIMENS:
+    with h5py.File(f"{sys.argv[1]}/{specimen}.h5", "r") as opened:
+        check_ending(opened, specimen)
+        check_words(opened, specimen)
+        check_vtkhdf(opened, specimen, [Frame(sys.argv[1], specimen, frame) for frame in range(FRAMES)])
+    print(f"{specimen}: h5py {h5py.__version__}, HDF5 {h5py.version.hdf5_version}")

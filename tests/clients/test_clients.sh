@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Results as programs of others see them: three small specimens are torn, and a script looks at what has been written. Skipped
+# where that program is not installed. Arguments: program, script, Debian packages that it needs, Python module to ask for.
+set -euo pipefail
+program=$1 script=$2 packages=$3 module=$4
+here=$(cd "$(dirname "$0")" && pwd)
+
+python=
+for candidate in python3 /usr/bin/python3; do
+  if command -v "$candidate" >/dev/null && "$candidate" -c "import $module" 2>/dev/null; then
+    python=$candidate
+    break
+  fi
+done
+[ -n "$python" ] || { echo "skipped: $packages not installed"; exit 77; }
+screen=()
+if [ "$module" = paraview ] && [ -z "${DISPLAY:-}" ]; then
+  command -v xvfb-run >/dev/null || { echo "skipped: $packages not installed"; exit 77; }
+  screen=(xvfb-run -a -s "-screen 0 1024x768x24 -noreset") # or it starts anew when a first window is closed
+fi
+
+export PYTHONDONTWRITEBYTECODE=1
+work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_clients.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+for deck in plane space irregular; do
+  "$program" run "$here/$deck.nml" >"$deck.said" 2>&1 || { cat "$deck.said"; exit 1; }
+  for frame in 0 1 2 3; do
+    "$program" export "$deck.h5" --frame $frame -o "${deck}_particles_$frame.csv" >/dev/null
+    "$program" export "$deck.h5" --frame $frame --bonds -o "${deck}_bonds_$frame.csv" >/dev/null
+  done
+done
+"${screen[@]}" "$python" "$here/$script" "$work"

@@ -1,0 +1,27 @@
+/* The angle of the crack in Kalthoff and Winkler's plate has the figures that examples/kalthoff and
+   models/README.md print: the lattice turns it. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "tests/verification/crack_path.h"
+
+static void turned(const char *name, const char *rotation, double expected) {
+  check_angle(name, &rotation, 1, expected);
+}
+
+static void the_path_depends_on_the_lattice(void **state) {
+  (void)state;
+  turned("examples/kalthoff/square.nml", "lattice.rotation=0", 60.9);
+  turned("examples/kalthoff/square.nml", "lattice.rotation=45", 65.3);
+  turned("examples/kalthoff/hexagon.nml", "lattice.rotation=0", 63.9);
+  turned("examples/kalthoff/hexagon.nml", "lattice.rotation=30", 69.8);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(the_path_depends_on_the_lattice)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
