@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 # Fortran's and C++'s own compilers read decks and headers; packages are made and judged; ParaView and h5py open results.
-export PERILAT_PACKAGES="gfortran g++ dpkg-dev lintian python3-paraview xvfb xauth python3-h5py"
+export PERILAT_PACKAGES="gfortran g++ dpkg-dev lintian patch python3-paraview xvfb xauth python3-h5py"
 
 bash examples/first_light.sh
 

@@ -202,6 +202,7 @@ static void nearest_names(void **state) {
   is_nearest("S", "s");
   is_nearest("alhpa2", "alpha2"); /* letters swapped */
   is_nearest("omgea", "omega");
+  is_nearest("AE", "EA"); /* one slip, not two: short names bear no more */
   is_nearest("theta", "theta_i");
   is_nearest("streth_rate", "stretch_rate");
   is_nearest("q", NULL);

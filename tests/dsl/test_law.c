@@ -350,7 +350,9 @@ static void state_law_is_understood(void **state) {
       "strain eps = fit(stretch)\nyield f = J2(sigma)/(30 [MPa])**2 - 1\n"
       "flow S_p[j] by 0.1*deviator(F[j])/norm(deviator(F)) when f >= 0\n"
       "worst = max(stretch[j])\nw = min(1, abs(principal(eps, 1)) + trace(eps)*worst)\n"
-      "output mises = von_mises(sigma)\noutput work = sigma : eps\noutput u = mean(uniform[j], "
+      "output mises = von_mises(sigma)\noutput work = sigma : eps\noutput same = eps : sigma\n"
+      "drawn[j] = | 1 when stretch[j] > 0 | 0 otherwise\ncracked = | 1 when w > 0 | 0 otherwise\n"
+      "output part = cracked*mean(drawn[j])\noutput u = mean(uniform[j], "
       "weight = d[j])"));
   const law *l = c.law;
   is_of(l, "k", SYMBOL_CONSTANT, "N", SHAPE_SCALAR, ON_BOND);
@@ -364,6 +366,9 @@ static void state_law_is_understood(void **state) {
   is_of(l, "worst", SYMBOL_DEFINED, "1", SHAPE_SCALAR, ON_PARTICLE);
   is_of(l, "mises", SYMBOL_OUTPUT, "Pa", SHAPE_SCALAR, ON_PARTICLE);
   is_of(l, "work", SYMBOL_OUTPUT, "Pa", SHAPE_SCALAR, ON_PARTICLE);
+  is_of(l, "same", SYMBOL_OUTPUT, "Pa", SHAPE_SCALAR, ON_PARTICLE);
+  is_of(l, "drawn", SYMBOL_DEFINED, "1", SHAPE_SCALAR, ON_BOND); /* where its guard is */
+  is_of(l, "cracked", SYMBOL_DEFINED, "1", SHAPE_SCALAR, ON_PARTICLE);
   assert_true(symbol_named(l, "w")->old_is_read);
   release(&c);
 }

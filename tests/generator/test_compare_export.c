@@ -216,6 +216,7 @@ static void frame_as_table(void **state) {
   expect(w, "export a.h5 --frame 1", 0,
          "particle,x [m],y [m],displacement_x [m],displacement_y [m]\n"
          "0,0,0,1,1.01\n1,1,0,1.1,1.11\n2,0.5,0.75,1.2,1.21\n");
+  expect(w, "export a.h5 --frame -2", 0, "0,0,0,1,1.01\n"); /* the last but one */
   expect(w, "export a.h5 --frame -1 --bonds", 0,
          "bond,i,j,x_i [m],y_i [m],x_j [m],y_j [m],concrete/omega [1]\n"
          "0,0,1,0,0,1,0,0.5\n1,1,2,1,0,0.5,0.75,0.625\n");

@@ -86,6 +86,17 @@ static void open_ends_are_kept(void **state) {
   assert_false(range_holds(range_between(0, 1, true, false), 0));
   assert_true(range_holds(range_between(0, 1, true, false), 1));
   assert_false(range_holds(positive, INFINITY));
+  range below_one = range_between(0, 1, false, true), to_three = range_between(2, 3, false, false);
+  assert_false(range_holds(range_mul(below_one, to_three), 3));
+  assert_true(range_holds(range_mul(to_three, to_three), 9));
+}
+
+/* Of a base that may be below 1 the largest exponent gives the least power. */
+static void powers_of_any_base_are_held(void **state) {
+  (void)state;
+  const range base = range_between(0.5, INFINITY, false, true),
+              exponent = range_between(1, 2, false, false);
+  assert_true(range_holds(range_apply(IR_POW, base, exponent), 0.25));
 }
 
 /* --- laws -------------------------------------------------------------------------------- */
@@ -237,6 +248,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(ranges_hold_all_values),
       cmocka_unit_test(open_ends_are_kept),
+      cmocka_unit_test(powers_of_any_base_are_held),
       cmocka_unit_test(guards_keep_values_in_range),
       cmocka_unit_test(bounds_keep_values_in_range),
       cmocka_unit_test(what_may_be_undefined_is_shown),

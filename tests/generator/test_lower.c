@@ -280,8 +280,13 @@ typedef struct observed_bond {
   double stored, rate_lost, state_lost, field[MOST_FIELDS];
 } observed_bond;
 
-/* One bond along its chord, stretched; no rotations. The stored energy is that after the step. */
-static observed_bond observe(const tested_law *t, double stretch, double rate, double field) {
+typedef struct end_rotation {
+  double angle, rate; /* rad, rad/s */
+} end_rotation;
+
+/* One bond along its chord, stretched, its ends turned. The stored energy is that after the step. */
+static observed_bond observe_turned(const tested_law *t, double stretch, double rate, double field,
+                                    end_rotation i, end_rotation j) {
   pl_bond_class bond = tested_bond();
   double zero[8] = {0}, u[2][8] = {{0}}, v[2][8] = {{0}}, fields[MOST_FIELDS][8], planes[4][8];
   double observed[8][8], lost[2][8] = {{0}};
@@ -301,10 +306,10 @@ static observed_bond observe(const tested_law *t, double stretch, double rate, d
   }
   pl_strip s = {.count = 1,
                 .flags = flags,
-                .displacement_i = {zero, zero, zero},
-                .velocity_i = {zero, zero, zero},
-                .displacement_j = {u[0], u[1], zero},
-                .velocity_j = {v[0], v[1], zero},
+                .displacement_i = {zero, zero, &i.angle},
+                .velocity_i = {zero, zero, &i.rate},
+                .displacement_j = {u[0], u[1], &j.angle},
+                .velocity_j = {v[0], v[1], &j.rate},
                 .field = field_at,
                 .force = plane_at,
                 .dissipated_state = lost[0],
@@ -317,6 +322,10 @@ static observed_bond observe(const tested_law *t, double stretch, double rate, d
   for (int k = 0; k < MOST_FIELDS; k++)
     o.field[k] = fields[k][0];
   return o;
+}
+
+static observed_bond observe(const tested_law *t, double stretch, double rate, double field) {
+  return observe_turned(t, stretch, rate, field, (end_rotation){0, 0}, (end_rotation){0, 0});
 }
 
 static void assert_near(double value, double expected, double tolerance) {
@@ -369,6 +378,34 @@ static void losses_are_what_they_should_be(void **state) {
   close_law(t);
 }
 
+/* Of a spring with a stress-free stretch s N^2/(2 k), of linear moments half of moment times rotation. */
+static void bending_is_stored_beside_an_affine_force(void **state) {
+  (void)state;
+  tested_law *t = must_open(MICROPOLAR("  state p = 0\n  p = previous(p)\n"
+                                       "  force N = k*(stretch - p)\n"
+                                       "  moment M_i = 0.5*k*s*(2*theta_i + theta_j)\n"
+                                       "  moment M_j = 0.5*k*s*(2*theta_j + theta_i)\n"));
+  const double s = tested_bond().s, a = 0.02, b = -0.005;
+  const observed_bond o =
+      observe_turned(t, 0.013, 0, 0.004, (end_rotation){a, 0}, (end_rotation){b, 0});
+  assert_near(o.stored, 1000 * s * (0.009 * 0.009 / 2 + 0.5 * (a * a + a * b + b * b)), 1e-13);
+  close_law(t);
+}
+
+/* Each moment works with the rate of its own end. */
+static void viscous_moments_take_the_rate_of_their_end(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(MICROPOLAR("  force N = k*stretch\n"
+                           "  moment M_i = k*s*theta_i*(1 + stretch_rate/(100 [1/s]))\n"
+                           "  moment M_j = k*s*theta_j*(1 + stretch_rate/(100 [1/s]))\n"));
+  const double s = tested_bond().s, a = 0.02, b = -0.005, rate = 7;
+  const observed_bond o =
+      observe_turned(t, 0.013, rate, 0, (end_rotation){a, 3}, (end_rotation){b, 11});
+  assert_near(o.rate_lost, 1000 * s * rate / 100 * (3 * a + 11 * b) * 1e-6, 1e-18);
+  close_law(t);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(the_first_true_case_wins),
@@ -389,6 +426,8 @@ int main(void) {
       cmocka_unit_test(stored_energy_of_each_kind),
       cmocka_unit_test(a_broken_affine_bond_holds_nothing),
       cmocka_unit_test(losses_are_what_they_should_be),
+      cmocka_unit_test(bending_is_stored_beside_an_affine_force),
+      cmocka_unit_test(viscous_moments_take_the_rate_of_their_end),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

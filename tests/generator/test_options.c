@@ -10,11 +10,21 @@
 #include <cmocka.h>
 
 #include <ctype.h>
+#include <errno.h>
 #include <glob.h>
+#include <sys/syscall.h>
 
 #include "generator/commands.h"
 #include "generator/manual.h"
 #include "tests/generator/command_tools.h"
+
+static bool disk_fails;
+
+int fsync(int file) {
+  if (!disk_fails) return (int)syscall(SYS_fsync, file);
+  errno = EIO;
+  return -1;
+}
 
 static bool is_solver(const option_entry *o) {
   return strcmp(o->command, "solver") == 0;
@@ -124,6 +134,26 @@ static void format_leaves_laws_with_errors(void **state) {
     assert_string_equal(left, laws[k]);
     free(left);
   }
+}
+
+static int format_in_place(const char *path) {
+  char option[] = "-i", file[400];
+  snprintf(file, sizeof file, "%s", path);
+  return command_format(2, (char *[]){option, file});
+}
+
+static void format_keeps_what_the_disk_does_not_take(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "sed 's/  */   /g' $PERILAT_MODELS/elastic_central.plm > x.plm; "
+                            "cp x.plm before.plm"),
+                   0);
+  disk_fails = true;
+  const int status = format_in_place(in_workplace(w, "x.plm"));
+  disk_fails = false;
+  assert_int_equal(status, 1);
+  assert_int_equal(shell(w, "cmp x.plm before.plm && test $(ls x.plm* | wc -l) = 1"), 0);
+  assert_int_equal(format_in_place(in_workplace(w, "x.plm")), 0);
+  assert_int_equal(shell(w, "$P format --check x.plm"), 0);
 }
 
 /* --- completion ------------------------------------------------------------------------------- */
@@ -279,6 +309,7 @@ int main(void) {
       T(help_shows_every_option),
       T(help_on_nothing_lists_the_topics),
       T(format_leaves_laws_with_errors),
+      T(format_keeps_what_the_disk_does_not_take),
       T(bash_completes),
       T(other_shells_read_theirs),
       T(man_pages_are_whole),

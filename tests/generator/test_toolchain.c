@@ -1,7 +1,6 @@
 /* The way from C text to a loaded kernel: cache, corruption, races, missing compilers. Every test
  * has a cache of its own. */
-#define _XOPEN_SOURCE 700 /* nftw */
-#define _DEFAULT_SOURCE
+#define _GNU_SOURCE /* nftw, RTLD_NEXT */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -12,6 +11,7 @@
 
 #include <cmocka.h>
 
+#include <dlfcn.h>
 #include <fcntl.h>
 #include <ftw.h>
 #include <sys/stat.h>
@@ -46,6 +46,23 @@ static char *keyed_text(double flops, char **key) {
   *key = toolchain_key(unkeyed);
   free(unkeyed);
   return kernel_text(*key, PL_KERNEL_ABI, flops);
+}
+
+/* --- another processor ------------------------------------------------------------------------- */
+
+static const char *processor_file = "/proc/cpuinfo";
+
+FILE *fopen(const char *path, const char *mode) {
+  FILE *(*of_library)(const char *, const char *);
+  *(void **)&of_library = dlsym(RTLD_NEXT, "fopen");
+  return of_library(strcmp(path, "/proc/cpuinfo") == 0 ? processor_file : path, mode);
+}
+
+static void put_processor(const char *path, const char *model, const char *flags) {
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fprintf(out, "model name\t: %s\nflags\t\t: fpu sse2 %s\n\n", model, flags);
+  fclose(out);
 }
 
 /* --- fixtures --------------------------------------------------------------------------------- */
@@ -452,6 +469,27 @@ static void the_key_holds_text_compiler_and_flags(void **state) {
   free(options);
 }
 
+/* A folder that two machines share: kernels for the processor at hand are those of one model and its instructions. */
+static void the_key_holds_the_processor(void **state) {
+  place_of_test *p = *state;
+  char path[600], *keys[4];
+  static const char *const models[] = {"one", "other", "one", "one"}, *const flags[] = {
+                                                                          "avx2", "avx2",
+                                                                          "fma avx2", "avx2"};
+  snprintf(path, sizeof path, "%s/cpuinfo", p->folder);
+  processor_file = path;
+  for (int k = 0; k < 4; k++) {
+    put_processor(path, models[k], flags[k]);
+    keys[k] = toolchain_key("a");
+  }
+  processor_file = "/proc/cpuinfo";
+  assert_string_not_equal(keys[0], keys[1]);
+  assert_string_not_equal(keys[0], keys[2]);
+  assert_string_equal(keys[0], keys[3]);
+  for (int k = 0; k < 4; k++)
+    free(keys[k]);
+}
+
 /* --- the cache -------------------------------------------------------------------------------- */
 
 static void an_unwritable_cache_gives_a_temporary_one(void **state) {
@@ -528,6 +566,7 @@ int main(void) {
       IN_OWN_CACHE(a_compiler_that_fails_is_reported),
       IN_OWN_CACHE(parts_are_compiled_each_and_linked),
       IN_OWN_CACHE(the_key_holds_text_compiler_and_flags),
+      IN_OWN_CACHE(the_key_holds_the_processor),
       IN_OWN_CACHE(an_unwritable_cache_gives_a_temporary_one),
       IN_OWN_CACHE(a_temporary_cache_that_others_can_write_is_not_used),
       IN_OWN_CACHE(the_cache_follows_the_usual_variables),

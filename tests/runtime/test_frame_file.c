@@ -7,10 +7,12 @@
 
 #include <cmocka.h>
 
+#include <errno.h>
 #include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,8 +23,24 @@ enum { VALUES = 5, RECORD = VALUES * sizeof(double), FRAMES = 4 };
 static const char result[] = "frames_of.h5", path[] = "frames_of.h5.frames", other[] = "other.txt";
 static char error[512];
 
+/* What the system may do: give less than was asked for, and say that the disk has not taken it. */
+static size_t most_at_once = SIZE_MAX;
+static bool disk_fails;
+
+ssize_t pread(int file, void *data, size_t bytes, off_t from) {
+  return syscall(SYS_pread64, file, data, bytes < most_at_once ? bytes : most_at_once, from);
+}
+
+int fsync(int file) {
+  if (!disk_fails) return (int)syscall(SYS_fsync, file);
+  errno = EIO;
+  return -1;
+}
+
 static int clean(void **state) {
   (void)state;
+  most_at_once = SIZE_MAX;
+  disk_fails = false;
   unlink(path);
   unlink(other);
   return 0;
@@ -86,6 +104,23 @@ static void frames_are_found_again(void **state) {
   }
 }
 
+static void frames_are_read_in_pieces(void **state) {
+  most_at_once = 7;
+  frames_are_found_again(state);
+}
+
+static void what_the_disk_has_not_taken_is_said(void **state) {
+  (void)state;
+  frame_file *f = open_frames("deck 1", false);
+  assert_true(frame_file_begin(f, error, sizeof error));
+  add(f, 0);
+  assert_true(frame_file_sync(f, error, sizeof error));
+  disk_fails = true;
+  assert_false(frame_file_sync(f, error, sizeof error));
+  assert_string_equal(error, "cannot bring to the disk `frames_of.h5.frames`: Input/output error");
+  frame_file_close(f);
+}
+
 /* Any byte before the end of what the mark tells of; the file then stays as it was. Those behind do
    not matter. */
 static void changed_frames_are_refused(void **state) {
@@ -133,6 +168,22 @@ static void damage_while_a_run_goes_on_is_seen(void **state) {
   assert_false(frame_file_each(f, NULL, NULL, error, sizeof error));
   assert_non_null(strstr(error, "are damaged, or were changed"));
   frame_file_close(f);
+}
+
+/* Though the frame before it was the same. */
+static void a_frame_that_was_cut_off_is_missed(void **state) {
+  (void)state;
+  for (off_t left = 0; left < RECORD; left += 8) {
+    frame_file *f = open_frames("deck 1", false);
+    assert_true(frame_file_begin(f, error, sizeof error));
+    add(f, 1);
+    add(f, 1);
+    struct stat about;
+    assert_int_equal(stat(path, &about), 0);
+    assert_int_equal(truncate(path, about.st_size - RECORD + left), 0);
+    assert_false(frame_file_each(f, NULL, NULL, error, sizeof error));
+    frame_file_close(f);
+  }
 }
 
 static void nothing_is_written_through_links(void **state) {
@@ -187,6 +238,9 @@ static void the_lock_is_that_of_the_name(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test_teardown(frames_are_found_again, clean),
+      cmocka_unit_test_teardown(frames_are_read_in_pieces, clean),
+      cmocka_unit_test_teardown(what_the_disk_has_not_taken_is_said, clean),
+      cmocka_unit_test_teardown(a_frame_that_was_cut_off_is_missed, clean),
       cmocka_unit_test_teardown(changed_frames_are_refused, clean),
       cmocka_unit_test_teardown(frames_of_other_runs_are_refused, clean),
       cmocka_unit_test_teardown(damage_while_a_run_goes_on_is_seen, clean),

@@ -129,11 +129,27 @@ static void cuts_in_space(void **state) {
   assert_depth(depth_of(lattice, block, cut), NOTCH_INSIDE, MM(4.2), MM(5), MM(2), MM(3));
 }
 
+/* Beside the notch the body is twice as high: that is not the notch's ligament. */
+static void what_stands_beside_the_notch_does_not_count(void **state) {
+  (void)state;
+  const char *step = "shape = 'box' corner = 3*0 size = '12 mm', '10 mm', '2 mm' /\n"
+                     "&body lattice = 'l' shape = 'box' corner = 0, 0, '3 mm' "
+                     "size = '12 mm', '20 mm', '3 mm' ";
+  const char *cut = "shape = 'face' points = 5.5e-3, -1e-3, -1e-3, 5.5e-3, 6.2e-3, -1e-3, 5.5e-3, "
+                    "6.2e-3, 2.4e-3, "
+                    "5.5e-3, -1e-3, 2.4e-3 ";
+  assert_depth(depth_of("kind = 'cubic' spacing = '1 mm' ", step, cut), NOTCH_AT_EDGE, MM(6.2),
+               MM(7), MM(3), 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(slits_end_at_bonds), cmocka_unit_test(cuts_of_some_width),
-      cmocka_unit_test(the_notched_beam),   cmocka_unit_test(turned_slits),
+      cmocka_unit_test(slits_end_at_bonds),
+      cmocka_unit_test(cuts_of_some_width),
+      cmocka_unit_test(the_notched_beam),
+      cmocka_unit_test(turned_slits),
       cmocka_unit_test(cuts_in_space),
+      cmocka_unit_test(what_stands_beside_the_notch_does_not_count),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -455,6 +455,28 @@ static void correlated_fields_are_smooth(void **state) {
 
 /* --- what is not allowed --- */
 
+/* The quantile of the waves at the middle of the bond. */
+static void a_bond_has_the_value_of_its_middle(void **state) {
+  (void)state;
+  sample s;
+  random_distribution d;
+  char error[128];
+  sample_open(&s, "distribution = 'weibull' cv = 0.3 correlation_length = '30 mm'", 11, 0, 0, 0.3,
+              0.2, "");
+  must_be_good(&s);
+  const deck_field *f = &s.run.deck->fields[0];
+  assert_true(random_distribution_of(f, 30e9, &d, error, sizeof error));
+  random_waves *w = random_waves_new(random_seed_of(f), 0.03);
+  const rows *g = s.lattice;
+  for (long m = 0; m < g->bond_count; m++) {
+    const int64_t i = g->particle_site[s.bonds[m].i], j = g->particle_site[s.bonds[m].j];
+    const double middle[3] = {0.5 * (g->x[i] + g->x[j]), 0.5 * (g->y[i] + g->y[j]), 0};
+    assert_true(fabs(value_at(&s, m) / random_quantile(&d, random_waves_at(w, middle)) - 1) < 1e-9);
+  }
+  random_waves_free(w);
+  sample_close(&s);
+}
+
 static void expect_refusal(const char *field, diag_code code, const char *text) {
   sample s;
   sample_open(&s, field, 0, 0, 0, 0.2, 0.2, "");
@@ -532,6 +554,7 @@ int main(void) {
       cmocka_unit_test(values_belong_to_places),
       cmocka_unit_test(threads_give_the_same_bits),
       cmocka_unit_test(correlated_fields_are_smooth),
+      cmocka_unit_test(a_bond_has_the_value_of_its_middle),
       cmocka_unit_test(forbidden_values_are_told_with_their_place),
       cmocka_unit_test(clipping_moves_values_to_the_bound),
       cmocka_unit_test(a_kernel_without_the_parameter_is_refused),

@@ -171,10 +171,78 @@ static void forces_and_gravity_grow_together(void **state) {
   const rows *g = simulation_rows(r.simulation, 0);
   const double full = 40 + 10 * g->mass * (double)g->particle_count;
   const double *top = series(&r, "top"), *foot = series(&r, "foot");
+  long unbalanced;
+  assert_int_equal(simulation_increments(r.simulation, &unbalanced), 4);
+  assert_int_equal(unbalanced, 0);
   for (int k = 0; k < 5; k++) {
     assert_true(fabs(top[k] - 0.25 * k * full) <= 1e-5 * full);
     assert_true(fabs(foot[k] - 0.25 * k * foot[4]) <= 1e-5 * fabs(foot[4]));
   }
+  small_close(&r);
+}
+
+/* Two particles side by side that only their inertia holds in y: bonds do not answer, and the unbalance is that of the loads. */
+static double unbalance_under(const char *loads) {
+  char text[2048];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1 /\n"
+           "&relaxation increments = 1 tolerance = 1e-9 most_steps = 10 /\n"
+           "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+           "&material lattice = 'c' model = 'm' /\n"
+           "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = 0.01, 0.002 /\n"
+           "&region name = 'both' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
+           "&support region = 'both' fix = 'x', 'rotation' /\n%s"
+           "&output frames = 0 /\n",
+           loads);
+  small_run r;
+  small_open(&r, &elastic_beam, text);
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double unbalance = small_last(&r, "relaxation_unbalance");
+  small_close(&r);
+  return unbalance;
+}
+
+/* Each particle weighs w and is drawn up by 3 w: 2 w of them are left, beside the loads sqrt(1 + 9) w. */
+static void weight_is_a_load(void **state) {
+  (void)state;
+  const double weight = 2323 * sqrt(3) / 2 * 0.01 * 0.01 * 0.1 * 1e-3;
+  char loads[256];
+  snprintf(loads, sizeof loads,
+           "&gravity acceleration = 0, -1e-3 /\n"
+           "&force region = 'both' component = 'y' force = %.17g /\n",
+           2 * 3 * weight);
+  assert_true(fabs(unbalance_under(loads) - 2 / sqrt(10)) < 1e-9);
+}
+
+/* A moment of twice the force's size times the spacing, held: 1 of sqrt(1 + 4) is left. */
+static void a_moment_counts_over_a_spacing(void **state) {
+  (void)state;
+  const double unbalance = unbalance_under("&force region = 'both' component = 'y' force = 1e-3 /\n"
+                                           "&force region = 'both' moment = 2e-5 /\n");
+  assert_true(fabs(unbalance - 1 / sqrt(5)) < 1e-9);
+}
+
+/* No particle is free, and nothing unbalanced: an increment lasts until its loads have come all the same. */
+static void loads_come_in_full(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &elastic_bar,
+             "&simulation end_time = 1 /\n"
+             "&relaxation increments = 4 tolerance = 1e-3 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+             "&material lattice = 'c' model = 'm' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.3, 0.1 /\n"
+             "&region name = 'all' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
+             "&support region = 'all' fix = 'y' /\n"
+             "&drive region = 'all' component = 'x' displacement = 4e-6 /\n"
+             "&monitor name = 'u' kind = 'displacement' region = 'all' component = 'x' /\n");
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *u = series(&r, "u");
+  for (int k = 0; k < 5; k++)
+    assert_true(fabs(u[k] - 1e-6 * k) < 1e-15);
   small_close(&r);
 }
 
@@ -275,6 +343,9 @@ int main(void) {
       cmocka_unit_test(an_increment_costs_little_more_than_it_stores),
       cmocka_unit_test(no_load_jumps),
       cmocka_unit_test(forces_and_gravity_grow_together),
+      cmocka_unit_test(weight_is_a_load),
+      cmocka_unit_test(a_moment_counts_over_a_spacing),
+      cmocka_unit_test(loads_come_in_full),
       cmocka_unit_test(a_plate_breaks_at_rest),
       cmocka_unit_test(impatience_is_counted),
       cmocka_unit_test(threads_and_resuming_change_no_bit),

@@ -627,6 +627,21 @@ static void several_histories_are_several_curves(void **state) {
       error, "`time` of `result_k.h5` is in s, but `energy/kinetic` of `result_k.h5` is in J"));
 }
 
+/* From 0.1 to 0.9 a level line, or none where the value between is no number. */
+static void a_curve_has_gaps(void **state) {
+  (void)state;
+  static const colour first = {0.00, 0.27, 0.55};
+  const double x[] = {0, 0.1, 0.5, 0.9, 1};
+  long drawn[2];
+  for (int gap = 0; gap < 2; gap++) {
+    const double y[] = {0, 1, gap ? NAN : 1, 1, 0};
+    const plot_curve_options o = {.output = "gap.png", .x = "x", .y = "y"};
+    assert_true(plot_values(x, y, 5, "1", "1", &o, error, sizeof error));
+    drawn[gap] = pixels("gap.png", first);
+  }
+  assert_true(drawn[1] > 500 && drawn[0] - drawn[1] > 700); /* of some 1000 x 2 */
+}
+
 /* The numbers along the x axis of a curve from `low` to 1. */
 static unsigned char *x_numbers(double low, size_t *size) {
   enum { FROM = 710, TO = 740 }; /* rows of pixels */
@@ -671,6 +686,7 @@ int main(void) {
       cmocka_unit_test(bodies_in_space_are_written_and_read),
       cmocka_unit_test(bodies_in_space_are_seen_in_slices_and_from_outside),
       cmocka_unit_test(several_histories_are_several_curves),
+      cmocka_unit_test(a_curve_has_gaps),
       cmocka_unit_test(an_axis_gets_no_step_for_what_cannot_be_seen)};
   return cmocka_run_group_tests_name("result", tests, NULL, NULL);
 }

@@ -395,6 +395,12 @@ static void regions_are_selected(void **unused) {
   assert_int_equal(rows_select(w, &one, &list), 1);
   assert_int_equal(list[0], 77);
   free(list);
+  const long next_site = w->particle_site[78];
+  deck_shape half_way =
+      point((w->x[site] + w->x[next_site]) / 2, (w->y[site] + w->y[next_site]) / 2);
+  assert_int_equal(rows_select(w, &half_way, &list), 1);
+  assert_int_equal(list[0], 77); /* the first of two that are as near */
+  free(list);
   one.within = 1e-3;
   assert_int_equal(rows_select(w, &one, &list), 0);
   free(list);

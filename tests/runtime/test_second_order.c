@@ -123,6 +123,11 @@ static double pushed_damped(double t, double start) {
 
 #define PUSH FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g /\n"
 
+/* The same by two forces on one particle. */
+#define TWO_PUSH                                                                                   \
+  FIXED "&force region = 'right' component = 'x' force = 60 start = %.17g /\n"                     \
+        "&force region = 'right' component = 'x' force = 40 start = %.17g /\n"
+
 static void a_force_may_begin_at_any_time(void **state) {
   (void)state;
   static const double starts[] = {0, 0.25, 40, 40.3, 40.5, 40.9};
@@ -133,6 +138,7 @@ static void a_force_may_begin_at_any_time(void **state) {
         {PUSH, starts[k], "v", pushed_velocity, u * frequency() / 2},
         {PUSH, starts[k], "r", pushed_support, u * stiffness()},
         {PUSH "&damping rate = 3e4 /\n", starts[k], "u", pushed_damped, u},
+        {TWO_PUSH, starts[k], "v", pushed_velocity, u * frequency() / 2},
     };
     for (size_t n = 0; n < sizeof all / sizeof *all; n++)
       falls_with_the_square(&all[n]);
@@ -251,6 +257,25 @@ static void damping_and_velocities_at_the_start(void **state) {
     falls_with_the_square(
         &(motion){THROWN "&damping rate = 3e4 until = %.17g /\n", start, "u", damped_early, u});
   }
+}
+
+/* Nothing is dissipated at the start, then the drag's power, rate m v^2. */
+static void damping_takes_what_its_drag_does(void **state) {
+  (void)state;
+  const motion m = {"&initial_velocity region = 'left' component = 'x' value = 1 /\n"
+                    "&initial_velocity region = 'right' component = 'x' value = 1 /\n"
+                    "&drive region = 'left' component = 'x' velocity = 1 start = %.17g /\n"
+                    "&damping rate = 3e4 /\n",
+                    2 * STEPS, "u", NULL, 1}; /* long after the end */
+  small_run r = open_run(&m, STEPS);
+  const double *time, *taken;
+  assert_int_equal(small_go(&r), STEP_END);
+  const long samples = simulation_history(r.simulation, &time);
+  simulation_series(r.simulation, small_series(&r, "energy/dissipated_damping"), NULL, &taken);
+  assert_true(taken[0] == 0);
+  for (long k = 0; k < samples; k++) /* of both, to the order of the steps */
+    assert_true(fabs(taken[k] - mass() * (1 - exp(-2 * rate * time[k]))) < 1e-4 * mass());
+  small_close(&r);
 }
 
 /* --- drives ----------------------------------------------------------------------------------- */
@@ -384,6 +409,7 @@ int main(void) {
       cmocka_unit_test(a_body_falls_five_centimetres_in_one_step),
       cmocka_unit_test(gravity_may_begin_at_any_time),
       cmocka_unit_test(damping_and_velocities_at_the_start),
+      cmocka_unit_test(damping_takes_what_its_drag_does),
       cmocka_unit_test(a_drive_may_begin_at_any_time),
       cmocka_unit_test(a_flying_particle_is_caught_where_it_is),
       cmocka_unit_test(an_impulse_does_work),

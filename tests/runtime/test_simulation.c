@@ -15,6 +15,17 @@
 #define CHAIN                                                                                      \
   "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"                      \
   "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = %g, 0.002 /\n"
+#define PUSHED                                                                                     \
+  "&simulation end_time = 1e-5 step = 1e-7 /\n"                                                    \
+  "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"                      \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = 0.01, 0.002 /\n"              \
+  "&material lattice = 'c' model = 'm' /\n"                                                        \
+  "&region name = 'left' shape = 'point' at = 0, 0 /\n"                                            \
+  "&region name = 'right' shape = 'point' at = 0.01, 0 /\n"                                        \
+  "&monitor name = 'held' kind = 'reaction' region = 'left' component = 'x' /\n"                   \
+  "&monitor name = 'u' kind = 'displacement' region = 'left' component = 'x' /\n"                  \
+  "&output frames = 0 sample = 1e-7 /\n"
+enum { MANY = 19 };
 #define POINT(name, x, y) "&region name = '" name "' shape = 'point' at = " x ", " y " /\n"
 
 static double rigidity_axial(double nu) {
@@ -186,6 +197,48 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   small_close(&r);
 }
 
+/* What turns a free body: its angular momentum is moment times time, here from half a step before the start on. */
+static void each_end_moment_comes_in_its_own_time(void **state) {
+  (void)state;
+  enum { TURNS = 200 };
+  small_run r;
+  must_open(&r, &elastic_bar,
+            "&simulation end_time = 1e-3 /\n"
+            "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+            "&material lattice = 'c' model = 'm' /\n"
+            "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.06 /\n"
+            "&region name = 'start' shape = 'rectangle' corner = -1, -1 size = 1.006, 2 /\n"
+            "&region name = 'end' shape = 'rectangle' corner = 0.094, -1 size = 1, 2 /\n"
+            "&end_moment region = 'start' moment = 70 start = 1 /\n"
+            "&end_moment region = 'end' moment = 0.05 /\n&output frames = 0 /\n");
+  simulation_advance(r.simulation, TURNS, NULL);
+  const sweep *w = simulation_state(r.simulation);
+  double momentum = 0;
+  for (long p = 0; p < w->lattice->particle_count; p++) {
+    const long q = w->lattice->particle_site[p];
+    momentum +=
+        w->mass[0] * (w->lattice->x[q] * w->velocity[1][q] - w->lattice->y[q] * w->velocity[0][q]);
+  }
+  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->time_step) - 1) < 1e-6);
+  small_close(&r);
+}
+
+/* Bonds of the particles within so many spacings: the first and the second of a row. */
+static void protection_reaches_over_spacings(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-4 /\n" CHAIN "&material lattice = 'c' model = 'm' /\n" POINT(
+               "left", "0", "0") "&protect region = 'left' radius = 1.01 /\n&output frames = 0 /\n",
+           5 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  const rows *w = simulation_rows(r.simulation, 0);
+  for (long p = 0; p < 5; p++)
+    assert_int_equal(w->held_bonds[w->particle_site[p]] != 0, p < 2);
+  small_close(&r);
+}
+
 /* --- loads in time ---------------------------------------------------------------------------- */
 
 static void a_drive_is_followed_exactly_from_its_start(void **state) {
@@ -324,6 +377,92 @@ static void loads_keep_their_bits_on_many_threads(void **state) {
   small_close(&one);
 }
 
+/* A row of particles, each with a load of its own along y; bars in a straight row do not resist that. */
+static void open_many(small_run *r, const char *load) {
+  enum { LONGEST = 8192 };
+  char text[LONGEST];
+  int used = snprintf(text, sizeof text,
+                      "&simulation end_time = 1e-5 step = 1e-7 /\n" CHAIN
+                      "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n",
+                      (MANY - 1) * SPACING);
+  for (int k = 0; k < MANY; k++) {
+    used += snprintf(text + used, LONGEST - (size_t)used,
+                     "&region name = 'p%d' shape = 'point' at = %g, 0 /\n", k, k * SPACING);
+    used += snprintf(text + used, LONGEST - (size_t)used, load, k, k + 1);
+  }
+  must_open(r, &elastic_bar, text);
+}
+
+/* Values of few functions are remembered in a step: those of many loads are their own all the same. */
+static void each_of_many_drives_goes_its_own_way(void **state) {
+  (void)state;
+  small_run r;
+  open_many(&r, "&drive region = 'p%d' component = 'y' velocity = '%d um/s' /\n");
+  const sweep *w = simulation_state(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  for (int k = 0; k < MANY; k++) {
+    const double way = 1e-5 * (k + 1) * 1e-6;
+    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-12);
+  }
+  small_close(&r);
+}
+
+/* N steps with the force a t at their beginnings: u = a dt^3 N (N^2 - 1)/(6 m). */
+static void each_of_many_forces_is_its_own(void **state) {
+  (void)state;
+  small_run r;
+  open_many(&r, "&force region = 'p%d' component = 'y' force = %de-6 history = 'ramp' rise = "
+                "1e-5 /\n");
+  const sweep *w = simulation_state(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  for (int k = 0; k < MANY; k++) {
+    const double slope = (k + 1) * 1e-6 / 1e-5;
+    const double way = slope * 1e-21 * 100 * (100 * 100 - 1) / (6 * particle_mass());
+    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-9);
+  }
+  small_close(&r);
+}
+
+/* --- forces on what is held ------------------------------------------------------------------- */
+
+static void expect_everywhere(const small_run *r, const char *name, double expected, double size) {
+  const double *values;
+  simulation_series(r->simulation, small_series(r, name), NULL, &values);
+  for (long n = 0; n < simulation_history(r->simulation, NULL); n++)
+    if (!(fabs(values[n] - expected) <= 1e-12 * size))
+      fail_msg("%s: %.17g instead of %.17g at sample %ld", name, values[n], expected, n);
+}
+
+/* A support carries the force, nothing moves, and no work is done. */
+static void a_force_on_a_held_particle_is_its_reaction(void **state) {
+  (void)state;
+  small_run r;
+  must_open(&r, &elastic_bar,
+            PUSHED "&support region = 'left' fix = 'x' /\n"
+                   "&force region = 'left' component = 'x' force = 500 /\n");
+  assert_int_equal(small_go(&r), STEP_END);
+  expect_everywhere(&r, "held", -500, 500);
+  expect_everywhere(&r, "u", 0, 0);
+  expect_everywhere(&r, "energy/external", 0, 0);
+  small_close(&r);
+}
+
+/* A drive takes up what the force does on the way: what is left is the impulse that both particles begin with, m v^2. */
+static void a_force_on_a_driven_particle_does_no_work(void **state) {
+  (void)state;
+  small_run r;
+  must_open(&r, &elastic_bar,
+            PUSHED "&drive region = 'left' component = 'x' velocity = 2 /\n"
+                   "&drive region = 'right' component = 'x' velocity = 2 /\n"
+                   "&force region = 'left' component = 'x' force = 500 /\n");
+  assert_int_equal(small_go(&r), STEP_END);
+  expect_everywhere(&r, "held", -500, particle_mass() * 2 / 1e-7);
+  assert_true(fabs(small_last(&r, "u") / (2 * 1e-5) - 1) < 1e-12);
+  const double given = 2 * 2 * particle_mass();
+  assert_true(fabs(small_last(&r, "energy/external") - given) < 1e-12 * given);
+  small_close(&r);
+}
+
 /* --- energy ----------------------------------------------------------------------------------- */
 
 typedef struct balance {
@@ -425,6 +564,8 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   double when;
   assert_true(fabs(simulation_monitor_peak(r.simulation, small_series(&r, "zeroed"), &when) +
                    3e-5) < 1e-16);
+  assert_true(simulation_monitor_peak(r.simulation, small_series(&r, "speed"), &when) == 2);
+  assert_true(when == 0); /* the first of equal values */
   small_close(&r);
 }
 
@@ -492,6 +633,73 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
   assert_true(simulation_frame_due(r.simulation)); /* the last state */
   simulation_frame_taken(r.simulation);
   assert_false(simulation_frame_due(r.simulation));
+  small_close(&r);
+}
+
+/* Seven frames of a hundred steps, each at the step nearest to its time. */
+static void frames_are_taken_at_the_nearest_step(void **state) {
+  (void)state;
+  static const long expected[] = {0, 14, 29, 43, 57, 71, 86, 100};
+  char text[1024];
+  snprintf(text, sizeof text, COASTING "&output frames = 7 energy = .false. /\n", 1.0 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  for (int k = 0; k < 8; k++) {
+    assert_true(simulation_frame_due(r.simulation));
+    assert_int_equal(simulation_step_done(r.simulation), expected[k]);
+    simulation_frame_taken(r.simulation);
+    simulation_advance(r.simulation, 1000, NULL);
+  }
+  assert_false(simulation_frame_due(r.simulation));
+  small_close(&r);
+}
+
+/* The condition holds from the first sample after the start; the run goes on to the first after 4.5 us. */
+static void a_stop_waits_for_its_time(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           COASTING
+           "&monitor name = 'way' kind = 'displacement' region = 'left' component = 'x' /\n"
+           "&stop monitor = 'way' above = '0.5 um' after = 4.5e-6 /\n"
+           "&output frames = 0 sample = 1e-6 energy = .false. /\n",
+           1.0 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  sweep *w = simulation_state(r.simulation);
+  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  assert_int_equal(small_go(&r), STEP_STOPPED);
+  assert_int_equal(simulation_step_done(r.simulation), 50);
+  small_close(&r);
+}
+
+/* Times that lie between two steps are those of the nearest: samples 2.7 steps apart, a zero at 4.7, a mean over 2.7. */
+static void times_between_steps_are_rounded_to_the_nearest(void **state) {
+  (void)state;
+  char text[2048];
+  snprintf(text, sizeof text,
+           COASTING
+           "&monitor name = 'zeroed' kind = 'displacement' region = 'left' component = 'x' zero_at "
+           "= 4.7e-7 /\n"
+           "&monitor name = 'mean' kind = 'displacement' region = 'left' component = 'x' average = "
+           "2.7e-7 /\n"
+           "&output frames = 0 sample = 2.7e-7 energy = .false. /\n",
+           1.0 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  sweep *w = simulation_state(r.simulation);
+  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *time, *zeroed, *mean;
+  static const int steps[] = {0, 3, 5, 8, 11, 14, 16};
+  assert_true(simulation_history(r.simulation, &time) > 7);
+  simulation_series(r.simulation, small_series(&r, "zeroed"), NULL, &zeroed);
+  simulation_series(r.simulation, small_series(&r, "mean"), NULL, &mean);
+  for (int k = 0; k < 7; k++) {
+    assert_true(fabs(time[k] - 1e-7 * steps[k]) < 1e-18);
+    assert_true(fabs(zeroed[k] - 2e-7 * (steps[k] < 5 ? steps[k] : steps[k] - 5)) < 1e-18);
+    assert_true(fabs(mean[k] - 2e-7 * (steps[k] > 0 ? steps[k] - 1 : 0)) < 1e-18);
+  }
   small_close(&r);
 }
 
@@ -763,11 +971,20 @@ int main(void) {
       cmocka_unit_test(a_drive_is_followed_exactly_from_its_start),
       cmocka_unit_test(reactions_balance_the_momentum),
       cmocka_unit_test(loads_keep_their_bits_on_many_threads),
+      cmocka_unit_test(each_end_moment_comes_in_its_own_time),
+      cmocka_unit_test(protection_reaches_over_spacings),
+      cmocka_unit_test(each_of_many_drives_goes_its_own_way),
+      cmocka_unit_test(each_of_many_forces_is_its_own),
+      cmocka_unit_test(a_force_on_a_held_particle_is_its_reaction),
+      cmocka_unit_test(a_force_on_a_driven_particle_does_no_work),
       cmocka_unit_test(the_ledger_closes_for_an_elastic_block),
       cmocka_unit_test(the_ledger_closes_with_dissipation),
       cmocka_unit_test(means_zeros_and_scales_are_as_defined),
       cmocka_unit_test(the_reaction_between_two_regions_is_the_mean_of_both_ends),
       cmocka_unit_test(a_stop_ends_the_run_at_its_sample),
+      cmocka_unit_test(frames_are_taken_at_the_nearest_step),
+      cmocka_unit_test(a_stop_waits_for_its_time),
+      cmocka_unit_test(times_between_steps_are_rounded_to_the_nearest),
       cmocka_unit_test(an_interrupt_ends_an_advance_at_a_step),
       cmocka_unit_test(damage_is_counted_and_protection_kept),
       cmocka_unit_test(the_larger_of_two_damages_counts),

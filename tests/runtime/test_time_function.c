@@ -79,6 +79,18 @@ static void integrals_are_exact(void **state) {
   }
 }
 
+/* Against central differences of the values, away from kinks. */
+static void slopes_are_those_of_the_values(void **state) {
+  (void)state;
+  static const double at[] = {0.1, 0.3, 0.45, 0.6, 0.7, 0.85, 1.0, 1.3};
+  const double h = 1e-6;
+  for (int k = 0; k < 5; k++)
+    for (size_t i = 0; i < sizeof at / sizeof *at; i++) {
+      const double rise = time_function_at(all[k], at[i] + h) - time_function_at(all[k], at[i] - h);
+      assert_true(fabs(time_function_slope(all[k], at[i]) - rise / (2 * h)) < 1e-8);
+    }
+}
+
 static void rises_meet_their_plateau(void **state) {
   (void)state;
   /* ramp and cosine both move half of value*rise while they rise */
@@ -91,8 +103,8 @@ static void rises_meet_their_plateau(void **state) {
 
 int main(void) {
   time_table_integrals(times, values, 4, integrals);
-  const struct CMUnitTest tests[] = {cmocka_unit_test(values_at_marked_points),
-                                     cmocka_unit_test(integrals_are_exact),
-                                     cmocka_unit_test(rises_meet_their_plateau)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(values_at_marked_points), cmocka_unit_test(integrals_are_exact),
+      cmocka_unit_test(slopes_are_those_of_the_values), cmocka_unit_test(rises_meet_their_plateau)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,11 +10,23 @@
 #include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include "runtime/whole_file.h"
 
 static const char name[] = "whole.txt", link_name[] = "whole.link";
+
+/* What a disk may refuse: files, or folders. */
+static mode_t refused;
+
+int fsync(int file) {
+  struct stat about;
+  if (fstat(file, &about) != 0 || (about.st_mode & S_IFMT) != refused)
+    return (int)syscall(SYS_fsync, file);
+  errno = EIO;
+  return -1;
+}
 
 static void put(const char *path, const char *text) {
   FILE *out = fopen(path, "w");
@@ -34,6 +46,7 @@ static void expect_text(const char *path, const char *text) {
 
 static int clean(void **state) {
   (void)state;
+  refused = 0;
   unlink(name);
   unlink(link_name);
   return 0;
@@ -94,6 +107,22 @@ static void what_killed_programs_left_is_cleared(void **state) {
   }
 }
 
+/* A file that the disk has not taken does not replace the old one. Some file systems do not sync folders: that is no failure. */
+static void what_the_disk_has_not_taken_replaces_nothing(void **state) {
+  (void)state;
+  whole_file f;
+  put(name, "old");
+  for (int folder = 0; folder < 2; folder++) {
+    refused = folder ? S_IFDIR : S_IFREG;
+    assert_true(whole_file_begin(&f, name));
+    put(f.working, "new");
+    assert_int_equal(whole_file_end_on_disk(&f, true), folder);
+    if (!folder) assert_int_equal(errno, EIO);
+    expect_text(name, folder ? "new" : "old");
+    assert_int_not_equal(access(f.working, F_OK), 0);
+  }
+}
+
 static void a_link_stays_a_link(void **state) {
   (void)state;
   whole_file f;
@@ -139,6 +168,7 @@ int main(void) {
       cmocka_unit_test_teardown(the_old_text_stays_until_the_end, clean),
       cmocka_unit_test_teardown(working_files_have_names_of_their_own, clean),
       cmocka_unit_test_teardown(what_killed_programs_left_is_cleared, clean),
+      cmocka_unit_test_teardown(what_the_disk_has_not_taken_replaces_nothing, clean),
       cmocka_unit_test_teardown(a_link_stays_a_link, clean),
       cmocka_unit_test_teardown(a_device_is_written_to_and_stays, clean),
       cmocka_unit_test_teardown(what_cannot_be_written_is_refused, clean),

@@ -266,6 +266,32 @@ static void limits_are_decimal_numbers(void **state) {
   assert_true(steps <= 1);
 }
 
+/* Bonds with an axial damper and elastic bending: what is damped most is not what is fastest without dampers. A body of
+   some size has the limit of the infinite lattice, or one that is a little longer. */
+static void the_most_damped_mode_is_found(void **state) {
+  (void)state;
+  write_law("damped_beam.plm", "micropolar bond",
+            "  constant EA = E*s*t/(sqrt(3)*(1 - nu))\n"
+            "  constant B  = E*s**2*t*(1 - 3*nu)/(6*sqrt(3)*(1 - nu**2))\n"
+            "  force N = EA*(stretch + 2e-6 [s]*stretch_rate)\n"
+            "  moment M_i = B*(2*theta_i + theta_j)\n  moment M_j = B*(2*theta_j + theta_i)\n");
+  deck_case c;
+  open_case(
+      &c, START
+      "&lattice name = 'l' kind = 'hexagonal' spacing = '5 mm' thickness = '10 mm' /\n"
+      "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '200 mm', '150 mm' /\n" LAW(
+          "damped_beam.plm"));
+  const step_limit *lattice = simulation_step_limit(c.simulation);
+  step_limit body = {.limit = 0};
+  body_limit(c.law.law, c.law.parameters, NULL, simulation_rows(c.simulation, 0), &body);
+  print_message("damped beam: lattice %.4g us, body %.4g us, undamped %.4g us\n",
+                1e6 * lattice->limit, 1e6 * body.limit, 2e6 / body.omega_max);
+  assert_true(lattice->limit < 0.5 * 2 / lattice->omega_max);
+  assert_true(body.limit > (1 - BODY_ACCURACY) * lattice->limit);
+  assert_true(body.limit < 1.01 * lattice->limit);
+  deck_case_close(&c);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(bodies_bear_the_step),
@@ -273,6 +299,7 @@ int main(void) {
       cmocka_unit_test(kinks_at_rest_count),
       cmocka_unit_test(no_body_of_random_bonds_is_faster),
       cmocka_unit_test(forms_are_raised_no_more_than_needed),
+      cmocka_unit_test(the_most_damped_mode_is_found),
       cmocka_unit_test(what_flies_apart_is_refused),
       cmocka_unit_test(limits_are_decimal_numbers),
   };
