@@ -266,7 +266,7 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->monitors) return false;
   frames_choose(s);
   new_history(s);
-  s->at.last_frame_step = s->observed_step = -1;
+  s->at.last_frame_step = s->at.stop = s->observed_step = -1;
   const size_t family = 2 * (size_t)s->lattice->directions;
   s->bad_fields = must_calloc((1 + family) * (size_t)s->law->field_count + 1, sizeof(double));
   s->bad_family = must_calloc(family, sizeof *s->bad_family);
@@ -407,8 +407,8 @@ static void take_sample(simulation *s, const load_look *look) {
     s->history[k * s->history_capacity + s->at.samples] = s->sampled[k];
   s->at.samples++;
   s->at.next_sample = s->relaxation ? s->at.samples : next_sample(s);
-  s->stopped_by = monitors_stop(s->monitors, time, s->sampled);
-  if (s->stopped_by) s->at.status = STEP_STOPPED;
+  s->at.stop = monitors_stop(s->monitors, time, s->sampled);
+  if (s->at.stop >= 0) s->at.status = STEP_STOPPED;
   if (!sound) bad_energy(s, "energy from nothing");
   if (s->deck->output.energy && simulation_position(s) == simulation_end(s) &&
       !isfinite(s->sampled[watched + LEDGER_KINETIC] + s->sampled[watched + LEDGER_STORED]))
@@ -423,7 +423,7 @@ static void record_sample(simulation *s, const load_look *look) {
 }
 
 const deck_stop *simulation_stopped_by(const simulation *s) {
-  return s->stopped_by;
+  return s->at.stop >= 0 ? &s->deck->stops[s->at.stop] : NULL;
 }
 
 long simulation_history(const simulation *s, const double **time) {

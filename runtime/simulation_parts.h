@@ -21,6 +21,7 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
   int64_t samples;              /* taken */
   int64_t next_sample;          /* in multiples of the interval */
   int64_t next_frame, last_frame_step;
+  int64_t stop; /* which &stop has ended the run; -1: none */
   frame_mark frames; /* of the caller */
 } progress_state;
 
@@ -68,7 +69,6 @@ struct simulation {
   bool observe, go_on;         /* set by one thread for all */
   int64_t observed_step;       /* of the state observed last; -1: none */
   profile *profile;            /* NULL: nothing is measured */
-  const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
   const volatile sig_atomic_t *interrupted;
 };
