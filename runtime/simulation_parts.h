@@ -75,8 +75,7 @@ struct simulation {
 
 /* False with a diagnostic when the deck asks for fields that no run has. */
 bool frames_check(const simulation *s, diagnostics *d);
-/* What the deck asks for; without a list everything but forces and outputs. `damage` is the mean on
-   particles and the law's own damage on bonds. */
+/* What the deck asks for. `damage` is that of particles and all damages of the law. */
 void frames_choose(simulation *s);
 /* True when the deck lists the field `name`. */
 bool frames_want(const simulation *s, const char *name);
