@@ -88,8 +88,8 @@ void deck_check_notch(deck_reader *r, const namelist_group *from, deck_notch *it
 void deck_check_region(deck_reader *r, const namelist_group *from, deck_region *item) {
   deck_check_shape(r, from, &item->item, &item->shape, item->lattice);
   int first = deck_find_region(r->k, item->name);
-  deck_name_is_new(r, "region", item->name, &item->item,
-                   first < 0 ? NULL : &r->k->regions[first].item);
+  deck_check_name(r, "region", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->regions[first].item);
   if (item->lattice) {
     deck_lattice_known(r, &item->item, item->lattice);
   } else if (r->k->lattice_count == 1) {
@@ -307,8 +307,8 @@ static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
     diag_hint(r->d, "use letters, digits and `_`, and begin with a letter");
   }
   int first = deck_find_monitor(r->k, item->name);
-  deck_name_is_new(r, "monitor", item->name, &item->item,
-                   first < 0 ? NULL : &r->k->monitors[first].item);
+  deck_check_name(r, "monitor", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->monitors[first].item);
 }
 
 /* Forces come from supports and drives only; without any along the component a reaction is 0 for

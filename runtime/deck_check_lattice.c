@@ -123,8 +123,8 @@ void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice
   else if (strchr(item->name, '/'))
     diag_report(r->d, DIAG_BAD_VALUE, where, "a lattice's name must not hold `/`");
   int first = deck_find_lattice(r->k, item->name);
-  deck_name_is_new(r, "lattice", item->name, &item->item,
-                   first < 0 ? NULL : &r->k->lattices[first].item);
+  deck_check_name(r, "lattice", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->lattices[first].item);
 }
 
 static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assignment *a) {

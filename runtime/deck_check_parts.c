@@ -51,8 +51,12 @@ bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *n
   return deck_region_known(r, deck_where(item, "region"), name);
 }
 
-void deck_name_is_new(deck_reader *r, const char *kind, const char *name, const deck_item *item,
-                      const deck_item *first) {
+void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
+                     const deck_item *first) {
+  if (name && strlen(name) > NAMELIST_LONGEST_NAME)
+    diag_report(r->d, DIAG_TOO_LONG, deck_where(item, "name"),
+                "this name has %zu bytes; a name may have up to %d", strlen(name),
+                NAMELIST_LONGEST_NAME);
   if (!first) return;
   diag_report(r->d, DIAG_DUPLICATE_NAME, deck_where(item, "name"), "a %s `%s` exists already", kind,
               deck_shown(r->memory, name));

@@ -10,9 +10,10 @@ bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name)
 bool deck_region_known(deck_reader *r, span where, const char *name);
 bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name);
 bool deck_monitor_known(deck_reader *r, span where, const char *name);
-/* `first`: the item that has the name already, or NULL. */
-void deck_name_is_new(deck_reader *r, const char *kind, const char *name, const deck_item *item,
-                      const deck_item *first);
+/* A name is new, and fits into the paths of a result. `first`: the item that has it already, or
+   NULL. */
+void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
+                     const deck_item *first);
 /* Names of faulty items may be missing. */
 bool deck_same_name(const char *a, const char *b);
 bool deck_is_one_of(const char *name, const char *const *words, int count);

@@ -425,8 +425,8 @@ static bool applies(const monitors *all, const deck_stop *stop, double time, con
   return stop->below ? value < level : value > level;
 }
 
-const deck_stop *monitors_stop(const monitors *all, double time, const double *values) {
+int monitors_stop(const monitors *all, double time, const double *values) {
   for (int i = 0; i < all->deck->stop_count; i++)
-    if (applies(all, &all->deck->stops[i], time, values)) return &all->deck->stops[i];
-  return NULL;
+    if (applies(all, &all->deck->stops[i], time, values)) return i;
+  return -1;
 }

@@ -429,11 +429,9 @@ static bool open_sources(const deck *k, int lattice, const rows *w, const pl_law
 }
 
 static double *new_plane(random_fields *r, const rows *w) {
-  size_t bytes = (size_t)w->directions * (size_t)w->size * sizeof(double);
-  bytes = (bytes + PL_ALIGNMENT - 1) / PL_ALIGNMENT * PL_ALIGNMENT;
-  double *plane = must_align(PL_ALIGNMENT, bytes);
+  const size_t bytes = (size_t)w->directions * (size_t)w->size * sizeof(double);
   r->bytes += bytes;
-  return plane;
+  return must_align(PL_ALIGNMENT, bytes);
 }
 
 random_fields *random_fields_new(const deck *k, int lattice, const rows *w, const pl_law *law,

@@ -101,7 +101,7 @@ static bool write_particles(hid_t file, const result_header *h) {
 static bool write_texts(hid_t file, const char *group, const result_text *texts, int count) {
   bool good = h5_make_group(file, group);
   for (int k = 0; good && k < count; k++) {
-    char name[512];
+    char name[WHOLE_FILE_PATH + 64]; /* some are paths */
     snprintf(name, sizeof name, "%s/%s", group, texts[k].name);
     good = H5Lexists(file, name, H5P_DEFAULT) > 0 || h5_write_text(file, name, texts[k].text);
   }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "dsl/elementary.h"
+#include "dsl/hash.h"
 #include "runtime/neighbour_search.h"
 #include "runtime/rows_parts.h"
 #include "runtime/scattered.h"
@@ -454,28 +455,16 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
       .weight = w->weight[k]};
 }
 
-/* FNV-1a, eight bytes at a time. */
-static uint64_t mix(uint64_t hash, const void *data, size_t size) {
-  const unsigned char *at = data;
-  for (size_t k = 0; k + sizeof hash <= size; k += sizeof hash) {
-    uint64_t word;
-    memcpy(&word, at + k, sizeof word);
-    hash = (hash ^ word) * UINT64_C(0x100000001b3);
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
 uint64_t rows_fingerprint(const rows *w) {
-  uint64_t hash = UINT64_C(0xcbf29ce484222325);
+  uint64_t hash = HASH_START;
   if (!w->list) return 0;
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     double of[4] = {0, 0, 0, w->site_volume[site]};
     const uint64_t bonds[2] = {w->bonds[site], w->list->incoming[site]};
     rows_place(w, site, of);
-    hash = mix(hash, of, sizeof of);
-    hash = mix(hash, bonds, sizeof bonds);
+    hash = hash_words(hash, of, 4);
+    hash = hash_words(hash, bonds, 2);
   }
   return hash ? hash : 1;
 }

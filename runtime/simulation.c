@@ -242,6 +242,30 @@ static bool is_sound(simulation *s, diagnostics *d) {
   return s->parameters && open_material(s, d) && s->loads && frames && watched;
 }
 
+/* In a result stand side by side: the times, fields of particles, a folder for those of bonds. */
+static bool is_named_once(const simulation *s, int field) {
+  const frame_field *f = s->frame_fields;
+  const char *name = f[field].name;
+  bool once = strcmp(name, "time") != 0;
+  for (int k = 0; k < s->frame_field_count; k++)
+    if (k != field && strcmp(f[k].on_bonds ? s->deck->lattices[0].name : f[k].name, name) == 0)
+      once = false;
+  return once || f[field].on_bonds;
+}
+
+static bool frames_fit(const simulation *s, diagnostics *d) {
+  const int errors = d->errors;
+  for (int k = 0; k < s->frame_field_count; k++) {
+    const char *name = s->frame_fields[k].name;
+    if (strcmp(s->frame_fields[k].kind, "other") == 0 || is_named_once(s, k)) continue;
+    diag_report(d, DIAG_RESERVED_NAME, where_of_law(s),
+                "`%s` of the law `%s` cannot be stored: a result has another `%s` there", name,
+                s->law->name, name);
+    diag_hint(d, "give it another name in the law, or leave it out of `fields` in &output");
+  }
+  return d->errors == errors;
+}
+
 static bool set_up(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
   const bool quasi_static = k->relaxation.increments > 0;
@@ -265,8 +289,9 @@ static bool set_up(simulation *s, diagnostics *d) {
                              quasi_static ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
   frames_choose(s);
+  if (!frames_fit(s, d)) return false;
   new_history(s);
-  s->at.last_frame_step = s->observed_step = -1;
+  s->at.last_frame_step = s->at.stop = s->observed_step = -1;
   const size_t family = 2 * (size_t)s->lattice->directions;
   s->bad_fields = must_calloc((1 + family) * (size_t)s->law->field_count + 1, sizeof(double));
   s->bad_family = must_calloc(family, sizeof *s->bad_family);
@@ -407,8 +432,8 @@ static void take_sample(simulation *s, const load_look *look) {
     s->history[k * s->history_capacity + s->at.samples] = s->sampled[k];
   s->at.samples++;
   s->at.next_sample = s->relaxation ? s->at.samples : next_sample(s);
-  s->stopped_by = monitors_stop(s->monitors, time, s->sampled);
-  if (s->stopped_by) s->at.status = STEP_STOPPED;
+  s->at.stop = monitors_stop(s->monitors, time, s->sampled);
+  if (s->at.stop >= 0) s->at.status = STEP_STOPPED;
   if (!sound) bad_energy(s, "energy from nothing");
   if (s->deck->output.energy && simulation_position(s) == simulation_end(s) &&
       !isfinite(s->sampled[watched + LEDGER_KINETIC] + s->sampled[watched + LEDGER_STORED]))
@@ -423,7 +448,7 @@ static void record_sample(simulation *s, const load_look *look) {
 }
 
 const deck_stop *simulation_stopped_by(const simulation *s) {
-  return s->stopped_by;
+  return s->at.stop >= 0 ? &s->deck->stops[s->at.stop] : NULL;
 }
 
 long simulation_history(const simulation *s, const double **time) {

@@ -40,18 +40,18 @@ static const char *words_of(const char *doc, const char *otherwise) {
 }
 
 /* What is stored of any law. */
-static void offer_own(simulation *s, bool all, bool damage) {
+static void offer_own(simulation *s, bool damage) {
   const pl_law *law = s->law;
   double *const *u = s->state->displacement;
   const int dimensions = s->state->dimensions;
-  offer(s, all || frames_want(s, "displacement"),
+  offer(s, frames_want(s, "displacement"),
         (frame_field){"displacement", "m", false, dimensions, "other", "displacement"},
         (frame_source){FROM_STATE, u, 0});
-  offer(s, all || frames_want(s, "velocity"),
+  offer(s, frames_want(s, "velocity"),
         (frame_field){"velocity", "m/s", false, dimensions, "other",
                       "velocity: the mean of those half a step before and after"},
         (frame_source){FROM_VELOCITY, NULL, 0});
-  offer(s, law->dof > law->dimensions && (all || frames_want(s, "rotation")),
+  offer(s, law->dof > law->dimensions && frames_want(s, "rotation"),
         (frame_field){"rotation", "rad", false, 1, "other", "rotation, counter-clockwise"},
         (frame_source){FROM_STATE, u + 2, 0});
   offer(s, frames_want(s, "force"),
@@ -63,18 +63,18 @@ static void offer_own(simulation *s, bool all, bool damage) {
                           ? "the largest damage of the particle"
                           : "mean damage of the bonds that the particle began with"},
         (frame_source){FROM_DAMAGE, NULL, 0});
-  offer(s, s->state->dissipated_state && (all || frames_want(s, "dissipated")),
+  offer(s, s->state->dissipated_state && frames_want(s, "dissipated"),
         (frame_field){"dissipated", "J", false, 1, "other",
                       "energy lost in the bonds to the right of the particle and above it"},
         (frame_source){FROM_DISSIPATED, NULL, 0});
 }
 
-static void offer_law(simulation *s, bool all, bool damage) {
+static void offer_law(simulation *s, bool damage) {
   const pl_law *law = s->law;
   for (int k = 0; k < law->field_count; k++) {
     const pl_field *f = &law->fields[k];
     const bool damages = f->kind == PL_FIELD_DAMAGE;
-    offer(s, all || frames_want(s, f->name) || (damages && damage),
+    offer(s, frames_want(s, f->name) || (damages && damage),
           (frame_field){f->name, f->unit, on_bonds(f), 1, damages ? "damage" : "state",
                         words_of(f->doc, damages ? "damage of the law" : "state of the law")},
           (frame_source){FROM_FIELD, NULL, k});
@@ -97,14 +97,13 @@ static void offer_law(simulation *s, bool all, bool damage) {
 
 void frames_choose(simulation *s) {
   const pl_law *law = s->law;
-  const bool all = s->deck->output.field_count == 0;
-  const bool damage = has_damage(law) && (all || frames_want(s, "damage"));
+  const bool damage = has_damage(law) && frames_want(s, "damage");
   const size_t most = OWN_FIELDS + (size_t)law->field_count + (size_t)law->output_count +
                       (size_t)law->varying_count;
   s->frame_fields = must_calloc(most, sizeof *s->frame_fields);
   s->frame_sources = must_calloc(most, sizeof *s->frame_sources);
-  offer_own(s, all, damage);
-  offer_law(s, all, damage);
+  offer_own(s, damage);
+  offer_law(s, damage);
 }
 
 /* Known names that this run cannot give. */

@@ -21,6 +21,7 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
   int64_t samples;              /* taken */
   int64_t next_sample;          /* in multiples of the interval */
   int64_t next_frame, last_frame_step;
+  int64_t stop; /* which &stop has ended the run; -1: none */
   frame_mark frames; /* of the caller */
 } progress_state;
 
@@ -68,15 +69,13 @@ struct simulation {
   bool observe, go_on;         /* set by one thread for all */
   int64_t observed_step;       /* of the state observed last; -1: none */
   profile *profile;            /* NULL: nothing is measured */
-  const deck_stop *stopped_by; /* the &stop that ended the run, or NULL */
   int64_t until;
   const volatile sig_atomic_t *interrupted;
 };
 
 /* False with a diagnostic when the deck asks for fields that no run has. */
 bool frames_check(const simulation *s, diagnostics *d);
-/* What the deck asks for; without a list everything but forces and outputs. `damage` is the mean on
-   particles and the law's own damage on bonds. */
+/* What the deck asks for. `damage` is that of particles and all damages of the law. */
 void frames_choose(simulation *s);
 /* True when the deck lists the field `name`. */
 bool frames_want(const simulation *s, const char *name);

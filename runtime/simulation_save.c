@@ -85,6 +85,7 @@ static bool is_reachable(const simulation *s, const progress_state *at) {
   const int64_t frames = s->deck->output.frames > 0 ? s->deck->output.frames : 0;
   if (at->begun != 0 && at->begun != 1) return false;
   if (at->status < STEP_OK || at->status > STEP_BAD) return false;
+  if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
   if (at->step < 0 || at->step > s->step_count || (!at->begun && at->step > 0)) return false;
   if (at->next_sample < 0 || at->next_sample > s->history_capacity) return false;
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;

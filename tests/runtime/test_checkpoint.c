@@ -238,6 +238,39 @@ static void damaged_and_foreign_files_are_refused(void **state) {
   small_close(&untouched);
 }
 
+static void a_resumed_run_knows_what_stopped_it(void **state) {
+  (void)state;
+  static const char text[] =
+      "&simulation end_time = 1e-4 /\n"
+      "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+      "&material lattice = 'c' model = 'm' /\n"
+      "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.05, 0.03 /\n"
+      "&region name = 'all' shape = 'rectangle' corner = 0, 0 size = 0.05, 0.03 /\n"
+      "&initial_velocity region = 'all' component = 'x' value = 1 /\n"
+      "&monitor name = 'way' kind = 'displacement' region = 'all' component = 'x' /\n"
+      "&stop monitor = 'way' above = 1 /\n"
+      "&stop monitor = 'way' above = 2e-5 /\n";
+  small_run first, second;
+  char error[200] = "";
+  const frame_mark none = {0, 0};
+  small_open(&first, &elastic_beam, text);
+  small_open(&second, &elastic_beam, text);
+  assert_non_null(first.simulation);
+  step_status status = STEP_OK;
+  while (status == STEP_OK)
+    status = simulation_advance(first.simulation, 1000, NULL);
+  assert_int_equal(status, STEP_STOPPED);
+  assert_ptr_equal(simulation_stopped_by(first.simulation), &first.deck->stops[1]);
+  assert_true(simulation_save(first.simulation, path, fingerprint, &none, error, sizeof error));
+  assert_null(simulation_stopped_by(second.simulation));
+  assert_true(simulation_restore(second.simulation, path, fingerprint, NULL, error, sizeof error));
+  assert_int_equal(simulation_advance(second.simulation, 1, NULL), STEP_STOPPED);
+  assert_ptr_equal(simulation_stopped_by(second.simulation), &second.deck->stops[1]);
+  small_close(&first);
+  small_close(&second);
+  unlink(path);
+}
+
 static void a_failed_save_leaves_the_old_file(void **state) {
   (void)state;
   char error[200], old[3] = {1, 2, 3}, back[3] = {0};
@@ -257,6 +290,7 @@ int main(void) {
       cmocka_unit_test(a_resumed_run_gives_the_same_bits),
       cmocka_unit_test(an_impulse_is_not_lost),
       cmocka_unit_test(damaged_and_foreign_files_are_refused),
+      cmocka_unit_test(a_resumed_run_knows_what_stopped_it),
       cmocka_unit_test(a_failed_save_leaves_the_old_file),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -285,6 +285,40 @@ static void unknown_fields_are_refused(void **state) {
   small_close(&r);
 }
 
+/* A law's own state of that name among the fields of a deck: how many errors there are. */
+static int errors_with(const char *name, const char *fields) {
+  pl_law law = family_hexagon;
+  pl_field named[2] = {family_fields[0], family_fields[1]};
+  char text[512];
+  named[0].name = name;
+  named[0].kind = PL_FIELD_STATE;
+  law.fields = named;
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-4 /\n"
+           "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+           "&material lattice = 'c' model = 'm' /\n"
+           "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.06 /\n"
+           "&output fields = %s /\n",
+           fields);
+  small_run r;
+  small_open(&r, &law, text);
+  const int errors = r.said.errors;
+  assert_true((r.simulation == NULL) == (errors > 0));
+  if (errors > 0) assert_int_equal(r.said.items[r.said.count - 1].code, DIAG_RESERVED_NAME);
+  small_close(&r);
+  return errors;
+}
+
+static void fields_that_a_result_has_already_are_refused(void **state) {
+  (void)state;
+  assert_int_equal(errors_with("omega", "'omega', 'most'"), 0);
+  assert_int_equal(errors_with("velocity", "'velocity'"), 1);
+  assert_int_equal(errors_with("velocity", "'displacement'"), 0);
+  assert_int_equal(errors_with("time", "'time'"), 1);
+  assert_int_equal(errors_with("c", "'c', 'most'"), 1); /* /frames/c is the folder of `most` */
+  assert_int_equal(errors_with("c", "'c'"), 0);
+}
+
 static void protection_holds_damage(void **state) {
   (void)state;
   small_run r;
@@ -405,6 +439,7 @@ int main(void) {
       cmocka_unit_test(monitors_watch_fields_and_outputs),
       cmocka_unit_test(watched_outputs_are_of_the_present_state),
       cmocka_unit_test(unknown_fields_are_refused),
+      cmocka_unit_test(fields_that_a_result_has_already_are_refused),
       cmocka_unit_test(protection_holds_damage),
       cmocka_unit_test(a_state_gone_bad_is_named_with_its_family),
       cmocka_unit_test(the_step_limit_is_sharp),

@@ -179,6 +179,33 @@ static void an_old_result_survives_a_failed_write(void **state) {
   assert_non_null(strstr(error, "full/result.h5"));
 }
 
+/* Files are known by their whole paths, however long what these begin with. */
+static void files_with_long_paths_are_kept(void **state) {
+  (void)state;
+  char folder[600], names[2][620];
+  memset(folder, 'f', sizeof folder);
+  folder[sizeof folder - 1] = 0;
+  for (int k = 0; k < 2; k++)
+    snprintf(names[k], sizeof names[k], "%s:%d.csv", folder, k);
+  const result_text files[] = {{names[0], "t, F"}, {names[1], "t, M"}};
+  result_header h = header("result_l.h5");
+  h.files = files;
+  h.file_count = 2;
+  result *r = small_begin(&h, error, sizeof error);
+  write_frame(r, 0);
+  finish(r);
+  result_file *f = result_read("result_l.h5", error, sizeof error);
+  assert_non_null(f);
+  result_names kept = result_list(f, "/input/files");
+  assert_int_equal(kept.count, 2);
+  for (int k = 0; k < 2; k++)
+    assert_string_equal(kept.items[k], names[k]);
+  result_names_free(&kept);
+  result_read_close(f);
+  unlink("result_l.h5");
+  unlink("result_l.xdmf");
+}
+
 static void damaged_files_are_refused(void **state) {
   (void)state;
   result_header h = header("result_e.h5");
@@ -676,6 +703,7 @@ int main(void) {
       cmocka_unit_test(resume_needs_its_frames),
       cmocka_unit_test(two_runs_do_not_share_a_result),
       cmocka_unit_test(an_old_result_survives_a_failed_write),
+      cmocka_unit_test(files_with_long_paths_are_kept),
       cmocka_unit_test(damaged_files_are_refused),
       cmocka_unit_test(the_sidecar_is_xml_whatever_the_names),
       cmocka_unit_test(pictures),
