@@ -265,6 +265,10 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     say_error("`perilat info` takes one law, deck or result, or --builtins");
     return false;
   }
+  if (!bad && o->builtins && o->json) {
+    say_error("--json is for laws and results; leave out --builtins");
+    return false;
+  }
   o->law.settings = settings;
   return !bad;
 }

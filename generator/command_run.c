@@ -317,10 +317,10 @@ int perilat_solver_main(int argc, char **argv, const char *deck_name, const char
       printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
              argv[0], deck_name);
       options_print("solver", stdout);
-      return 0;
+      return end_output(0);
     }
   bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
   int status = good ? run_as_asked(&o) : 1;
   free(o.overrides);
-  return status;
+  return end_output(status);
 }

@@ -17,10 +17,14 @@ typedef struct document {
 
 void document_begin(document *d);
 /* Ends it with `error`, the first sentence that say_error said since it began or null, and writes
-   it. Returns `status`, or 2 after a message where the document could not be written. */
+   it. Returns `status`, or 2 where the document could not be written: end_output says why. */
 int document_end(document *d, int status);
 
 /* "perilat: error: SENTENCE" on the error stream. */
 void say_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* What a program with this exit status ends with: 2 after a message where not all of what it
+   printed could be written. */
+int end_output(int status);
 
 #endif

@@ -153,9 +153,24 @@ static void a_document_that_cannot_be_written_fails(void **state) {
   expect(w, "run beam.nml --json > /dev/full", 2, "cannot write to the standard output");
   expect(w, "info cohesive --json > /dev/full", 2, "cannot write to the standard output");
   expect(w, "info cohesive --json >&-", 2, "cannot write to the standard output");
+  assert_int_equal(
+      shell(w, "$P run beam.nml --json 2>&1 > /dev/full | grep -c 'cannot write' | grep -qx 1"), 0);
 }
 
 /* --- results ---------------------------------------------------------------------------------- */
+
+/* Their numbers are not given to files: neither result nor document holds what is said. */
+static void closed_streams_are_no_files(void **state) {
+  workplace *w = *state;
+  size_t size;
+  assert_int_equal(shell(w, "$P run beam.nml --json > document 2>&-"), 0);
+  char *text = read_bytes(w, "document", &size);
+  assert_true(json_is_valid(text));
+  free(text);
+  assert_int_equal(shell(w, "$P check beam.nml <&- >&- 2>&-"), 2);
+  assert_int_equal(shell(w, "$P run beam.nml <&- > document 2>&-"), 0);
+  expect(w, "info beam.h5", 0, "Ended: end of the run");
+}
 
 static void results_are_told_whole(void **state) {
   workplace *w = *state;
@@ -409,6 +424,7 @@ int main(void) {
       IN_WORKPLACE(an_interrupted_run_says_so),
       IN_WORKPLACE(a_solver_writes_the_same_document),
       IN_WORKPLACE(a_document_that_cannot_be_written_fails),
+      IN_WORKPLACE(closed_streams_are_no_files),
       IN_WORKPLACE(results_are_told_whole),
       IN_WORKPLACE(tables_hold_the_numbers_of_the_result),
       IN_WORKPLACE(comparisons_tell_where_and_by_what),
