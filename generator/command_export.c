@@ -391,10 +391,10 @@ static int export_to_json(const export_request *q) {
 static int export_result(const export_request *q) {
   char *text = NULL;
   size_t length = 0;
-  FILE *out = open_memstream(&text, &length);
-  const bool good = out && export_table(q, out, NULL) == 0, whole = out && fclose(out) == 0;
-  if (good && !whole) say_error("not enough memory for the table");
-  const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q->output);
+  FILE *out = must_open_text(&text, &length);
+  const bool good = export_table(q, out, NULL) == 0;
+  must_close_text(out);
+  const int status = good ? write_table(text, length, q->output) : 1;
   free(text);
   return status;
 }
