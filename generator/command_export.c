@@ -7,6 +7,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/characters.h"
+#include "dsl/digits.h"
 #include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/document.h"
@@ -28,15 +29,9 @@ typedef struct export_request {
 
 /* --- writing ---------------------------------------------------------------------------------- */
 
-/* The shortest text that reads back as the same number. */
 static void write_number(FILE *out, double value) {
-  value += 0.0; /* no minus before zeros */
-  char text[40];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break;
-  }
-  fputs(text, out);
+  char text[DIGITS_TEXT];
+  fputs(fewest_digits(value + 0.0, text), out); /* no minus before zeros */
 }
 
 /* As RFC 4180 wants a text in quotes. */

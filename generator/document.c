@@ -14,13 +14,17 @@ enum { CANNOT_WRITE = 2, LONGEST = 8192 };
 
 static char first_error[LONGEST];
 
+void keep_error(const char *sentence) {
+  if (!*first_error) snprintf(first_error, strcspn(sentence, "\n") + 1, "%s", sentence);
+}
+
 void say_error(const char *format, ...) {
   char sentence[LONGEST];
   va_list values;
   va_start(values, format);
   vsnprintf(sentence, sizeof sentence, format, values);
   va_end(values);
-  if (!*first_error) snprintf(first_error, strcspn(sentence, "\n") + 1, "%s", sentence);
+  keep_error(sentence);
   fprintf(stderr, "perilat: error: %s\n", sentence);
 }
 

@@ -22,6 +22,8 @@ int document_end(document *d, int status);
 
 /* "perilat: error: SENTENCE" on the error stream. */
 void say_error(const char *format, ...) __attribute__((format(printf, 1, 2)));
+/* For the document only: an error that has been printed in another way. */
+void keep_error(const char *sentence);
 
 /* What a program with this exit status ends with: 2 after a message where not all of what it
    printed could be written. */

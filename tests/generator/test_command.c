@@ -61,7 +61,9 @@ static void arguments_are_checked(void **state) {
       {"check cohesive --set softening=sudden", 1, "the choices are 'linear', 'exponential'"},
       {"info --builtins", 0, "stretch"},
       {"info --builtins > /dev/full", 2, "cannot write to the standard output"},
-      {"info --builtins --json", 1, "--json is for laws and results"},
+      {"info splm_elastic --lattice square --horizon 3.015", 0,
+       "wave speeds           none: the virgin lattice has no stiffness"},
+      {"info --builtins --json", 1, "--builtins takes no other option"},
   };
   expect_all(*state, list, COUNT(list));
 }

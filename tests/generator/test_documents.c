@@ -238,6 +238,9 @@ static void comparisons_tell_where_and_by_what(void **state) {
   free(text);
   expect_document(w, "compare a.h5 none.h5 --json", 1, "\"error\": \"cannot read");
   expect_document(w, "compare a.h5 b.h5 --json --field none", 1, "\"same\": false");
+  write_text(w, "other.csv", "time,stress\n0,0\n1,1\n");
+  expect_document(w, "compare a.h5 other.csv --json", 1,
+                  "\"error\": \"`other.csv` has no column `load`\"");
 }
 
 /* --- laws ------------------------------------------------------------------------------------- */
@@ -296,11 +299,13 @@ static void expect_keys(const char *reference, const char *text) {
 static void the_reference_tells_of_every_key(void **state) {
   workplace *w = *state;
   const char *reference = section_of_reference();
+  write_text(w, "lab.csv", "time [ms],load [kN]\n0,0\n1,1\n");
   static const char *const commands[] = {"run beam.nml --json",
                                          "info beam.h5 --json",
                                          "info cohesive --json",
                                          "info mplm_bilinear --json",
                                          "compare beam.h5 beam.h5 --json",
+                                         "compare beam.h5 lab.csv --tolerance 1e9 --json",
                                          "export beam.h5 --json",
                                          "export beam.h5 --frame 0 --json"};
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
@@ -357,6 +362,7 @@ static void texts_come_through_pipes(void **state) {
       {"cat $PERILAT_MODELS/cohesive.plm | $P check - --dump=passes", 0, "kernel of cohesive"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P explain -", 0, "# cohesive"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P info -", 0, "work of fracture"},
+      {"printf '\\211HDF\\r\\n\\032\\n' | $P info -", 1, "a result is not read from the standard"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P format --check -", 0, ""},
       {"cat $PERILAT_MODELS/cohesive.plm | $P format - | cmp - $PERILAT_MODELS/cohesive.plm", 0,
        ""},
