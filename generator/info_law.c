@@ -205,8 +205,7 @@ static bool imply(facts *f) {
   i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
   if (!is_of_families(f)) imply_bonds(f, w);
   i->waves = (implied_waves){{NAN, NAN}, NAN, NAN};
-  if (i->has_mass && i->stiff)
-    implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
+  if (i->has_mass && i->stiff) implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
   if (i->has_mass) stability_limit(f->law, f->values, NULL, w, &i->step);
   rows_free(w);
   return true;
