@@ -1,5 +1,5 @@
-/* --json: what a command has to say is one JSON document on the standard output; all that is
-   printed for people goes to the error stream then, whatever prints it. */
+/* How commands say errors, and --json: what a command has to say is one JSON document on the
+   standard output; all that is printed for people goes to the error stream then. */
 #ifndef PERILAT_GENERATOR_DOCUMENT_H
 #define PERILAT_GENERATOR_DOCUMENT_H
 
