@@ -272,6 +272,7 @@ static void use_temporary_folder(char *path, size_t size) {
     snprintf(path, size, "%s/perilat-%ld-%d", parent, (long)geteuid(), k);
     if (make_private_folder(path)) return;
   }
+  snprintf(path, size, "/dev/null"); /* holds nothing: what is written there fails with a message */
 }
 
 /* Where the settings want the cache; empty where they do not say. */
