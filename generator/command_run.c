@@ -243,12 +243,12 @@ static int dump_deck(const run_options *o, const char *stage) {
 }
 
 static int check_file(const run_options *o, const char *dump) {
+  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
+    return 1;
   char *found = NULL;
   file_kind kind = kind_of_file(o->deck_path);
   if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL))) kind = FILE_LAW;
   int status = 1;
-  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
-    return 1;
   if (kind == FILE_LAW)
     status = check_law(o, found ? found : o->deck_path, dump);
   else if (dump && drive_is_path(o->deck_path))

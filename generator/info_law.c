@@ -88,6 +88,10 @@ static bool read_family(deck_lattice *l, const info_law_options *o) {
   if (o->horizon) l->shells = 0;
   if (o->horizon && !read_number("--horizon", o->horizon, 1, 8, &l->horizon)) return false;
   if (o->shells && !read_number("--shells", o->shells, 1, 64, &shells)) return false;
+  if (shells != floor(shells)) {
+    say_error("--shells needs a whole number, not `%s`", o->shells);
+    return false;
+  }
   if (o->shells) l->shells = (int)shells;
   return true;
 }
