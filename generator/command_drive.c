@@ -331,7 +331,7 @@ static bool write_files(const driving *r) {
 
 static void print_verdict(const driving *r, const drive_expect *e, const drive_verdict *v) {
   place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
-  const char *unit_text = strcmp(v->unit, "1") == 0 ? "" : v->unit;
+  const char *unit_text = unit_is_pure(v->unit) ? "" : v->unit;
   printf("%s  %s:%d: %s = %.9g%s%s", v->passed ? "PASS" : "FAIL", r->options->path, at.line,
          e->quantity, v->found, *unit_text ? " " : "", unit_text);
   if (v->passed)

@@ -187,7 +187,7 @@ static void show_key(const deck_key_info *key) {
   static const char *const limits[] = {"", ", greater than 0", ", not negative",
                                        ", greater than 0 and at most 1"};
   printf("  %-20s %s", key->name, key->doc ? key->doc : "");
-  if (key->unit && strcmp(key->unit, "1") != 0)
+  if (!unit_is_pure(key->unit))
     printf(" (%s%s)", key->unit, limits[key->bound]);
   else if (key->bound)
     printf(" (%s)", limits[key->bound] + 2);

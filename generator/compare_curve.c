@@ -33,7 +33,7 @@ typedef struct scale_text {
 static scale_text scale_of(const measured *m, const plot_histories *h) {
   scale_text s;
   const char *in = readable_unit(h->x_unit, largest_of(m->x, m->count), &s.factor);
-  const bool pure = in[0] == '1' && !in[1];
+  const bool pure = unit_is_pure(in);
   snprintf(s.unit_text, sizeof s.unit_text, "%s%.30s", pure ? "" : " ", pure ? "" : in);
   return s;
 }

@@ -8,6 +8,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/elementary.h"
+#include "dsl/units.h"
 #include "generator/document.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
@@ -50,7 +51,7 @@ typedef struct seeker {
 } seeker;
 
 static const char *shown(const seeker *s, double value, char text[VALUE_TEXT]) {
-  const bool pure = strcmp(s->unit_text, "1") == 0;
+  const bool pure = unit_is_pure(s->unit_text);
   snprintf(text, VALUE_TEXT, "%.4g%s%.30s", value * s->factor + 0.0, pure ? "" : " ",
            pure ? "" : s->unit_text);
   return text;

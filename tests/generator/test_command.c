@@ -61,6 +61,7 @@ static void arguments_are_checked(void **state) {
       {"check cohesive --set softening=sudden", 1, "the choices are 'linear', 'exponential'"},
       {"info --builtins", 0, "stretch"},
       {"info --builtins > /dev/full", 2, "cannot write to the standard output"},
+      {"help path | grep -c ' ()$'", 1, "0"},
       {"info mplm_bilinear --shells 1.5", 1, "--shells needs a whole number, not `1.5`"},
       {"info splm_elastic --lattice square --horizon 3.015", 0,
        "wave speeds           none: the virgin lattice has no stiffness"},
