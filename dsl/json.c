@@ -2,10 +2,10 @@
 
 #include <assert.h>
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "dsl/characters.h"
+#include "dsl/digits.h"
 
 void json_begin(json *j, FILE *out) {
   *j = (json){.out = out};
@@ -115,11 +115,8 @@ void json_number(json *j, double number) {
     json_null(j);
     return;
   }
-  char text[40];
-  for (int digits = 15; digits <= 17; digits++) { /* the fewest that give the number back */
-    snprintf(text, sizeof text, "%.*g", digits, number);
-    if (strtod(text, NULL) == number) break;
-  }
+  char text[DIGITS_TEXT];
+  fewest_digits(number, text);
   char *comma = strchr(text, ','); /* the decimal sign of some languages */
   if (comma) *comma = '.';
   before_value(j);

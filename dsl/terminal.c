@@ -2,6 +2,7 @@
 #include "dsl/terminal.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
@@ -85,7 +86,7 @@ static bool show(guard *g, const char *data, size_t size) {
 static ssize_t guarded_write(void *cookie, const char *data, size_t size) {
   guard *g = cookie;
   const bool good = g->open ? write_all(g->descriptor, data, size) : show(g, data, size);
-  return good ? (ssize_t)size : -1;
+  return good ? (ssize_t)size : 0; /* never -1, fopencookie(3) */
 }
 
 static FILE *guarded(guard *g, FILE *plain, int buffering) {
@@ -96,9 +97,17 @@ static FILE *guarded(guard *g, FILE *plain, int buffering) {
   return g->stream;
 }
 
+/* A stream that the shell has closed stays useless, but its number is taken: otherwise the next
+   file would get it, and what is said would be written into that file. */
+static void take_closed_descriptors(void) {
+  for (int k = STDIN_FILENO; k <= STDERR_FILENO; k++)
+    if (fcntl(k, F_GETFD) < 0) (void)open("/dev/null", k == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+}
+
 /* The GNU C library lets a program set its streams. */
 void terminal_begin(void) {
   if (guards[0].stream) return;
+  take_closed_descriptors();
   stdout = guarded(&guards[0], stdout, isatty(STDOUT_FILENO) ? _IOLBF : _IOFBF);
   stderr = guarded(&guards[1], stderr, _IONBF);
 }

@@ -1,8 +1,9 @@
 /* Names of the tree's parts, and its two printed forms. */
 #include "dsl/tree.h"
 
-#include <stdlib.h>
 #include <string.h>
+
+#include "dsl/digits.h"
 
 const char *stmt_kind_name(stmt_kind kind) {
 #define X(code, text) text,
@@ -63,14 +64,9 @@ static operator_levels levels_of(binary_op op) {
   }
 }
 
-/* The fewest digits that give the number back. */
 static void print_number(double number, FILE *out) {
-  char text[40];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, number);
-    if (strtod(text, NULL) == number) break;
-  }
-  fputs(text, out);
+  char text[DIGITS_TEXT];
+  fputs(fewest_digits(number, text), out);
 }
 
 static void print_at(const expr *e, level context, FILE *out);

@@ -370,3 +370,7 @@ void dim_describe(dimension d, char *text, size_t size) {
   else
     snprintf(text, size, "a quantity in %s", si_unit);
 }
+
+bool unit_is_pure(const char *symbol) {
+  return !symbol || !*symbol || strcmp(symbol, "1") == 0;
+}

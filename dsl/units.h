@@ -40,6 +40,9 @@ void dim_describe(dimension d, char *text, size_t size);
 /* A short unit for tables and axis labels: "Pa", "N*m", "kg/m^3", "1" for a pure number. */
 void dim_unit(dimension d, char *text, size_t size);
 
+/* Whether there is nothing to write behind a number in that unit: NULL, "" or "1". */
+bool unit_is_pure(const char *symbol);
+
 /* All unit symbols, for suggestions. */
 const char *const *unit_symbols(int *count);
 

@@ -25,10 +25,9 @@ static void put_text(const char *text, FILE *out) {
 
 /* Numbers are written so that they read back to the same bits. */
 static void put_value(const char *name, double value, const char *unit_text, FILE *out) {
-  bool pure = !unit_text || !*unit_text || strcmp(unit_text, "1") == 0;
   if (!isfinite(value))
     fprintf(out, "  ! %s was %g\n", name, value);
-  else if (pure)
+  else if (unit_is_pure(unit_text))
     fprintf(out, "  %s = %.17g\n", name, value);
   else
     fprintf(out, "  %s = '%.17g %s'\n", name, value, unit_text);

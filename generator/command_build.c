@@ -6,6 +6,7 @@
 
 #include "generator/c_text.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/model.h"
 #include "generator/physics.h"
@@ -17,9 +18,7 @@ enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
 
 static bool spares_input(const char *output, const char *input) {
   if (!same_file(output, input)) return true;
-  fprintf(stderr,
-          "perilat: error: the output `%s` would overwrite `%s`; give it another name with -o\n",
-          output, input);
+  say_error("the output `%s` would overwrite `%s`; give it another name with -o", output, input);
   return false;
 }
 
@@ -36,7 +35,7 @@ static int build_law(const char *path, const char *output, bool no_physics) {
   }
   int status = good && spares_input(output, path) ? 0 : INPUT_WRONG;
   if (!status && !toolchain_build(m.c_text, output, error, sizeof error)) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     status = BUILD_FAILED;
   }
   if (!status) printf("written %s (key %s)\n", output, m.key);
@@ -162,7 +161,7 @@ static int link_solver(const char *path, const char *deck_text, const char *outp
   if (!status) {
     char *text = solver_text(&l, path, deck_text);
     if (!toolchain_build_program(text, output, error, sizeof error)) {
-      fprintf(stderr, "perilat: error: %s\n", error);
+      say_error("%s", error);
       status = BUILD_FAILED;
     }
     free(text);
@@ -178,12 +177,12 @@ static int build_solver(const char *path, const char *output, bool no_physics) {
   size_t length;
   char *deck_text = read_text_file(path, DECK_LIMIT, &length, error, sizeof error);
   if (!deck_text) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     return INPUT_WRONG;
   }
   int status = INPUT_WRONG;
   if (!output)
-    fputs("perilat: error: a solver needs a name: perilat build deck.nml -o solver\n", stderr);
+    say_error("a solver needs a name: perilat build deck.nml -o solver");
   else if (spares_input(output, path))
     status =
         run_deck(&(run_options){.deck_path = path, .check_only = true, .no_physics = no_physics});
@@ -204,15 +203,14 @@ int command_build(int argc, char **argv) {
     else if (argv[at][0] == '-')
       bad = option_unknown("build", argv[at]);
     else if (path) {
-      fprintf(stderr, "perilat: error: `perilat build` takes one file; `%s` is a second one\n",
-              argv[at]);
+      say_error("`perilat build` takes one file; `%s` is a second one", argv[at]);
       bad = 1;
     } else
       path = argv[at++];
   }
   if (bad) return 1;
   if (!path) {
-    fputs("perilat: error: `perilat build` needs a law or a deck\n", stderr);
+    say_error("`perilat build` needs a law or a deck");
     return 1;
   }
   const file_kind kind = kind_of_file(path);

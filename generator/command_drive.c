@@ -7,6 +7,7 @@
 
 #include "dsl/elementary.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/explain_bad.h"
 #include "generator/run.h"
@@ -55,13 +56,13 @@ static bool take_file(drive_options *o, const char *file) {
   if (!file_suits(file, FILES(LAW) | FILES(DECK), "perilat drive", "a law and a path"))
     return false;
   if (kind == FILE_DECK && drive_is_deck(file) && !drive_is_path(file)) {
-    fprintf(stderr, "perilat: error: `%s` is a deck, not a path\n  perilat run %s\n", file, file);
+    say_error("`%s` is a deck, not a path\n  perilat run %s", file, file);
     return false;
   }
   const char **slot = kind == FILE_DECK ? &o->path : &o->law;
   if (*slot) {
-    fprintf(stderr, "perilat: error: `perilat drive` takes one %s; `%s` is a second one\n",
-            kind == FILE_DECK ? "path" : "law", file);
+    say_error("`perilat drive` takes one %s; `%s` is a second one",
+              kind == FILE_DECK ? "path" : "law", file);
     return false;
   }
   *slot = file;
@@ -87,9 +88,7 @@ static bool read_options(int argc, char **argv, drive_options *o, const char **s
     else
       bad = !take_file(o, argv[at++]);
   }
-  if (!bad && !o->path)
-    fputs("perilat: error: `perilat drive` needs a path\n  perilat drive law.plm path.nml\n",
-          stderr);
+  if (!bad && !o->path) say_error("`perilat drive` needs a path\n  perilat drive law.plm path.nml");
   return !bad && o->path;
 }
 
@@ -168,7 +167,7 @@ static int open_law(driving *r) {
   r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->law) return 0;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   return DRIVE_FAILED;
 }
 
@@ -233,9 +232,9 @@ static void report_bad(const driving *r) {
   int column = 0;
   while (isfinite(t->columns[column].values[row]))
     column++;
-  fprintf(stderr, "perilat: error: `%s` is not a number at %.6g s, %s %.6g\n",
-          t->columns[column].name, t->columns[DRIVE_COLUMN_TIME].values[row],
-          t->columns[t->way].name, t->columns[t->way].values[row]);
+  say_error("`%s` is not a number at %.6g s, %s %.6g", t->columns[column].name,
+            t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
+            t->columns[t->way].values[row]);
   if (t->of_families) return;
   double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
   for (int f = 0; f < t->fields; f++)
@@ -305,7 +304,7 @@ static bool spares_inputs(const driving *r) {
   for (size_t k = 0; k < sizeof written / sizeof *written; k++)
     if (written[k] &&
         (same_file(written[k], r->options->path) || same_file(written[k], r->model.path))) {
-      fprintf(stderr, "perilat: error: the output would overwrite `%s`\n", written[k]);
+      say_error("the output would overwrite `%s`", written[k]);
       return false;
     }
   return true;
@@ -326,13 +325,13 @@ static bool write_files(const driving *r) {
     if (files[k].path && files[k].written) printf("written %s\n", files[k].path);
     good = good && files[k].written;
   }
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   return good;
 }
 
 static void print_verdict(const driving *r, const drive_expect *e, const drive_verdict *v) {
   place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
-  const char *unit_text = strcmp(v->unit, "1") == 0 ? "" : v->unit;
+  const char *unit_text = unit_is_pure(v->unit) ? "" : v->unit;
   printf("%s  %s:%d: %s = %.9g%s%s", v->passed ? "PASS" : "FAIL", r->options->path, at.line,
          e->quantity, v->found, *unit_text ? " " : "", unit_text);
   if (v->passed)

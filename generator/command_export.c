@@ -7,6 +7,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/characters.h"
+#include "dsl/digits.h"
 #include "dsl/terminal.h"
 #include "generator/commands.h"
 #include "generator/document.h"
@@ -28,15 +29,9 @@ typedef struct export_request {
 
 /* --- writing ---------------------------------------------------------------------------------- */
 
-/* The shortest text that reads back as the same number. */
 static void write_number(FILE *out, double value) {
-  value += 0.0; /* no minus before zeros */
-  char text[40];
-  for (int digits = 15; digits <= 17; digits++) {
-    snprintf(text, sizeof text, "%.*g", digits, value);
-    if (strtod(text, NULL) == value) break;
-  }
-  fputs(text, out);
+  char text[DIGITS_TEXT];
+  fputs(fewest_digits(value + 0.0, text), out); /* no minus before zeros */
 }
 
 /* As RFC 4180 wants a text in quotes. */
@@ -391,10 +386,10 @@ static int export_to_json(const export_request *q) {
 static int export_result(const export_request *q) {
   char *text = NULL;
   size_t length = 0;
-  FILE *out = open_memstream(&text, &length);
-  const bool good = out && export_table(q, out, NULL) == 0, whole = out && fclose(out) == 0;
-  if (good && !whole) say_error("not enough memory for the table");
-  const int status = !good ? 1 : !whole ? 2 : write_table(text, length, q->output);
+  FILE *out = must_open_text(&text, &length);
+  const bool good = export_table(q, out, NULL) == 0;
+  must_close_text(out);
+  const int status = good ? write_table(text, length, q->output) : 1;
   free(text);
   return status;
 }

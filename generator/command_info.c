@@ -13,6 +13,7 @@
 #include "generator/model.h"
 #include "generator/result_table.h"
 #include "generator/run.h"
+#include "generator/standard_input.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 
@@ -230,6 +231,11 @@ typedef struct info_options {
   bool builtins, json;
 } info_options;
 
+static bool asks_about_law(const info_options *o) {
+  const info_law_options *l = &o->law;
+  return l->spacing || l->thickness || l->lattice || l->horizon || l->shells || l->setting_count;
+}
+
 static bool read_options(int argc, char **argv, const char **settings, info_options *o) {
   int bad = 0;
   for (int at = 0; at < argc && !bad;) {
@@ -266,6 +272,10 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     return false;
   }
   o->law.settings = settings;
+  if (!bad && o->builtins && (o->json || asks_about_law(o))) {
+    say_error("--builtins takes no other option");
+    return false;
+  }
   return !bad;
 }
 
@@ -281,8 +291,7 @@ static int info_about_law(const info_options *o, json *w) {
 /* w: of the document, or NULL. */
 static int info_file(const info_options *o, json *w) {
   file_kind kind = kind_of_file(o->file);
-  const bool asks_law = o->law.spacing || o->law.thickness || o->law.lattice || o->law.horizon ||
-                        o->law.shells || o->law.setting_count;
+  const bool asks_law = asks_about_law(o);
   if ((asks_law && kind == FILE_RESULT) || ((asks_law || o->json) && kind == FILE_DECK)) {
     say_error("`%s` is a %s; %s", o->file, kind == FILE_DECK ? "deck" : "result",
               asks_law ? "--lattice, --spacing, --set and their like ask about a law"
@@ -292,6 +301,10 @@ static int info_file(const info_options *o, json *w) {
   if (!file_suits(o->file, FILES(LAW) | FILES(DECK) | FILES(RESULT), "perilat info",
                   "a law, a deck or a result"))
     return 1;
+  if (kind == FILE_RESULT && is_standard_input(o->file)) {
+    say_error("a result is not read from the standard input; give it as a file");
+    return 1;
+  }
   if (kind == FILE_RESULT) return info_result(o->file, w);
   if (kind == FILE_DECK && drive_refuse_path("info", o->file)) return 1;
   if (kind == FILE_DECK) return run_deck(&(run_options){.deck_path = o->file, .check_only = true});

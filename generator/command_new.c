@@ -7,6 +7,7 @@
 
 #include "generator/c_text.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/model.h"
 #include "generator/templates.h"
 
@@ -43,11 +44,9 @@ static bool is_name(const char *name) {
   if (*name && strchr(letters, *name) && strspn(name, further) == strlen(name) &&
       strlen(name) <= LONGEST_NAME)
     return true;
-  fprintf(stderr,
-          "perilat: error: `%s` cannot be the name of a law\n"
-          "  a name is made of letters, digits and _, begins with a letter and has at most %d "
-          "characters; no path, no ending\n",
-          name, LONGEST_NAME);
+  say_error("`%s` cannot be the name of a law\n  a name is made of letters, digits and _, begins "
+            "with a letter and has at most %d characters; no path, no ending",
+            name, LONGEST_NAME);
   return false;
 }
 
@@ -56,10 +55,8 @@ static bool is_law(const new_file *f, const char *name) {
   model m;
   bool good = model_open_text(&m, f->path, f->text, NULL, 0);
   if (!good)
-    fprintf(
-        stderr,
-        "perilat: error: `%s` cannot be the name of a law: %s\n  take another name, e.g. my_%s\n",
-        name, m.said.count ? m.said.items[0].message : "its template is not a law", name);
+    say_error("`%s` cannot be the name of a law: %s\n  take another name, e.g. my_%s", name,
+              m.said.count ? m.said.items[0].message : "its template is not a law", name);
   model_close(&m);
   return good;
 }
@@ -67,10 +64,9 @@ static bool is_law(const new_file *f, const char *name) {
 static bool spares_all(const new_file *files) {
   for (int k = 0; k < FILE_COUNT; k++)
     if (access(files[k].path, F_OK) == 0) {
-      fprintf(stderr,
-              "perilat: error: there is already a `%s`; nothing was written\n  take another name, "
-              "or move it away\n",
-              files[k].path);
+      say_error(
+          "there is already a `%s`; nothing was written\n  take another name, or move it away",
+          files[k].path);
       return false;
     }
   return true;
@@ -96,7 +92,7 @@ static bool write_all(new_file *files) {
     f->written = out != NULL;
     good = out && fputs(f->text, out) >= 0;
     if (out) good = fclose(out) == 0 && good;
-    if (!good) fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", f->path, strerror(errno));
+    if (!good) say_error("cannot write `%s`: %s", f->path, strerror(errno));
   }
   for (int k = 0; k < FILE_COUNT && !good; k++)
     if (files[k].written) unlink(files[k].path);
@@ -126,7 +122,7 @@ static int make_new(const char *name, const char *law_text) {
 static const char *law_of_kind(const char *kind) {
   if (!strcmp(kind, "central")) return template_central;
   if (!strcmp(kind, "micropolar")) return template_micropolar;
-  fprintf(stderr, "perilat: error: --kind takes central or micropolar, not `%s`\n", kind);
+  say_error("--kind takes central or micropolar, not `%s`", kind);
   return NULL;
 }
 
@@ -139,14 +135,13 @@ int command_new(int argc, char **argv) {
     else if (argv[at][0] == '-')
       bad = option_unknown("new", argv[at]);
     else if (name) {
-      fprintf(stderr, "perilat: error: `perilat new` takes one name; `%s` is a second one\n",
-              argv[at]);
+      say_error("`perilat new` takes one name; `%s` is a second one", argv[at]);
       bad = 1;
     } else
       name = argv[at++];
   }
   if (!bad && !name) {
-    fputs("perilat: error: `perilat new` needs a name\n  perilat new my_law\n", stderr);
+    say_error("`perilat new` needs a name\n  perilat new my_law");
     bad = 1;
   }
   return bad || !is_name(name) ? INPUT_WRONG : make_new(name, law_text);

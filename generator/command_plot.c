@@ -8,6 +8,7 @@
 
 #include "dsl/arena.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/frame_choice.h"
 #include "generator/measured.h"
 #include "generator/model.h"
@@ -36,7 +37,7 @@ static bool read_number(const char *name, const char *text, double *value) {
   char *end;
   *value = strtod(text, &end);
   if (!*end && end != text && isfinite(*value)) return true;
-  fprintf(stderr, "perilat: error: %s needs a number, not `%s`\n", name, text);
+  say_error("%s needs a number, not `%s`", name, text);
   return false;
 }
 
@@ -45,7 +46,7 @@ static bool read_whole(const char *name, const char *text, long *value) {
   errno = 0;
   *value = strtol(text, &end, 10);
   if (!*end && end != text && !errno && labs(*value) < INT_MAX) return true;
-  fprintf(stderr, "perilat: error: %s needs a whole number, not `%s`\n", name, text);
+  say_error("%s needs a whole number, not `%s`", name, text);
   return false;
 }
 
@@ -57,10 +58,9 @@ static bool read_slice(const char *text, plot_map_options *o) {
     o->slice_axis = (int)(axis - "xyz");
     return true;
   }
-  fprintf(stderr,
-          "perilat: error: --slice needs an axis and a place in m or with a unit, e.g. z=0.05 or "
-          "'x=5 mm', not `%s`\n",
-          text);
+  say_error(
+      "--slice needs an axis and a place in m or with a unit, e.g. z=0.05 or 'x=5 mm', not `%s`",
+      text);
   return false;
 }
 
@@ -74,10 +74,7 @@ static const char *special_value(int argc, char **argv, int *at, const char *nam
 
 static bool set_once(const char **x, const char *given) {
   if (*x)
-    fprintf(
-        stderr,
-        "perilat: error: --x is given twice, `%s` and `%s`; all curves of a picture have one x\n",
-        *x, given);
+    say_error("--x is given twice, `%s` and `%s`; all curves of a picture have one x", *x, given);
   const bool first = !*x;
   *x = given;
   return first;
@@ -101,10 +98,7 @@ static bool add_band(plot_request *q, const char *text) {
     last->band = text;
     return true;
   }
-  fprintf(stderr,
-          "perilat: error: --band %s follows the --data of its table: --data lab.csv --band "
-          "low,high\n",
-          text);
+  say_error("--band %s follows the --data of its table: --data lab.csv --band low,high", text);
   return false;
 }
 
@@ -217,7 +211,7 @@ static bool draw_curves(plot_request *q) {
   q->curve.beside = s.items;
   q->curve.beside_count = q->beside_count;
   good = good && plot_curve(q->results, q->result_count, &q->curve, error, sizeof error);
-  if (*error) fprintf(stderr, "perilat: error: %s\n", error);
+  if (*error) say_error("%s", error);
   for (int k = 0; k < tables; k++)
     measured_free(&s.tables[k]);
   free(h.x);
@@ -239,7 +233,7 @@ static bool draw_map(plot_request *q) {
   q->map.captions = (const char *const *)chosen.captions;
   q->map.frame_count = chosen.count;
   const bool good = plot_map(q->results[0], &q->map, error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   frame_choice_free(&chosen);
   return good;
 }
@@ -260,28 +254,22 @@ static bool are_results(const plot_request *q) {
 
 static bool complete(const plot_request *q) {
   if (q->result_count == 0)
-    fputs("perilat: error: `perilat plot` needs a result file\n  perilat plot result.h5 -o "
-          "curve.png\n",
-          stderr);
+    say_error("`perilat plot` needs a result file\n  perilat plot result.h5 -o curve.png");
   else if (q->is_map && q->result_count > 1)
-    fputs("perilat: error: a map shows one result; give one file\n", stderr);
+    say_error("a map shows one result; give one file");
   else if (q->label_count && q->label_count != q->result_count &&
            q->label_count != q->result_count + q->table_count)
-    fprintf(stderr, "perilat: error: %d labels for %d results%s; give one --label a result%s\n",
-            q->label_count, q->result_count, q->table_count ? " and their tables" : "",
-            q->table_count ? ", then one a table" : "");
+    say_error("%d labels for %d results%s; give one --label a result%s", q->label_count,
+              q->result_count, q->table_count ? " and their tables" : "",
+              q->table_count ? ", then one a table" : "");
   else if (q->is_map && q->of_curves)
-    fprintf(stderr,
-            "perilat: error: %s belongs to curves, --map draws a map; leave one of them out\n",
-            q->of_curves);
+    say_error("%s belongs to curves, --map draws a map; leave one of them out", q->of_curves);
   else if (!q->is_map && q->of_maps)
-    fprintf(stderr, "perilat: error: %s belongs to maps; add --map FIELD, e.g. --map damage\n",
-            q->of_maps);
+    say_error("%s belongs to maps; add --map FIELD, e.g. --map damage", q->of_maps);
   else if (q->frame && q->frames)
-    fputs("perilat: error: --frame shows one frame, --frames several; give one of them\n", stderr);
+    say_error("--frame shows one frame, --frames several; give one of them");
   else if (q->map.component < -1)
-    fprintf(stderr,
-            "perilat: error: --component counts from 0 (x); -1 is the size of the vector\n");
+    say_error("--component counts from 0 (x); -1 is the size of the vector");
   else
     return are_results(q);
   return false;
@@ -290,8 +278,7 @@ static bool complete(const plot_request *q) {
 /* The picture must not take the place of what it is drawn from. */
 static bool spares(const plot_request *q, const char *path) {
   if (!same_file(q->curve.output, path)) return true;
-  fprintf(stderr,
-          "perilat: error: the picture would overwrite `%s`; give it another name with -o\n", path);
+  say_error("the picture would overwrite `%s`; give it another name with -o", path);
   return false;
 }
 

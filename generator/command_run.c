@@ -243,12 +243,12 @@ static int dump_deck(const run_options *o, const char *stage) {
 }
 
 static int check_file(const run_options *o, const char *dump) {
+  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
+    return 1;
   char *found = NULL;
   file_kind kind = kind_of_file(o->deck_path);
   if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL))) kind = FILE_LAW;
   int status = 1;
-  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
-    return 1;
   if (kind == FILE_LAW)
     status = check_law(o, found ? found : o->deck_path, dump);
   else if (dump && drive_is_path(o->deck_path))
@@ -317,10 +317,10 @@ int perilat_solver_main(int argc, char **argv, const char *deck_name, const char
       printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
              argv[0], deck_name);
       options_print("solver", stdout);
-      return 0;
+      return end_output(0);
     }
   bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
   int status = good ? run_as_asked(&o) : 1;
   free(o.overrides);
-  return status;
+  return end_output(status);
 }

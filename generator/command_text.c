@@ -11,6 +11,7 @@
 #include "dsl/help.h"
 #include "dsl/terminal.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/drive.h"
 #include "generator/model.h"
 #include "generator/standard_input.h"
@@ -56,7 +57,7 @@ static int put_formatted(const char *path, const char *before, const char *after
     fprintf(stderr, "%s: not laid out as `perilat format` does\n", path);
   if (mode != FORMAT_IN_PLACE) return mode == FORMAT_CHECK && !same ? INPUT_WRONG : 0;
   if (same || write_in_place(path, after, error, sizeof error)) return 0;
-  fprintf(stderr, "perilat: error: %s\n", error);
+  say_error("%s", error);
   return INPUT_WRONG;
 }
 
@@ -73,7 +74,7 @@ static int format_file(const char *path, format_mode mode) {
   char error[ERROR_LENGTH];
   size_t length;
   if (mode == FORMAT_IN_PLACE && is_standard_input(path)) {
-    fputs("perilat: error: the standard input has no place; leave out -i\n", stderr);
+    say_error("the standard input has no place; leave out -i");
     return INPUT_WRONG;
   }
   if (!file_suits(path, FILES(LAW), "perilat format", "a law") ||
@@ -81,7 +82,7 @@ static int format_file(const char *path, format_mode mode) {
     return INPUT_WRONG;
   char *text = read_text_file(path, MODEL_LIMIT, &length, error, sizeof error);
   if (!text) {
-    fprintf(stderr, "perilat: error: %s\n", error);
+    say_error("%s", error);
     return INPUT_WRONG;
   }
   source_set sources = {NULL, 0};
@@ -112,7 +113,7 @@ int command_format(int argc, char **argv) {
       argv[files++] = argv[at++];
   }
   if (files == 0) {
-    fputs("perilat: error: `perilat format` needs a law\n", stderr);
+    say_error("`perilat format` needs a law");
     return INPUT_WRONG;
   }
   for (int k = 0; k < files; k++)
@@ -135,8 +136,7 @@ static int explain_file(const char *path, explain_form form, const law_choice *c
 static bool read_choice(char *given, law_choice *choice) {
   char *equals = strchr(given, '=');
   if (!equals || equals == given || !equals[1]) {
-    fprintf(stderr, "perilat: error: --set chooses an option of the law, option=choice, not `%s`\n",
-            given);
+    say_error("--set chooses an option of the law, option=choice, not `%s`", given);
     return false;
   }
   *equals = 0;
@@ -159,14 +159,13 @@ int command_explain(int argc, char **argv) {
     else if (is_option_like(argv[at]))
       bad = option_unknown("explain", argv[at]);
     else if (path) {
-      fprintf(stderr, "perilat: error: `perilat explain` takes one law; `%s` is a second one\n",
-              argv[at]);
+      say_error("`perilat explain` takes one law; `%s` is a second one", argv[at]);
       bad = 1;
     } else
       path = argv[at++];
   }
   if (!bad && !path) {
-    fputs("perilat: error: `perilat explain` needs a law\n", stderr);
+    say_error("`perilat explain` needs a law");
     bad = 1;
   }
   bad = bad || !file_suits(path, FILES(LAW), "perilat explain", "a law");
@@ -188,7 +187,7 @@ static void show_key(const deck_key_info *key) {
   static const char *const limits[] = {"", ", greater than 0", ", not negative",
                                        ", greater than 0 and at most 1"};
   printf("  %-20s %s", key->name, key->doc ? key->doc : "");
-  if (key->unit && strcmp(key->unit, "1") != 0)
+  if (!unit_is_pure(key->unit))
     printf(" (%s%s)", key->unit, limits[key->bound]);
   else if (key->bound)
     printf(" (%s)", limits[key->bound] + 2);

@@ -33,7 +33,7 @@ typedef struct scale_text {
 static scale_text scale_of(const measured *m, const plot_histories *h) {
   scale_text s;
   const char *in = readable_unit(h->x_unit, largest_of(m->x, m->count), &s.factor);
-  const bool pure = in[0] == '1' && !in[1];
+  const bool pure = unit_is_pure(in);
   snprintf(s.unit_text, sizeof s.unit_text, "%s%.30s", pure ? "" : " ", pure ? "" : in);
   return s;
 }
@@ -80,7 +80,7 @@ static void put_gap(json *w, const curve_request *q, const plot_histories *h, co
   json_put_text(w, "over_unit", *h->x_unit ? h->x_unit : "1");
   json_put_number(w, "from", g->from);
   json_put_number(w, "to", g->to);
-  json_put_number(w, "at", g->x);
+  json_put_number(w, "x", g->x);
   json_put_array(w, "values"); /* computed; measured, or the band's ends */
   json_number(w, g->y);
   json_number(w, g->low);
@@ -129,6 +129,8 @@ static int compare_with(const curve_request *q, const plot_histories *h, json *l
   diag_begin(&said, &sources);
   const bool good = measured_read(&m, "compare", q->table, q->band, &axes, &said);
   diag_print(&said, stderr);
+  for (int k = 0; k < said.count && !good; k++)
+    keep_error(said.items[k].message);
   const int status = good ? measure(q, h, &m, list) : WRONG;
   measured_free(&m);
   diag_clear(&said);

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/manual.h"
 
 enum { WRITE_FAILED = 2 };
@@ -227,7 +228,7 @@ int completion_write(const char *folder) {
     bool good = out && !ferror(out);
     if (out) good = fclose(out) == 0 && good;
     if (!good) {
-      fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
+      say_error("cannot write `%s`: %s", path, strerror(errno));
       return WRITE_FAILED;
     }
   }

@@ -313,7 +313,7 @@ bool drive_refuse_path(const char *command, const char *file) {
 static const char *value_words(const deck_key_info *key) {
   if (key->type == DECK_COUNT) return "whole number";
   if (!key->unit || !*key->unit) return "text";
-  return strcmp(key->unit, "1") == 0 ? "pure number" : key->unit;
+  return unit_is_pure(key->unit) ? "pure number" : key->unit;
 }
 
 void drive_reference(FILE *out) {

@@ -14,12 +14,8 @@
 #include "runtime/sealed_file.h"
 #include "runtime/whole_file.h"
 
-static bool is_pure(const char *unit_text) {
-  return !*unit_text || strcmp(unit_text, "1") == 0;
-}
-
 static void heading(const drive_column *c, char *text, size_t size) {
-  if (is_pure(c->unit))
+  if (unit_is_pure(c->unit))
     snprintf(text, size, "%s", c->name);
   else
     snprintf(text, size, "%s [%s]", c->name, c->unit);
@@ -250,7 +246,7 @@ static bool write_file(const drive_input *in, const drive_table *t, hid_t file) 
   for (int c = 0; good && c < t->column_count; c++) {
     snprintf(name, sizeof name, "/history/%s", t->columns[c].name);
     good = h5_write_doubles(file, name, t->columns[c].values, 1, &rows,
-                            is_pure(t->columns[c].unit) ? "1" : t->columns[c].unit);
+                            unit_is_pure(t->columns[c].unit) ? "1" : t->columns[c].unit);
   }
   return good;
 }

@@ -8,6 +8,8 @@
 
 #include "dsl/arena.h"
 #include "dsl/elementary.h"
+#include "dsl/units.h"
+#include "generator/document.h"
 #include "runtime/canvas.h"
 #include "runtime/plot.h"
 #include "runtime/quantity.h"
@@ -16,10 +18,9 @@
 enum { VALUE_TEXT = 64, CAPTION_TEXT = 128 };
 
 static bool refuse(const char *given) {
-  fprintf(stderr,
-          "perilat: error: --frames needs numbers, e.g. 0,5,-1, or values of a history, e.g. "
-          "cmod=0.1mm,0.2mm, not `%s`\n",
-          given);
+  say_error("--frames needs numbers, e.g. 0,5,-1, or values of a history, e.g. cmod=0.1mm,0.2mm, "
+            "not `%s`",
+            given);
   return false;
 }
 
@@ -50,7 +51,7 @@ typedef struct seeker {
 } seeker;
 
 static const char *shown(const seeker *s, double value, char text[VALUE_TEXT]) {
-  const bool pure = strcmp(s->unit_text, "1") == 0;
+  const bool pure = unit_is_pure(s->unit_text);
   snprintf(text, VALUE_TEXT, "%.4g%s%.30s", value * s->factor + 0.0, pure ? "" : " ",
            pure ? "" : s->unit_text);
   return text;
@@ -133,8 +134,8 @@ static bool seek(const seeker *s, double value, long *frame, char caption[CAPTIO
   const double time = first_time(&s->h, value, &nearest);
   shown(s, value, wanted);
   if (isnan(time)) {
-    fprintf(stderr, "perilat: error: `%s` never is %s: it comes as near as %s\n", s->name, wanted,
-            shown(s, nearest, there));
+    say_error("`%s` never is %s: it comes as near as %s", s->name, wanted,
+              shown(s, nearest, there));
     return false;
   }
   *frame = nearest_frame(s, time, value);
@@ -155,12 +156,12 @@ static bool read_values(frame_choice *c, const char *given, const char *values, 
     char caption[CAPTION_TEXT] = "";
     const size_t length = strcspn(p, ",");
     if (!quantity_read(p, length, s->h.y_unit, &value)) {
-      fprintf(stderr, "perilat: error: `%s` is in %s; --frames %s: `%.*s` is no value of it\n",
-              s->name, s->h.y_unit, given, (int)length, p);
+      say_error("`%s` is in %s; --frames %s: `%.*s` is no value of it", s->name, s->h.y_unit, given,
+                (int)length, p);
       return false;
     }
     if (!seek(s, value, &c->frames[k], caption)) return false;
-    c->captions[k] = strdup(caption);
+    c->captions[k] = must_copy(caption);
     p += length + 1;
   }
   return true;
@@ -172,7 +173,7 @@ static bool read_history(frame_choice *c, const char *path, const char *given, c
   seeker s = {.result = path, .name = name};
   c->captions = must_calloc((size_t)c->count, sizeof *c->captions);
   bool good = begin(&s, error, sizeof error);
-  if (!good) fprintf(stderr, "perilat: error: %s\n", error);
+  if (!good) say_error("%s", error);
   good = good && read_values(c, given, equals + 1, &s);
   end(&s);
   return good;
@@ -186,8 +187,7 @@ bool frame_choice_read(frame_choice *c, const char *path, const char *given) {
   for (const char *p = given; *p; p++)
     c->count += *p == ',';
   if (c->count > PLOT_MOST_PANELS) {
-    fprintf(stderr, "perilat: error: --frames has %d frames; one picture shows %d at most\n",
-            c->count, PLOT_MOST_PANELS);
+    say_error("--frames has %d frames; one picture shows %d at most", c->count, PLOT_MOST_PANELS);
     return false;
   }
   c->frames = must_calloc((size_t)c->count, sizeof *c->frames);

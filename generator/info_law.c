@@ -88,6 +88,10 @@ static bool read_family(deck_lattice *l, const info_law_options *o) {
   if (o->horizon) l->shells = 0;
   if (o->horizon && !read_number("--horizon", o->horizon, 1, 8, &l->horizon)) return false;
   if (o->shells && !read_number("--shells", o->shells, 1, 64, &shells)) return false;
+  if (shells != floor(shells)) {
+    say_error("--shells needs a whole number, not `%s`", o->shells);
+    return false;
+  }
   if (o->shells) l->shells = (int)shells;
   return true;
 }
@@ -204,10 +208,9 @@ static bool imply(facts *f) {
   i->has_mass = w->mass > 0;
   i->stiff = implied_elastic(f->law, f->values, w, &i->elastic);
   if (!is_of_families(f)) imply_bonds(f, w);
-  if (i->has_mass) {
-    implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
-    stability_limit(f->law, f->values, NULL, w, &i->step);
-  }
+  i->waves = (implied_waves){{NAN, NAN}, NAN, NAN};
+  if (i->has_mass && i->stiff) implied_wave_speeds(f->law, f->values, w, &i->elastic, &i->waves);
+  if (i->has_mass) stability_limit(f->law, f->values, NULL, w, &i->step);
   rows_free(w);
   return true;
 }
@@ -345,9 +348,9 @@ static void print_bond(const implied *i) {
          i->crack[0], i->crack[1]);
 }
 
-static void print_dynamics(const implied *i, bool rotations) {
-  if (!i->has_mass) {
-    printf("  waves, stable step    unknown: the law has no `rho`\n");
+static void print_waves(const implied *i, bool rotations) {
+  if (!i->stiff) {
+    printf("  wave speeds           none: the virgin lattice has no stiffness\n");
     return;
   }
   printf("  wave speeds           longitudinal %.6g m/s", i->waves.longitudinal[0]);
@@ -355,11 +358,20 @@ static void print_dynamics(const implied *i, bool rotations) {
     printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
   printf(", transverse %.6g m/s", i->waves.transverse);
   if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
-  if (i->step.least < STABILITY_LEAST) {
-    printf("\n  stable step           none: the virgin body is unstable at rest\n");
+  putchar('\n');
+}
+
+static void print_dynamics(const implied *i, bool rotations) {
+  if (!i->has_mass) {
+    printf("  waves, stable step    unknown: the law has no `rho`\n");
     return;
   }
-  printf("\n  stable step           %.6g us (%s mode%s rules, %.6g rad/s", 1e6 * i->step.limit,
+  print_waves(i, rotations);
+  if (i->step.least < STABILITY_LEAST) {
+    printf("  stable step           none: the virgin body is unstable at rest\n");
+    return;
+  }
+  printf("  stable step           %.6g us (%s mode%s rules, %.6g rad/s", 1e6 * i->step.limit,
          i->step.mode, i->step.at_surface ? " at the surface of a small block" : "",
          i->step.omega_max);
   if (i->step.damping_ratio > 0) printf(", damping ratio %.3g", i->step.damping_ratio);

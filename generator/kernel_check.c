@@ -5,6 +5,7 @@
 
 #include "dsl/arena.h"
 #include "dsl/elementary.h"
+#include "generator/document.h"
 #include "generator/guard_watch.h"
 #include "generator/kernel_check_families.h"
 #include "generator/kernel_check_strips.h"
@@ -166,31 +167,37 @@ bool kernel_check_agrees(const kernel_check *c) {
   return c->outputs.largest_ulps == 0 && c->outputs.unwritten == 0 && c->outputs.misplaced == 0;
 }
 
-static void report_fault(const kernel_check *c, const char *name, FILE *out) {
+static void report_fault(const kernel_check *c, const char *name) {
   const comparison *o = &c->outputs;
-  fprintf(out, "perilat: error: the compiled kernel of %s is wrong:", name);
+  char *text;
+  size_t length;
+  FILE *out = must_open_text(&text, &length);
   if (o->largest_ulps > 0)
     fprintf(out, " it differs from the interpreter by up to %.3g ulp (%s: %.17g, not %.17g);",
             o->largest_ulps, o->worst, o->kernel, o->interpreter);
   if (o->unwritten) fprintf(out, " %ld outputs were not written;", o->unwritten);
   if (o->misplaced)
     fprintf(out, " %ld values of absent or protected bonds were changed;", o->misplaced);
-  fprintf(out, " run with --interpret, or take another C compiler (PERILAT_CC)\n");
+  must_close_text(out);
+  say_error(
+      "the compiled kernel of %s is wrong:%s run with --interpret, or take another C compiler "
+      "(PERILAT_CC)",
+      name, text);
+  free(text);
 }
 
-void kernel_check_report(const kernel_check *c, const char *name, FILE *out) {
+void kernel_check_report(const kernel_check *c, const char *name) {
   if (!kernel_check_agrees(c)) {
-    report_fault(c, name, out);
+    report_fault(c, name);
     return;
   }
-  fprintf(out, "kernel check: %s and its interpreter give the same bits (", name);
+  printf("kernel check: %s and its interpreter give the same bits (", name);
   if (c->passes)
-    fprintf(out, "%ld random bonds of families in each of %d passes", c->bonds, c->passes);
+    printf("%ld random bonds of families in each of %d passes", c->bonds, c->passes);
   else
-    fprintf(out, "%ld random states, %ld random bonds in each of 6 strip functions", c->states,
-            c->bonds);
-  fprintf(out, ", %ld values)", c->outputs.values);
+    printf("%ld random states, %ld random bonds in each of 6 strip functions", c->states, c->bonds);
+  printf(", %ld values)", c->outputs.values);
   if (c->guards)
-    fprintf(out, "; %d of %d conditions were seen both true and false", c->guards_both, c->guards);
-  fputs("\n", out);
+    printf("; %d of %d conditions were seen both true and false", c->guards_both, c->guards);
+  puts("");
 }

@@ -29,7 +29,7 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
 
 /* All outputs written, none where it may not, and no difference at all. */
 bool kernel_check_agrees(const kernel_check *c);
-/* One or two sentences about the law `name`. */
-void kernel_check_report(const kernel_check *c, const char *name, FILE *out);
+/* One or two sentences about the law `name`: on the standard output, or an error. */
+void kernel_check_report(const kernel_check *c, const char *name);
 
 #endif

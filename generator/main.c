@@ -1,5 +1,4 @@
 /* perilat: one program, one subcommand a task. */
-#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
 #include <string.h>
@@ -7,6 +6,7 @@
 #include "dsl/diagnostics.h"
 #include "dsl/terminal.h"
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/manual.h"
 #include "generator/version.h"
 
@@ -76,7 +76,5 @@ int main(int argc, char **argv) {
   terminal_begin();
   int status = dispatch(argc, argv);
   diag_print_topics(stderr);
-  if (fflush(stdout) == 0 && !ferror(stdout)) return status;
-  fprintf(stderr, "perilat: error: cannot write to the standard output: %s\n", strerror(errno));
-  return status ? status : 2;
+  return end_output(status);
 }

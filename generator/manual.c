@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "generator/commands.h"
+#include "generator/document.h"
 #include "generator/version.h"
 
 enum { WRITE_FAILED = 2 };
@@ -106,7 +107,7 @@ static void write_command_page(FILE *out, int k) {
 static int end_file(FILE *out, const char *path) {
   bool good = out && !ferror(out);
   if (out) good = fclose(out) == 0 && good;
-  if (!good) fprintf(stderr, "perilat: error: cannot write `%s`: %s\n", path, strerror(errno));
+  if (!good) say_error("cannot write `%s`: %s", path, strerror(errno));
   return good ? 0 : WRITE_FAILED;
 }
 

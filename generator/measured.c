@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/document.h"
 #include "runtime/quantity.h"
 
 enum { PAIR = 2 };
@@ -151,10 +152,9 @@ static const char *without_label(const char *given) {
 bool measured_line(const char *given, const char *si_unit, double *value) {
   const char *text = without_label(given);
   if (quantity_read(text, strlen(text), si_unit, value)) return true;
-  fprintf(stderr,
-          "perilat: error: --line needs a value in a unit of `%s`, and perhaps a label before it, "
-          "e.g. 'f_t A = 5 %s', not `%s`\n",
-          si_unit, si_unit, given);
+  say_error("--line needs a value in a unit of `%s`, and perhaps a label before it, e.g. 'f_t A = "
+            "5 %s', not `%s`",
+            si_unit, si_unit, given);
   return false;
 }
 
@@ -163,10 +163,8 @@ bool measured_levels(const char *given, const char *si_unit, double value[2]) {
   if (comma && quantity_read(text, (size_t)(comma - text), si_unit, &value[0]) &&
       quantity_read(comma + 1, strlen(comma + 1), si_unit, &value[1]) && value[0] <= value[1])
     return true;
-  fprintf(
-      stderr,
-      "perilat: error: --band needs two columns of the table before it, or two ascending values "
-      "in a unit of `%s`, e.g. '4 %s, 5 %s', not `%s`\n",
-      si_unit, si_unit, si_unit, given);
+  say_error("--band needs two columns of the table before it, or two ascending values in a unit of "
+            "`%s`, e.g. '4 %s, 5 %s', not `%s`",
+            si_unit, si_unit, si_unit, given);
   return false;
 }

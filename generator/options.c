@@ -30,7 +30,7 @@ const char *option_value(int argc, char **argv, int *at, const char *name, int *
   }
   if (given[n] != 0) return NULL;
   if (*at + 1 >= argc || is_option(argv[*at + 1])) {
-    fprintf(stderr, "perilat: error: `%s` needs a value\n", name);
+    say_error("`%s` needs a value", name);
     *bad = 1;
     ++*at;
     return "";

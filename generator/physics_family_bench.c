@@ -328,8 +328,8 @@ static char *found_at(const family_bench *b, double size) {
     char si[64];
     dim_unit(s->dim, si, sizeof si);
     if (s->has_default && b->parameters[k] == s->initial) continue;
-    fprintf(out, ", %s = %.6g%s%s", s->name, b->parameters[k], strcmp(si, "1") ? " " : "",
-            strcmp(si, "1") ? si : "");
+    fprintf(out, ", %s = %.6g%s%s", s->name, b->parameters[k], unit_is_pure(si) ? "" : " ",
+            unit_is_pure(si) ? "" : si);
     others = others || s->has_default;
   }
   if (others && !b->options->parameters) fputs(PHYSICS_OTHER_VALUES, out);

@@ -31,7 +31,7 @@ static unsigned char *inputs_read(const bench *b, ir_source from, int count) {
 
 static void add_value(FILE *out, const char **separator, const char *name, double value,
                       const char *measured_in) {
-  bool pure = !strcmp(measured_in, "1");
+  bool pure = unit_is_pure(measured_in);
   fprintf(out, "%s%s = %.6g%s%s", *separator, name, value, pure ? "" : " ",
           pure ? "" : measured_in);
   *separator = ", ";

@@ -141,7 +141,7 @@ static void announce_fields(const run *r) {
   const pl_law *kernel = r->laws[0].law;
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
-    const char *in = p->unit && strcmp(p->unit, "1") != 0 ? p->unit : "";
+    const char *in = unit_is_pure(p->unit) ? "" : p->unit;
     printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
            "%.5g\n",
            p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
@@ -244,7 +244,7 @@ void describe_monitors(const run *r, char *text, size_t size) {
     const double *values;
     const char *name = simulation_series(r->simulation, k, &unit_name, &values);
     const double last = values[samples - 1] + 0.0; /* no minus before zeros */
-    const bool pure = strcmp(unit_name, "1") == 0;
+    const bool pure = unit_is_pure(unit_name);
     n += snprintf(text + n, size - (size_t)n, ", %s %.4g%s%s", name, last, pure ? "" : " ",
                   pure ? "" : unit_name);
     if (k == 0 && (size_t)n < size)
@@ -476,7 +476,7 @@ static void conclude_monitor(const run *r, int k) {
   const char *name = simulation_series(r->simulation, k, &unit_name, NULL);
   double when = 0;
   const double peak = simulation_monitor_peak(r->simulation, k, &when) + 0.0;
-  const bool pure = strcmp(unit_name, "1") == 0;
+  const bool pure = unit_is_pure(unit_name);
   char text[MOMENT_TEXT];
   printf("  %-10s largest %.6g%s%s at %s\n", name, peak, pure ? "" : " ", pure ? "" : unit_name,
          moment(r, when, text));

@@ -213,10 +213,10 @@ static void frame_table(run *r, result_header *h, const char *interaction) {
 static void name_compiler(run *r, result_header *h) {
   char version[512];
   const built_in_law *b = r->built_in[0];
-  if (!b) toolchain_version(version, sizeof version);
   if (b)
     h->compiler = b->compiler, h->flags = b->flags;
   else if (r->models[0].loaded.law) {
+    toolchain_version(version, sizeof version);
     h->compiler = arena_text(r->memory, version, strlen(version));
     h->flags = arena_printf(r->memory, "%s", toolchain_flags());
   } else

@@ -176,20 +176,16 @@ typedef struct arguments {
   bool too_many; /* nothing is started */
 } arguments;
 
-static char *copy_of(const char *text) {
-  return strcpy(must_alloc(strlen(text) + 1), text);
-}
-
 static void add_word(arguments *a, const char *word) {
   if (a->count < MOST_ARGUMENTS)
-    a->words[a->count++] = copy_of(word);
+    a->words[a->count++] = must_copy(word);
   else
     a->too_many = true;
 }
 
 /* All words of `text`, but not `less`. */
 static void add_words(arguments *a, const char *text, const char *less) {
-  char *copy = copy_of(text);
+  char *copy = must_copy(text);
   for (char *rest, *word = strtok_r(copy, " \t", &rest); word; word = strtok_r(NULL, " \t", &rest))
     if (strcmp(word, less) != 0) add_word(a, word);
   free(copy);
@@ -276,6 +272,7 @@ static void use_temporary_folder(char *path, size_t size) {
     snprintf(path, size, "%s/perilat-%ld-%d", parent, (long)geteuid(), k);
     if (make_private_folder(path)) return;
   }
+  snprintf(path, size, "/dev/null"); /* holds nothing: what is written there fails with a message */
 }
 
 /* Where the settings want the cache; empty where they do not say. */

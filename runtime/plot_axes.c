@@ -38,7 +38,7 @@ static void shorten_numbers(axis *a, double largest) {
   int power = 3 * (int)floor(decade_of(shown) / 3.0);
   char symbol[sizeof a->unit_text];
   memcpy(symbol, a->unit_text, sizeof symbol);
-  bool pure = strcmp(symbol, "1") == 0;
+  bool pure = unit_is_pure(symbol);
   snprintf(a->unit_text, sizeof a->unit_text, "1e%d%s%.50s", power, pure ? "" : " ",
            pure ? "" : symbol);
   a->factor /= power_of(10, power);
@@ -70,10 +70,6 @@ bool axis_set(axis *a, const char *name, const char *si_unit, const char *wanted
   a->low = a->step * floor(low / a->step + 1e-3); /* a thousandth of a step is not seen */
   a->high = a->step * ceil(high / a->step - 1e-3);
   return true;
-}
-
-bool unit_is_pure(const char *unit_text) {
-  return strcmp(unit_text, "1") == 0;
 }
 
 static double shown_along_x(const axis *a, double shown) {

@@ -24,7 +24,5 @@ double axis_along_x(const axis *a, double value);
 double axis_along_y(const axis *a, double value);
 
 void axes_draw(canvas *c, const axis *x, const axis *y, const char *title);
-/* "1", which pictures and messages leave out. */
-bool unit_is_pure(const char *unit_text);
 
 #endif

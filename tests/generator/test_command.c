@@ -61,6 +61,11 @@ static void arguments_are_checked(void **state) {
       {"check cohesive --set softening=sudden", 1, "the choices are 'linear', 'exponential'"},
       {"info --builtins", 0, "stretch"},
       {"info --builtins > /dev/full", 2, "cannot write to the standard output"},
+      {"help path | grep -c ' ()$'", 1, "0"},
+      {"info mplm_bilinear --shells 1.5", 1, "--shells needs a whole number, not `1.5`"},
+      {"info splm_elastic --lattice square --horizon 3.015", 0,
+       "wave speeds           none: the virgin lattice has no stiffness"},
+      {"info --builtins --json", 1, "--builtins takes no other option"},
   };
   expect_all(*state, list, COUNT(list));
 }
@@ -320,6 +325,8 @@ static void a_solver_needs_no_compiler(void **state) {
   assert_int_equal(shell(w, "PATH=/nonexistent ./my\\ solver --threads 2"), 0);
   expect_same_results(w, "run.h5", "beam.h5");
   assert_int_equal(shell(w, "./my\\ solver --help"), 0);
+  assert_int_equal(shell(w, "./my\\ solver > /dev/full"), 2);
+  assert_non_null(strstr(w->said, "cannot write to the standard output"));
   assert_int_equal(shell(w, "./my\\ solver --interpret"), 1);
   assert_int_equal(shell(w, "./my\\ solver other.nml"), 1);
   assert_non_null(strstr(w->said, "it takes no file"));

@@ -153,9 +153,24 @@ static void a_document_that_cannot_be_written_fails(void **state) {
   expect(w, "run beam.nml --json > /dev/full", 2, "cannot write to the standard output");
   expect(w, "info cohesive --json > /dev/full", 2, "cannot write to the standard output");
   expect(w, "info cohesive --json >&-", 2, "cannot write to the standard output");
+  assert_int_equal(
+      shell(w, "$P run beam.nml --json 2>&1 > /dev/full | grep -c 'cannot write' | grep -qx 1"), 0);
 }
 
 /* --- results ---------------------------------------------------------------------------------- */
+
+/* Their numbers are not given to files: neither result nor document holds what is said. */
+static void closed_streams_are_no_files(void **state) {
+  workplace *w = *state;
+  size_t size;
+  assert_int_equal(shell(w, "$P run beam.nml --json > document 2>&-"), 0);
+  char *text = read_bytes(w, "document", &size);
+  assert_true(json_is_valid(text));
+  free(text);
+  assert_int_equal(shell(w, "$P check beam.nml <&- >&- 2>&-"), 2);
+  assert_int_equal(shell(w, "$P run beam.nml <&- > document 2>&-"), 0);
+  expect(w, "info beam.h5", 0, "Ended: end of the run");
+}
 
 static void results_are_told_whole(void **state) {
   workplace *w = *state;
@@ -223,6 +238,9 @@ static void comparisons_tell_where_and_by_what(void **state) {
   free(text);
   expect_document(w, "compare a.h5 none.h5 --json", 1, "\"error\": \"cannot read");
   expect_document(w, "compare a.h5 b.h5 --json --field none", 1, "\"same\": false");
+  write_text(w, "other.csv", "time,stress\n0,0\n1,1\n");
+  expect_document(w, "compare a.h5 other.csv --json", 1,
+                  "\"error\": \"`other.csv` has no column `load`\"");
 }
 
 /* --- laws ------------------------------------------------------------------------------------- */
@@ -281,11 +299,13 @@ static void expect_keys(const char *reference, const char *text) {
 static void the_reference_tells_of_every_key(void **state) {
   workplace *w = *state;
   const char *reference = section_of_reference();
+  write_text(w, "lab.csv", "time [ms],load [kN]\n0,0\n1,1\n");
   static const char *const commands[] = {"run beam.nml --json",
                                          "info beam.h5 --json",
                                          "info cohesive --json",
                                          "info mplm_bilinear --json",
                                          "compare beam.h5 beam.h5 --json",
+                                         "compare beam.h5 lab.csv --tolerance 1e9 --json",
                                          "export beam.h5 --json",
                                          "export beam.h5 --frame 0 --json"};
   for (size_t k = 0; k < sizeof commands / sizeof *commands; k++) {
@@ -342,6 +362,7 @@ static void texts_come_through_pipes(void **state) {
       {"cat $PERILAT_MODELS/cohesive.plm | $P check - --dump=passes", 0, "kernel of cohesive"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P explain -", 0, "# cohesive"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P info -", 0, "work of fracture"},
+      {"printf '\\211HDF\\r\\n\\032\\n' | $P info -", 1, "a result is not read from the standard"},
       {"cat $PERILAT_MODELS/cohesive.plm | $P format --check -", 0, ""},
       {"cat $PERILAT_MODELS/cohesive.plm | $P format - | cmp - $PERILAT_MODELS/cohesive.plm", 0,
        ""},
@@ -409,6 +430,7 @@ int main(void) {
       IN_WORKPLACE(an_interrupted_run_says_so),
       IN_WORKPLACE(a_solver_writes_the_same_document),
       IN_WORKPLACE(a_document_that_cannot_be_written_fails),
+      IN_WORKPLACE(closed_streams_are_no_files),
       IN_WORKPLACE(results_are_told_whole),
       IN_WORKPLACE(tables_hold_the_numbers_of_the_result),
       IN_WORKPLACE(comparisons_tell_where_and_by_what),

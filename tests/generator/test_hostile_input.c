@@ -165,6 +165,17 @@ static void memory_that_there_is_not_is_not_made_up(void **state) {
 #endif
 }
 
+/* Where all private folders are taken by others, nothing is put into theirs, nor loaded from there. */
+static void kernels_go_to_no_folder_of_others(void **state) {
+  workplace *w = *state;
+  assert_int_equal(shell(w, "mkdir t && for k in $(seq 0 99); do mkdir -m 777 "
+                            "t/perilat-$(id -u)-$k; done"),
+                   0);
+  assert_int_equal(shell(w, "PERILAT_CACHE=/proc/none TMPDIR=$PWD/t $P run beam.nml"), 2);
+  assert_non_null(strstr(w->said, "cannot write `/dev/null/"));
+  assert_int_equal(shell(w, "test -z \"$(find t -type f)\""), 0);
+}
+
 #define T(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
 
 int main(void) {
@@ -175,6 +186,7 @@ int main(void) {
       T(energies_beyond_computing_fail_the_run),
       T(tiny_laws_are_no_fault_of_the_compiler),
       T(a_cache_that_cannot_be_used_is_named),
+      T(kernels_go_to_no_folder_of_others),
       T(memory_that_there_is_not_is_not_made_up),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

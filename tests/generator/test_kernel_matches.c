@@ -135,7 +135,7 @@ static void assert_same_bits(const model *m, const pl_law *kernel, long states) 
   kernel_check c = check(m, kernel, states);
   for (int k = 0; k < m->law->options.count; k++)
     printf("%s = %s: ", m->law->options.items[k]->name, m->law->chosen[k]);
-  kernel_check_report(&c, kernel->name, stdout);
+  kernel_check_report(&c, kernel->name);
   fflush(stdout);
   assert_int_equal(c.outputs.unwritten, 0);
   assert_int_equal(c.outputs.misplaced, 0);
@@ -189,7 +189,7 @@ static void assert_same_families(const kernel_plan *p, const pl_law *kernel, lon
   for (int k = 0; k < sizes; k++) {
     kernel_check c = check_family(p, kernel, neighbours[k], states);
     printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);
-    kernel_check_report(&c, kernel->name, stdout);
+    kernel_check_report(&c, kernel->name);
     fflush(stdout);
     assert_int_equal(c.passes, kernel->step.pass_count + kernel->observe.pass_count);
     assert_true(c.bonds > 0);
@@ -231,7 +231,7 @@ static void check_large_family(const char *path, law_setting setting, long state
   assert_text_is_clean(&m);
   kernel_check c = check_family(m.plan, kernel, LARGE, states);
   printf("%d dimensions, %d neighbours, %d sums: ", kernel->dimensions, LARGE, kernel->sum_count);
-  kernel_check_report(&c, kernel->name, stdout);
+  kernel_check_report(&c, kernel->name);
   assert_true(kernel_check_agrees(&c));
   model_close(&m);
 }
