@@ -1,5 +1,5 @@
 # Writes the pages of dsl/help as C constants: the program carries its own reference.
-file(WRITE ${OUT} "/* Generated from dsl/help. */\n#include \"dsl/help.h\"\n")
+file(WRITE ${OUT} "/* Generated from dsl/help. */\n#include \"dsl/help/help.h\"\n")
 set(table "")
 set(count 0)
 foreach(kind codes keywords)

@@ -1,5 +1,5 @@
 # Writes the texts that `perilat new` starts from as C constants.
-file(WRITE ${OUT} "/* Generated from generator/templates. */\n#include \"generator/templates.h\"\n")
+file(WRITE ${OUT} "/* Generated from generator/templates. */\n#include \"generator/command/templates.h\"\n")
 foreach(name central.plm micropolar.plm drive.nml deck.nml)
   file(READ ${SOURCE_DIR}/generator/templates/${name} hex HEX)
   string(REGEX REPLACE "([0-9a-f][0-9a-f])" "0x\\1," bytes "${hex}")

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 #include "runtime/kernel.h"
 #include "tests/benchmark/lanes.h"
 

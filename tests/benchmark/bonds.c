@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/model.h"
-#include "runtime/simulation.h"
+#include "generator/kernel/model.h"
+#include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/naive.h"

@@ -12,10 +12,10 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/model.h"
-#include "runtime/scattered.h"
-#include "runtime/simulation.h"
-#include "runtime/sweep.h"
+#include "generator/kernel/model.h"
+#include "runtime/lattice/scattered.h"
+#include "runtime/simulation/simulation.h"
+#include "runtime/interaction/sweep.h"
 #include "tests/benchmark/handwritten_families.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/naive_families.h"

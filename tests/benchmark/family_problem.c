@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 
 motions motions_new(const rows *lattice) {
   motions m = {.dimensions = lattice->dimensions};

@@ -3,7 +3,7 @@
 #ifndef PERILAT_BENCHMARK_FAMILY_PROBLEM_H
 #define PERILAT_BENCHMARK_FAMILY_PROBLEM_H
 
-#include "runtime/rows.h"
+#include "runtime/lattice/rows.h"
 
 /* X(parameter of splm_elastic, splm_concrete or lps); those that a law lacks are 0 */
 #define FAMILY_PARAMETERS(X)                                                                       \

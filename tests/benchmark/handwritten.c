@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 #include "tests/benchmark/lanes.h"
 
 #ifndef HANDWRITTEN

@@ -1,6 +1,6 @@
 #include <math.h>
 
-#include "runtime/shape_matrix.h"
+#include "runtime/lattice/shape_matrix.h"
 #include "tests/benchmark/bond_lanes.h"
 #include "tests/benchmark/handwritten_families.h"
 

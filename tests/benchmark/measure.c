@@ -8,7 +8,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 #include "tests/benchmark/lanes.h"
 
 void give_up(const char *format, ...) {

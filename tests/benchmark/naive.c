@@ -3,7 +3,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 
 typedef struct particle {
   double u_x, u_y, rotation; /* m, rad */

@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/arena.h"
-#include "runtime/shape_matrix.h"
+#include "dsl/base/arena.h"
+#include "runtime/lattice/shape_matrix.h"
 
 typedef struct neighbour {
   int j;

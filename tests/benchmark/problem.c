@@ -4,7 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 
 double problem_axial_rigidity(const problem *p) {
   return p->law.E * p->lattice->spacing * p->lattice->stiffness_thickness /

@@ -4,7 +4,7 @@
 #ifndef PERILAT_BENCHMARK_PROBLEM_H
 #define PERILAT_BENCHMARK_PROBLEM_H
 
-#include "runtime/rows.h"
+#include "runtime/lattice/rows.h"
 
 typedef struct bilinear_law {
   double E; /* Pa */

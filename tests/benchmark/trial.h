@@ -2,8 +2,8 @@
 #ifndef PERILAT_BENCHMARK_TRIAL_H
 #define PERILAT_BENCHMARK_TRIAL_H
 
-#include "generator/model.h"
-#include "runtime/simulation.h"
+#include "generator/kernel/model.h"
+#include "runtime/simulation/simulation.h"
 
 typedef struct trial {
   source_set sources;

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/law.h"
-#include "dsl/parse.h"
+#include "dsl/semantics/law.h"
+#include "dsl/syntax/parse.h"
 
 #define FOLDER SOURCE_DIR "/tests/dsl/bad/"
 enum { PATH_LONGEST = 4096 };

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "dsl/diagnostics.h"
+#include "dsl/base/arena.h"
+#include "dsl/base/diagnostics.h"
 
 /* One text with the messages about it. */
 typedef struct sheet {

@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
-#include "dsl/builtins.h"
-#include "dsl/parsing.h"
+#include "dsl/semantics/builtins.h"
+#include "dsl/syntax/parsing.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/dsl/text_files.h"
 

@@ -14,7 +14,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "dsl/elementary.h"
+#include "dsl/base/elementary.h"
 
 enum { SAMPLES = 200000, STRIP = 512 };
 
@@ -287,7 +287,7 @@ enum {
 };
 
 static void write_loops(FILE *c) {
-  fprintf(c, "#include \"dsl/elementary.h\"\n");
+  fprintf(c, "#include \"dsl/base/elementary.h\"\n");
   for (int k = 0; k < ONES; k++)
     fprintf(c,
             "void f%d(int n, const double *restrict a, double *restrict o)"

@@ -7,9 +7,9 @@
 
 #include <cmocka.h>
 
-#include "dsl/explain.h"
-#include "dsl/explain_math.h"
-#include "dsl/parse.h"
+#include "dsl/print/explain.h"
+#include "dsl/print/explain_math.h"
+#include "dsl/syntax/parse.h"
 #include "tests/dsl/text_files.h"
 
 typedef struct reading {

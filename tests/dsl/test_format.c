@@ -13,8 +13,8 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "dsl/format.h"
-#include "dsl/parse.h"
+#include "dsl/print/format.h"
+#include "dsl/syntax/parse.h"
 #include "tests/dsl/text_files.h"
 
 /* NULL when the text has errors. */

@@ -9,13 +9,13 @@
 
 #include <ctype.h>
 
-#include "dsl/builtins.h"
-#include "dsl/diagnostics.h"
-#include "dsl/help.h"
-#include "dsl/law.h"
-#include "dsl/parse.h"
-#include "dsl/parsing.h"
-#include "runtime/deck_table.h"
+#include "dsl/semantics/builtins.h"
+#include "dsl/base/diagnostics.h"
+#include "dsl/help/help.h"
+#include "dsl/semantics/law.h"
+#include "dsl/syntax/parse.h"
+#include "dsl/syntax/parsing.h"
+#include "runtime/deck/deck_table.h"
 #include "tests/dsl/text_files.h"
 
 static const char *const words_of_the_language[] = {

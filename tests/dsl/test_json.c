@@ -9,9 +9,9 @@
 #include <glob.h>
 #include <math.h>
 
-#include "dsl/diagnostics_json.h"
-#include "dsl/law.h"
-#include "dsl/parse.h"
+#include "dsl/base/diagnostics_json.h"
+#include "dsl/semantics/law.h"
+#include "dsl/syntax/parse.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/dsl/text_files.h"
 

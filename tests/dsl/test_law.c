@@ -12,8 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/law.h"
-#include "dsl/parse.h"
+#include "dsl/semantics/law.h"
+#include "dsl/syntax/parse.h"
 
 /* One text and what became of it. */
 typedef struct checked {

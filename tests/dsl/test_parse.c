@@ -12,7 +12,7 @@
 #include <string.h>
 #include <time.h>
 
-#include "dsl/parse.h"
+#include "dsl/syntax/parse.h"
 
 #define GOLDEN SOURCE_DIR "/tests/dsl/golden/"
 #define HEAD   "model m\nlaw central bond\n"

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/powers.h"
-#include "dsl/units.h"
+#include "dsl/base/powers.h"
+#include "dsl/base/units.h"
 
 static double ten_to(int n) {
   char text[16];

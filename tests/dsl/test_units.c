@@ -10,7 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "dsl/units.h"
+#include "dsl/base/units.h"
 
 static unit read_unit(const char *text) {
   unit u = {DIMENSIONLESS, 0};

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <sys/wait.h>
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 
 static inline char *read_whole(FILE *in, size_t *length) {
   size_t room = 1 << 16, used = 0, n;

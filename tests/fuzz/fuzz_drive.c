@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "generator/drive.h"
+#include "generator/drive/drive.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { LONGEST = 1 << 14, MOST_STEPS = 20000 };

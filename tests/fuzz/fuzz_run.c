@@ -3,8 +3,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/shape.h"
-#include "runtime/simulation.h"
+#include "runtime/geometry/shape.h"
+#include "runtime/simulation/simulation.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/runtime/elastic_law.h"
 

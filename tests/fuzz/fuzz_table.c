@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/deck_load.h"
-#include "runtime/particle_set.h"
+#include "runtime/deck/deck_load.h"
+#include "runtime/particles/particle_set.h"
 #include "tests/fuzz/fuzz.h"
 #include "tests/fuzz/memory_file.h"
 

@@ -6,14 +6,14 @@
 
 #include <string.h>
 
-#include "dsl/diagnostics_json.h"
-#include "dsl/explain.h"
-#include "dsl/format.h"
-#include "dsl/parse.h"
-#include "generator/emit.h"
-#include "generator/interval.h"
-#include "generator/passes.h"
-#include "generator/physics.h"
+#include "dsl/base/diagnostics_json.h"
+#include "dsl/print/explain.h"
+#include "dsl/print/format.h"
+#include "dsl/syntax/parse.h"
+#include "generator/emit/emit.h"
+#include "generator/ir/interval.h"
+#include "generator/plan/passes.h"
+#include "generator/check/physics.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/fuzz/fuzz.h"
 

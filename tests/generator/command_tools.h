@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "runtime/result.h"
+#include "runtime/result/result.h"
 
 #define SAID_SIZE 20000
 

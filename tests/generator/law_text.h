@@ -7,9 +7,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/law.h"
-#include "dsl/parse.h"
-#include "generator/passes.h"
+#include "dsl/semantics/law.h"
+#include "dsl/syntax/parse.h"
+#include "generator/plan/passes.h"
 
 typedef struct tested_law {
   arena *memory;

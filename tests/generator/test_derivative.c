@@ -10,8 +10,8 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "generator/interpret.h"
-#include "generator/ir.h"
+#include "generator/ir/interpret.h"
+#include "generator/ir/ir.h"
 
 static ir_node variable(ir *g, int index) {
   static const char *const names[] = {"x", "y", "z"};

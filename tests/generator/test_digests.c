@@ -17,9 +17,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "dsl/sha256.h"
-#include "runtime/result.h"
+#include "dsl/base/arena.h"
+#include "dsl/base/sha256.h"
+#include "runtime/result/result.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/digests/"
 

@@ -14,8 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "generator/drive.h"
-#include "runtime/result.h"
+#include "generator/drive/drive.h"
+#include "runtime/result/result.h"
 
 enum { TEXT = 65536 };
 

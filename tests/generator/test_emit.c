@@ -14,10 +14,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "generator/c_text.h"
-#include "generator/emit.h"
-#include "generator/interpret.h"
-#include "generator/toolchain.h"
+#include "generator/emit/c_text.h"
+#include "generator/emit/emit.h"
+#include "generator/ir/interpret.h"
+#include "generator/kernel/toolchain.h"
 
 #define ERROR_SIZE 2000
 

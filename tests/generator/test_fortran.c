@@ -14,8 +14,8 @@
 #include <glob.h>
 #include <strings.h>
 
-#include "generator/drive.h"
-#include "runtime/deck_table.h"
+#include "generator/drive/drive.h"
+#include "runtime/deck/deck_table.h"
 #include "tests/generator/command_tools.h"
 
 enum { MOST_DECKS = 200, MOST_OWN = 100, MOST_VALUES = 100 };

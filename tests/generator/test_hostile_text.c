@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "generator/emit.h"
-#include "generator/toolchain.h"
+#include "generator/emit/emit.h"
+#include "generator/kernel/toolchain.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/generator/law_text.h"
 

@@ -67,13 +67,13 @@ include=$prefix/include/perilat
 headers=0
 while IFS= read -r header; do
   headers=$((headers + 1))
-  [ "$header" = dsl/diagnostic_codes.h ] && continue # a list of X, for those that say what X is
+  [ "$header" = dsl/base/diagnostic_codes.h ] && continue # a list of X, for those that say what X is
   echo "#include \"$header\"" >one.c
   "$compiler" -std=c11 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C11"
   [ -z "$cpp" ] || "$cpp" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C++17"
 done < <(cd "$include" && find . -name '*.h' | sed 's/^..//')
-[ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/model.h" ] || fail "$headers headers"
-for inner in runtime/sweep.h runtime/simulation_parts.h generator/passes.h generator/run_parts.h dsl/parsing.h; do
+[ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/kernel/model.h" ] || fail "$headers headers"
+for inner in runtime/interaction/sweep.h runtime/simulation/simulation_parts.h generator/plan/passes.h generator/run/run_parts.h dsl/syntax/parsing.h; do
   [ ! -e "$include/$inner" ] || fail "$inner is installed"
 done
 
@@ -82,8 +82,8 @@ cat >use.c <<'END'
 #include <stdio.h>
 #include <stdlib.h>
 
-#include "generator/model.h"
-#include "runtime/result.h"
+#include "generator/kernel/model.h"
+#include "runtime/result/result.h"
 
 int main(int argc, char **argv) {
   char error[1000];
@@ -121,11 +121,11 @@ cat >host.cpp <<'END'
 #include <cstdio>
 #include <cstring>
 
-#include "generator/model.h"
-#include "generator/run.h"
-#include "runtime/deck.h"
-#include "runtime/result.h"
-#include "runtime/simulation.h"
+#include "generator/kernel/model.h"
+#include "generator/run/run.h"
+#include "runtime/deck/deck.h"
+#include "runtime/result/result.h"
+#include "runtime/simulation/simulation.h"
 
 static const char deck_text[] = "&simulation end_time = '0.1 ms' /\n"
                                 "&lattice name = 'a' kind = 'hexagonal' spacing = '10 mm' thickness = '100 mm' /\n"

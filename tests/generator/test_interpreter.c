@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/elementary.h"
-#include "generator/interpret.h"
-#include "generator/ir.h"
+#include "dsl/base/elementary.h"
+#include "generator/ir/interpret.h"
+#include "generator/ir/ir.h"
 
 enum { MOST = 300 };
 

@@ -10,10 +10,10 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "dsl/parse.h"
-#include "generator/interpret.h"
-#include "generator/interval.h"
-#include "generator/random_values.h"
+#include "dsl/syntax/parse.h"
+#include "generator/ir/interpret.h"
+#include "generator/ir/interval.h"
+#include "generator/ir/random_values.h"
 
 /* --- arithmetic -------------------------------------------------------------------------- */
 

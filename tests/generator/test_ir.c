@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/elementary.h"
-#include "generator/interpret.h"
-#include "generator/ir.h"
+#include "dsl/base/elementary.h"
+#include "generator/ir/interpret.h"
+#include "generator/ir/ir.h"
 
 static ir_node parameter(ir *g, int index) {
   static const char *const names[] = {"a", "b", "c", "d"};

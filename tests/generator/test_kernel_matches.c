@@ -16,10 +16,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "dsl/arena.h"
-#include "generator/emit.h"
-#include "generator/kernel_check.h"
-#include "generator/model.h"
+#include "dsl/base/arena.h"
+#include "generator/emit/emit.h"
+#include "generator/kernel/kernel_check.h"
+#include "generator/kernel/model.h"
 
 enum { PARAMETER_SETS = 4 };
 static const pl_bond_class bonds = {.s = 6.35e-3,

@@ -9,9 +9,9 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "dsl/builtins.h"
-#include "generator/interpret.h"
-#include "generator/kinematics.h"
+#include "dsl/semantics/builtins.h"
+#include "generator/ir/interpret.h"
+#include "generator/lower/kinematics.h"
 
 #define PI 3.14159265358979323846264338327950288L
 

@@ -12,7 +12,7 @@
 #include <math.h>
 #include <stdbool.h>
 
-#include "generator/curve_gap.h"
+#include "generator/results/curve_gap.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/small_result.h"
 

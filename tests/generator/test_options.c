@@ -14,8 +14,8 @@
 #include <glob.h>
 #include <sys/syscall.h>
 
-#include "generator/commands.h"
-#include "generator/manual.h"
+#include "generator/command/commands.h"
+#include "generator/command/manual.h"
 #include "tests/generator/command_tools.h"
 
 static bool disk_fails;

@@ -8,8 +8,8 @@
 #include <cmocka.h>
 #include <float.h>
 
-#include "generator/interpret.h"
-#include "generator/rewrite.h"
+#include "generator/ir/interpret.h"
+#include "generator/ir/rewrite.h"
 #include "law_text.h"
 
 #define MODEL SOURCE_DIR "/models/mplm_bilinear.plm"

@@ -13,11 +13,11 @@
 #include <string.h>
 #include <time.h>
 
-#include "dsl/parse.h"
-#include "generator/interval.h"
-#include "generator/model.h"
-#include "generator/physics_parts.h"
-#include "runtime/deck.h"
+#include "dsl/syntax/parse.h"
+#include "generator/ir/interval.h"
+#include "generator/kernel/model.h"
+#include "generator/check/physics_parts.h"
+#include "runtime/deck/deck.h"
 
 #define FOLDER SOURCE_DIR "/tests/dsl/physics/"
 #define MODELS SOURCE_DIR "/models/"

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 #include <unistd.h>
 
-#include "runtime/profile.h"
+#include "runtime/simulation/profile.h"
 #include "tests/generator/command_tools.h"
 
 /* Percent of the run that the line of this part says. */

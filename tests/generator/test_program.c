@@ -8,8 +8,8 @@
 #include <cmocka.h>
 
 #include "law_text.h"
-#include "runtime/implied.h"
-#include "runtime/patch.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/analysis/patch.h"
 
 #define HEAD                                                                                       \
   "  law state\n  parameter a = 40 [MN] in (0, inf)\n  parameter b = 3 [MN] in (0, inf)\n"         \

@@ -43,7 +43,7 @@ printf '#include <math.h>\ndouble f(double x) { return exp(x) + fmin(x, 1) + sqr
 
 found=$(for library in "$@"; do strays "$library"; done)
 if [ -n "$found" ]; then
-  echo "FAILED: bits of these differ from processor to processor; take those of dsl/elementary.h"
+  echo "FAILED: bits of these differ from processor to processor; take those of dsl/base/elementary.h"
   echo "$found"
   exit 1
 fi

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "dsl/characters.h"
+#include "dsl/base/characters.h"
 #include "tests/generator/pseudo_terminal.h"
 #include "tests/runtime/small_result.h"
 

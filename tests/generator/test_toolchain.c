@@ -19,9 +19,9 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "dsl/sha256.h"
-#include "generator/prelude.h"
-#include "generator/toolchain.h"
+#include "dsl/base/sha256.h"
+#include "generator/emit/prelude.h"
+#include "generator/kernel/toolchain.h"
 
 #define ERROR_SIZE 2000
 

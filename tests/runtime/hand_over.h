@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <unistd.h>
 
-#include "runtime/simulation.h"
+#include "runtime/simulation/simulation.h"
 
 /* `first` goes up to step `stop`, `second`, made from the same deck, is then where `first` is. */
 static inline void hand_over(simulation *first, long stop, simulation *second) {

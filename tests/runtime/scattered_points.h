@@ -7,8 +7,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "runtime/neighbour_search.h"
+#include "dsl/base/arena.h"
+#include "runtime/geometry/neighbour_search.h"
 
 typedef struct test_points {
   point_cloud cloud;

@@ -2,7 +2,7 @@
 #ifndef PERILAT_TESTS_SMALL_RESULT_H
 #define PERILAT_TESTS_SMALL_RESULT_H
 
-#include "runtime/result.h"
+#include "runtime/result/result.h"
 
 enum { PARTICLES = 3, BONDS = 2, SAMPLES = 5 };
 

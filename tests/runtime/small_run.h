@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/simulation.h"
+#include "runtime/simulation/simulation.h"
 #include "tests/runtime/elastic_law.h"
 
 typedef struct small_run {

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck.h"
+#include "runtime/deck/deck.h"
 
 enum { MOST_OVERRIDES = 8, LEAST_CASES = 40 };
 

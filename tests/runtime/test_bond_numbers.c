@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/bond_numbers.h"
+#include "runtime/lattice/bond_numbers.h"
 #include "tests/runtime/scattered_points.h"
 
 static void check_numbers(const point_pairs *pairs, long particles) {

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 #include <stdlib.h>
 
-#include "runtime/bond_probe.h"
+#include "runtime/analysis/bond_probe.h"
 #include "tests/runtime/elastic_law.h"
 
 #define E_MODULUS 30e9

@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck.h"
+#include "runtime/deck/deck.h"
 
 static const char beam[] =
     "! Notched beam D6 in three-point bending (Asadollahi 2014, chapter 4)\n"

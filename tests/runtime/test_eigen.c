@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/eigen.h"
-#include "runtime/random_number.h"
+#include "runtime/base/eigen.h"
+#include "runtime/base/random_number.h"
 
 typedef double matrix[EIGEN_MOST][EIGEN_MOST];
 

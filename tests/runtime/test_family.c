@@ -12,9 +12,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "runtime/deck.h"
-#include "runtime/family.h"
+#include "dsl/base/arena.h"
+#include "runtime/deck/deck.h"
+#include "runtime/interaction/family.h"
 #include "tests/runtime/family_law.h"
 
 static const double spacing = 0.01, thickness = 0.1, step = 1e-7;

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/family_parts.h"
+#include "runtime/interaction/family_parts.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/small_run.h"
 

@@ -16,7 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "runtime/frame_file.h"
+#include "runtime/result/frame_file.h"
 #include "tests/runtime/file_tools.h"
 
 enum { VALUES = 5, RECORD = VALUES * sizeof(double), FRAMES = 4 };

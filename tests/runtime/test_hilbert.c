@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/hilbert.h"
+#include "runtime/geometry/hilbert.h"
 #include "tests/runtime/scattered_points.h"
 
 enum { SIDE_BITS = 3, SIDE = 1 << SIDE_BITS, MOST = SIDE * SIDE * SIDE };

@@ -9,8 +9,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "generator/model.h"
-#include "runtime/implied.h"
+#include "generator/kernel/model.h"
+#include "runtime/analysis/implied.h"
 
 enum { MOST_PARAMETERS = 40 };
 

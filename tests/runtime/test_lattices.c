@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "dsl/arena.h"
-#include "runtime/rows.h"
-#include "runtime/shape.h"
+#include "dsl/base/arena.h"
+#include "runtime/lattice/rows.h"
+#include "runtime/geometry/shape.h"
 
 typedef struct bench {
   deck deck;

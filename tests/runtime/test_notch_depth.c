@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/notch_depth.h"
+#include "runtime/lattice/notch_depth.h"
 
 /* Depths of the notches of a deck that has these groups besides its lattice's name and
    thickness. */

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/implied.h"
-#include "runtime/patch.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/analysis/patch.h"
 #include "tests/runtime/family_law.h"
 
 static const double spacing = 0.01;

@@ -8,7 +8,7 @@
 #include <cmocka.h>
 #include <omp.h>
 
-#include "runtime/random_field.h"
+#include "runtime/lattice/random_field.h"
 #include "tests/runtime/small_run.h"
 
 /* With a probability of 0.001 the Kolmogorov distance of n values is more than 1.95/sqrt(n), and a

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/sweep.h"
+#include "runtime/interaction/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"

@@ -14,10 +14,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "runtime/canvas.h"
-#include "runtime/hdf5_tools.h"
-#include "runtime/plot.h"
-#include "runtime/views.h"
+#include "runtime/plot/canvas.h"
+#include "runtime/result/hdf5_tools.h"
+#include "runtime/plot/plot.h"
+#include "runtime/result/views.h"
 #include "tests/runtime/small_result.h"
 
 static char error[512];

@@ -14,9 +14,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "dsl/hash.h"
-#include "runtime/hdf5_tools.h"
-#include "runtime/sealed_file.h"
+#include "dsl/base/hash.h"
+#include "runtime/result/hdf5_tools.h"
+#include "runtime/result/sealed_file.h"
 #include "tests/runtime/file_tools.h"
 #include "tests/runtime/small_result.h"
 

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/sweep.h"
+#include "runtime/interaction/sweep.h"
 #include "tests/runtime/small_run.h"
 
 #define SPACING   0.01

@@ -11,8 +11,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/arena.h"
-#include "runtime/shape_matrix.h"
+#include "dsl/base/arena.h"
+#include "runtime/lattice/shape_matrix.h"
 
 enum { MOST_VALUES = PL_SHAPE_PLANES(3) };
 

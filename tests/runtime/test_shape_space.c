@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/shape.h"
+#include "runtime/geometry/shape.h"
 
 static uint64_t state;
 

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/loads.h"
+#include "runtime/simulation/loads.h"
 #include "tests/runtime/small_run.h"
 
 #define SPACING   0.01

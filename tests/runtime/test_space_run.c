@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/sweep.h"
+#include "runtime/interaction/sweep.h"
 #include "tests/runtime/small_run.h"
 #include "tests/runtime/spring_law.h"
 

@@ -8,8 +8,8 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "runtime/random_number.h"
-#include "runtime/special_functions.h"
+#include "runtime/base/random_number.h"
+#include "runtime/base/special_functions.h"
 
 enum { SAMPLES = 100000 };
 

@@ -11,9 +11,9 @@
 
 #include <cmocka.h>
 
-#include "runtime/implied.h"
-#include "runtime/stability.h"
-#include "runtime/stencil.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/analysis/stability.h"
+#include "runtime/analysis/stencil.h"
 #include "tests/runtime/elastic_law.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/spring_law.h"

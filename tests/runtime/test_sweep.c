@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/pairwise.h"
+#include "runtime/interaction/pairwise.h"
 #include "tests/runtime/small_run.h"
 
 /* A body with ragged rows: disc, rotated lattice, a notch. */

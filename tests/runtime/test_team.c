@@ -13,7 +13,7 @@
 #include <stdbool.h>
 #include <string.h>
 
-#include "runtime/team.h"
+#include "runtime/base/team.h"
 
 enum { BLOCKS = 7, ROUNDS = 3000, TASKS = 3 };
 

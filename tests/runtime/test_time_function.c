@@ -8,7 +8,7 @@
 
 #include <math.h>
 
-#include "runtime/time_function.h"
+#include "runtime/deck/time_function.h"
 
 static const double times[] = {0.1, 0.4, 0.5, 0.9}, values[] = {2, -1, -1, 3};
 static double integrals[4];

@@ -11,10 +11,10 @@
 #include <cmocka.h>
 #include <omp.h>
 
-#include "runtime/random_number.h"
-#include "runtime/shape.h"
-#include "runtime/solid.h"
-#include "runtime/voronoi.h"
+#include "runtime/base/random_number.h"
+#include "runtime/geometry/shape.h"
+#include "runtime/particles/solid.h"
+#include "runtime/particles/voronoi.h"
 
 enum { MOST = 4000, MOST_SHAPES = 3 };
 

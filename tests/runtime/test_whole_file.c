@@ -13,7 +13,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include "runtime/whole_file.h"
+#include "runtime/base/whole_file.h"
 
 static const char name[] = "whole.txt", link_name[] = "whole.link";
 

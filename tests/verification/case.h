@@ -8,11 +8,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/model.h"
-#include "generator/passes.h"
-#include "generator/run.h"
-#include "runtime/pairwise.h"
-#include "runtime/simulation.h"
+#include "generator/kernel/model.h"
+#include "generator/plan/passes.h"
+#include "generator/run/run.h"
+#include "runtime/interaction/pairwise.h"
+#include "runtime/simulation/simulation.h"
 
 /* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */
 typedef struct law_case {

@@ -3,7 +3,7 @@
 #ifndef PERILAT_TESTS_CRACK_PATH_H
 #define PERILAT_TESTS_CRACK_PATH_H
 
-#include "dsl/arena.h"
+#include "dsl/base/arena.h"
 #include "tests/verification/case.h"
 
 typedef struct middle { /* of a piece of crack; each particle counts by its share of broken bonds */

@@ -9,7 +9,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/uniform_strain.h"
+#include "runtime/analysis/uniform_strain.h"
 #include "tests/verification/case.h"
 
 static const double E = 30e9;

@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "generator/interpret.h"
+#include "generator/ir/interpret.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/verification/case.h"
 

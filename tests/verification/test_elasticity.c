@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/implied.h"
+#include "runtime/analysis/implied.h"
 #include "tests/verification/case.h"
 
 static const double rotations[] = {0, 17, 23.7, 90}; /* degrees */

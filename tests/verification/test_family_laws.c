@@ -7,8 +7,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/patch.h"
-#include "runtime/stencil.h"
+#include "runtime/analysis/patch.h"
+#include "runtime/analysis/stencil.h"
 #include "tests/verification/case.h"
 
 /* --- elastic constants ------------------------------------------------------------------------ */

@@ -8,7 +8,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/family_parts.h"
+#include "runtime/interaction/family_parts.h"
 #include "tests/verification/case.h"
 
 enum { STEPS = 40, LOOKS = 7 /* steps between two samples */ };

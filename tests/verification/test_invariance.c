@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/sweep.h"
+#include "runtime/interaction/sweep.h"
 #include "tests/runtime/small_run.h"
 
 static void open_patch(small_run *r, const pl_law *law, double rotation, double step_safety) {

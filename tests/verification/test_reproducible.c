@@ -19,8 +19,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/hdf5_tools.h"
-#include "runtime/result.h"
+#include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result.h"
 
 #define DECK SOURCE_DIR "/examples/notched_beam/d3_s6.35.nml"
 

@@ -9,9 +9,9 @@
 
 #include <cmocka.h>
 
-#include "runtime/body_limit.h"
-#include "runtime/bond_forms.h"
-#include "runtime/stability.h"
+#include "runtime/analysis/body_limit.h"
+#include "runtime/analysis/bond_forms.h"
+#include "runtime/analysis/stability.h"
 #include "tests/verification/case.h"
 
 /* --- laws of the test ------------------------------------------------------------------------- */

@@ -1,0 +1,56 @@
+#include "dsl/base/unit_hint.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "dsl/base/units.h"
+
+enum { LONGEST = 40 };
+
+static bool is_unit(const char *text, size_t length, unit *u) {
+  const char *bad;
+  size_t bad_length;
+  return length > 0 && unit_parse(text, length, u, &bad, &bad_length);
+}
+
+static bool has_mass(const unit *u) {
+  return u->dim.twelfths[1] != 0;
+}
+
+/* Letters of `m` in m2; 0 when it is no such power. */
+static size_t power_begins_at(const char *text, size_t length) {
+  unit base;
+  size_t letters = length;
+  while (letters > 0 && isdigit((unsigned char)text[letters - 1]))
+    letters--;
+  return letters < length && is_unit(text, letters, &base) ? letters : 0;
+}
+
+/* Letters of `N` in Nm, a unit with mass in it before one without; 0 when it is no such product. */
+static size_t product_splits_at(const char *text, size_t length) {
+  unit first, second;
+  for (size_t k = length - 1; k > 0; k--)
+    if (is_unit(text, k, &first) && is_unit(text + k, length - k, &second) && has_mass(&first) &&
+        !has_mass(&second) && !dim_is_none(second.dim))
+      return k;
+  return 0;
+}
+
+bool unit_hint(diagnostics *d, const char *text, size_t length) {
+  if (length == 0 || length > LONGEST) return false;
+  size_t power = power_begins_at(text, length), product = product_splits_at(text, length);
+  size_t first = power ? power : product;
+  if (first) {
+    diag_hint(d, "write `%.*s%c%.*s`", (int)first, text, power ? '^' : '*', (int)(length - first),
+              text + first);
+    return true;
+  }
+  char name[LONGEST + 1];
+  int count;
+  const char *const *symbols = unit_symbols(&count);
+  snprintf(name, sizeof name, "%.*s", (int)length, text);
+  const char *nearest = nearest_name(name, symbols, count);
+  if (nearest) diag_hint(d, "did you mean `%s`?", nearest);
+  return nearest;
+}

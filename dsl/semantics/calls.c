@@ -1,0 +1,477 @@
+/* Calls of built-in functions and of the law's own. */
+#include <string.h>
+
+#include "dsl/semantics/check.h"
+
+static expr *operand(const expr *e, int i) {
+  return e->arguments[i].value;
+}
+
+static const char *function_name(checker *ck, const expr *e) {
+  return arena_printf(ck->memory, "the argument of `%s`", e->name);
+}
+
+static value bad_shape(checker *ck, const expr *e, value v, const char *hint) {
+  complain(ck, DIAG_SHAPE, operand(e, 0)->where, "`%s` does not take %s", e->name,
+           v.shape == SHAPE_LOGICAL ? "what is true or false" : shape_words(v.shape));
+  if (hint) diag_hint(ck->d, "%s", hint);
+  return BROKEN;
+}
+
+static value with_shape(value v, dimension dim, shape s) {
+  v.dim = dim;
+  v.shape = s;
+  v.zero = v.whole = false;
+  return v;
+}
+
+/* --- functions of one number ------------------------------------------------------------------ */
+
+static value check_scalar_argument(checker *ck, expr *e, const char *hint) {
+  value v = check_number(ck, operand(e, 0));
+  if (v.broken || v.unknown || v.shape == SHAPE_SCALAR) return v;
+  bool magnitude = v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR;
+  return bad_shape(ck, e, v, magnitude ? hint : NULL);
+}
+
+static value same_unit(checker *ck, expr *e) {
+  return check_scalar_argument(
+      ck, e, "for the magnitude of a bending quantity or vector write `norm(...)`");
+}
+
+static value sign(checker *ck, expr *e) {
+  value v = check_scalar_argument(ck, e, NULL);
+  if (v.broken) return v;
+  v.unknown = false;
+  return with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
+}
+
+static value pure(checker *ck, expr *e) {
+  value v = check_scalar_argument(ck, e, "take the magnitude first: `norm(...)`");
+  if (v.broken || v.unknown) {
+    v.unknown = false;
+    return v.broken ? v : with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
+  }
+  if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_SCALAR, function_name(ck, e))) {
+    diag_hint(ck->d, "divide by a reference value: `%s(x/x_0)`", e->name);
+    return BROKEN;
+  }
+  return with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
+}
+
+static value root(checker *ck, expr *e) {
+  value v = check_scalar_argument(ck, e, "take the magnitude first: `norm(...)`");
+  if (v.broken || v.unknown) return v;
+  v.zero = false;
+  if (dim_pow(v.dim, 1, e->builtin == FUNCTION_SQRT ? 2 : 3, &v.dim)) return v;
+  complain(ck, DIAG_UNITS, e->where, "the %s root of %s has no exact unit",
+           e->builtin == FUNCTION_SQRT ? "square" : "cube", describe(ck, v.dim));
+  return BROKEN;
+}
+
+static value norm(checker *ck, expr *e) {
+  value v = check_family(ck, operand(e, 0));
+  if (v.broken || v.unknown) return v;
+  if (v.whole) {
+    v.place = ON_PARTICLE;
+  } else if (v.shape == SHAPE_SCALAR || v.shape == SHAPE_LOGICAL) {
+    return bad_shape(ck, e, v, "for the size of a number write `abs(...)`");
+  }
+  return with_shape(v, v.dim, SHAPE_SCALAR);
+}
+
+/* --- of several numbers ----------------------------------------------------------------------- */
+
+static value arctangent(checker *ck, expr *e) {
+  value y = check_number(ck, operand(e, 0)), x = check_number(ck, operand(e, 1));
+  value v = agree(ck, e->where, operand(e, 0), y, operand(e, 1), x, "the sides of one angle");
+  if (v.broken) return v;
+  v.unknown = false;
+  if (!expect_scalar(ck, operand(e, 0), v, function_name(ck, e))) return BROKEN;
+  return with_shape(v, DIMENSIONLESS, SHAPE_SCALAR);
+}
+
+/* Carries [j]: has a value for each neighbour. */
+static bool varies_in_family(value v) {
+  return v.place == ON_BOND || v.place == ON_NEIGHBOUR;
+}
+
+static value reduced(checker *ck, expr *e, value v) {
+  if (v.broken) return v;
+  if (is_pairwise(ck)) {
+    complain(ck, DIAG_PLACEMENT, e->where,
+             "`%s` of one value goes over a family, which a bond law does not have", e->name);
+    if (e->builtin == FUNCTION_MIN || e->builtin == FUNCTION_MAX)
+      diag_hint(ck->d, "give it two values or more");
+    return BROKEN;
+  }
+  if (!v.unknown && !varies_in_family(v)) {
+    complain(ck, DIAG_PLACEMENT, e->where,
+             "`%s` goes over the family, but nothing in it carries [j]", e->name);
+    diag_hint(ck->d, "write the neighbour's value as `x[j]`");
+    return BROKEN;
+  }
+  if (!v.unknown && v.shape != SHAPE_SCALAR && e->builtin != FUNCTION_SUM &&
+      e->builtin != FUNCTION_MEAN)
+    return bad_shape(ck, e, v, NULL);
+  v.place = ON_PARTICLE;
+  return v;
+}
+
+static value reduce_argument(checker *ck, expr *e, int i) {
+  if (ck->in_reduction) {
+    complain(ck, DIAG_PLACEMENT, e->where, "`%s` stands inside another sum over the family",
+             e->name);
+    diag_hint(ck->d, "give the inner one a name of its own first");
+    return BROKEN;
+  }
+  ck->in_reduction = true;
+  value v = check_number(ck, operand(e, i));
+  ck->in_reduction = false;
+  return v;
+}
+
+static value extreme(checker *ck, expr *e) {
+  if (e->argument_count == 1) return reduced(ck, e, reduce_argument(ck, e, 0));
+  value v = check_number(ck, operand(e, 0));
+  for (int i = 1; i < e->argument_count; i++) {
+    value next = check_number(ck, operand(e, i));
+    v = agree(ck, e->where, operand(e, 0), v, operand(e, i), next, "compared");
+  }
+  if (v.broken || v.unknown || v.shape == SHAPE_SCALAR) return v;
+  bool magnitude = v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR;
+  return bad_shape(ck, e, v, magnitude ? "compare magnitudes: `norm(...)`" : NULL);
+}
+
+static value sum(checker *ck, expr *e) {
+  return reduced(ck, e, reduce_argument(ck, e, 0));
+}
+
+static value mean(checker *ck, expr *e) {
+  value v = reduced(ck, e, reduce_argument(ck, e, 0));
+  if (e->argument_count == 1 || v.broken) return v;
+  value weight = reduce_argument(ck, e, 1);
+  if (weight.broken || !expect_scalar(ck, operand(e, 1), weight, "a weight")) return BROKEN;
+  return v;
+}
+
+/* --- old values and derivatives --------------------------------------------------------------- */
+
+static value previous(checker *ck, expr *e) {
+  expr *of = operand(e, 0);
+  value v = check_family(ck, of);
+  if (v.broken) return v;
+  const symbol *s = of->kind == EXPR_NAME ? of->symbol : NULL;
+  if (s && (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE)) {
+    of->reads_old = true;
+    entry_of(s)->symbol.old_is_read = true;
+    return v;
+  }
+  complain(ck, DIAG_ARGUMENTS, of->where, "`previous` takes the name of a state or damage");
+  diag_hint(ck->d, "to keep a value from step to step declare `state x on %s = 0`",
+            is_pairwise(ck) ? "bond" : "particle");
+  return BROKEN;
+}
+
+static bool is_variable(const expr *e) {
+  if (e->kind != EXPR_NAME || !e->symbol) return false;
+  switch (e->symbol->kind) {
+  case SYMBOL_QUANTITY:
+  case SYMBOL_PARAMETER:
+  case SYMBOL_STATE:
+  case SYMBOL_DAMAGE:
+    return true;
+  default:
+    return false;
+  }
+}
+
+static value derivative(checker *ck, expr *e) {
+  expr *by = operand(e, 1);
+  value f = check_number(ck, operand(e, 0)), x = check_number(ck, by);
+  if (f.broken || x.broken) return BROKEN;
+  if (!is_variable(by)) {
+    complain(ck, DIAG_ARGUMENTS, by->where,
+             "`diff` differentiates by a quantity, a parameter, a state or a damage");
+    diag_hint(ck->d, "write a name such as `stretch`");
+    return BROKEN;
+  }
+  value v = {.dim = dim_div(f.dim, x.dim),
+             .place = place_join(ck, f.place, x.place),
+             .unknown = f.unknown || x.unknown};
+  if (v.unknown) return v;
+  if (f.shape != SHAPE_SCALAR && x.shape != SHAPE_SCALAR && f.shape != SHAPE_BENDING) {
+    complain(ck, DIAG_SHAPE, e->where, "%s cannot be differentiated by %s", shape_words(f.shape),
+             shape_words(x.shape));
+    return BROKEN;
+  }
+  /* A moment by a rotation: a number in two dimensions. */
+  bool both = f.shape == SHAPE_BENDING && x.shape == SHAPE_BENDING;
+  v.shape = both ? SHAPE_SCALAR : f.shape != SHAPE_SCALAR ? f.shape : x.shape;
+  return v;
+}
+
+/* --- of a family and of tensors --------------------------------------------------------------- */
+
+static bool needs_state_law(checker *ck, const expr *e) {
+  if (!is_pairwise(ck)) return true;
+  complain(ck, DIAG_LAW_KIND, e->where,
+           "`%s` needs a particle's family, which a bond law does not have", e->name);
+  diag_hint(ck->d, "a law that begins with `law state` has it");
+  return false;
+}
+
+static value family_argument(checker *ck, expr *e, bool indexed_too) {
+  if (!needs_state_law(ck, e)) return BROKEN;
+  value v = check_family(ck, operand(e, 0));
+  if (v.broken || v.unknown) return v;
+  if (v.whole || (indexed_too && varies_in_family(v))) return v;
+  complain(ck, DIAG_PLACEMENT, operand(e, 0)->where, "`%s` takes a family's values as a whole",
+           e->name);
+  diag_hint(ck->d, "write the name without [j]");
+  return BROKEN;
+}
+
+static value deviator(checker *ck, expr *e) {
+  value v = family_argument(ck, e, true);
+  v.zero = false;
+  return v;
+}
+
+/* Of a force state in N, or in N/m^6 (a force per both volumes). */
+static value virtual_work(checker *ck, expr *e) {
+  value v = family_argument(ck, e, false);
+  if (v.broken) return v;
+  bool known =
+      v.unknown || dim_equal(v.dim, dimension_of("N")) || dim_equal(v.dim, dimension_of("N/m^6"));
+  if (!known) {
+    complain(ck, DIAG_UNITS, operand(e, 0)->where,
+             "`virtual_work` takes a force state in N or N/m^6, but this is %s",
+             describe(ck, v.dim));
+    return BROKEN;
+  }
+  ck->reads_poisson = true;
+  v.place = ON_PARTICLE;
+  v.unknown = false;
+  return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
+}
+
+static value fit(checker *ck, expr *e) {
+  value v = family_argument(ck, e, false);
+  if (v.broken || v.unknown) return v;
+  ck->reads_poisson = true;
+  v.place = ON_PARTICLE;
+  return with_shape(v, v.dim, SHAPE_TENSOR);
+}
+
+static value tensor_argument(checker *ck, expr *e);
+
+/* A number toward each neighbour, out of a tensor of the particle. */
+static value toward_neighbours(checker *ck, expr *e, const char *unit_in, const char *unit_out,
+                               const char *what) {
+  value v = tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  if (!expect(ck, operand(e, 0), v, dimension_of(unit_in), SHAPE_TENSOR, what)) return BROKEN;
+  v.place = ON_NEIGHBOUR;
+  return with_shape(v, dimension_of(unit_out), SHAPE_SCALAR);
+}
+
+static value uniform_force(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "Pa", "N", "what `uniform_force` takes");
+}
+
+static value uniform_stretch(checker *ck, expr *e) {
+  return toward_neighbours(ck, e, "1", "1", "what `uniform_stretch` takes");
+}
+
+static value hooke(checker *ck, expr *e) {
+  value v = tensor_argument(ck, e);
+  value E = check_number(ck, operand(e, 1)), nu = check_number(ck, operand(e, 2));
+  if (!expect(ck, operand(e, 0), v, DIMENSIONLESS, SHAPE_TENSOR, "the strain in `hooke`") ||
+      !expect(ck, operand(e, 1), E, dimension_of("Pa"), SHAPE_SCALAR, "Young's modulus") ||
+      !expect(ck, operand(e, 2), nu, DIMENSIONLESS, SHAPE_SCALAR, "Poisson's ratio"))
+    return BROKEN;
+  v.place = place_join(ck, v.place, place_join(ck, E.place, nu.place));
+  v.unknown = false;
+  return with_shape(v, dimension_of("Pa"), SHAPE_TENSOR);
+}
+
+static value tensor_argument(checker *ck, expr *e) {
+  if (!needs_state_law(ck, e)) return BROKEN;
+  value v = check_number(ck, operand(e, 0));
+  if (v.broken || v.unknown || v.shape == SHAPE_TENSOR) return v;
+  return bad_shape(ck, e, v, "it takes a stress or strain");
+}
+
+static value tensor_to_scalar(checker *ck, expr *e) {
+  value v = tensor_argument(ck, e);
+  if (v.broken || v.unknown) return v;
+  dimension dim = e->builtin == FUNCTION_J2 ? dim_mul(v.dim, v.dim) : v.dim;
+  return with_shape(v, dim, SHAPE_SCALAR);
+}
+
+static value principal(checker *ck, expr *e) {
+  value v = tensor_to_scalar(ck, e);
+  expr *which = operand(e, 1);
+  check_number(ck, which);
+  bool one_to_three = which->kind == EXPR_NUMBER && !which->unit_text &&
+                      (which->number == 1 || which->number == 2 || which->number == 3);
+  if (v.broken || one_to_three) return v;
+  complain(ck, DIAG_ARGUMENTS, which->where, "the second argument of `principal` is 1, 2 or 3");
+  diag_hint(ck->d, "1 is the largest principal value");
+  return BROKEN;
+}
+
+/* X(code, checker of the call) */
+#define CALLS(X)                                                                                   \
+  X(ABS, same_unit)                                                                                \
+  X(SQRT, root)                                                                                    \
+  X(CBRT, root)                                                                                    \
+  X(EXP, pure)                                                                                     \
+  X(LOG, pure)                                                                                     \
+  X(SIN, pure)                                                                                     \
+  X(COS, pure)                                                                                     \
+  X(TAN, pure)                                                                                     \
+  X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure) X(MACAULAY, same_unit)       \
+      X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous) X(DIFF, derivative)      \
+          X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator) X(VIRTUAL_WORK, virtual_work)            \
+              X(FIT, fit) X(UNIFORM_FORCE, uniform_force) X(UNIFORM_STRETCH, uniform_stretch)      \
+                  X(HOOKE, hooke) X(PRINCIPAL, principal) X(TRACE, tensor_to_scalar)               \
+                      X(DEV, tensor_argument) X(J2, tensor_to_scalar)                              \
+                          X(VON_MISES, tensor_to_scalar)
+
+static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
+#define X(code, function) [FUNCTION_##code] = function,
+    CALLS(X)
+#undef X
+};
+
+/* --- functions of the law --------------------------------------------------------------------- */
+
+value check_function_body(checker *ck, entry *function) {
+  entry *outer = ck->function;
+  bool reduction = ck->in_reduction;
+  ck->function = function;
+  ck->in_reduction = false;
+  function->in_use = true;
+  value v = check_value(ck, function->symbol.declared->value);
+  function->in_use = false;
+  ck->function = outer;
+  ck->in_reduction = reduction;
+  return v;
+}
+
+static bool check_arity(checker *ck, const expr *e, int least, int most, const char *meaning) {
+  for (int i = 0; i < e->argument_count; i++) {
+    const argument *a = &e->arguments[i];
+    if (!a->keyword || (e->builtin == FUNCTION_MEAN && i == 1 && strcmp(a->keyword, "weight") == 0))
+      continue;
+    complain(ck, DIAG_ARGUMENTS, a->keyword_where, "`%s` has no argument called `%s`", e->name,
+             a->keyword);
+    if (e->builtin == FUNCTION_MEAN) diag_hint(ck->d, "write `mean(x[j], weight = w[j])`");
+    return false;
+  }
+  if (e->argument_count >= least && e->argument_count <= most) return true;
+  if (least == most)
+    complain(ck, DIAG_ARGUMENTS, e->where, "`%s` takes %d argument%s, not %d", e->name, least,
+             least == 1 ? "" : "s", e->argument_count);
+  else
+    complain(ck, DIAG_ARGUMENTS, e->where, "`%s` takes %d to %d arguments, not %d", e->name, least,
+             most, e->argument_count);
+  if (meaning) diag_hint(ck->d, "`%s`: %s", e->name, meaning);
+  return false;
+}
+
+static value expand(checker *ck, expr *e, entry *function) {
+  value values[MOST_ARGUMENTS];
+  bool broken = false;
+  for (int i = 0; i < e->argument_count; i++) {
+    values[i] = check_value(ck, operand(e, i));
+    broken |= values[i].broken;
+  }
+  if (broken || function->type.broken) return BROKEN;
+  if (++ck->expansions > MOST_EXPANSIONS) {
+    if (ck->expansions == MOST_EXPANSIONS + 1)
+      complain(ck, DIAG_TOO_LONG, e->where,
+               "functions that call functions make this law longer than %d calls", MOST_EXPANSIONS);
+    return BROKEN;
+  }
+  for (int i = 0; i < e->argument_count; i++) {
+    function->arguments[i].type = values[i];
+    function->arguments[i].known = true;
+  }
+  if (ck->call_depth++ == 0) ck->call_where = e->where;
+  value v = check_function_body(ck, function);
+  ck->call_depth--;
+  return v;
+}
+
+static value check_own_function(checker *ck, expr *e, entry *function) {
+  const stmt *s = function->symbol.declared;
+  e->symbol = &function->symbol;
+  function->symbol.used = true;
+  if (function->in_use || function->declared_at >= ck->now) {
+    report_undefined(ck, e, function);
+    return BROKEN;
+  }
+  if (!check_arity(ck, e, s->word_count, s->word_count, NULL)) {
+    diag_note(ck->d, s->name_where, "`%s` is declared here", s->name);
+    return BROKEN;
+  }
+  return expand(ck, e, function);
+}
+
+/* What people call functions elsewhere, and how the same is written here. X(name, hint) */
+#define FOREIGN_FUNCTIONS(X)                                                                       \
+  X("ln", "the natural logarithm is `log(x)`")                                                     \
+  X("log10", "write `log(x)/log(10)`")                                                             \
+  X("pow", "powers are written `x**p`")                                                            \
+  X("fabs", "the absolute value is `abs(x)`")                                                      \
+  X("macaulay", "write `positive_part(x)`")                                                        \
+  X("sgn", "write `sign(x)`")                                                                      \
+  X("atan", "write `atan2(x, 1)`")                                                                 \
+  X("if", "choose with cases: | value when guard | value otherwise")                               \
+  X("heaviside", "choose with cases: | 1 when x > 0 | 0 otherwise")                                \
+  X("old", "write `previous(x)`")                                                                  \
+  X("dot", "write `a : b`") X("clamp", "write `min(max(x, low), high)`")
+
+static const char *hint_for_foreign(const char *name) {
+#define X(foreign, hint)                                                                           \
+  if (strcmp(name, foreign) == 0) return hint;
+  FOREIGN_FUNCTIONS(X)
+#undef X
+  return NULL;
+}
+
+static value report_unknown_function(checker *ck, const expr *e) {
+  const char *hint = hint_for_foreign(e->name);
+  const entry *quantity = names_find(ck, SPACE_QUANTITIES, e->name);
+  complain(ck, DIAG_UNKNOWN_FUNCTION, e->name_where,
+           quantity ? "`%s` is a quantity, not a function" : "there is no function `%s`", e->name);
+  if (quantity)
+    diag_hint(ck->d, "a product needs its sign: `%s*(...)`", e->name);
+  else if (hint)
+    diag_hint(ck->d, "%s", hint);
+  else
+    names_suggest(ck, SPACE_FUNCTIONS, e->name);
+  return BROKEN;
+}
+
+static void check_arguments_alone(checker *ck, expr *e) {
+  for (int i = 0; i < e->argument_count; i++)
+    check_family(ck, operand(e, i));
+}
+
+value check_call(checker *ck, expr *e) {
+  entry *own = names_find(ck, SPACE_FUNCTIONS, e->name);
+  e->builtin = own ? -1 : builtin_function_find(e->name);
+  if (own) return check_own_function(ck, e, own);
+  if (e->builtin < 0) {
+    report_unknown_function(ck, e);
+    check_arguments_alone(ck, e);
+    return BROKEN;
+  }
+  const builtin_function_info *f = &builtin_functions[e->builtin];
+  if (!check_arity(ck, e, f->least, f->most, f->meaning)) return BROKEN;
+  return calls[e->builtin](ck, e);
+}

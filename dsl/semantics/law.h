@@ -1,0 +1,119 @@
+/* A checked law: every name resolved, every unit agreed, every quantity placed, in an order in which it
+   can be evaluated. The checker annotates the tree in place; the generator reads this and nothing else. */
+#ifndef PERILAT_DSL_LAW_H
+#define PERILAT_DSL_LAW_H
+
+#include "dsl/semantics/builtins.h"
+#include "dsl/base/c_linkage.h"
+#include "dsl/base/diagnostics.h"
+#include "dsl/syntax/tree.h"
+
+C_LINKAGE_BEGIN
+
+typedef enum symbol_kind {
+  SYMBOL_QUANTITY, /* built in: stretch, s, ... */
+  SYMBOL_PARAMETER,
+  SYMBOL_CONSTANT, /* does not change in time */
+  SYMBOL_DEFINED,  /* plain definition, yield, stress, strain */
+  SYMBOL_STATE,
+  SYMBOL_DAMAGE,
+  SYMBOL_RESULT, /* force N, moment M_i, M_j, force V, energy W, force state F */
+  SYMBOL_OUTPUT,
+  SYMBOL_FUNCTION,
+  SYMBOL_OPTION,  /* option onset */
+  SYMBOL_CHOICE,  /* rankine: a value of an option; also plane_stress, plane_strain, space */
+  SYMBOL_ARGUMENT /* of a user's function */
+} symbol_kind;
+
+typedef struct symbol {
+  symbol_kind kind;
+  const char *name;
+  span where;           /* of the name where it was declared */
+  const stmt *declared; /* NULL for built-ins */
+  const stmt
+      *rule; /* statement that gives its value in each step; NULL for built-ins, parameters */
+  int index; /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
+  dimension dim;
+  enum shape shape;
+  placement place;
+  const char *doc;       /* description or NULL */
+  double initial;        /* PARAMETER: default, STATE: initial value; SI */
+  bool has_default;      /* PARAMETER */
+  struct symbol *option; /* CHOICE: its option (NULL for settings) */
+  bool old_is_read;      /* STATE, DAMAGE: some rule reads the value of the last step */
+  bool used;             /* a force or an output depends on it */
+} symbol;
+
+typedef struct symbol_list {
+  symbol **items;
+  int count;
+} symbol_list;
+
+/* The result quantities of pairwise laws, by position. NULL where the law does not give one. */
+typedef enum law_result {
+  RESULT_N,
+  RESULT_V,
+  RESULT_M_I,
+  RESULT_M_J,
+  RESULT_W,
+  RESULT_COUNT
+} law_result;
+
+/* A choice for one option, as a deck or a command line makes it. */
+typedef struct law_choice {
+  const char *option, *choice;
+} law_choice;
+
+/* What the lattice of a law is: it decides `when plane_strain` and the third direction of tensors. */
+typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
+
+typedef struct law {
+  struct tree *tree;
+  law_setting
+      setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  bool irregular; /* lowered for particles that stand on no lattice */
+  int neighbours; /* of a full family, where they are known; else 0 */
+  arena *memory;  /* not owned */
+  const source_set *sources;
+  symbol_list parameters;
+  symbol_list fields; /* states and damages, in the order declared */
+  symbol_list outputs;
+  symbol_list options;
+  const char **chosen; /* [options.count] the choice in force (default: the first) */
+  const symbol *results[RESULT_COUNT];
+  const symbol *rho;  /* the parameter `rho`, or NULL */
+  const stmt **rules; /* statements to evaluate each step, in order (constants first) */
+  int rule_count;
+  const char *nonconservative; /* reason, or NULL */
+} law;
+
+/* Checks names, units, placement, definite assignment, options. All errors of the file are reported.
+   `choices` selects options (NULL, 0: the first of each). Returns NULL when there are errors.
+   What cannot be compiled is no error here: the generator says so. */
+law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
+               int choice_count, diagnostics *d);
+
+const char *law_setting_name(law_setting setting);
+/* The first that the law names in its line `for`; plane stress without one. */
+law_setting law_first_setting(const law *l);
+
+/* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of
+   law->parameters; used for bounds. Infinite bounds have no expression. */
+double law_constant_value(const expr *e, const double *parameters);
+
+/* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
+   what the bounds are, e.g. "(20, inf)". */
+bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
+/* The bounds as numbers, SI: lower and upper, infinite where there is none, NAN where one depends on a value that is NAN;
+   and whether the bound itself is left out. */
+typedef struct law_limits {
+  double lower, upper;
+  bool lower_open, upper_open;
+} law_limits;
+law_limits law_parameter_limits(const law *l, int p, const double *values);
+/* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
+void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
+
+C_LINKAGE_END
+
+#endif

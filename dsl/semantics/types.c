@@ -1,0 +1,506 @@
+/* Gives every expression its dimension, shape and placement. */
+#include <math.h>
+#include <string.h>
+
+#include "dsl/semantics/check.h"
+
+const value BROKEN = {.broken = true};
+
+static const value UNKNOWN = {.unknown = true};
+
+value scalar_of(dimension dim, placement where) {
+  return (value){.dim = dim, .shape = SHAPE_SCALAR, .place = where};
+}
+
+dimension dimension_of(const char *unit_text) {
+  unit u = {DIMENSIONLESS, 1};
+  const char *bad;
+  size_t length;
+  unit_parse(unit_text, strlen(unit_text), &u, &bad, &length);
+  return u.dim;
+}
+
+const char *describe(checker *ck, dimension dim) {
+  char text[160];
+  dim_describe(dim, text, sizeof(text));
+  return arena_text(ck->memory, text, strlen(text));
+}
+
+const char *shape_words(shape s) {
+  switch (s) {
+  case SHAPE_SCALAR:
+    return "a scalar";
+  case SHAPE_LOGICAL:
+    return "true or false";
+  case SHAPE_BENDING:
+    return "a bending quantity";
+  case SHAPE_VECTOR:
+    return "a vector";
+  case SHAPE_TENSOR:
+    return "a tensor";
+  }
+  return "";
+}
+
+/* What a bond and a particle have in common is the particle's view of the bond: directed. */
+placement place_join(const checker *ck, placement a, placement b) {
+  placement low = a < b ? a : b, high = a < b ? b : a;
+  if (!is_pairwise(ck) && low == ON_PARTICLE && high == ON_BOND) return ON_NEIGHBOUR;
+  return high;
+}
+
+static value joined(const checker *ck, value v, value other) {
+  v.place = place_join(ck, v.place, other.place);
+  return v;
+}
+
+/* --- agreement of two values ------------------------------------------------------------------ */
+
+static void hint_magnitude(checker *ck, expr *a, value va, expr *b, value vb) {
+  if (va.shape != SHAPE_SCALAR && vb.shape != SHAPE_SCALAR) return;
+  const expr *other = va.shape == SHAPE_SCALAR ? b : a;
+  shape s = va.shape == SHAPE_SCALAR ? vb.shape : va.shape;
+  if (s == SHAPE_BENDING || s == SHAPE_VECTOR)
+    diag_hint(ck->d, "take its magnitude: `norm(%s)`", written(ck, other, "..."));
+}
+
+static bool is_bare_number(const expr *e) {
+  return e->kind == EXPR_NUMBER && !e->unit_text;
+}
+
+static void hint_unit(checker *ck, const expr *a, const expr *b, value va, value vb) {
+  char text[128];
+  const expr *bare = is_bare_number(a) ? a : is_bare_number(b) ? b : NULL;
+  if (!bare) return;
+  dim_unit(bare == a ? vb.dim : va.dim, text, sizeof(text));
+  diag_hint(ck->d, "give the number its unit: `%g [%s]`", bare->number, text);
+}
+
+static const char *quoted(checker *ck, const expr *e, const char *otherwise) {
+  const char *text = written(ck, e, NULL);
+  return text ? arena_printf(ck->memory, "`%s`", text) : otherwise;
+}
+
+value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
+  if (va.broken || vb.broken) return BROKEN;
+  if (va.zero || va.unknown) {
+    vb.unknown |= va.unknown && vb.zero;
+    vb.zero &= va.zero;
+    return joined(ck, vb, va);
+  }
+  if (vb.zero || vb.unknown) return joined(ck, va, vb);
+  bool listed = where.begin == b->where.begin && where.end == b->where.end; /* a line of cases */
+  const char *first = quoted(ck, a, listed ? "a value above" : "the left side");
+  const char *second = quoted(ck, b, listed ? "this value" : "the right side");
+  if (va.shape != vb.shape) {
+    complain(ck, DIAG_SHAPE, where, "%s is %s but %s is %s, so they cannot be %s", first,
+             shape_words(va.shape), second, shape_words(vb.shape), deed);
+    hint_magnitude(ck, a, va, b, vb);
+    return BROKEN;
+  }
+  if (va.shape != SHAPE_LOGICAL && !dim_equal(va.dim, vb.dim)) {
+    complain(ck, DIAG_UNITS, where, "%s is %s but %s is %s, so they cannot be %s", first,
+             describe(ck, va.dim), second, describe(ck, vb.dim), deed);
+    hint_unit(ck, a, b, va, vb);
+    return BROKEN;
+  }
+  return joined(ck, va, vb);
+}
+
+bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *what) {
+  if (v.broken) return false;
+  if (v.zero || v.unknown) {
+    e->dim = dim;
+    e->shape = s;
+    return true;
+  }
+  if (v.shape != s) {
+    complain(ck, DIAG_SHAPE, e->where, "%s must be %s, but this is %s", what, shape_words(s),
+             shape_words(v.shape));
+    if (s == SHAPE_SCALAR && (v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR))
+      diag_hint(ck->d, "take its magnitude: `norm(...)`");
+    return false;
+  }
+  if (dim_equal(v.dim, dim)) return true;
+  complain(ck, DIAG_UNITS, e->where, "%s must be %s, but this is %s", what, describe(ck, dim),
+           describe(ck, v.dim));
+  if (is_bare_number(e)) hint_unit(ck, e, e, (value){.dim = dim}, (value){.dim = dim});
+  return false;
+}
+
+bool expect_scalar(checker *ck, expr *e, value v, const char *what) {
+  return expect(ck, e, v, v.dim, SHAPE_SCALAR, what);
+}
+
+/* --- kinds of expression ---------------------------------------------------------------------- */
+
+static value check_number_literal(checker *ck, expr *e) {
+  value v = scalar_of(DIMENSIONLESS, ON_NOTHING);
+  v.zero = e->number == 0 && !e->unit_text;
+  if (!e->unit_text) return v;
+  unit u;
+  if (!read_unit(ck, e->unit_text, e->unit_where, &u)) return BROKEN;
+  v.dim = u.dim;
+  return v;
+}
+
+static value refuse(checker *ck, const expr *e, const char *message, const char *hint) {
+  complain(ck, DIAG_PLACEMENT, e->where, message, e->name);
+  if (hint) diag_hint(ck->d, hint, e->name);
+  return BROKEN;
+}
+
+/* x, x[j], x' and x'[j] of a state law: what lives where decides which of them there are. What is
+   fixed on a bond, such as s, may stand without [j]: it is that of the bond at hand. */
+static value check_family_name(checker *ck, expr *e, value v) {
+  if (v.unknown && ck->function) return v;
+  switch (v.place) {
+  case ON_NOTHING:
+  case ON_BODY:
+    if (e->indexed) return refuse(ck, e, "`%s` is the same for every neighbour", "write `%s`");
+    break;
+  case ON_PARTICLE:
+    if (e->primed)
+      return refuse(ck, e, "`%s` belongs to a particle and has no two sides", "write `%s[j]`");
+    if (e->indexed) v.place = ON_NEIGHBOUR;
+    break;
+  case ON_BOND:
+    if (e->primed) return refuse(ck, e, "`%s` is the same seen from both ends", "write `%s[j]`");
+    v.whole = !e->indexed && !is_fixed(e->symbol);
+    break;
+  case ON_NEIGHBOUR:
+    if (e->primed && !e->indexed)
+      return refuse(ck, e, "`%s'` needs its neighbour", "write `%s'[j]`");
+    v.whole = !e->indexed;
+    break;
+  }
+  if (e->primed && v.place < ON_PARTICLE)
+    return refuse(ck, e, "`%s` is the same for every neighbour", "write `%s`");
+  return v;
+}
+
+static value check_name(checker *ck, expr *e) {
+  entry *found = names_resolve(ck, e);
+  if (!found) return BROKEN;
+  e->symbol = &found->symbol;
+  if (found->symbol.kind == SYMBOL_OPTION) {
+    const stmt *s = found->symbol.declared;
+    complain(ck, DIAG_OPTION, e->where, "`%s` is an option and has no value of its own", e->name);
+    if (s->word_count) diag_hint(ck->d, "compare it: `%s == %s`", e->name, s->words[0]);
+    return BROKEN;
+  }
+  if ((e->indexed || e->primed) && is_pairwise(ck)) {
+    complain(ck, DIAG_PLACEMENT, e->where, "a bond law has no neighbours to take `%s` from",
+             e->name);
+    diag_hint(ck->d, "write `%s`; only a state law has a family", e->name);
+    return BROKEN;
+  }
+  if ((e->indexed || e->primed) && found->symbol.kind == SYMBOL_ARGUMENT) {
+    complain(ck, DIAG_PLACEMENT, e->where,
+             "a function takes one value as its argument, not a family");
+    diag_hint(ck->d, "write `%s` here and `x[j]` in the call", e->name);
+    return BROKEN;
+  }
+  if (!found->known) return UNKNOWN;
+  value v = found->type;
+  if (is_pairwise(ck) || v.broken || found->symbol.kind == SYMBOL_ARGUMENT) return v;
+  return check_family_name(ck, e, v);
+}
+
+static value check_unary(checker *ck, expr *e) {
+  if (e->unary != OP_NOT) return check_number(ck, e->left);
+  value v = check_guard(ck, e->left);
+  return v;
+}
+
+/* Exponents of quantities with a unit: numbers only, so that the unit is known. */
+static bool number_of(const expr *e, double *number) {
+  double a, b;
+  switch (e->kind) {
+  case EXPR_NUMBER:
+    *number = e->number;
+    return !e->unit_text;
+  case EXPR_UNARY:
+    if (e->unary == OP_NOT || !number_of(e->left, &a)) return false;
+    *number = e->unary == OP_NEG ? -a : a;
+    return true;
+  case EXPR_BINARY:
+    if (!number_of(e->left, &a) || !number_of(e->right, &b)) return false;
+    switch (e->binary) {
+    case OP_ADD:
+      *number = a + b;
+      return true;
+    case OP_SUB:
+      *number = a - b;
+      return true;
+    case OP_MUL:
+      *number = a * b;
+      return true;
+    case OP_DIV:
+      *number = a / b;
+      return true;
+    default:
+      return false;
+    }
+  default:
+    return false;
+  }
+}
+
+static value check_power(checker *ck, expr *e, value base, value exponent) {
+  if (base.broken || exponent.broken) return BROKEN;
+  if (!base.unknown && base.shape != SHAPE_SCALAR) {
+    complain(ck, DIAG_SHAPE, e->where, "%s has no powers", shape_words(base.shape));
+    if (base.shape == SHAPE_BENDING || base.shape == SHAPE_VECTOR)
+      diag_hint(ck->d, "take its magnitude first: `norm(%s)`", written(ck, e->left, "..."));
+    return BROKEN;
+  }
+  if (!expect(ck, e->right, exponent, DIMENSIONLESS, SHAPE_SCALAR, "an exponent")) return BROKEN;
+  value v = joined(ck, base, exponent);
+  v.zero = false;
+  if (base.unknown || dim_is_none(base.dim)) return v;
+  double number, twelfths;
+  if (!number_of(e->right, &number)) {
+    complain(ck, DIAG_UNITS, e->right->where,
+             "%s is %s, so its exponent must be written as a number",
+             quoted(ck, e->left, "the base"), describe(ck, base.dim));
+    diag_hint(ck->d, "divide by a reference value first: `(x/x_0)**p`");
+    return BROKEN;
+  }
+  twelfths = 12 * number;
+  bool exact = fabs(twelfths) < 1e6 && fabs(twelfths - nearbyint(twelfths)) < 1e-9;
+  if (exact && dim_pow(base.dim, (int)nearbyint(twelfths), 12, &v.dim)) return v;
+  complain(ck, DIAG_UNITS, e->where, "%s to the power of %g has no exact unit",
+           describe(ck, base.dim), number);
+  return BROKEN;
+}
+
+static value check_product(checker *ck, expr *e, value a, value b) {
+  if (a.broken || b.broken) return BROKEN;
+  bool divide = e->binary == OP_DIV;
+  value v = {.dim = divide ? dim_div(a.dim, b.dim) : dim_mul(a.dim, b.dim),
+             .place = place_join(ck, a.place, b.place)};
+  if (a.unknown || b.unknown) {
+    v.unknown = true;
+    return v;
+  }
+  v.shape = a.shape != SHAPE_SCALAR ? a.shape : b.shape;
+  if (divide && b.shape != SHAPE_SCALAR) {
+    complain(ck, DIAG_SHAPE, e->right->where, "%s cannot be divided by", shape_words(b.shape));
+    diag_hint(ck->d, "divide by its magnitude: `norm(%s)`", written(ck, e->right, "..."));
+    return BROKEN;
+  }
+  if (a.shape != SHAPE_SCALAR && b.shape != SHAPE_SCALAR) {
+    const char *left = written(ck, e->left, "a"), *right = written(ck, e->right, "b");
+    complain(ck, DIAG_SHAPE, e->where, "the product of %s and %s is not defined",
+             shape_words(a.shape), shape_words(b.shape));
+    if (a.shape == b.shape) diag_hint(ck->d, "for the scalar product write `%s : %s`", left, right);
+    return BROKEN;
+  }
+  return v;
+}
+
+static value check_contraction(checker *ck, expr *e, value a, value b) {
+  if (a.broken || b.broken) return BROKEN;
+  bool unknown = a.unknown || b.unknown;
+  if (!unknown && (a.shape != b.shape || a.shape == SHAPE_SCALAR)) {
+    complain(ck, DIAG_SHAPE, e->where,
+             "`:` needs two tensors, vectors or bending quantities, not %s and %s",
+             shape_words(a.shape), shape_words(b.shape));
+    if (a.shape == SHAPE_SCALAR || b.shape == SHAPE_SCALAR) diag_hint(ck->d, "write `*`");
+    return BROKEN;
+  }
+  value v = scalar_of(dim_mul(a.dim, b.dim), place_join(ck, a.place, b.place));
+  v.unknown = unknown;
+  return v;
+}
+
+/* --- logic ------------------------------------------------------------------------------------ */
+
+static value logical(placement where) {
+  return (value){.shape = SHAPE_LOGICAL, .place = where};
+}
+
+static bool names_option(const checker *ck, const expr *e) {
+  if (e->kind != EXPR_NAME) return false;
+  const entry *found = names_find(ck, SPACE_QUANTITIES, e->name);
+  return found && found->symbol.kind == SYMBOL_OPTION;
+}
+
+/* onset == rankine: decided when the law is compiled. */
+static value check_choice(checker *ck, expr *e) {
+  expr *left = names_option(ck, e->left) ? e->left : e->right;
+  expr *right = left == e->left ? e->right : e->left;
+  entry *option = names_resolve(ck, left);
+  if (!option) return BROKEN;
+  const stmt *s = option->symbol.declared;
+  left->symbol = &option->symbol;
+  left->shape = right->shape = SHAPE_LOGICAL;
+  if ((e->binary != OP_EQ && e->binary != OP_NE) || right->kind != EXPR_NAME || right->indexed) {
+    complain(ck, DIAG_OPTION, e->where, "option `%s` can only be compared with one of its choices",
+             s->name);
+    if (s->word_count) diag_hint(ck->d, "write `%s == %s`", s->name, s->words[0]);
+    return BROKEN;
+  }
+  entry *choice = names_find_choice(ck, &option->symbol, right->name);
+  if (choice) {
+    right->symbol = &choice->symbol;
+    return logical(ON_NOTHING);
+  }
+  complain(ck, DIAG_OPTION, right->where, "option `%s` has no choice `%s`", s->name, right->name);
+  diag_note(ck->d, s->name_where, "its choices are given here");
+  diag_suggest(ck->d, right->name, s->words, s->word_count);
+  return BROKEN;
+}
+
+static value check_comparison(checker *ck, expr *e) {
+  if (names_option(ck, e->left) || names_option(ck, e->right)) return check_choice(ck, e);
+  value a = check_value(ck, e->left);
+  value b = check_value(ck, e->right);
+  if (a.broken || b.broken) return BROKEN;
+  bool chained =
+      e->left->kind == EXPR_BINARY && e->left->binary >= OP_EQ && e->left->binary <= OP_GE;
+  if (chained && a.shape == SHAPE_LOGICAL) {
+    complain(ck, DIAG_SHAPE, e->where, "comparisons cannot be chained");
+    diag_hint(ck->d, "write `a < b and b < c`");
+    return BROKEN;
+  }
+  value common = agree(ck, e->where, e->left, a, e->right, b, "compared");
+  if (common.broken) return BROKEN;
+  if (!common.unknown && common.shape != SHAPE_SCALAR) {
+    complain(ck, DIAG_SHAPE, e->where, "%s cannot be compared",
+             common.shape == SHAPE_LOGICAL ? "what is true or false" : shape_words(common.shape));
+    if (common.shape == SHAPE_BENDING || common.shape == SHAPE_VECTOR)
+      diag_hint(ck->d, "compare magnitudes: `norm(...)`");
+    return BROKEN;
+  }
+  return logical(common.place);
+}
+
+static value check_binary(checker *ck, expr *e) {
+  if (e->binary >= OP_EQ && e->binary <= OP_GE) return check_comparison(ck, e);
+  if (e->binary == OP_AND || e->binary == OP_OR) {
+    value a = check_guard(ck, e->left), b = check_guard(ck, e->right);
+    return a.broken || b.broken ? BROKEN : logical(place_join(ck, a.place, b.place));
+  }
+  value a = check_number(ck, e->left);
+  value b = check_number(ck, e->right);
+  switch (e->binary) {
+  case OP_ADD:
+    return agree(ck, e->where, e->left, a, e->right, b, "added");
+  case OP_SUB:
+    return agree(ck, e->where, e->left, a, e->right, b, "subtracted");
+  case OP_POW:
+    return check_power(ck, e, a, b);
+  case OP_CONTRACT:
+    return check_contraction(ck, e, a, b);
+  default:
+    return check_product(ck, e, a, b);
+  }
+}
+
+/* --- cases ------------------------------------------------------------------------------------ */
+
+static void check_otherwise(checker *ck, const expr *e) {
+  for (int i = 0; i < e->case_count; i++) {
+    if (e->cases[i].guard) continue;
+    if (i + 1 == e->case_count) return;
+    complain(ck, DIAG_CASES, e->cases[i + 1].where, "this line can never be chosen");
+    diag_note(ck->d, e->cases[i].where, "`otherwise` takes all that is left");
+    diag_hint(ck->d, "`otherwise` stands on the last line");
+    return;
+  }
+  span last = e->case_count ? e->cases[e->case_count - 1].where : e->where;
+  complain(ck, DIAG_CASES, last, "these cases do not end with `otherwise`");
+  diag_hint(ck->d, "add a last line: `| value otherwise`");
+}
+
+static value check_cases(checker *ck, expr *e) {
+  value result = {.zero = true};
+  placement guards = ON_NOTHING;
+  bool broken = false;
+  expr *sample = NULL; /* the first value whose unit is known */
+  for (int i = 0; i < e->case_count; i++) {
+    case_line *line = &e->cases[i];
+    value v = check_value(ck, line->value);
+    value guard = line->guard ? check_guard(ck, line->guard) : logical(ON_NOTHING);
+    guards = place_join(ck, guards, guard.place);
+    broken |= v.broken || guard.broken;
+    if (broken) continue;
+    result = agree(ck, line->value->where, sample ? sample : line->value, result, line->value, v,
+                   "values of the same cases");
+    broken |= result.broken;
+    if (!sample && !v.zero && !v.unknown) sample = line->value;
+  }
+  check_otherwise(ck, e);
+  if (broken) return BROKEN;
+  for (int i = 0; i < e->case_count; i++) {
+    e->cases[i].value->dim = result.dim;
+    e->cases[i].value->shape = result.shape;
+  }
+  result.place = place_join(ck, result.place, guards);
+  return result;
+}
+
+/* --- entry points ----------------------------------------------------------------------------- */
+
+static value check_kind(checker *ck, expr *e) {
+  switch (e->kind) {
+  case EXPR_NUMBER:
+    return check_number_literal(ck, e);
+  case EXPR_NAME:
+    return check_name(ck, e);
+  case EXPR_UNARY:
+    return check_unary(ck, e);
+  case EXPR_BINARY:
+    return check_binary(ck, e);
+  case EXPR_CALL:
+    return check_call(ck, e);
+  case EXPR_CASES:
+    return check_cases(ck, e);
+  }
+  return BROKEN;
+}
+
+value check_family(checker *ck, expr *e) {
+  if (!e) return BROKEN;
+  if (ck->depth >= MOST_DEPTH) {
+    if (!ck->too_deep) complain(ck, DIAG_TOO_DEEP, e->where, "this expression is nested too deep");
+    ck->too_deep = true;
+    return BROKEN;
+  }
+  ck->depth++;
+  value v = check_kind(ck, e);
+  ck->depth--;
+  e->dim = v.dim;
+  e->shape = v.shape;
+  e->place = v.place;
+  return v;
+}
+
+value check_value(checker *ck, expr *e) {
+  value v = check_family(ck, e);
+  if (v.broken || !v.whole) return v;
+  complain(ck, DIAG_PLACEMENT, e->where, "%s has one value for each neighbour",
+           quoted(ck, e, "this"));
+  if (e->kind == EXPR_NAME) diag_hint(ck->d, "write `%s[j]`", e->name);
+  return BROKEN;
+}
+
+value check_number(checker *ck, expr *e) {
+  value v = check_value(ck, e);
+  if (v.broken || v.unknown || v.shape != SHAPE_LOGICAL) return v;
+  complain(ck, DIAG_SHAPE, e->where, "%s is true or false, not a number", quoted(ck, e, "this"));
+  diag_hint(ck->d, "choose numbers with cases: | 1 when ... | 0 otherwise");
+  return BROKEN;
+}
+
+value check_guard(checker *ck, expr *e) {
+  value v = check_value(ck, e);
+  if (v.broken || (v.unknown && e->kind != EXPR_NUMBER)) return v;
+  if (v.shape == SHAPE_LOGICAL) return v;
+  complain(ck, DIAG_SHAPE, e->where, "%s is a number where true or false is needed",
+           quoted(ck, e, "this"));
+  diag_hint(ck->d, "compare it: `%s > 0`", written(ck, e, "x"));
+  return BROKEN;
+}

@@ -1,0 +1,173 @@
+/* The tree of a model file: what was written, with a span on every node. The parser builds it; the
+   checker (law.h) fills in the fields marked "checker". Nothing here assumes that a law is pairwise. */
+#ifndef PERILAT_DSL_TREE_H
+#define PERILAT_DSL_TREE_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/c_linkage.h"
+#include "dsl/base/source.h"
+#include "dsl/base/units.h"
+
+C_LINKAGE_BEGIN
+
+/* `for irregular`, `when irregular`: particles that stand on no lattice. */
+#define LAW_IRREGULAR "irregular"
+
+typedef enum expr_kind {
+  EXPR_NUMBER,   /* 30 [GPa] */
+  EXPR_NAME,     /* x, x[j], x'[j], x' */
+  EXPR_UNARY,    /* -a, not a */
+  EXPR_BINARY,   /* a + b, a <= b, a and b, a : b */
+  EXPR_CALL,     /* f(a, b, weight = c) */
+  EXPR_CASES     /* | value when guard  ... | value otherwise */
+} expr_kind;
+
+/* X(code, text, precedence): binary operators; a higher precedence binds tighter. */
+#define TREE_BINARY_OPERATORS(X)                                                                   \
+  X(OR, "or", 1) X(AND, "and", 2)                                                                  \
+  X(EQ, "==", 4) X(NE, "/=", 4) X(LT, "<", 4) X(LE, "<=", 4) X(GT, ">", 4) X(GE, ">=", 4)          \
+  X(ADD, "+", 5) X(SUB, "-", 5) X(MUL, "*", 6) X(DIV, "/", 6) X(CONTRACT, ":", 6) X(POW, "**", 8)
+
+typedef enum binary_op {
+#define X(code, text, precedence) OP_##code,
+  TREE_BINARY_OPERATORS(X)
+#undef X
+  OP_BINARY_COUNT
+} binary_op;
+
+typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT } unary_op;
+
+/* What a value is, beside its dimension. A bending quantity has one component in 2D, two in 3D. */
+typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, SHAPE_TENSOR } shape;
+
+/* Where a value lives. Ordered: a bond value may be made of uniform ones. NEIGHBOUR is directed, i toward j. */
+typedef enum placement { ON_NOTHING, ON_BODY, ON_PARTICLE, ON_BOND, ON_NEIGHBOUR } placement;
+
+struct symbol; /* law.h */
+struct function_builtin;
+typedef struct expr expr;
+typedef struct stmt stmt;
+
+/* No expression is deeper than this, so that walks over trees may recurse. */
+enum { TREE_DEEPEST = 200 };
+
+typedef struct argument {
+  const char *keyword; /* NULL for a positional one */
+  span keyword_where;
+  expr *value;
+} argument;
+
+typedef struct case_line {
+  expr *value;
+  expr *guard; /* NULL: otherwise */
+  bool jump;
+  span where;
+} case_line;
+
+struct expr {
+  expr_kind kind;
+  span where;
+  int depth; /* levels of the tree from here down; the parser keeps it to TREE_DEEPEST */
+
+  double number;         /* NUMBER: as written, before the unit */
+  const char *unit_text; /* NUMBER: NULL without a unit */
+  span unit_where;
+
+  const char *name; /* NAME, CALL */
+  span name_where;
+  bool indexed;     /* NAME: [j] follows */
+  bool primed;      /* NAME: ' follows the name (the neighbour's value toward me) */
+
+  unary_op unary;
+  binary_op binary;
+  expr *left, *right; /* BINARY; UNARY uses left */
+
+  argument *arguments; /* CALL */
+  int argument_count;
+  case_line *cases; /* CASES */
+  int case_count;
+
+  /* checker */
+  struct symbol *symbol;  /* NAME: what it refers to; CALL: a user's function */
+  int builtin;            /* CALL: enum builtin_function of builtins.h, or -1 */
+  bool reads_old;         /* NAME of a state or damage: value of the last step */
+  dimension dim;
+  enum shape shape;
+  placement place;
+};
+
+typedef enum stmt_kind {
+#define TREE_STATEMENTS(X)                                                                         \
+  X(PARAMETER, "parameter") X(CONSTANT, "constant") X(OPTION, "option") X(DEFINITION, "definition") \
+  X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force")                   \
+  X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress")         \
+  X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                         \
+  X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
+#define X(code, text) STMT_##code,
+  TREE_STATEMENTS(X)
+#undef X
+  STMT_COUNT
+} stmt_kind;
+
+typedef struct bounds {
+  bool given;
+  bool lower_open, upper_open; /* ( or [ */
+  expr *lower, *upper;         /* NULL: infinite (written inf or -inf) */
+  span where;
+} bounds;
+
+struct stmt {
+  stmt_kind kind;
+  span where;
+  const char *name; /* NULL for nonconservative and include */
+  span name_where;
+  bool indexed;     /* name[j] */
+  expr *value;      /* rule, default or initial value; NULL when absent */
+  placement place;  /* STATE, DAMAGE: as written, ON_NOTHING when not written */
+  span place_where; /* of the word after `on` */
+  const char *unit_text;  /* PARAMETER without default: its unit, NULL for a pure number */
+  span unit_where;
+  bool along_reference;   /* FORCE_STATE: acts along the reference bond, not the current one */
+  bounds in;        /* PARAMETER */
+  const char **words;     /* OPTION: choices; FUNCTION: arguments */
+  span *word_where;
+  int word_count;
+  expr *when;             /* FLOW: guard */
+  bool returned;          /* FLOW along ... returned */
+  const char *text;       /* quoted text: description, reason, or included file */
+  span text_where;
+  const char *doc;        /* lines of !> before it, joined by newline; NULL without */
+  stmt *next;
+
+  /* checker */
+  struct symbol *symbol;  /* what the statement declares or defines */
+};
+
+typedef enum law_kind { LAW_CENTRAL_BOND, LAW_MICROPOLAR_BOND, LAW_STATE } law_kind;
+
+typedef struct tree {
+  const char *name;
+  span name_where;
+  const char *doc;
+  law_kind law;
+  span law_where;
+  const char **settings; /* for plane_stress, space */
+  span *setting_where;
+  int setting_count;
+  stmt *first;           /* in the order written, included statements in place */
+} tree;
+
+const char *stmt_kind_name(stmt_kind kind);
+const char *placement_name(placement p);
+
+/* Prints the tree as indented text, one node a line, without spans: the form of the golden tests. */
+void tree_dump(const tree *t, FILE *out);
+/* Prints an expression as source text with the fewest parentheses. */
+void expr_print(const expr *e, FILE *out);
+
+C_LINKAGE_END
+
+#endif

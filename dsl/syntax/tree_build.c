@@ -1,0 +1,194 @@
+/* Nodes of the tree, as the grammar makes them. */
+#include <string.h>
+
+#include "dsl/syntax/parsing.h"
+
+bool first_complaint(parsing *p) {
+  bool first = !p->failed;
+  p->failed = true;
+  return first;
+}
+
+static expr *node(parsing *p, expr_kind kind, span where) {
+  expr *e = arena_alloc(p->memory, sizeof *e);
+  e->kind = kind;
+  e->where = where;
+  e->depth = 1;
+  e->builtin = -1;
+  return e;
+}
+
+/* Makes `child` hang below `parent`. A child that is too deep is replaced by a number, so that no
+   tree, not even one of a faulty text, exceeds the limit. */
+static expr *below(parsing *p, expr *parent, expr *child) {
+  if (child->depth >= TREE_DEEPEST) {
+    if (first_complaint(p)) {
+      diag_report(p->messages, DIAG_TOO_DEEP, child->where,
+                  "this expression nests more than %d operations in one another", TREE_DEEPEST);
+      diag_hint(p->messages, "give parts of it names of their own");
+    }
+    child = node(p, EXPR_NUMBER, child->where);
+  }
+  if (parent->depth <= child->depth) parent->depth = child->depth + 1;
+  return child;
+}
+
+/* Index brackets hold `j`, always. Returns whether there are any. */
+static bool index_given(parsing *p, word index) {
+  if (index.text && strcmp(index.text, "j") != 0 && first_complaint(p)) {
+    diag_report(p->messages, DIAG_SYNTAX, index.where, "the neighbour is called `j`, not `%s`",
+                index.text);
+    diag_hint(p->messages, "write [j]");
+  }
+  return index.text != NULL;
+}
+
+expr *build_number(parsing *p, double number, word written_unit, span where) {
+  expr *e = node(p, EXPR_NUMBER, where);
+  e->number = number;
+  e->unit_text = written_unit.text;
+  e->unit_where = written_unit.where;
+  return e;
+}
+
+expr *build_name(parsing *p, word name, bool primed, word index, span where) {
+  expr *e = node(p, EXPR_NAME, where);
+  e->name = name.text;
+  e->name_where = name.where;
+  e->primed = primed;
+  e->indexed = index_given(p, index);
+  return e;
+}
+
+expr *build_unary(parsing *p, unary_op op, expr *operand, span where) {
+  expr *e = node(p, EXPR_UNARY, where);
+  e->unary = op;
+  e->left = below(p, e, operand);
+  return e;
+}
+
+expr *build_binary(parsing *p, binary_op op, expr *left, expr *right, span where) {
+  expr *e = node(p, EXPR_BINARY, where);
+  e->binary = op;
+  e->left = below(p, e, left);
+  e->right = below(p, e, right);
+  return e;
+}
+
+/* Room for one item more in an array that doubles at each power of two. */
+static void *grown(arena *memory, void *items, int count, size_t size) {
+  if (count & (count - 1)) return items;
+  void *larger = arena_alloc(memory, size * (size_t)(count ? 2 * count : 1));
+  if (count) memcpy(larger, items, size * (size_t)count);
+  return larger;
+}
+
+expr *build_call(parsing *p, word name) {
+  expr *e = node(p, EXPR_CALL, name.where);
+  e->name = name.text;
+  e->name_where = name.where;
+  return e;
+}
+
+expr *build_argument(parsing *p, expr *call, word keyword, expr *value) {
+  int n = call->argument_count++;
+  call->arguments = grown(p->memory, call->arguments, n, sizeof *call->arguments);
+  call->arguments[n] = (argument){keyword.text, keyword.where, below(p, call, value)};
+  return call;
+}
+
+expr *build_cases(parsing *p, span where) {
+  return node(p, EXPR_CASES, where);
+}
+
+expr *build_case(parsing *p, expr *cases, expr *value, expr *guard, bool jump, span where) {
+  int n = cases->case_count++;
+  cases->cases = grown(p->memory, cases->cases, n, sizeof *cases->cases);
+  cases->cases[n] =
+      (case_line){below(p, cases, value), guard ? below(p, cases, guard) : NULL, jump, where};
+  cases->where = span_join(cases->where, where);
+  return cases;
+}
+
+words *build_words(parsing *p) {
+  return arena_alloc(p->memory, sizeof(words));
+}
+
+words *build_word(parsing *p, words *list, word item) {
+  int n = list->count++;
+  list->items = grown(p->memory, list->items, n, sizeof *list->items);
+  list->where = grown(p->memory, list->where, n, sizeof *list->where);
+  list->items[n] = item.text;
+  list->where[n] = item.where;
+  return list;
+}
+
+static bool is_inf(const expr *e) {
+  return e->kind == EXPR_NAME && !e->indexed && !e->primed && strcmp(e->name, "inf") == 0;
+}
+
+static bool is_minus_inf(const expr *e) {
+  return e->kind == EXPR_UNARY && e->unary == OP_NEG && is_inf(e->left);
+}
+
+bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool upper_open,
+                    span where) {
+  const expr *wrong = is_inf(lower) ? lower : is_minus_inf(upper) ? upper : NULL;
+  if (wrong && first_complaint(p)) {
+    diag_report(p->messages, DIAG_SYNTAX, wrong->where, "these bounds stand in the wrong order");
+    diag_hint(p->messages, "the lower bound comes first: (-inf, inf)");
+  }
+  return (bounds){true,
+                  lower_open,
+                  upper_open,
+                  is_minus_inf(lower) ? NULL : lower,
+                  is_inf(upper) ? NULL : upper,
+                  where};
+}
+
+stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value, span where) {
+  stmt *s = arena_alloc(p->memory, sizeof *s);
+  s->kind = kind;
+  s->where = where;
+  s->name = name.text;
+  s->name_where = name.where;
+  s->indexed = index_given(p, index);
+  s->value = value;
+  s->doc = p->lex.doc;
+  return s;
+}
+
+void build_words_of(stmt *s, const words *list) {
+  s->words = list->items;
+  s->word_where = list->where;
+  s->word_count = list->count;
+}
+
+void build_placement(parsing *p, stmt *s, word on) {
+  static const struct {
+    const char *name;
+    placement place;
+  } places[] = {{"bond", ON_BOND}, {"particle", ON_PARTICLE}, {"neighbour", ON_NEIGHBOUR}};
+  if (!on.text) return;
+  s->place_where = on.where;
+  for (size_t i = 0; i < sizeof places / sizeof places[0]; i++)
+    if (strcmp(on.text, places[i].name) == 0) s->place = places[i].place;
+  if (s->place != ON_NOTHING || !first_complaint(p)) return;
+  diag_report(p->messages, DIAG_SYNTAX, on.where, "a %s cannot live on `%s`",
+              stmt_kind_name(s->kind), on.text);
+  diag_hint(p->messages, "write `on bond`, `on particle` or `on neighbour`");
+}
+
+void build_force_state(parsing *p, word state, stmt *s, word direction) {
+  s->along_reference = direction.text != NULL;
+  if (strcmp(state.text, "state") != 0) {
+    if (!first_complaint(p)) return;
+    diag_report(p->messages, DIAG_SYNTAX, state.where, "`force %s %s` is not understood",
+                state.text, s->name);
+    diag_hint(p->messages,
+              "write `force N =` or `force V =`, or, in a state law, `force state F[j] =`");
+  } else if (direction.text && strcmp(direction.text, "reference") != 0 && first_complaint(p)) {
+    diag_report(p->messages, DIAG_SYNTAX, direction.where,
+                "a force state acts along the current bond or `along reference`");
+  }
+}

@@ -1,0 +1,30 @@
+/* Does a law obey mechanics? Drives a law on the interpreter through many states, seeded,
+   and reports each breach with the state that shows it. */
+#ifndef PERILAT_GENERATOR_PHYSICS_H
+#define PERILAT_GENERATOR_PHYSICS_H
+
+#include "dsl/semantics/law.h"
+#include "runtime/kernel.h"
+
+typedef struct physics_options {
+  const double *parameters; /* SI, in the law's order: only these; NULL: around the defaults */
+  /* That of a deck: only its bonds. NULL: the hexagon of nearest neighbours, in space fcc with its
+     second ones, of 10 mm (and 100 mm of thickness); laws of bonds on lattices of a quarter to four
+     times as much, too, with unequal masses. */
+  const struct deck_lattice *lattice;
+  double effort; /* share of the usual number of states; 0: 1 */
+  uint64_t seed; /* 0: the usual one */
+} physics_options;
+
+typedef struct physics_report {
+  int guards, guards_reached; /* conditions of case lines and flows that vary with the state; seen
+                                 both true and false */
+  double states;              /* evaluated */
+  double seconds;
+} physics_report;
+
+/* Everything found goes to `d`, one
+   diagnostic a check. Returns false when there were errors among them. `report` may be NULL. */
+bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report);
+
+#endif

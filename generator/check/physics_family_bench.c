@@ -1,0 +1,360 @@
+#include <math.h>
+#include <stdarg.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "generator/check/physics_family_parts.h"
+#include "generator/check/physics_parameters.h"
+#include "generator/plan/plan_parts.h"
+#include "generator/ir/random_values.h"
+#include "runtime/analysis/implied.h"
+
+/* --- plans ------------------------------------------------------------------------------------ */
+
+typedef struct roots {
+  segment_root *items;
+  int count, observed; /* places of observed values taken so far */
+} roots;
+
+static roots roots_new(kernel_plan *p, int most) {
+  return (roots){arena_alloc(p->memory, ((size_t)most + 1) * sizeof(segment_root)), 0, 0};
+}
+
+static void want(roots *r, ir_node n, segment_target target, int index) {
+  r->items[r->count++] = (segment_root){.node = n, .target = target, .index = index};
+}
+
+static bool is_of_particle(const ir *g, ir_node n) {
+  return ir_place(g, n) <= ON_PARTICLE && !ir_is_of_class(g, n);
+}
+
+/* Numbers of particles are observed first, those toward neighbours after them. */
+static void watch(const ir *g, roots *r, ir_node n, watched *w, bool wide) {
+  if (n == IR_NONE || is_of_particle(g, n) == wide) return;
+  *w = (watched){r->observed++, wide};
+  want(r, n, wide ? TO_NEIGHBOUR_OBSERVED : TO_PARTICLE_OBSERVED, w->at);
+}
+
+static void watch_all(family_bench *b, const ir *g, roots *r, bool wide) {
+  const lowered_text *t = &b->step.text;
+  for (int k = 0; k < b->law->fields.count; k++)
+    if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE) watch(g, r, t->rules[k], &b->rule[k], wide);
+  for (int k = 0; k < t->line_count; k++)
+    watch(g, r, t->lines[k].guard, &b->guard[k], wide);
+  for (int k = 0; k < t->flow_count; k++) {
+    watch(g, r, t->flows[k].when, &b->guard[t->line_count + k], wide);
+    watch(g, r, t->flows[k].overstress, &b->overstress[k], wide);
+  }
+}
+
+static watched *watches(family_bench *b, int count) {
+  watched *w = arena_alloc(b->memory, ((size_t)count + 1) * sizeof *w);
+  for (int k = 0; k < count; k++)
+    w[k].at = -1;
+  return w;
+}
+
+static kernel_plan *begin(const law *l) {
+  kernel_plan *p = plan_begin(l);
+  p->kind = PL_STATE;
+  p->dimensions = p->dof = l->setting == SETTING_SPACE ? 3 : 2;
+  p->reads_shape = true; /* a body keeps them */
+  return p;
+}
+
+static void build(kernel_plan *p, family_program *out, const roots *r, bool along_reference) {
+  program_motion motion = plan_motion(p, along_reference);
+  program_build(out, "check", p->graph, p->memory, r->items, r->count, &motion, SHARE_NOTHING,
+                &p->links);
+}
+
+static bool plan_whole(family_bench *b, int *narrow, int *all) {
+  const law *l = b->law;
+  kernel_plan *p = b->plan[0] = begin(l);
+  const int fields = l->fields.count;
+  if (!lower_law(l, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
+  const lowered_text *t = &b->step.text;
+  b->rule = watches(b, fields);
+  b->guard = watches(b, t->line_count + t->flow_count);
+  b->overstress = watches(b, t->flow_count);
+  b->seen = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
+  b->varies = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
+  for (int k = 0; k < t->line_count; k++)
+    b->varies[k] = ir_place(p->graph, t->lines[k].guard) > ON_BODY;
+  for (int k = 0; k < t->flow_count; k++)
+    b->varies[t->line_count + k] =
+        t->flows[k].when != IR_NONE && ir_place(p->graph, t->flows[k].when) > ON_BODY;
+  roots step = roots_new(p, fields + 3),
+        text = roots_new(p, fields + t->line_count + 2 * t->flow_count);
+  for (int k = 0; k < fields; k++)
+    want(&step, b->step.fields[k],
+         l->fields.items[k]->place <= ON_PARTICLE ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
+  plan_forces(p, &b->step, step.items + step.count);
+  step.count += p->dimensions;
+  text.observed = 1 + l->outputs.count;
+  watch_all(b, p->graph, &text, false);
+  *narrow = text.observed - 1 - l->outputs.count;
+  watch_all(b, p->graph, &text, true);
+  *all = text.observed - 1 - l->outputs.count;
+  build(p, &p->step, &step, b->step.along_reference);
+  build(p, &p->observe, &text, b->step.along_reference);
+  plan_hoist(p);
+  return p->step.pass_count <= PLAN_MOST_PASSES && p->observe.pass_count <= PLAN_MOST_PASSES;
+}
+
+static bool plan_frozen(family_bench *b) {
+  kernel_plan *p = b->plan[1] = begin(b->law);
+  lowered_law frozen;
+  if (!lower_law(b->law, p->graph, LOWER_FROZEN, p->memory, &frozen, b->said)) return false;
+  b->has_energy = frozen.W != IR_NONE;
+  roots step = roots_new(p, 3), energy = roots_new(p, 1);
+  plan_forces(p, &frozen, step.items);
+  step.count = p->dimensions;
+  want(&energy, b->has_energy ? frozen.W : ir_constant(p->graph, 0), TO_PARTICLE_OBSERVED, 0);
+  build(p, &p->step, &step, frozen.along_reference);
+  build(p, &p->observe, &energy, frozen.along_reference);
+  plan_hoist(p);
+  return p->step.pass_count <= PLAN_MOST_PASSES && p->observe.pass_count <= PLAN_MOST_PASSES;
+}
+
+/* --- the body --------------------------------------------------------------------------------- */
+
+static bool open_lattice(family_bench *b) {
+  const deck_lattice usual = physics_usual_lattice(b->law);
+  const deck_lattice *d = b->options->lattice ? b->options->lattice : &usual;
+  const double density = b->law->rho ? b->parameters[b->law->rho->index] : 2000;
+  b->lattice = implied_lattice_like(d, density);
+  b->lattice_name = arena_text(b->memory, d->kind, strlen(d->kind));
+  return b->lattice && b->lattice->dimensions == b->plan[0]->dimensions;
+}
+
+/* Takes away the bonds that lead out of the period. */
+static void set_free(patch *p) {
+  for (long q = 0; q < p->inside_count; q++)
+    for (int k = 0; k < p->lattice->directions; k++) {
+      const long site = p->inside[q], far = site + p->offset[k];
+      if (p->image[far] != far) patch_cut(p, site, k);
+    }
+}
+
+static patch *body_of(const family_bench *b, const pl_law *kernel, int narrow, int wide) {
+  static const long plane[3] = {4, 4, 1}, space[3] = {2, 2, 2};
+  const long *period = kernel->dimensions == 3 ? space : plane;
+  patch *p = patch_new(kernel, b->parameters, b->lattice, period, narrow, wide);
+  set_free(p);
+  return p;
+}
+
+family_bench *family_bench_new(const law *l, const physics_options *o, diagnostics *d) {
+  family_bench *b = must_calloc(1, sizeof *b);
+  int narrow, all;
+  b->law = l;
+  b->options = o;
+  b->said = d;
+  b->memory = arena_new();
+  b->seed = o->seed ? o->seed : 20260101;
+  b->parameters = arena_alloc(b->memory, ((size_t)l->parameters.count + 1) * sizeof(double));
+  physics_draw_parameters(l, NULL, b->parameters);
+  if (o->parameters)
+    memcpy(b->parameters, o->parameters, (size_t)l->parameters.count * sizeof(double));
+  if (!plan_whole(b, &narrow, &all) || !plan_frozen(b) || !open_lattice(b)) {
+    family_bench_free(b);
+    return NULL;
+  }
+  for (int k = 0; k < 2; k++)
+    b->kernel[k] = plan_interpreted(b->plan[k], "");
+  b->whole = body_of(b, b->kernel[0], narrow, all - narrow);
+  b->frozen = body_of(b, b->kernel[1], 0, 0);
+  b->values = b->whole->law->dimensions * b->whole->inside_count;
+  return b;
+}
+
+void family_bench_free(family_bench *b) {
+  patch_free(b->whole);
+  patch_free(b->frozen);
+  if (b->lattice) rows_free(b->lattice);
+  for (int k = 0; k < 2; k++) {
+    if (b->kernel[k]) plan_interpreted_free(b->kernel[k]);
+    plan_free(b->plan[k]);
+  }
+  arena_free(b->memory);
+  free(b);
+}
+
+void family_bench_draw(family_bench *b, bool defaults) {
+  if (!b->options->parameters)
+    physics_draw_parameters(b->law, defaults ? NULL : &b->seed, b->parameters);
+  patch *both[] = {b->whole, b->frozen};
+  for (int k = 0; k < 2; k++) {
+    patch_prepare(both[k], b->parameters);
+    patch_virgin(both[k]);
+  }
+}
+
+/* --- motion ----------------------------------------------------------------------------------- */
+
+void family_bench_deform(family_bench *b, double size, double *values) {
+  const patch *p = b->whole;
+  const int dimensions = p->law->dimensions;
+  const double noise = draw_bits(&b->seed) % 2 ? draw_uniform(&b->seed, 0, 1) : 0;
+  const uint64_t kind = draw_bits(&b->seed) % 4; /* a quarter swells, a quarter shrinks */
+  const double swelling = kind == 0 ? 1 : kind == 1 ? -1 : 0;
+  double gradient[3][3] = {{0}}, at[3];
+  for (int r = 0; r < dimensions; r++)
+    for (int c = 0; c < dimensions; c++)
+      gradient[r][c] = size * (draw_uniform(&b->seed, -1, 1) + (r == c ? swelling : 0)) / 2;
+  for (int d = 0; d < dimensions; d++)
+    for (long q = 0; q < p->inside_count; q++) {
+      patch_position(p, p->inside[q], at);
+      double *u = &values[d * p->inside_count + q];
+      *u = noise * size * p->lattice->spacing * draw_uniform(&b->seed, -1, 1);
+      for (int c = 0; c < dimensions; c++)
+        *u += gradient[d][c] * at[c];
+    }
+}
+
+static void put(patch *p, const double *values, double *const *into) {
+  for (int d = 0; d < p->law->dimensions; d++)
+    for (long q = 0; q < p->inside_count; q++)
+      into[d][p->inside[q]] = values ? values[d * p->inside_count + q] : 0;
+}
+
+/* Without surroundings nothing reads the margins. */
+void family_bench_move(family_bench *b, const double *u, const double *v) {
+  patch *both[] = {b->whole, b->frozen};
+  for (int k = 0; k < 2; k++) {
+    put(both[k], u, both[k]->displacement);
+    put(both[k], v, both[k]->velocity);
+  }
+}
+
+static const double MOST_BONDS = 1e6; /* about 40 ms */
+
+bool family_bench_tired(const family_bench *b) {
+  const double effort = b->options->effort > 0 ? b->options->effort : 1;
+  return b->bonds > effort * MOST_BONDS;
+}
+
+static void count_work(family_bench *b, const patch *of) {
+  b->bonds += (double)(of->count * 2 * of->lattice->directions);
+}
+
+void family_bench_observe(family_bench *b) {
+  patch_observe(b->whole);
+  count_work(b, b->whole);
+}
+
+void family_bench_forces(family_bench *b, patch *of, double *force) {
+  patch_step(of);
+  b->evaluated += (double)of->inside_count;
+  count_work(b, of);
+  for (int d = 0; d < of->law->dimensions; d++)
+    for (long q = 0; q < of->inside_count; q++)
+      force[d * of->inside_count + q] = of->force[d][of->inside[q]];
+}
+
+void family_bench_share_fields(family_bench *b) {
+  for (int f = 0; f < b->law->fields.count; f++) {
+    const long count = patch_planes(b->whole, &b->whole->law->fields[f]) * b->whole->size;
+    memcpy(b->frozen->field[f] - b->frozen->lead, b->whole->field[f] - b->whole->lead,
+           (size_t)count * sizeof(double));
+  }
+}
+
+void family_bench_accept(family_bench *b) {
+  patch_accept(b->whole);
+}
+
+double family_bench_energy(family_bench *b) {
+  double sum = 0;
+  patch_observe(b->frozen);
+  for (long q = 0; q < b->frozen->inside_count; q++)
+    sum += b->frozen->observed[0][b->frozen->inside[q]];
+  return sum;
+}
+
+double family_work(const double *force, const double *way, long count, double *size) {
+  double sum = 0;
+  for (long k = 0; k < count; k++) {
+    sum -= force[k] * way[k]; /* against the bonds */
+    *size += fabs(force[k] * way[k]);
+  }
+  return sum;
+}
+
+/* --- what is watched -------------------------------------------------------------------------- */
+
+static int neighbours_of(const family_bench *b) {
+  return 2 * b->lattice->directions;
+}
+
+int family_bench_places(const family_bench *b, watched w) {
+  return w.at < 0 ? 0 : (int)b->whole->inside_count * (w.wide ? neighbours_of(b) : 1);
+}
+
+static long site_of(const family_bench *b, watched w, int where) {
+  return b->whole->inside[w.wide ? where / neighbours_of(b) : where];
+}
+
+bool family_bench_exists(const family_bench *b, watched w, int where) {
+  return !w.wide || patch_has_bond(b->whole, site_of(b, w, where), where % neighbours_of(b));
+}
+
+int family_bench_bonds(const family_bench *b, watched w, int where) {
+  int count = 0;
+  for (int k = 0; k < neighbours_of(b); k++)
+    count += patch_has_bond(b->whole, site_of(b, w, where), k);
+  return count;
+}
+
+double family_bench_value(const family_bench *b, watched w, int where) {
+  const long plane = w.wide ? where % neighbours_of(b) : 0;
+  return b->whole->observed[w.at][plane * b->whole->size + site_of(b, w, where)];
+}
+
+/* --- saying what was found -------------------------------------------------------------------- */
+
+static char *found_at(const family_bench *b, double size) {
+  char *text;
+  size_t length;
+  bool others = false;
+  FILE *out = must_open_text(&text, &length);
+  fprintf(out, "%ld particles of a %s lattice, s = %.6g m", b->whole->inside_count, b->lattice_name,
+          b->lattice->spacing);
+  if (size > 0) fprintf(out, ", strained by %.3g", size);
+  for (int k = 0; k < b->law->parameters.count; k++) {
+    const symbol *s = b->law->parameters.items[k];
+    char si[64];
+    dim_unit(s->dim, si, sizeof si);
+    if (s->has_default && b->parameters[k] == s->initial) continue;
+    fprintf(out, ", %s = %.6g%s%s", s->name, b->parameters[k], unit_is_pure(si) ? "" : " ",
+            unit_is_pure(si) ? "" : si);
+    others = others || s->has_default;
+  }
+  if (others && !b->options->parameters) fputs(PHYSICS_OTHER_VALUES, out);
+  must_close_text(out);
+  return text;
+}
+
+void family_bench_say(family_bench *b, diag_code code, span where, double size, const char *format,
+                      ...) {
+  if (b->failed[code]) return;
+  b->failed[code] = true;
+  char message[1024];
+  va_list values;
+  va_start(values, format);
+  vsnprintf(message, sizeof message, format, values);
+  va_end(values);
+  diag_report(b->said, code, where, "%s", message);
+  char *state = found_at(b, size);
+  diag_note(b->said, (span){0, 0, UINT16_MAX}, "found with %s", state);
+  free(state);
+}
+
+span family_bench_force(const family_bench *b) {
+  const law *l = b->law;
+  for (int k = 0; k < l->rule_count; k++)
+    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k]->where;
+  return l->results[RESULT_W] ? l->results[RESULT_W]->rule->where : l->tree->name_where;
+}

@@ -1,0 +1,224 @@
+/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime with deck, law and kernel
+   built in. Running a solver needs no compiler. */
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/emit/c_text.h"
+#include "generator/command/commands.h"
+#include "generator/kernel/document.h"
+#include "generator/drive/drive.h"
+#include "generator/kernel/model.h"
+#include "generator/check/physics.h"
+#include "generator/run/run.h"
+
+#define ERROR_LENGTH 8192
+
+enum { INPUT_WRONG = 1, BUILD_FAILED = 2 };
+
+static bool spares_input(const char *output, const char *input) {
+  if (!same_file(output, input)) return true;
+  say_error("the output `%s` would overwrite `%s`; give it another name with -o", output, input);
+  return false;
+}
+
+/* 0, or an exit status. */
+static int build_law(const char *path, const char *output, bool no_physics) {
+  model m;
+  char error[ERROR_LENGTH], chosen[512];
+  bool good = model_open(&m, path, NULL, 0) && model_plan(&m) &&
+              (no_physics || physics_check(m.law, NULL, &m.said, NULL));
+  diag_print(&m.said, stderr);
+  if (good) {
+    snprintf(chosen, sizeof chosen, "%s.so", m.law->tree->name);
+    output = output ? output : chosen;
+  }
+  int status = good && spares_input(output, path) ? 0 : INPUT_WRONG;
+  if (!status && !toolchain_build(m.c_text, output, error, sizeof error)) {
+    say_error("%s", error);
+    status = BUILD_FAILED;
+  }
+  if (!status) printf("written %s (key %s)\n", output, m.key);
+  model_close(&m);
+  return status;
+}
+
+/* --- solvers ---------------------------------------------------------------------------------- */
+
+/* What the deck's only lattice is made of, with its options decided, and the tables of the deck's
+   loads. */
+typedef struct deck_law {
+  model model;
+  bool opened;
+  arena *memory;
+  source_set sources;
+  const deck *deck;
+  char name[512];    /* as the deck gives it */
+  char choices[512]; /* ";option=choice;..." */
+} deck_law;
+
+static void list_choices(const law *l, char *text, size_t size) {
+  size_t used = (size_t)snprintf(text, size, ";");
+  for (int k = 0; k < l->options.count && used < size; k++)
+    used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name,
+                             l->chosen[k]);
+}
+
+/* The deck has been checked whole before: its warnings are not said again. */
+static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law *out) {
+  diagnostics said;
+  out->memory = arena_new();
+  diag_begin(&said, &out->sources);
+  int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
+  deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
+  out->deck = k;
+  bool good =
+      k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
+  out->opened = k != NULL && out->model.memory != NULL;
+  if (good) {
+    snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);
+    list_choices(out->model.law, out->choices, sizeof out->choices);
+  }
+  if (!good) diag_print(&said, stderr);
+  diag_clear(&said);
+  return good;
+}
+
+static void close_deck_law(deck_law *l) {
+  if (l->opened) model_close(&l->model);
+  source_clear(&l->sources);
+  if (l->memory) arena_free(l->memory);
+}
+
+static void put_string(c_text *out, const char *name, const char *text) {
+  c_text_add(out, "static const char %s[] = ", name);
+  c_text_string(out, text);
+  c_text_add(out, ";\n");
+}
+
+static const char solver_main[] =
+    "typedef struct built_in_law {\n  const char *model;\n  const pl_law *law;\n"
+    "  const char *law_text, *c_text;\n  const char *choices;\n"
+    "  const char *compiler, *flags;\n} built_in_law;\n"
+    "int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,\n"
+    "                        const built_in_law *laws, int law_count,\n"
+    "                        const built_in_file *files, int file_count);\n"
+    "int main(int argc, char **argv) {\n"
+    "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
+    "                                solver_kernel_text, solver_choices,\n"
+     "                                solver_compiler, solver_flags}};\n"
+    "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1,\n"
+    "                             solver_files, solver_file_count);\n}\n";
+
+/* The tables of the loads; C wants one in an array. */
+static void put_files(c_text *out, const deck_law *l) {
+  c_text_add(out,
+             "typedef struct built_in_file {\n  const char *path, *text;\n} built_in_file;\n"
+             "static const int solver_file_count = %d;\n"
+             "static const built_in_file solver_files[] = {\n",
+             l->deck->file_count);
+  for (int k = 0; k < l->deck->file_count; k++) {
+    const source *s = &l->sources.items[l->deck->files[k].source];
+    c_text_add(out, "  {");
+    c_text_string(out, s->name);
+    c_text_add(out, ", ");
+    c_text_string(out, s->text);
+    c_text_add(out, "},\n");
+  }
+  c_text_add(out, "  {0, 0}};\n");
+}
+
+/* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
+static char *solver_text(const deck_law *l, const char *deck_name, const char *deck_text) {
+  c_text out = {NULL, 0, 0};
+  char compiler[512];
+  c_text_add(&out, "%s\n/* --- the solver --- */\n\n", l->model.c_text);
+  put_string(&out, "solver_deck_name", deck_name);
+  put_string(&out, "solver_deck", deck_text);
+  put_string(&out, "solver_model", l->name);
+  put_string(&out, "solver_law_text", l->model.sources.items[0].text);
+  put_string(&out, "solver_kernel_text", l->model.c_text);
+  put_string(&out, "solver_choices", l->choices);
+  put_files(&out, l);
+  toolchain_version(compiler, sizeof compiler);
+  put_string(&out, "solver_compiler", compiler);
+  put_string(&out, "solver_flags", toolchain_flags());
+  c_text_add(&out, "%s", solver_main);
+  return out.text;
+}
+
+static bool spares_all(const char *output, const deck_law *l) {
+  bool good = spares_input(output, l->model.path);
+  for (int k = 0; good && k < l->deck->file_count; k++)
+    good = spares_input(output, l->sources.items[l->deck->files[k].source].name);
+  return good;
+}
+
+static int link_solver(const char *path, const char *deck_text, const char *output) {
+  char error[ERROR_LENGTH];
+  deck_law l = {.opened = false};
+  int status = open_deck_law(path, deck_text, &l) && spares_all(output, &l) ? 0 : INPUT_WRONG;
+  if (!status) {
+    char *text = solver_text(&l, path, deck_text);
+    if (!toolchain_build_program(text, output, error, sizeof error)) {
+      say_error("%s", error);
+      status = BUILD_FAILED;
+    }
+    free(text);
+  }
+  if (!status) printf("written %s: runs the deck %s without a compiler\n", output, path);
+  close_deck_law(&l);
+  return status;
+}
+
+/* What perilat run would refuse is refused now, not when the solver runs. */
+static int build_solver(const char *path, const char *output, bool no_physics) {
+  char error[ERROR_LENGTH];
+  size_t length;
+  char *deck_text = read_text_file(path, DECK_LIMIT, &length, error, sizeof error);
+  if (!deck_text) {
+    say_error("%s", error);
+    return INPUT_WRONG;
+  }
+  int status = INPUT_WRONG;
+  if (!output)
+    say_error("a solver needs a name: perilat build deck.nml -o solver");
+  else if (spares_input(output, path))
+    status =
+        run_deck(&(run_options){.deck_path = path, .check_only = true, .no_physics = no_physics});
+  if (!status) status = link_solver(path, deck_text, output);
+  free(deck_text);
+  return status;
+}
+
+int command_build(int argc, char **argv) {
+  bool no_physics = false;
+  const char *path = NULL, *output = NULL, *value;
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    if ((value = option_value(argc, argv, &at, "-o", &bad)))
+      output = value;
+    else if (option_flag(argv, &at, "--no-physics"))
+      no_physics = true;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("build", argv[at]);
+    else if (path) {
+      say_error("`perilat build` takes one file; `%s` is a second one", argv[at]);
+      bad = 1;
+    } else
+      path = argv[at++];
+  }
+  if (bad) return 1;
+  if (!path) {
+    say_error("`perilat build` needs a law or a deck");
+    return 1;
+  }
+  const file_kind kind = kind_of_file(path);
+  if (!file_suits(path, FILES(LAW) | FILES(DECK), "perilat build", "a law or a deck")) return 1;
+  if (kind == FILE_DECK && drive_refuse_path("build", path)) return 1;
+  if (kind == FILE_DECK) return build_solver(path, output, no_physics);
+  char *found = model_find(path, NULL);
+  int status = build_law(found ? found : path, output, no_physics);
+  free(found);
+  return status;
+}

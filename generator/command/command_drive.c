@@ -1,0 +1,444 @@
+/* perilat drive: one bond, or one particle of a law of families, along a path. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/base/elementary.h"
+#include "generator/command/commands.h"
+#include "generator/kernel/document.h"
+#include "generator/drive/drive.h"
+#include "generator/drive/explain_bad.h"
+#include "generator/run/run.h"
+#include "generator/kernel/settings.h"
+
+#define PATH_LIMIT_BYTES ((size_t)16 << 20)
+enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };
+
+typedef struct drive_options {
+  const char *law, *path;
+  const char *csv, *hdf5, *picture;
+  const char *const *settings;
+  int setting_count;
+  bool compiled;
+  bool check_only;
+  diag_json *report; /* diagnostics go here; NULL: to stderr as text */
+} drive_options;
+
+/* Everything a drive holds. */
+typedef struct driving {
+  const drive_options *options;
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  drive_input *in;
+  model model;
+  bool opened;
+  const pl_law *law;
+  double *parameters, *initial;
+  drive_table columns; /* without rows, for the expectations */
+  drive_expectations *expectations;
+  drive_table table;
+} driving;
+
+static void tell(const driving *r, const diagnostics *d) {
+  if (r->options->report)
+    diag_json_add(r->options->report, d);
+  else
+    diag_print(d, stderr);
+}
+
+/* --- options ---------------------------------------------------------------------------------- */
+
+static bool take_file(drive_options *o, const char *file) {
+  file_kind kind = kind_of_file(file);
+  if (!file_suits(file, FILES(LAW) | FILES(DECK), "perilat drive", "a law and a path"))
+    return false;
+  if (kind == FILE_DECK && drive_is_deck(file) && !drive_is_path(file)) {
+    say_error("`%s` is a deck, not a path\n  perilat run %s", file, file);
+    return false;
+  }
+  const char **slot = kind == FILE_DECK ? &o->path : &o->law;
+  if (*slot) {
+    say_error("`perilat drive` takes one %s; `%s` is a second one",
+              kind == FILE_DECK ? "path" : "law", file);
+    return false;
+  }
+  *slot = file;
+  return true;
+}
+
+static bool read_options(int argc, char **argv, drive_options *o, const char **settings) {
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    const char *value;
+    if (option_flag(argv, &at, "--compiled"))
+      o->compiled = true;
+    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
+      settings[o->setting_count++] = value;
+    else if ((value = option_value(argc, argv, &at, "--csv", &bad)))
+      o->csv = value;
+    else if ((value = option_value(argc, argv, &at, "--hdf5", &bad)))
+      o->hdf5 = value;
+    else if ((value = option_value(argc, argv, &at, "--picture", &bad)))
+      o->picture = value;
+    else if (argv[at][0] == '-')
+      bad = option_unknown("drive", argv[at]);
+    else
+      bad = !take_file(o, argv[at++]);
+  }
+  if (!bad && !o->path) say_error("`perilat drive` needs a path\n  perilat drive law.plm path.nml");
+  return !bad && o->path;
+}
+
+/* "group.key=value", as decks are changed; anything else sets a value of the law. */
+static bool is_of_path(const char *setting) {
+  const char first = setting[strcspn(setting, ".=[")];
+  return first == '.' || first == '[';
+}
+
+/* --- what is driven --------------------------------------------------------------------------- */
+
+static bool read_input(driving *r) {
+  const drive_options *o = r->options;
+  char error[ERROR_LENGTH];
+  size_t length;
+  char *text = read_text_file(o->path, PATH_LIMIT_BYTES, &length, error, sizeof error);
+  if (!text) {
+    diag_report(&r->said, DIAG_FILE, (span){0, 0, UINT16_MAX}, "%s", error);
+    return false;
+  }
+  const size_t most = (size_t)o->setting_count + 1;
+  deck_override *of_path = arena_alloc(r->memory, most * sizeof *of_path);
+  const char **of_law = arena_alloc(r->memory, most * sizeof *of_law);
+  int path_count = 0, law_count = 0;
+  for (int k = 0; k < o->setting_count; k++)
+    if (is_of_path(o->settings[k]))
+      of_path[path_count++].text = o->settings[k];
+    else
+      of_law[law_count++] = o->settings[k];
+  int file = source_add(&r->sources, o->path, text, length);
+  free(text);
+  r->in = drive_read(r->memory, &r->sources, file, of_path, path_count, &r->said);
+  if (!r->in ||
+      !settings_read(r->memory, &r->sources, of_law, law_count, &r->in->material, &r->said))
+    return false;
+  r->in->output.csv = o->csv ? o->csv : r->in->output.csv;
+  r->in->output.hdf5 = o->hdf5 ? o->hdf5 : r->in->output.hdf5;
+  r->in->output.picture = o->picture ? o->picture : r->in->output.picture;
+  r->in->material.model = o->law ? o->law : r->in->material.model;
+  if (r->in->material.model || o->check_only) return true;
+  diag_report(&r->said, DIAG_MISSING_KEY, r->in->material.item.where, "no law is named");
+  diag_hint(&r->said, "perilat drive law.plm path.nml, or &material model = 'name' / in the path");
+  return false;
+}
+
+static bool is_of_families(const driving *r) {
+  return r->law->kind == PL_STATE;
+}
+
+/* Bonds stretch and turn, particles are strained; beyond the plane in space only. */
+static bool suits_law(driving *r) {
+  for (int k = 0; k < r->in->piece_count; k++) {
+    const drive_quantity q = r->in->pieces[k].quantity;
+    const bool strain = q >= DRIVE_STRAIN_XX;
+    const bool beyond = q == DRIVE_STRAIN_ZZ || q == DRIVE_STRAIN_YZ || q == DRIVE_STRAIN_XZ;
+    if (strain == is_of_families(r) && !(beyond && r->law->dimensions == 2)) continue;
+    diag_report(&r->said, DIAG_LAW_KIND, r->in->pieces[k].where,
+                strain != is_of_families(r) ? "a law of %s is not driven by this quantity"
+                                            : "a law of %s in the plane knows no such strain",
+                is_of_families(r) ? "families" : "bonds");
+    diag_hint(&r->said, is_of_families(r)
+                            ? "a particle is driven by strain_xx, strain_yy, strain_xy"
+                            : "a bond is driven by stretch, theta_i, theta_j");
+    return false;
+  }
+  return true;
+}
+
+static int open_law(driving *r) {
+  char error[ERROR_LENGTH];
+  const char *note;
+  bool good = run_open_material(&r->in->material, NULL, r->options->path, &r->model, &r->said);
+  r->opened = r->model.memory != NULL;
+  if (r->opened) tell(r, &r->model.said);
+  if (!good) return INPUT_WRONG;
+  r->law = model_kernel(&r->model, !r->options->compiled, &note, error, sizeof error);
+  if (note) fprintf(stderr, "perilat: warning: %s\n", note);
+  if (r->law) return 0;
+  say_error("%s", error);
+  return DRIVE_FAILED;
+}
+
+static int find_field(const pl_law *kernel, const char *name) {
+  for (int f = 0; f < kernel->field_count; f++)
+    if (strcasecmp(kernel->fields[f].name, name) == 0) return f;
+  return -1;
+}
+
+static bool refuse_field(driving *r, const deck_assignment *a) {
+  const pl_law *kernel = r->law;
+  const char **names = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof *names);
+  for (int f = 0; f < kernel->field_count; f++)
+    names[f] = kernel->fields[f].name;
+  diag_report(&r->said, DIAG_UNKNOWN_KEY, a->name_where, "the law `%s` has no state or damage `%s`",
+              kernel->name, a->name);
+  diag_suggest(&r->said, a->name, names, kernel->field_count);
+  return false;
+}
+
+static bool set_field(driving *r, const deck_assignment *a) {
+  int f = find_field(r->law, a->name);
+  if (f < 0) return refuse_field(r, a);
+  const pl_field *field = &r->law->fields[f];
+  unit wanted = {.dim = DIMENSIONLESS};
+  const char *bad;
+  size_t bad_length;
+  if (*field->unit) (void)unit_parse(field->unit, strlen(field->unit), &wanted, &bad, &bad_length);
+  if (a->word || (a->has_unit && !dim_equal(a->dim, wanted.dim))) {
+    char needs[96];
+    dim_describe(wanted.dim, needs, sizeof needs);
+    diag_report(&r->said, DIAG_UNITS, a->value_where, "`%s` is %s", field->name, needs);
+    return false;
+  }
+  if (field->kind == PL_FIELD_DAMAGE && !(a->value >= 0 && a->value <= 1)) {
+    diag_report(&r->said, DIAG_OUT_OF_BOUNDS, a->value_where, "the damage `%s` is between 0 and 1",
+                field->name);
+    return false;
+  }
+  r->initial[f] = a->value;
+  return true;
+}
+
+/* Parameters, and where state and damage begin. */
+static bool set_values(driving *r) {
+  const pl_law *kernel = r->law;
+  r->parameters = arena_alloc(r->memory, ((size_t)kernel->parameter_count + 1) * sizeof(double));
+  r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
+  for (int f = 0; f < kernel->field_count; f++)
+    r->initial[f] = kernel->fields[f].initial;
+  bool good = material_parameters(&r->in->material, kernel, r->parameters, &r->said);
+  for (int k = 0; k < r->in->initial.assignment_count; k++)
+    good = set_field(r, &r->in->initial.assignments[k]) && good;
+  return good;
+}
+
+/* --- what came out ---------------------------------------------------------------------------- */
+
+static void report_bad(const driving *r) {
+  const drive_table *t = &r->table;
+  const long row = t->bad_row;
+  int column = 0;
+  while (isfinite(t->columns[column].values[row]))
+    column++;
+  say_error("`%s` is not a number at %.6g s, %s %.6g", t->columns[column].name,
+            t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[t->way].name,
+            t->columns[t->way].values[row]);
+  if (t->of_families) return;
+  double *fields = must_calloc((size_t)t->fields + 1, sizeof *fields);
+  for (int f = 0; f < t->fields; f++)
+    fields[f] = row ? t->columns[DRIVE_COLUMN_LAW + f].values[row - 1] : r->initial[f];
+  bad_state at = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+                  .stretch_rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
+                  .theta_i = t->columns[DRIVE_COLUMN_THETA_I].values[row],
+                  .theta_j = t->columns[DRIVE_COLUMN_THETA_J].values[row],
+                  .fields = fields,
+                  .field_count = t->fields};
+  pl_bond_class bonds;
+  if (drive_bond_class(r->in, material_density(r->law, r->parameters), &bonds))
+    explain_bad(r->model.plan, r->parameters, &bonds, &at, stderr);
+  free(fields);
+}
+
+static void describe(const driving *r) {
+  const drive_table *t = &r->table;
+  const drive_bond *b = &r->in->bond;
+  const deck_lattice like = drive_lattice(r->in, r->model.law);
+  if (t->of_families)
+    printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->law->name, like.kind,
+           like.setting, 1e3 * like.spacing);
+  else
+    printf("%s on one bond, s = %.6g mm, t = %.6g mm", r->law->name, 1e3 * b->spacing,
+           1e3 * b->thickness);
+  printf(": %ld rows to %.6g s (%s)\n", t->rows, t->columns[DRIVE_COLUMN_TIME].values[t->rows - 1],
+         r->law->context ? "interpreter" : "compiled");
+  drive_print(r->in, t, stdout);
+}
+
+/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0 where
+   it does not fall by more than a coarse path explains. */
+static long largest_fall(const drive_table *t) {
+  const drive_column *energy = &t->columns[t->column_count - DRIVE_ENERGY_COUNT];
+  const double *lost = energy[DRIVE_ENERGY_DISSIPATED_DAMAGE].values;
+  double most = 0, scale = 0, fall = 0;
+  long row = 0;
+  for (long k = 0; k < t->rows; k++) {
+    scale = pl_fmax(scale, fabs(energy[DRIVE_ENERGY_STORED].values[k]) + fabs(lost[k]));
+    most = pl_fmax(most, lost[k]);
+    if (most - lost[k] <= fall) continue;
+    fall = most - lost[k];
+    row = k;
+  }
+  return fall > 1e-3 * scale ? row : 0;
+}
+
+static void note_fall(const driving *r) {
+  const drive_table *t = &r->table;
+  const long row = t->bad_row < 0 ? largest_fall(t) : 0;
+  if (row == 0) return;
+  printf("note: `dissipated_damage` falls, by most up to %.6g s, stretch %.6g\n",
+         t->columns[DRIVE_COLUMN_TIME].values[row], t->columns[DRIVE_COLUMN_STRETCH].values[row]);
+  if (r->model.law->results[RESULT_W])
+    puts("  the law gives back more than its `energy W` says that it has stored: it makes energy");
+  else
+    puts(
+        "  without `energy W` the stored energy is the work of the force at the states at hand: a\n"
+        "  law whose states lock energy in should give W (`perilat help energy`), any other makes "
+        "energy");
+}
+
+static bool spares_inputs(const driving *r) {
+  const drive_output *o = &r->in->output;
+  const char *const written[] = {o->csv, o->hdf5, o->picture};
+  for (size_t k = 0; k < sizeof written / sizeof *written; k++)
+    if (written[k] &&
+        (same_file(written[k], r->options->path) || same_file(written[k], r->model.path))) {
+      say_error("the output would overwrite `%s`", written[k]);
+      return false;
+    }
+  return true;
+}
+
+static bool write_files(const driving *r) {
+  const drive_output *o = &r->in->output;
+  char error[ERROR_LENGTH];
+  bool good = true;
+  const struct {
+    const char *path;
+    bool written;
+  } files[] = {
+      {o->csv, !o->csv || drive_write_csv(&r->table, o->csv, error, sizeof error)},
+      {o->hdf5, !o->hdf5 || drive_write_hdf5(r->in, &r->table, o->hdf5, error, sizeof error)},
+      {o->picture, !o->picture || drive_draw(r->in, &r->table, o->picture, error, sizeof error)}};
+  for (size_t k = 0; k < sizeof files / sizeof *files; k++) {
+    if (files[k].path && files[k].written) printf("written %s\n", files[k].path);
+    good = good && files[k].written;
+  }
+  if (!good) say_error("%s", error);
+  return good;
+}
+
+static void print_verdict(const driving *r, const drive_expect *e, const drive_verdict *v) {
+  place at = source_place(&r->sources, e->item.where.file, e->item.where.begin);
+  const char *unit_text = unit_is_pure(v->unit) ? "" : v->unit;
+  printf("%s  %s:%d: %s = %.9g%s%s", v->passed ? "PASS" : "FAIL", r->options->path, at.line,
+         e->quantity, v->found, *unit_text ? " " : "", unit_text);
+  if (v->passed)
+    printf(" (expected %.9g)\n", v->expected);
+  else
+    printf(", expected %.9g: off by %.3g, %.3g is allowed (at %.6g s, %s %.6g)\n", v->expected,
+           fabs(v->found - v->expected), v->allowed, v->time, r->table.columns[r->table.way].name,
+           v->way);
+  if (!v->passed && v->extreme)
+    printf("      the rows beside it are at %.6g s and %.6g s; an extreme between them is found by "
+           "more steps: --set simulation.steps=%d\n",
+           v->beside[0], v->beside[1], 10 * r->in->simulation.steps);
+}
+
+static int judge(driving *r) {
+  const int count = r->in->expect_count;
+  drive_verdict *verdicts = arena_alloc(r->memory, ((size_t)count + 1) * sizeof *verdicts);
+  drive_judge(r->expectations, r->parameters, &r->table, verdicts);
+  int passed = 0;
+  for (int k = 0; k < count; k++) {
+    print_verdict(r, &r->in->expects[k], &verdicts[k]);
+    passed += verdicts[k].passed;
+  }
+  if (count) printf("%d of %d expectations hold\n", passed, count);
+  return passed == count ? 0 : DRIVE_FAILED;
+}
+
+/* Everything that can be wrong before the bond moves. 0, or an exit status. */
+static int prepare(driving *r) {
+  if (!read_input(r)) return INPUT_WRONG;
+  if (!r->in->material.model) return 0;
+  int status = open_law(r);
+  if (status) return status;
+  if (!suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
+  if (is_of_families(r))
+    drive_family_columns(r->in, r->model.law, r->law, &r->columns);
+  else
+    drive_columns(r->law, &r->columns);
+  r->expectations = drive_expectations_read(r->in, &r->model, &r->columns, &r->said);
+  return r->expectations ? 0 : INPUT_WRONG;
+}
+
+/* 0, or an exit status. */
+static int drive(driving *r) {
+  int status = prepare(r);
+  if (status || r->options->check_only) return status;
+  if (is_of_families(r) ? !drive_family_run(r->in, r->model.law, r->law, r->parameters, r->initial,
+                                            &r->table, &r->said)
+                        : !drive_run(r->in, r->law, r->parameters, r->initial, &r->table, &r->said))
+    return INPUT_WRONG;
+  describe(r);
+  if (!is_of_families(r)) note_fall(r);
+  bool written = write_files(r);
+  if (r->table.bad_row >= 0) {
+    report_bad(r);
+    return DRIVE_FAILED;
+  }
+  status = judge(r);
+  return status ? status : written ? 0 : DRIVE_FAILED;
+}
+
+static void close_drive(driving *r) {
+  if (r->expectations) drive_expectations_free(r->expectations);
+  if (r->columns.memory) drive_table_free(&r->columns);
+  if (r->table.memory) drive_table_free(&r->table);
+  if (r->opened) model_close(&r->model);
+  diag_clear(&r->said);
+  source_clear(&r->sources);
+  arena_free(r->memory);
+}
+
+static void print_checked(const driving *r) {
+  const char *path = r->options->path;
+  if (r->law)
+    printf("%s: no errors; a path that drives one %s of `%s`, with %d expectation%s\n  perilat "
+           "drive %s\n",
+           path, is_of_families(r) ? "particle" : "bond", r->law->name, r->in->expect_count,
+           r->in->expect_count == 1 ? "" : "s", path);
+  else
+    printf("%s: no errors; a path that names no law, so that its expectations are not checked\n"
+           "  perilat drive law.plm %s\n",
+           path, path);
+}
+
+static int drive_as_asked(const drive_options *o) {
+  driving r = {.options = o, .memory = arena_new()};
+  diag_begin(&r.said, &r.sources);
+  int status = drive(&r);
+  if (!status && o->check_only && !o->report) print_checked(&r);
+  fflush(stdout);
+  tell(&r, &r.said);
+  close_drive(&r);
+  return status;
+}
+
+int drive_check(const char *path, const char *const *settings, int count, diag_json *report) {
+  return drive_as_asked(&(drive_options){.path = path,
+                                         .settings = settings,
+                                         .setting_count = count,
+                                         .check_only = true,
+                                         .report = report});
+}
+
+int command_drive(int argc, char **argv) {
+  const char **settings = must_calloc((size_t)argc + 1, sizeof *settings);
+  drive_options o = {.settings = settings};
+  int status = read_options(argc, argv, &o, settings) ? drive_as_asked(&o) : INPUT_WRONG;
+  free(settings);
+  return status;
+}

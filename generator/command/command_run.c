@@ -1,0 +1,326 @@
+/* perilat run, perilat check: the options, then run.h or the front end. */
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/terminal.h"
+#include "generator/command/commands.h"
+#include "generator/kernel/document.h"
+#include "generator/drive/drive.h"
+#include "generator/ir/interval.h"
+#include "generator/kernel/model.h"
+#include "generator/plan/passes.h"
+#include "generator/check/physics.h"
+#include "generator/run/run.h"
+#include "generator/kernel/settings.h"
+#include "runtime/simulation/simulation.h"
+
+/* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
+typedef enum option_reader { RUN, CHECK, SOLVER } option_reader;
+
+/* What only `perilat check` is asked. */
+typedef struct check_options {
+  const char *dump, *diagnostics; /* NULL where not given */
+} check_options;
+
+static bool read_threads(const char *text, int *threads) {
+  char *end;
+  long value = strtol(text, &end, 10);
+  *threads = (int)value;
+  if (!*end && end != text && value >= 1 && value <= 1024) return true;
+  say_error("--threads needs a whole number from 1 to 1024, not `%s`", text);
+  return false;
+}
+
+/* False after a message. */
+static bool read_run_options(option_reader reader, const char *program, int argc, char **argv,
+                             run_options *o, check_options *check) {
+  static const char *const names[] = {"run", "check", "solver"};
+  o->overrides = must_calloc((size_t)argc + 1, sizeof *o->overrides);
+  int bad = 0;
+  for (int at = 0; at < argc && !bad;) {
+    const char *value;
+    if (reader != CHECK && option_flag(argv, &at, "--resume"))
+      o->resume = true;
+    else if (reader == RUN && option_flag(argv, &at, "--check-kernel"))
+      o->check_kernel = true;
+    else if (reader == RUN && option_flag(argv, &at, "--interpret"))
+      o->interpret = true;
+    else if (reader != SOLVER && option_flag(argv, &at, "--no-physics"))
+      o->no_physics = true;
+    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
+      o->overrides[o->override_count++].text = value;
+    else if (reader != CHECK && option_flag(argv, &at, "--profile"))
+      o->profile = true;
+    else if (reader != CHECK && option_flag(argv, &at, "--json"))
+      o->json = true;
+    else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
+      bad = bad || !read_threads(value, &o->threads);
+    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--dump", &bad)))
+      check->dump = value;
+    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--diagnostics", &bad)))
+      check->diagnostics = value;
+    else if (reader == CHECK ? is_option_like(argv[at]) : argv[at][0] == '-')
+      bad = option_unknown_in(program, names[reader], argv[at]);
+    else if (reader == SOLVER) {
+      say_error("`%s` runs the deck that it was built from; it takes no file", program);
+      bad = 1;
+    } else if (o->deck_path) {
+      say_error("`%s` takes one file; `%s` is a second one", program, argv[at]);
+      bad = 1;
+    } else
+      o->deck_path = argv[at++];
+  }
+  return !bad;
+}
+
+/* A solver's deck has been looked at. */
+static bool is_runnable(const run_options *o) {
+  return o->deck_text || (file_suits(o->deck_path, FILES(DECK), "perilat run", "a deck") &&
+                          !drive_refuse_path("run", o->deck_path));
+}
+
+/* The run, and with --json its document. */
+static int run_as_asked(run_options *o) {
+  if (!o->json) return is_runnable(o) ? run_deck(o) : 1;
+  document d;
+  diag_json report;
+  document_begin(&d);
+  diag_json_begin(&report, &d.writer, o->deck_path);
+  o->report = &report;
+  if (is_runnable(o)) return document_end(&d, run_deck(o));
+  diag_json_end(&report, false);
+  json_put_text(&d.writer, "status", "failed");
+  return document_end(&d, 1);
+}
+
+int command_run(int argc, char **argv) {
+  run_options o = {.program = "perilat run"};
+  bool good = read_run_options(RUN, "perilat run", argc, argv, &o, NULL);
+  int status = 1;
+  if (good && !o.deck_path)
+    say_error("`perilat run` needs a deck\n  perilat run deck.nml");
+  else if (good)
+    status = run_as_asked(&o);
+  free(o.overrides);
+  return status;
+}
+
+/* --dump=STAGE of a law that has been checked, and may have been planned. */
+static int dump_stage(model *m, const char *stage) {
+  if (!strcmp(stage, "tree")) {
+    tree_dump(m->tree, stdout);
+    return 0;
+  }
+  if (strcmp(stage, "ir") && strcmp(stage, "passes") && strcmp(stage, "c")) {
+    say_error("--dump takes tree, ir, passes or c, not `%s`", stage);
+    return 1;
+  }
+  if (!m->plan && !model_plan(m)) return 1;
+  if (!strcmp(stage, "passes"))
+    plan_dump(m->plan, stdout);
+  else if (!strcmp(stage, "c"))
+    fputs(m->c_text, stdout);
+  else
+    plan_dump_ir(m->plan, stdout);
+  return 0;
+}
+
+static void print_physics(const physics_report *p) {
+  printf("  physics: %.0f states in %.1f ms", p->states, 1e3 * p->seconds);
+  if (p->guards)
+    printf("; %d of %d conditions were seen both true and false", p->guards_reached, p->guards);
+  putchar('\n');
+}
+
+/* --- a law ------------------------------------------------------------------------------------ */
+
+/* A law with the values that --set gives, name=value. */
+typedef struct checking {
+  arena *memory;
+  source_set sources;
+  diagnostics said; /* about what is set; the model has its own */
+  deck_material material;
+  model model;
+  physics_report physics;
+} checking;
+
+/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none. False after messages. */
+static bool take_values(checking *c, double **values) {
+  const symbol_list *list = &c->model.law->parameters;
+  *values = NULL;
+  if (c->material.assignment_count == 0) return true;
+  *values = arena_alloc(c->memory, ((size_t)list->count + 1) * sizeof **values);
+  pl_law *kernel = plan_interpreted(c->model.plan, "");
+  bool good = material_parameters(&c->material, kernel, *values, &c->said);
+  plan_interpreted_free(kernel);
+  return good;
+}
+
+/* Mechanics and ranges of a law that is right otherwise. */
+static bool check_values(checking *c, const double *values) {
+  bool good = physics_check(c->model.law, &(physics_options){.parameters = values}, &c->model.said,
+                            &c->physics);
+  interval_check(c->model.law, &c->model.said);
+  return good;
+}
+
+/* 0, or an exit status. */
+static int check_as_law(checking *c, const run_options *o, const char *path, const char *dump) {
+  const char **settings =
+      arena_alloc(c->memory, ((size_t)o->override_count + 1) * sizeof *settings);
+  for (int k = 0; k < o->override_count; k++)
+    settings[k] = o->overrides[k].text;
+  if (!settings_read(c->memory, &c->sources, settings, o->override_count, &c->material, &c->said) ||
+      !run_open_law(&c->material, path, &c->model, &c->said))
+    return 1;
+  if (dump) return dump_stage(&c->model, dump);
+  double *values;
+  if (!model_plan(&c->model) || !take_values(c, &values)) return 1;
+  return o->no_physics || check_values(c, values) ? 0 : 1;
+}
+
+static void say(const run_options *o, const diagnostics *d) {
+  if (o->report)
+    diag_json_add(o->report, d);
+  else
+    diag_print(d, stderr);
+}
+
+static int check_law(const run_options *o, const char *path, const char *dump) {
+  checking c = {.memory = arena_new(), .material = {.item = {.where = {0, 0, UINT16_MAX}}}};
+  diag_begin(&c.said, &c.sources);
+  int status = check_as_law(&c, o, path, dump);
+  say(o, &c.said);
+  if (c.model.memory) say(o, &c.model.said);
+  if (!status && !dump && !o->report)
+    printf("%s: %s, no errors, %d warning%s (%.1f ms)\n", path, c.model.law->tree->name,
+           c.model.said.count, c.model.said.count == 1 ? "" : "s", 1e3 * c.model.seconds_front);
+  if (!status && !dump && !o->report && c.physics.states > 0) print_physics(&c.physics);
+  if (c.model.memory) model_close(&c.model);
+  diag_clear(&c.said);
+  source_clear(&c.sources);
+  arena_free(c.memory);
+  return status;
+}
+
+/* --- any file --------------------------------------------------------------------------------- */
+
+static int check_path(const run_options *o) {
+  const char **settings = must_calloc((size_t)o->override_count + 1, sizeof *settings);
+  for (int k = 0; k < o->override_count; k++)
+    settings[k] = o->overrides[k].text;
+  int status = drive_check(o->deck_path, settings, o->override_count, o->report);
+  free(settings);
+  return status;
+}
+
+/* The law of a deck's first lattice, as it is written for that lattice. */
+static int dump_deck(const run_options *o, const char *stage) {
+  char error[4096];
+  size_t length;
+  char *text = read_text_file(o->deck_path, DECK_LIMIT, &length, error, sizeof error);
+  if (!text) {
+    say_error("%s", error);
+    return 1;
+  }
+  checking c = {.memory = arena_new()};
+  diag_begin(&c.said, &c.sources);
+  const int file = source_add(&c.sources, o->deck_path, text, length);
+  deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
+  const bool good =
+      k && run_open_material(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
+  diag_print(&c.said, stderr);
+  if (c.model.memory) diag_print(&c.model.said, stderr);
+  const int status = good ? dump_stage(&c.model, stage) : 1;
+  if (c.model.memory) model_close(&c.model);
+  diag_clear(&c.said);
+  source_clear(&c.sources);
+  arena_free(c.memory);
+  free(text);
+  return status;
+}
+
+static int check_file(const run_options *o, const char *dump) {
+  if (!file_suits(o->deck_path, FILES(LAW) | FILES(DECK), "perilat check", "a law or a deck"))
+    return 1;
+  char *found = NULL;
+  file_kind kind = kind_of_file(o->deck_path);
+  if (kind == FILE_UNKNOWN && (found = model_find(o->deck_path, NULL))) kind = FILE_LAW;
+  int status = 1;
+  if (kind == FILE_LAW)
+    status = check_law(o, found ? found : o->deck_path, dump);
+  else if (dump && drive_is_path(o->deck_path))
+    say_error("--dump shows a law; give the law's file, or a deck");
+  else if (dump)
+    status = dump_deck(o, dump);
+  else if (drive_is_path(o->deck_path))
+    status = check_path(o);
+  else if (!(status = run_deck(o)) && !o->report)
+    printf("%s: no errors\n", o->deck_path);
+  free(found);
+  return status;
+}
+
+/* The same as one JSON document on the standard output. */
+static int check_to_json(run_options *o) {
+  document d;
+  diag_json report;
+  document_begin(&d);
+  diag_json_begin(&report, &d.writer, o->deck_path);
+  o->report = &report;
+  const int status = check_file(o, NULL);
+  diag_json_end(&report, status == 0);
+  return document_end(&d, status);
+}
+
+static int check_as_asked(run_options *o, const check_options *asked) {
+  if (!asked->diagnostics || !strcmp(asked->diagnostics, "text")) return check_file(o, asked->dump);
+  if (strcmp(asked->diagnostics, "json") != 0)
+    say_error("--diagnostics takes text or json, not `%s`", asked->diagnostics);
+  else if (asked->dump)
+    say_error("--dump and --diagnostics=json both write to the standard output; give "
+              "one");
+  else
+    return check_to_json(o);
+  return 1;
+}
+
+int command_check(int argc, char **argv) {
+  run_options o = {.check_only = true};
+  check_options asked = {NULL, NULL};
+  bool good = read_run_options(CHECK, "perilat check", argc, argv, &o, &asked);
+  int status = 1;
+  if (good && !o.deck_path)
+    say_error("`perilat check` needs a law or a deck\n  perilat check law.plm");
+  else if (good)
+    status = check_as_asked(&o, &asked);
+  free(o.overrides);
+  return status;
+}
+
+int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count) {
+  run_options o = {.program = argv[0],
+                   .deck_path = deck_name,
+                   .deck_text = deck_text,
+                   .laws = laws,
+                   .law_count = law_count,
+                   .files = files,
+                   .file_count = file_count};
+  signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
+  terminal_begin();
+  for (int a = 1; a < argc; a++)
+    if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
+      printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
+             argv[0], deck_name);
+      options_print("solver", stdout);
+      return end_output(0);
+    }
+  bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
+  int status = good ? run_as_asked(&o) : 1;
+  free(o.overrides);
+  return end_output(status);
+}

@@ -1,0 +1,359 @@
+#include "generator/drive/drive.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/simulation/simulation.h"
+
+enum { LANES = PL_LANES };
+
+/* --- one bond under the passes of a lattice --------------------------------------------------- */
+
+typedef struct motion {
+  double stretch, rate, theta[2], theta_rate[2];
+} motion;
+
+/* Particle i at the origin, j on the x axis; the chord does not turn, so that the particles'
+   rotations are those of the ends. The passes work on PL_LANES bonds at once, of which only the
+   first is present. */
+typedef struct rig {
+  const pl_law *kernel;
+  double s, *uniforms, **field, **force, **observed;
+  double *displacement[2], *velocity[2], *lost_state, *lost_rate; /* of i, j: [dof][LANES] */
+  int64_t *flags;
+  void *memory; /* of all arrays */
+  pl_strip strip;
+} rig;
+
+typedef struct answer {
+  double N, M[2], lost_state, power; /* J; W: of the rate terms */
+} answer;
+
+static double **lanes(double **next, int count) {
+  double **list = must_calloc((size_t)count + 1, sizeof *list);
+  for (int k = 0; k < count; k++, *next += LANES)
+    list[k] = *next;
+  return list;
+}
+
+/* The first aligned address in a piece of memory that is a little larger than what is needed. */
+static void *aligned(void *memory) {
+  uintptr_t at = (uintptr_t)memory;
+  return (char *)memory + (PL_ALIGNMENT - at % PL_ALIGNMENT) % PL_ALIGNMENT;
+}
+
+static void rig_open(rig *r, const pl_law *kernel, const double *parameters,
+                     const pl_bond_class *bonds) {
+  int count =
+      kernel->field_count + kernel->force_planes + 1 + kernel->output_count + 4 * kernel->dof + 2;
+  *r = (rig){.kernel = kernel, .s = bonds->s};
+  r->uniforms = must_calloc((size_t)kernel->uniform_count + 1, sizeof(double));
+  r->memory = must_calloc((size_t)(count + 2) * LANES, sizeof(double));
+  r->flags = aligned(r->memory);
+  double *next = (double *)aligned(r->memory) + LANES;
+  r->field = lanes(&next, kernel->field_count);
+  r->force = lanes(&next, kernel->force_planes);
+  r->observed = lanes(&next, 1 + kernel->output_count);
+  for (int end = 0; end < 2; end++) {
+    r->displacement[end] = next;
+    r->velocity[end] = next + LANES * kernel->dof;
+    next += 2 * LANES * kernel->dof;
+  }
+  r->lost_state = next;
+  r->lost_rate = next + LANES;
+  r->flags[0] = PL_PRESENT(0);
+  r->strip = (pl_strip){.count = LANES,
+                        .flags = r->flags,
+                        .field = r->field,
+                        .force = r->force,
+                        .dissipated_state = r->lost_state,
+                        .dissipated_rate = r->lost_rate,
+                        .observed = r->observed,
+                        .time_step = 1};
+  for (int k = 0; k < kernel->dof; k++) {
+    r->strip.displacement_i[k] = r->displacement[0] + k * LANES;
+    r->strip.displacement_j[k] = r->displacement[1] + k * LANES;
+    r->strip.velocity_i[k] = r->velocity[0] + k * LANES;
+    r->strip.velocity_j[k] = r->velocity[1] + k * LANES;
+  }
+  kernel->prepare(kernel, parameters, bonds, r->uniforms);
+}
+
+static void rig_close(rig *r) {
+  free(r->uniforms);
+  free(r->memory);
+  free(r->field);
+  free(r->force);
+  free(r->observed);
+}
+
+static void rig_move(rig *r, const motion *m) {
+  r->displacement[1][0] = m->stretch * r->s;
+  r->velocity[1][0] = m->rate * r->s;
+  for (int end = 0; end < 2 && r->kernel->dof > 2; end++) {
+    r->displacement[end][2 * LANES] = m->theta[end];
+    r->velocity[end][2 * LANES] = m->theta_rate[end];
+  }
+}
+
+/* Forces in a motion; state and damage go on. */
+static answer rig_step(rig *r, const motion *m) {
+  rig_move(r, m);
+  r->lost_state[0] = r->lost_rate[0] = 0;
+  r->kernel->rows_ledger(r->kernel, r->uniforms, &r->strip);
+  answer a = {.N = r->force[0][0] + 0.0, .lost_state = r->lost_state[0], .power = r->lost_rate[0]};
+  for (int end = 0; end < 2 && r->kernel->dof > 2; end++)
+    a.M[end] = r->force[2 + end][0] + 0.0;
+  return a;
+}
+
+/* Stored energy; state and damage stay. Outputs are in r->observed. */
+static double rig_stored(rig *r, const motion *m) {
+  rig_move(r, m);
+  r->kernel->rows_observe(r->kernel, r->uniforms, &r->strip);
+  return r->observed[0][0];
+}
+
+/* Forces only: state and damage stay. */
+static answer rig_probe(rig *r, const motion *m) {
+  double *kept = must_calloc((size_t)r->kernel->field_count + 1, sizeof *kept);
+  for (int f = 0; f < r->kernel->field_count; f++)
+    kept[f] = r->field[f][0];
+  answer a = rig_step(r, m);
+  for (int f = 0; f < r->kernel->field_count; f++)
+    r->field[f][0] = kept[f];
+  free(kept);
+  return a;
+}
+
+/* --- the path --------------------------------------------------------------------------------- */
+
+/* Slopes are taken just beside the time, inside of the step meant, where the path has no corner. */
+static motion motion_at(const drive_input *in, double time, double inside, bool moving) {
+  motion m = {.stretch = drive_at(in, DRIVE_STRETCH, time),
+              .theta = {drive_at(in, DRIVE_THETA_I, time), drive_at(in, DRIVE_THETA_J, time)}};
+  if (moving) {
+    m.rate = drive_slope(in, DRIVE_STRETCH, inside);
+    m.theta_rate[0] = drive_slope(in, DRIVE_THETA_I, inside);
+    m.theta_rate[1] = drive_slope(in, DRIVE_THETA_J, inside);
+  }
+  if (drive_prescribes(in, DRIVE_STRETCH_RATE)) m.rate = drive_at(in, DRIVE_STRETCH_RATE, time);
+  return m;
+}
+
+static const double beside = 1e-6; /* of a step */
+
+static motion motion_ending(const drive_input *in, const double *t, long count, long k) {
+  long other = k ? k - 1 : 1;
+  return motion_at(in, t[k], count > 1 ? t[k] + beside * (t[other] - t[k]) : 0, count > 1);
+}
+
+static motion motion_beginning(const drive_input *in, const double *t, long k) {
+  return motion_at(in, t[k], t[k] + beside * (t[k + 1] - t[k]), true);
+}
+
+static bool same_rates(const motion *a, const motion *b) {
+  return a->rate == b->rate && a->theta_rate[0] == b->theta_rate[0] &&
+         a->theta_rate[1] == b->theta_rate[1];
+}
+
+/* --- the table -------------------------------------------------------------------------------- */
+
+static const char *const first_names[] = {
+#define X(code, name, unit) name,
+    DRIVE_FIRST_COLUMNS(X)
+#undef X
+};
+static const char *const first_units[] = {
+#define X(code, name, unit) unit,
+    DRIVE_FIRST_COLUMNS(X)
+#undef X
+};
+static const char *const last_names[] = {
+#define X(code, name) name,
+    DRIVE_LAST_COLUMNS(X)
+#undef X
+};
+
+int drive_column_find(const drive_table *t, const char *name) {
+  for (int k = 0; k < t->column_count; k++)
+    if (strcmp(t->columns[k].name, name) == 0) return k;
+  return -1;
+}
+
+void drive_add_column(drive_table *t, const char *name, const char *unit_text, long room) {
+  if (drive_column_find(t, name) >= 0) name = arena_printf(t->memory, "law_%s", name);
+  t->columns[t->column_count++] =
+      (drive_column){arena_text(t->memory, name, strlen(name)),
+                     arena_text(t->memory, unit_text, strlen(unit_text)),
+                     arena_alloc(t->memory, (size_t)room * sizeof(double))};
+}
+
+static void table_open(drive_table *t, const pl_law *kernel, long room) {
+  int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
+  *t = (drive_table){.memory = arena_new(),
+                     .way = DRIVE_COLUMN_STRETCH,
+                     .force = DRIVE_COLUMN_N,
+                     .law_column = DRIVE_COLUMN_LAW,
+                     .fields = kernel->field_count,
+                     .bad_row = -1};
+  t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
+  for (int k = 0; k < DRIVE_COLUMN_LAW; k++)
+    drive_add_column(t, first_names[k], first_units[k], room);
+  for (int k = 0; k < kernel->field_count; k++)
+    drive_add_column(t, kernel->fields[k].name, kernel->fields[k].unit, room);
+  for (int k = 0; k < kernel->output_count; k++)
+    drive_add_column(t, kernel->outputs[k].name, kernel->outputs[k].unit, room);
+  for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
+    drive_add_column(t, last_names[k], "J", room);
+}
+
+void drive_columns(const pl_law *kernel, drive_table *out) {
+  table_open(out, kernel, 0);
+}
+
+void drive_table_free(drive_table *t) {
+  arena_free(t->memory);
+  *t = (drive_table){.memory = NULL};
+}
+
+/* --- the march -------------------------------------------------------------------------------- */
+
+typedef struct marching {
+  const drive_input *in;
+  rig rig;
+  drive_table *table;
+  motion at; /* of the last row */
+  answer forces;
+  double energy[DRIVE_ENERGY_COUNT];
+} marching;
+
+static void put_row(marching *m, double time) {
+  drive_table *t = m->table;
+  const long row = t->rows++;
+  const pl_law *kernel = m->rig.kernel;
+  const double first[DRIVE_COLUMN_LAW] = {time,           m->at.stretch,  m->at.rate,
+                                          m->at.theta[0], m->at.theta[1], m->forces.N,
+                                          m->forces.M[0], m->forces.M[1]};
+  int c = 0;
+  for (; c < DRIVE_COLUMN_LAW; c++)
+    t->columns[c].values[row] = first[c];
+  for (int f = 0; f < kernel->field_count; f++)
+    t->columns[c++].values[row] = m->rig.field[f][0];
+  for (int f = 0; f < kernel->output_count; f++)
+    t->columns[c++].values[row] = m->rig.observed[1 + f][0];
+  double *e = m->energy;
+  e[DRIVE_ENERGY_DISSIPATED] =
+      e[DRIVE_ENERGY_DISSIPATED_DAMAGE] + e[DRIVE_ENERGY_DISSIPATED_DAMPING];
+  e[DRIVE_ENERGY_IMBALANCE] =
+      e[DRIVE_ENERGY_EXTERNAL] - e[DRIVE_ENERGY_STORED] - e[DRIVE_ENERGY_DISSIPATED];
+  for (int k = 0; k < DRIVE_ENERGY_COUNT; k++)
+    t->columns[c++].values[row] = e[k];
+  for (int k = 0; k < t->column_count; k++)
+    if (!isfinite(t->columns[k].values[row])) t->bad_row = row;
+}
+
+/* Work is done before the first row, as much as is there. */
+static void first_row(marching *m, const motion *to, double time) {
+  m->at = *to;
+  m->forces = rig_step(&m->rig, to);
+  double stored = rig_stored(&m->rig, to);
+  m->energy[DRIVE_ENERGY_STORED] = stored;
+  m->energy[DRIVE_ENERGY_DISSIPATED_DAMAGE] = m->forces.lost_state;
+  m->energy[DRIVE_ENERGY_EXTERNAL] = stored + m->forces.lost_state;
+  put_row(m, time);
+}
+
+/* Trapezoids throughout: work and rate losses between the step's ends, and what damage costs as the
+   mean of what it costs at the deformation before and after, which is exact to second order and for
+   sudden changes between the two. */
+static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
+  double *e = m->energy;
+  answer before = same_rates(from, &m->at) ? m->forces : rig_probe(&m->rig, from);
+  answer after = rig_step(&m->rig, to);
+  double lost_before = e[DRIVE_ENERGY_STORED] - rig_stored(&m->rig, from);
+  e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost_before + after.lost_state);
+  e[DRIVE_ENERGY_DISSIPATED_DAMPING] += 0.5 * (before.power + after.power) * step;
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.N + after.N) * (to->stretch - from->stretch) * m->rig.s;
+  for (int end = 0; end < 2; end++)
+    e[DRIVE_ENERGY_EXTERNAL] +=
+        0.5 * (before.M[end] + after.M[end]) * (to->theta[end] - from->theta[end]);
+  e[DRIVE_ENERGY_STORED] = rig_stored(&m->rig, to);
+  m->at = *to;
+  m->forces = after;
+  put_row(m, time);
+}
+
+static bool stays_a_bond(const drive_input *in, double stretch, double time, diagnostics *d) {
+  if (stretch > -1 && isfinite(stretch)) return true;
+  int k = 0;
+  while (k < in->piece_count - 1 && in->pieces[k].quantity != DRIVE_STRETCH)
+    k++;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, in->pieces[k].where,
+              "the stretch comes to %.6g at %.6g s: the bond has no length left", stretch, time);
+  diag_hint(d, "a stretch is the change of length over the length, more than -1");
+  return false;
+}
+
+bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out) {
+  rows *w = implied_lattice(in->bond.spacing, in->bond.thickness, rho);
+  if (!w) return false;
+  *out = rows_bond_class(w, 0);
+  rows_free(w);
+  if (in->bond.mass_i > 0) out->mass_i = out->mass_j = in->bond.mass_i;
+  if (in->bond.mass_j > 0) out->mass_j = in->bond.mass_j;
+  return true;
+}
+
+bool drive_run(const drive_input *in, const pl_law *kernel, const double *parameters,
+               const double *initial, drive_table *out, diagnostics *d) {
+  long count;
+  pl_bond_class bonds;
+  if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&in->bond.item, "spacing"),
+                "there is no lattice of a spacing of %.4g m", in->bond.spacing);
+    return false;
+  }
+  double *t = drive_times(in, &count);
+  marching m = {.in = in, .table = out};
+  table_open(out, kernel, count);
+  rig_open(&m.rig, kernel, parameters, &bonds);
+  for (int f = 0; f < kernel->field_count; f++)
+    m.rig.field[f][0] = initial[f];
+  bool good = true;
+  for (long k = 0; good && k < count && out->bad_row < 0; k++) {
+    motion to = motion_ending(in, t, count, k);
+    good = stays_a_bond(in, to.stretch, t[k], d);
+    if (!good) break;
+    if (k == 0) {
+      first_row(&m, &to, t[k]);
+      continue;
+    }
+    motion from = motion_beginning(in, t, k - 1);
+    next_row(&m, &from, &to, t[k], t[k] - t[k - 1]);
+  }
+  rig_close(&m.rig);
+  free(t);
+  return good;
+}
+
+void drive_observe(const drive_input *in, const pl_law *kernel, const double *parameters,
+                   const drive_table *t, long row, double *outputs) {
+  pl_bond_class bonds;
+  rig r;
+  if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) return;
+  rig_open(&r, kernel, parameters, &bonds);
+  for (int f = 0; f < kernel->field_count; f++)
+    r.field[f][0] = t->columns[DRIVE_COLUMN_LAW + f].values[row];
+  motion m = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
+              .rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
+              .theta = {t->columns[DRIVE_COLUMN_THETA_I].values[row],
+                        t->columns[DRIVE_COLUMN_THETA_J].values[row]}};
+  rig_stored(&r, &m);
+  for (int k = 0; k < kernel->output_count; k++)
+    outputs[k] = r.observed[1 + k][0];
+  rig_close(&r);
+}

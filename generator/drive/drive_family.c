@@ -1,0 +1,354 @@
+/* One particle of a law of families, driven along a path of strain: a lattice in which all particles are alike, so that
+   one of them, periodic, stands for all. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "generator/drive/drive.h"
+#include "generator/plan/plan_parts.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/analysis/patch.h"
+#include "runtime/simulation/simulation.h"
+
+static const char *const part_names[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
+static const int plane_parts[] = {0, 1, 3}, space_parts[] = {0, 1, 2, 3, 4, 5};
+static const int first_axis[] = {0, 1, 2, 0, 1, 0}, second_axis[] = {0, 1, 2, 1, 2, 2};
+static const drive_quantity strain_of[] = {DRIVE_STRAIN_XX, DRIVE_STRAIN_YY, DRIVE_STRAIN_ZZ,
+                                           DRIVE_STRAIN_XY, DRIVE_STRAIN_YZ, DRIVE_STRAIN_XZ};
+enum { PARTS = 6 };
+
+/* --- what the law says of the particle -------------------------------------------------------- */
+
+/* Components of stress and strain that there are. */
+static int part_count(int dimensions) {
+  return dimensions == 2 ? 3 : PARTS;
+}
+
+static int part(int dimensions, int k) {
+  return dimensions == 2 ? plane_parts[k] : space_parts[k];
+}
+
+/* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of the step that begins with
+   the fields at hand. NULL when the law cannot be lowered. */
+static kernel_plan *plan_stress(const law *l, diagnostics *d) {
+  kernel_plan *p = plan_begin(l);
+  lowered_law step;
+  ir *g = p->graph;
+  p->kind = PL_STATE;
+  p->dimensions = p->dof = l->setting == SETTING_SPACE ? 3 : 2;
+  p->reads_shape = true;
+  if (!lower_law(l, g, LOWER_STEP, p->memory, &step, d)) {
+    plan_free(p);
+    return NULL;
+  }
+  static const ends_input chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
+  const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
+  segment_root roots[PARTS + 1];
+  ir_node other = ir_make(g, IR_NEIGHBOUR, step.F, IR_NONE, IR_NONE);
+  ir_node force = ir_mul(g, ir_constant(g, 0.5), ir_add(g, step.F, other));
+  ir_node twice = ir_mul(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_V));
+  ir_node moment = ir_div(g, force, lower_quantity(g, QUANTITY_S));
+  for (int k = 0; k < count; k++) {
+    const int which = part(p->dimensions, k);
+    ir_node x = kinematics_input(g, chord[first_axis[which]]);
+    ir_node y = kinematics_input(g, chord[second_axis[which]]);
+    ir_node term = ir_mul(g, ir_mul(g, x, y), moment);
+    ir_node sum = ir_make(g, IR_FAMILY_SUM, term, IR_NONE, IR_NONE);
+    roots[k] = (segment_root){
+        .node = ir_div(g, sum, twice), .target = TO_PARTICLE_OBSERVED, .index = own + k};
+  }
+  roots[count] =
+      (segment_root){.node = step.F, .target = TO_NEIGHBOUR_OBSERVED, .index = own + count};
+  program_motion motion = plan_motion(p, step.along_reference);
+  program_build(&p->observe, "stress", g, p->memory, roots, count + 1, &motion, SHARE_NOTHING,
+                &p->links);
+  plan_hoist(p);
+  return p;
+}
+
+/* --- the rig ---------------------------------------------------------------------------------- */
+
+typedef struct rig {
+  const pl_law *kernel;
+  kernel_plan *stress_plan;
+  pl_law *stress_kernel;
+  rows *lattice;
+  patch *law, *stress; /* the same particle */
+  long site;
+  int dimensions, parts, neighbours;
+} rig;
+
+deck_lattice drive_lattice(const drive_input *in, const law *l) {
+  const bool space = l->setting == SETTING_SPACE;
+  const drive_particle *p = &in->particle;
+  deck_lattice d = {.name = "lattice",
+                    .kind = p->lattice ? p->lattice
+                            : space    ? "fcc"
+                                       : "hexagonal",
+                    .spacing = p->spacing,
+                    .horizon = p->horizon,
+                    .shells = p->shells              ? p->shells
+                              : !p->lattice && space ? 2
+                                                     : 0,
+                    .rotation = p->rotation,
+                    .setting = law_setting_name(l->setting)};
+  if (!space) d.thickness = d.stiffness_thickness = d.mass_thickness = p->thickness;
+  return d;
+}
+
+static bool refuse(const drive_input *in, diagnostics *d, const char *what) {
+  diag_report(d, DIAG_BAD_VALUE, in->particle.item.where, "%s", what);
+  return false;
+}
+
+static void rig_close(rig *r) {
+  patch_free(r->law);
+  patch_free(r->stress);
+  if (r->lattice) rows_free(r->lattice);
+  if (r->stress_kernel) plan_interpreted_free(r->stress_kernel);
+  plan_free(r->stress_plan);
+}
+
+static bool rig_open(rig *r, const drive_input *in, const law *l, const pl_law *kernel,
+                     const double *parameters, diagnostics *d) {
+  static const long one[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
+  const deck_lattice like = drive_lattice(in, l);
+  *r = (rig){.kernel = kernel, .dimensions = kernel->dimensions};
+  if (bravais_dimensions(like.kind) != kernel->dimensions)
+    return refuse(in, d, "this lattice does not suit the setting of the law");
+  r->lattice = implied_lattice_like(&like, material_density(kernel, parameters));
+  if (!r->lattice)
+    return refuse(in, d, "a particle of this lattice has no neighbours, or too many");
+  r->stress_plan = plan_stress(l, d);
+  if (!r->stress_plan) return false;
+  r->stress_kernel = plan_interpreted(r->stress_plan, "");
+  r->parts = part_count(r->dimensions);
+  r->neighbours = 2 * r->lattice->directions;
+  r->law = patch_new(kernel, parameters, r->lattice, one, 0, 0);
+  r->stress = patch_new(r->stress_kernel, parameters, r->lattice, one, r->parts, 1);
+  r->site = patch_site(r->law, origin);
+  return true;
+}
+
+/* A field of the particle, or all its planes toward neighbours, on all images. */
+static void set_plane(patch *p, int field, long plane, double value) {
+  double *v = p->field[field] + plane * p->size;
+  v[p->inside[0]] = value;
+  patch_repeat(p, v);
+}
+
+static void share_fields(rig *r) {
+  for (int f = 0; f < r->kernel->field_count; f++)
+    for (long k = 0; k < patch_planes(r->law, &r->kernel->fields[f]); k++)
+      set_plane(r->stress, f, k, r->law->field[f][k * r->law->size + r->site]);
+}
+
+static void rig_move(rig *r, const double *strain, const double *rate) {
+  double gradient[2][3][3] = {{{0}}};
+  patch *both[] = {r->law, r->stress};
+  for (int k = 0; k < r->parts; k++) {
+    const int which = part(r->dimensions, k), x = first_axis[which], y = second_axis[which];
+    gradient[0][x][y] = gradient[0][y][x] = strain[k];
+    gradient[1][x][y] = gradient[1][y][x] = rate[k];
+  }
+  for (int k = 0; k < 2; k++) {
+    patch_deform(both[k], (const double(*)[3])gradient[0], NULL, both[k]->displacement);
+    patch_deform(both[k], (const double(*)[3])gradient[1], NULL, both[k]->velocity);
+  }
+}
+
+/* --- the table -------------------------------------------------------------------------------- */
+
+static void add_parts(drive_table *t, const char *what, const char *unit_text, int dimensions,
+                      long room) {
+  for (int k = 0; k < part_count(dimensions); k++)
+    drive_add_column(t, arena_printf(t->memory, "%s_%s", what, part_names[part(dimensions, k)]),
+                     unit_text, room);
+}
+
+/* One column, or one toward each neighbour: name_1, name_2, ... */
+static void add_values(drive_table *t, const pl_field *f, int neighbours, long room) {
+  if (f->place == PL_ON_PARTICLE) {
+    drive_add_column(t, f->name, f->unit, room);
+    return;
+  }
+  for (int k = 0; k < neighbours; k++)
+    drive_add_column(t, arena_printf(t->memory, "%s_%d", f->name, k + 1), f->unit, room);
+}
+
+static int value_count(const pl_field *f, int neighbours) {
+  return f->place == PL_ON_PARTICLE ? 1 : neighbours;
+}
+
+static const char *const energy_names[] = {"stored", "dissipated", "external"};
+enum { STORED, DISSIPATED, EXTERNAL, ENERGIES };
+
+static void table_open(drive_table *t, const pl_law *kernel, int neighbours, long room) {
+  const int parts = part_count(kernel->dimensions);
+  int count = 1 + 3 * parts + neighbours + ENERGIES;
+  for (int f = 0; f < kernel->field_count; f++)
+    count += value_count(&kernel->fields[f], neighbours);
+  for (int f = 0; f < kernel->output_count; f++)
+    count += value_count(&kernel->outputs[f], neighbours);
+  *t = (drive_table){.memory = arena_new(), .of_families = true, .bad_row = -1};
+  t->columns = arena_alloc(t->memory, (size_t)count * sizeof *t->columns);
+  drive_add_column(t, "time", "s", room);
+  add_parts(t, "strain", "1", kernel->dimensions, room);
+  add_parts(t, "strain_rate", "1/s", kernel->dimensions, room);
+  add_parts(t, "stress", "Pa", kernel->dimensions, room);
+  t->way = 1;
+  t->force = 1 + 2 * parts;
+  for (int k = 0; k < neighbours; k++)
+    drive_add_column(t, arena_printf(t->memory, "F_%d", k + 1), "N", room);
+  t->law_column = t->column_count;
+  for (int f = 0; f < kernel->field_count; f++)
+    add_values(t, &kernel->fields[f], neighbours, room);
+  t->fields = t->column_count - t->law_column;
+  for (int f = 0; f < kernel->output_count; f++)
+    add_values(t, &kernel->outputs[f], neighbours, room);
+  for (int k = 0; k < ENERGIES; k++)
+    drive_add_column(t, energy_names[k], "J", room);
+}
+
+static int neighbours_of(const drive_input *in, const law *l) {
+  const deck_lattice like = drive_lattice(in, l);
+  rows *w = implied_lattice_like(&like, 0);
+  const int count = w ? 2 * w->directions : 0;
+  if (w) rows_free(w);
+  return count;
+}
+
+void drive_family_columns(const drive_input *in, const law *l, const pl_law *kernel,
+                          drive_table *out) {
+  table_open(out, kernel, neighbours_of(in, l), 0);
+}
+
+/* --- the march -------------------------------------------------------------------------------- */
+
+typedef struct state {
+  double strain[PARTS], rate[PARTS], stress[PARTS];
+} state;
+
+static state state_at(const drive_input *in, int dimensions, double time, double inside) {
+  state s = {.strain = {0}};
+  for (int k = 0; k < part_count(dimensions); k++) {
+    const drive_quantity q = strain_of[part(dimensions, k)];
+    s.strain[k] = drive_at(in, q, time);
+    s.rate[k] = drive_slope(in, q, inside);
+  }
+  return s;
+}
+
+/* J on the particle's volume; shear counts on either side of the diagonal. */
+static double work_between(const rig *r, const state *a, const state *b) {
+  double sum = 0;
+  for (int k = 0; k < r->parts; k++) {
+    const int which = part(r->dimensions, k);
+    const double times = first_axis[which] == second_axis[which] ? 1 : 2;
+    sum += times * 0.5 * (a->stress[k] + b->stress[k]) * (b->strain[k] - a->strain[k]);
+  }
+  return sum * r->lattice->volume;
+}
+
+static void put_values(const rig *r, drive_table *t, int *c, const pl_field *f,
+                       const double *values) {
+  for (int k = 0; k < value_count(f, r->neighbours); k++)
+    t->columns[(*c)++].values[t->rows] = values[k * r->law->size + r->site];
+}
+
+static void put_row(const rig *r, drive_table *t, double time, const state *s,
+                    const double *energy) {
+  const pl_law *kernel = r->kernel;
+  const double *of_state[] = {s->strain, s->rate, s->stress};
+  int c = 0;
+  t->columns[c++].values[t->rows] = time;
+  for (int what = 0; what < 3; what++)
+    for (int k = 0; k < r->parts; k++)
+      t->columns[c++].values[t->rows] = of_state[what][k];
+  const double *force = r->stress->observed[1 + kernel->output_count + r->parts];
+  for (int k = 0; k < r->neighbours; k++)
+    t->columns[c++].values[t->rows] = force[k * r->stress->size + r->site];
+  for (int f = 0; f < kernel->field_count; f++)
+    put_values(r, t, &c, &kernel->fields[f], r->law->field[f]);
+  for (int f = 0; f < kernel->output_count; f++)
+    put_values(r, t, &c, &kernel->outputs[f], r->law->observed[1 + f]);
+  for (int k = 0; k < ENERGIES; k++)
+    t->columns[c++].values[t->rows] = energy[k];
+  for (int k = 0; k < t->column_count; k++)
+    if (!isfinite(t->columns[k].values[t->rows])) t->bad_row = t->rows;
+  t->rows++;
+}
+
+/* The law's step at a state; fields go on. */
+static void take_step(rig *r, state *s) {
+  rig_move(r, s->strain, s->rate);
+  share_fields(r);
+  patch_observe(r->stress);
+  for (int k = 0; k < r->parts; k++)
+    s->stress[k] = r->stress->observed[1 + r->kernel->output_count + k][r->site];
+  patch_step(r->law);
+  patch_accept(r->law);
+  patch_observe(r->law);
+}
+
+static void set_fields(rig *r, const double *initial) {
+  for (int f = 0; f < r->kernel->field_count; f++)
+    for (long k = 0; k < patch_planes(r->law, &r->kernel->fields[f]); k++)
+      set_plane(r->law, f, k, initial[f]);
+}
+
+bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
+                      const double *parameters, const double *initial, drive_table *out,
+                      diagnostics *d) {
+  const double beside = 1e-6; /* of a step: rates are those of the step that ends */
+  long count;
+  rig r;
+  state before = {.strain = {0}};
+  double energy[ENERGIES] = {0};
+  if (!rig_open(&r, in, l, kernel, parameters, d)) {
+    rig_close(&r);
+    return false;
+  }
+  double *t = drive_times(in, &count);
+  table_open(out, kernel, r.neighbours, count);
+  set_fields(&r, initial);
+  for (long k = 0; k < count && out->bad_row < 0; k++) {
+    const double inside = k ? t[k] - beside * (t[k] - t[k - 1]) : count > 1 ? beside * t[1] : 0;
+    state now = state_at(in, r.dimensions, t[k], inside);
+    r.law->time_step = r.stress->time_step = k ? t[k] - t[k - 1] : r.law->time_step;
+    take_step(&r, &now);
+    energy[STORED] = r.law->observed[0][r.site];
+    energy[EXTERNAL] += k ? work_between(&r, &before, &now) : energy[STORED];
+    energy[DISSIPATED] = energy[EXTERNAL] - energy[STORED];
+    put_row(&r, out, t[k], &now, energy);
+    before = now;
+  }
+  free(t);
+  rig_close(&r);
+  return true;
+}
+
+void drive_family_observe(const drive_input *in, const law *l, const pl_law *kernel,
+                          const double *parameters, const drive_table *t, long row,
+                          double *outputs) {
+  rig r;
+  state s = {.strain = {0}};
+  diagnostics unheard;
+  source_set sources = {NULL, 0};
+  diag_begin(&unheard, &sources);
+  if (rig_open(&r, in, l, kernel, parameters, &unheard)) {
+    int c = t->law_column;
+    for (int k = 0; k < r.parts; k++)
+      s.strain[k] = t->columns[1 + k].values[row];
+    rig_move(&r, s.strain, s.rate);
+    for (int f = 0; f < kernel->field_count; f++)
+      for (long k = 0; k < patch_planes(r.law, &kernel->fields[f]); k++)
+        set_plane(r.law, f, k, t->columns[c++].values[row]);
+    patch_observe(r.law);
+    for (int k = 0; k < kernel->output_count; k++)
+      outputs[k] = r.law->observed[1 + k][r.site];
+  }
+  rig_close(&r);
+  diag_clear(&unheard);
+}

@@ -1,0 +1,82 @@
+#include "generator/drive/explain_bad.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "generator/interpreter/comparison.h"
+#include "generator/lower/law_inputs.h"
+
+/* Named values that the law's states need, in the order of evaluation. An unnamed one may be infinite and yet not matter:
+   it may stand in a case that is not taken. */
+static ir_node *named_values(const kernel_plan *p, int *count) {
+  const pass *states = &p->passes[PASS_STATES];
+  const ir *g = p->graph;
+  unsigned char *marks = must_calloc((size_t)ir_count(g), 1);
+  for (int k = 0; k < states->root_count; k++)
+    ir_mark(g, &states->roots[k].node, 1, marks);
+  ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
+  *count = 0;
+  for (ir_node n = 0; n < ir_count(g); n++)
+    if (marks[n] && ir_name(g, n) && ir_operation(g, n) != IR_INPUT && ir_where(g, n).end > 0)
+      named[(*count)++] = n;
+  free(marks);
+  return named;
+}
+
+static void say(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
+  span where = ir_where(p->graph, n);
+  place at = source_place(p->law->sources, where.file, where.begin);
+  fprintf(out, "  %s:%d: the law's `%s` %s there\n", p->law->sources->items[where.file].name,
+          at.line, ir_name(p->graph, n), what);
+}
+
+/* The largest of the law's results, or -1 when all are zero. */
+static int largest_result(const kernel_plan *p, const ir_node *named, int count,
+                          double *const *values) {
+  const pass *states = &p->passes[PASS_STATES];
+  int largest = -1;
+  for (int k = 0; k < count; k++)
+    for (int r = 0; r < states->root_count && r < PL_STATE_RESULTS; r++)
+      if (states->roots[r].node == named[k] &&
+          fabs(values[k][0]) > (largest < 0 ? 0 : fabs(values[largest][0])))
+        largest = k;
+  return largest;
+}
+
+/* The first that is not finite; when all are, the force or moment that is too large. */
+static void report(const kernel_plan *p, const interpreter_inputs *in, FILE *out) {
+  int count;
+  ir_node *named = named_values(p, &count);
+  double **values = planes_new(count + 1, 1);
+  interpreter *program = interpreter_new(p->graph, named, count);
+  interpreter_run(program, in, 1, values);
+  int k = 0;
+  while (k < count && isfinite(values[k][0]))
+    k++;
+  char what[64] = "stops being finite";
+  if (k == count && (k = largest_result(p, named, count, values)) >= 0)
+    snprintf(what, sizeof what, "is %.6g (SI)", values[k][0]);
+  if (k >= 0) say(p, named[k], what, out);
+  interpreter_free(program);
+  planes_free(values, count + 1);
+  free(named);
+}
+
+void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_class *bonds,
+                 const bad_state *b, FILE *out) {
+  const symbol_list *fields = &p->law->fields;
+  const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
+                                              bonds->s * (1 + b->stretch)};
+  double **in = planes_new(PL_STATE_INPUTS + fields->count, 1);
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
+    in[k][0] = kinematics[k];
+  for (int f = 0; f < fields->count; f++)
+    in[PL_STATE_INPUTS + f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
+  law_inputs inputs;
+  law_inputs_open(&inputs, p->law, parameters, bonds);
+  interpreter_inputs at = law_inputs_at(&inputs, (const double *const *)in);
+  report(p, &at, out);
+  law_inputs_close(&inputs);
+  planes_free(in, PL_STATE_INPUTS + fields->count);
+}

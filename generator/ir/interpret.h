@@ -1,0 +1,38 @@
+/* The second reader of the IR: evaluates a graph with the same operations, in the same order and with
+   the same elementary functions as the emitted C, for many states at a time. */
+#ifndef PERILAT_GENERATOR_INTERPRET_H
+#define PERILAT_GENERATOR_INTERPRET_H
+
+#include "generator/ir/ir.h"
+
+#define INTERPRET_LANES 64 /* states evaluated together */
+
+typedef struct interpreter interpreter;
+
+/* One operation on numbers, as both readers of the IR compute it: comparisons with NaN are false, logical results are
+   0 or 1, select takes `b` where `a` is not 0. Not for inputs, constants, and reductions over the family. */
+double interpret_operation(ir_op op, double a, double b, double c);
+
+/* Prepares to evaluate `roots` (none of them IR_NONE). The graph must outlive the interpreter and may grow. Reductions over
+   the family and IR_NEIGHBOUR are no operations on numbers: programs of families (program.h) have neither, a root that
+   does fails an assertion. An interpreter serves one thread at a time. */
+interpreter *interpreter_new(const ir *g, const ir_node *roots, int root_count);
+void interpreter_free(interpreter *p);
+
+/* Inputs: values[source][index] points at the first of `count` values, `stride[source][index]` apart (0: one
+   value for all). Sources or inputs that the roots do not need may be NULL. */
+typedef struct interpreter_inputs {
+  const double *const *values[IR_SOURCE_COUNT];
+  const unsigned char *stride[IR_SOURCE_COUNT]; /* 0 or 1 for each index; NULL: all 0 */
+} interpreter_inputs;
+
+/* outputs[k][0..count) receives root k. Any count; no allocation. */
+void interpreter_run(interpreter *p, const interpreter_inputs *in, int count,
+                     double *const *outputs);
+
+/* After interpreter_run with count = 1: the first node, in evaluation order, that is not finite, or IR_NONE.
+   interpreter_value is what node `n`, needed by the roots, had. */
+ir_node interpreter_first_bad(const interpreter *p);
+double interpreter_value(const interpreter *p, ir_node n);
+
+#endif

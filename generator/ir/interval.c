@@ -1,0 +1,217 @@
+#include "generator/ir/interval.h"
+
+#include <math.h>
+
+#include "dsl/base/elementary.h"
+
+static const double PI = 3.14159265358979323846;
+
+range range_between(double low, double high, bool low_open, bool high_open) {
+  return (range){low, high, low_open || isinf(low), high_open || isinf(high)};
+}
+
+range range_of(double value) {
+  return isnan(value) ? range_all() : range_between(value, value, false, false);
+}
+
+range range_all(void) {
+  return range_between(-INFINITY, INFINITY, true, true);
+}
+
+/* --- ends ------------------------------------------------------------------------------------- */
+
+typedef struct end {
+  double at;
+  bool open;
+} end;
+
+static end lower(end a, end b) {
+  if (a.at == b.at) return (end){a.at, a.open && b.open};
+  return a.at < b.at ? a : b;
+}
+
+static end upper(end a, end b) {
+  if (a.at == b.at) return (end){a.at, a.open && b.open};
+  return a.at > b.at ? a : b;
+}
+
+static range from_ends(end low, end high) {
+  return range_between(low.at, high.at, low.open, high.open);
+}
+
+static end low_of(range a) {
+  return (end){a.low, a.low_open};
+}
+static end high_of(range a) {
+  return (end){a.high, a.high_open};
+}
+
+/* 0 times anything is 0, and reached when the 0 is. */
+static end times(end a, end b) {
+  if (a.at == 0 || b.at == 0) return (end){0, !((a.at == 0 && !a.open) || (b.at == 0 && !b.open))};
+  return (end){a.at * b.at, a.open || b.open};
+}
+
+/* --- arithmetic ------------------------------------------------------------------------------- */
+
+range range_join(range a, range b) {
+  return from_ends(lower(low_of(a), low_of(b)), upper(high_of(a), high_of(b)));
+}
+
+static bool is_empty(range a) {
+  return a.low > a.high || (a.low == a.high && (a.low_open || a.high_open));
+}
+
+range range_meet(range a, range b) {
+  range c = {pl_fmax(a.low, b.low), pl_fmin(a.high, b.high), false, false};
+  c.low_open = (a.low == c.low && a.low_open) || (b.low == c.low && b.low_open);
+  c.high_open = (a.high == c.high && a.high_open) || (b.high == c.high && b.high_open);
+  return is_empty(c) ? a : c;
+}
+
+range range_neg(range a) {
+  return (range){-a.high, -a.low, a.high_open, a.low_open};
+}
+
+range range_add(range a, range b) {
+  return range_between(a.low + b.low, a.high + b.high, a.low_open || b.low_open,
+                       a.high_open || b.high_open);
+}
+
+range range_mul(range a, range b) {
+  const end p[] = {times(low_of(a), low_of(b)), times(low_of(a), high_of(b)),
+                   times(high_of(a), low_of(b)), times(high_of(a), high_of(b))};
+  return from_ends(lower(lower(p[0], p[1]), lower(p[2], p[3])),
+                   upper(upper(p[0], p[1]), upper(p[2], p[3])));
+}
+
+range range_square(range a) {
+  range c = range_mul(a, a);
+  end p = times(low_of(a), low_of(a)), q = times(high_of(a), high_of(a));
+  if (range_holds(a, 0)) return from_ends((end){0, false}, high_of(c));
+  return from_ends(lower(p, q), upper(p, q));
+}
+
+bool range_holds(range a, double value) {
+  return (value > a.low || (value == a.low && !a.low_open)) &&
+         (value < a.high || (value == a.high && !a.high_open));
+}
+
+bool range_is_positive(range a) {
+  return a.low > 0 || (a.low == 0 && a.low_open);
+}
+
+bool range_is_nonnegative(range a) {
+  return a.low >= 0;
+}
+
+static end inverse(end a, double side) {
+  return a.at == 0 ? (end){copysign(INFINITY, side), true} : (end){1 / a.at, a.open};
+}
+
+range range_div(range a, range b) {
+  if (!range_is_positive(b) && !range_is_positive(range_neg(b))) return range_all();
+  double side = b.high > 0 ? 1 : -1;
+  return range_mul(a, from_ends(inverse(high_of(b), side), inverse(low_of(b), side)));
+}
+
+/* --- other operations ------------------------------------------------------------------------- */
+
+static range absolute(range a) {
+  range m = range_neg(a);
+  if (range_is_nonnegative(a)) return a;
+  if (range_is_nonnegative(m)) return m;
+  return from_ends((end){0, !range_holds(a, 0)}, upper(high_of(a), high_of(m)));
+}
+
+/* A rising function; `limit_low`, `limit_high`: what it tends to and does not reach. */
+static range rising(range a, double (*f)(double), double limit_low, double limit_high) {
+  double low = isinf(a.low) ? limit_low : f(a.low), high = isinf(a.high) ? limit_high : f(a.high);
+  return range_between(low, high, a.low_open || low == limit_low,
+                       a.high_open || high == limit_high);
+}
+
+static range root_of(range a) {
+  range b =
+      range_between(pl_fmax(a.low, 0), pl_fmax(a.high, 0), a.low_open && a.low >= 0, a.high_open);
+  return range_between(sqrt(b.low), sqrt(b.high), b.low_open, b.high_open);
+}
+
+static range logarithm_of(range a) {
+  return range_between(a.low > 0 ? pl_log(a.low) : -INFINITY,
+                       a.high > 0 ? pl_log(a.high) : INFINITY, a.low_open, a.high_open);
+}
+
+/* Of a base that is not negative. */
+static range power_of(range a, range b) {
+  if (!range_is_nonnegative(a)) return range_all();
+  bool positive = range_is_positive(a);
+  if (isinf(a.high) || isinf(b.low) || isinf(b.high) || (a.low == 0 && b.low < 0)) {
+    double low = b.low >= 0 && a.low >= 1 ? pl_pow(a.low, b.low) : 0;
+    return range_between(low, INFINITY, positive && low == 0, true);
+  }
+  const double p[] = {pl_pow(a.low, b.low), pl_pow(a.low, b.high), pl_pow(a.high, b.low),
+                      pl_pow(a.high, b.high)};
+  double low = pl_fmin(pl_fmin(p[0], p[1]), pl_fmin(p[2], p[3])),
+         high = pl_fmax(pl_fmax(p[0], p[1]), pl_fmax(p[2], p[3]));
+  return range_between(low, high, low == 0 && positive, false);
+}
+
+static range extreme(range a, range b, bool most) {
+  if (!most) return range_neg(extreme(range_neg(a), range_neg(b), true));
+  range c = range_join(a, b);
+  end low = a.low == b.low  ? (end){a.low, a.low_open && b.low_open}
+            : a.low > b.low ? low_of(a)
+                            : low_of(b);
+  if (a.low == b.low && (a.low_open || b.low_open))
+    low.open = true; /* the larger of the two reaches it only when both do */
+  return from_ends(low, high_of(c));
+}
+
+static range sign_of(range a) {
+  double low = range_is_positive(a) ? 1 : range_is_nonnegative(a) ? 0 : -1;
+  range m = range_neg(a);
+  double high = range_is_positive(m) ? -1 : range_is_nonnegative(m) ? 0 : 1;
+  return range_between(low, high, false, false);
+}
+
+range range_apply(ir_op op, range a, range b) {
+  switch (op) {
+  case IR_ABS:
+    return absolute(a);
+  case IR_SQRT:
+    return root_of(a);
+  case IR_INVERSE_ROOT:
+    return range_between(0, INFINITY, true, true);
+  case IR_LOG:
+    return logarithm_of(a);
+  case IR_POW:
+    return power_of(a, b);
+  case IR_EXP:
+    return rising(a, pl_exp, 0, INFINITY);
+  case IR_CBRT:
+    return rising(a, pl_cbrt, -INFINITY, INFINITY);
+  case IR_TANH:
+    return rising(a, pl_tanh, -1, 1);
+  case IR_MIN:
+  case IR_MAX:
+    return extreme(a, b, op == IR_MAX);
+  case IR_SIGN:
+    return sign_of(a);
+  case IR_SIN:
+  case IR_COS:
+    return range_between(-1, 1, false, false);
+  case IR_ATAN2:
+  case IR_WRAP_ANGLE:
+    return range_between(-PI, PI, false, false);
+  case IR_LT:
+  case IR_LE:
+  case IR_EQ:
+  case IR_AND:
+  case IR_OR:
+  case IR_NOT:
+    return range_between(0, 1, false, false);
+  default:
+    return range_all();
+  }
+}

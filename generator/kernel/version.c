@@ -1,0 +1,2 @@
+#include "generator/kernel/version.h"
+const char perilat_version[] = PERILAT_VERSION;

@@ -1,0 +1,50 @@
+/* What a law is told about a bond, and the law alone on the interpreter: parameters, bond class and
+   states as the inputs of its graph. */
+#ifndef PERILAT_GENERATOR_LAW_INPUTS_H
+#define PERILAT_GENERATOR_LAW_INPUTS_H
+
+#include "generator/ir/interpret.h"
+#include "dsl/semantics/builtins.h"
+#include "dsl/semantics/law.h"
+#include "runtime/kernel.h"
+
+/* Quantities of a bond's motion, in the order of the planes of pl_law's `states`; the tangent is by
+   the first PL_STATE_RATES of them. */
+extern const builtin_quantity law_motion[PL_STATE_INPUTS];
+/* Place of a quantity among them, or -1. */
+int law_motion_place(builtin_quantity q);
+
+/* Quantities that a bond class knows. X(quantity, its value as C, of a class `bonds`) */
+#define CLASS_QUANTITIES(X)                                                                        \
+  X(S, bonds->s)                                                                                   \
+  X(SPACING, bonds->spacing)                                                                       \
+  X(T, bonds->t)                                                                                   \
+  X(V, bonds->V)                                                                                   \
+  X(M_BOND, pl_min(bonds->mass_i, bonds->mass_j))                                                  \
+  X(M_END_I, bonds->mass_i)                                                                        \
+  X(M_END_J, bonds->mass_j)                                                                        \
+  X(AREA, bonds->area)                                                                             \
+  X(SHELL, bonds->shell)                                                                           \
+  X(HORIZON, bonds->horizon)                                                                       \
+  X(WEIGHT, bonds->weight)                                                                         \
+  X(N_FAMILY, bonds->n)
+
+/* Their values; those of all other quantities stay as they are. */
+void law_class_values(const pl_bond_class *bonds, double values[QUANTITY_COUNT]);
+
+typedef struct law_inputs {
+  double of_class[QUANTITY_COUNT];
+  const double *quantities[QUANTITY_COUNT];
+  unsigned char quantity_stride[QUANTITY_COUNT];
+  const double **parameters; /* [parameters] */
+  unsigned char *field_stride;
+} law_inputs;
+
+/* `parameters` must outlive the inputs, which must stay where they are. */
+void law_inputs_open(law_inputs *v, const law *l, const double *parameters,
+                     const pl_bond_class *bonds);
+/* For states `in` as pl_law's `states` takes them: [PL_STATE_INPUTS + fields][count]. */
+interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in);
+void law_inputs_close(law_inputs *v);
+
+#endif

@@ -1,0 +1,360 @@
+/* Rules and results of a law (see lower.h). */
+#include "generator/lower/lower_parts.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "generator/lower/kinematics.h"
+#include "generator/ir/rewrite.h"
+
+/* --- rules ------------------------------------------------------------------------------------ */
+
+/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with either of its
+   particles. */
+static ir_node held_where(lowering *c, placement on) {
+  ir *g = c->graph;
+  ir_node zero = ir_constant(g, 0);
+  if (c->mode == LOWER_PROTECTABLE)
+    return binary(g, IR_LT, zero, kinematics_input(g, ENDS_PROTECTED));
+  if (c->mode != LOWER_HELD) return IR_NONE;
+  ir_node mine = binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_I));
+  if (on == ON_PARTICLE) return mine;
+  return binary(g, IR_OR, mine, binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_J)));
+}
+
+/* min(max(old, rule), 1) in a form in which a rule that is not a number stays so, and is found. */
+static ir_node clamp_damage(lowering *c, placement on, ir_node old, ir_node rule) {
+  ir *g = c->graph;
+  ir_node one = ir_constant(g, 1);
+  ir_node grown = ir_select(g, binary(g, IR_LT, rule, old), old, rule);
+  ir_node clamped = ir_select(g, binary(g, IR_LT, one, grown), one, grown);
+  ir_node held = held_where(c, on);
+  return held == IR_NONE ? clamped : ir_select(g, held, old, clamped);
+}
+
+/* a - b of a guard a >= b or a > b. */
+static ir_node overstress_of(lowering *c, const expr *when) {
+  if (!when || when->kind != EXPR_BINARY) return IR_NONE;
+  binary_op op = when->binary;
+  if (op != OP_GE && op != OP_GT && op != OP_LE && op != OP_LT) return IR_NONE;
+  ir_node a = lower_expr(c, when->left), b = lower_expr(c, when->right);
+  return op == OP_GE || op == OP_GT ? ir_sub(c->graph, a, b) : ir_sub(c->graph, b, a);
+}
+
+static void note_flow(lowering *c, const stmt *rule, ir_node when) {
+  if (c->mode != LOWER_STEP) return;
+  lowered_text *t = &c->text;
+  t->flows = lower_one_more(t->flows, t->flow_count, sizeof *t->flows);
+  t->flows[t->flow_count++] =
+      (lowered_flow){rule, rule->symbol->index, when, overstress_of(c, rule->when)};
+}
+
+/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how many. */
+static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **stand_in) {
+  ir *g = c->graph;
+  const int nodes = ir_count(g), fields = c->law->fields.count;
+  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
+  int count = 0;
+  ir_mark(g, n, 1, marks);
+  for (ir_node k = 0; k < nodes; k++)
+    count += marks[k] && ir_operation(g, k) == IR_NEIGHBOUR;
+  *what = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **what);
+  *stand_in = arena_alloc(c->memory, ((size_t)count + 1) * sizeof **stand_in);
+  count = 0;
+  for (ir_node k = 0; k < nodes; k++) {
+    if (!marks[k] || ir_operation(g, k) != IR_NEIGHBOUR) continue;
+    (*what)[count] = k;
+    (*stand_in)[count] = ir_input(g, IR_FROM_FIELD, 2 * fields + 1 + k, "frozen", ir_place(g, k));
+    count++;
+  }
+  free(marks);
+  ir_substitute(g, n, 1, *what, *stand_in, count, n);
+  return count;
+}
+
+/* Whether a sum over the family moves with the flow. */
+static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
+  unsigned char *marks = must_calloc((size_t)ir_count(g) + 1, 1);
+  bool found = false;
+  ir_mark(g, &over, 1, marks);
+  for (ir_node n = 0; n <= over && !found; n++)
+    found =
+        marks[n] && ir_is_reduction(ir_operation(g, n)) && rewrite_depends(g, &n, 1, &lambda, 1);
+  free(marks);
+  return found;
+}
+
+/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what neighbours have being
+   frozen. Newton's method from lambda = 0 in a fixed number of steps: the returns of the usual convex yield functions
+   have converged to rounding long before; the `flow` check of a law says so where one has not. */
+static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node direction) {
+  enum { NEWTON_STEPS = 8 };
+  ir *g = c->graph;
+  ir_node over = overstress_of(c, rule->when);
+  if (over == IR_NONE)
+    return lower_fail(c, rule->where,
+                      "a returned flow goes back to where its guard is an equality: write "
+                      "`returned when f >= 0`");
+  ir_node when = lower_expr(c, rule->when), *what, *stand_in;
+  note_flow(c, rule, when);
+  const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
+  ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
+                            ir_place(g, over) > ON_BODY ? ir_place(g, over) : ON_BOND);
+  ir_node moved = ir_add(g, old, ir_mul(g, lambda, direction));
+  ir_substitute(g, &over, 1, &old, &moved, 1, &over);
+  if (ir_place(g, over) > ON_PARTICLE && moves_a_sum(g, over, lambda))
+    return lower_fail(
+        c, rule->where,
+        "the flow toward one neighbour would change the guards of all others: a guard "
+        "that goes over the family must be one for the whole particle");
+  ir_node slope = ir_derivative(g, over, lambda);
+  ir_node falls = binary(g, IR_LT, slope, ir_constant(g, 0));
+  ir_node safe = ir_select(g, falls, slope, ir_constant(g, -1));
+  ir_node next = ir_sub(g, lambda, ir_div(g, over, safe));
+  next = ir_select(g, falls, next, lambda);
+  ir_node found = ir_constant(g, 0);
+  for (int k = 0; k < NEWTON_STEPS && !c->failed; k++) {
+    ir_substitute(g, &next, 1, &lambda, &found, 1, &found);
+    if (ir_count(g) > MOST_NODES)
+      return lower_fail(c, rule->where,
+                        "with its return written out the law is too large to compile");
+  }
+  ir_substitute(g, &found, 1, stand_in, what, frozen, &found);
+  return ir_select(g, when, ir_add(g, old, ir_mul(g, found, direction)), old);
+}
+
+/* `flow x by expr when guard`: one increment a step. */
+static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node increment) {
+  if (rule->returned) return flow_returned(c, rule, old, increment);
+  ir_node flown = ir_add(c->graph, old, increment);
+  ir_node when = rule->when ? lower_expr(c, rule->when) : IR_NONE;
+  note_flow(c, rule, when);
+  return rule->when ? ir_select(c->graph, when, flown, old) : flown;
+}
+
+static void lower_field_rule(lowering *c, const stmt *rule) {
+  const symbol *s = rule->symbol;
+  if (c->mode == LOWER_FROZEN) return;
+  if (s->shape == SHAPE_TENSOR || s->shape == SHAPE_VECTOR) {
+    lower_fail(c, s->where, "states that are tensors or vectors cannot be compiled yet");
+    return;
+  }
+  ir_node old = lower_field(c->graph, c->law, s->index);
+  ir_node value = lower_expr(c, rule->value);
+  if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
+  if (c->mode == LOWER_STEP) c->text.rules[s->index] = value;
+  if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
+  lower_name_node(c->graph, value, s->name, rule->where);
+  c->rule[s->index] = value;
+  c->rule_order[c->rule_count++] = s->index;
+}
+
+static void lower_rule(lowering *c, const stmt *rule) {
+  const symbol *s = rule->symbol;
+  bool field = s && (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE);
+  if (field && rule == s->rule)
+    lower_field_rule(c, rule);
+  else if (!field && s && rule->value && rule->kind != STMT_PARAMETER &&
+           rule->kind != STMT_FUNCTION && rule->kind != STMT_OPTION && !lower_binding_of(c, s)) {
+    components v = lower_value(c, rule->value);
+    lower_name_value(c, v, s->name, rule->where);
+    lower_bind(c, s, v);
+  }
+}
+
+/* --- results ---------------------------------------------------------------------------------- */
+
+/* Value of a symbol that is one number, or IR_NONE. */
+static ir_node value_of(lowering *c, const symbol *s) {
+  components *known = s ? lower_binding_of(c, s) : NULL;
+  return known && known->count == 1 ? known->of[0] : IR_NONE;
+}
+
+static ir_node result_node(lowering *c, law_result which) {
+  return value_of(c, c->law->results[which]);
+}
+
+/* At fixed fields the energy's derivative: N = dW/dL, where the stretch is (L - s)/s. */
+static ir_node force_of_energy(lowering *c, ir_node W) {
+  ir *g = c->graph;
+  ir_node by_stretch = ir_derivative(g, W, lower_quantity(g, QUANTITY_STRETCH));
+  ir_node by_length = ir_derivative(g, W, lower_quantity(g, QUANTITY_LENGTH));
+  return ir_add(g, ir_div(g, by_stretch, lower_quantity(g, QUANTITY_S)), by_length);
+}
+
+static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quantity theta) {
+  ir *g = c->graph;
+  ir_node moment = result_node(c, which), shear = result_node(c, RESULT_V);
+  if (moment != IR_NONE) return moment;
+  if (shear != IR_NONE)
+    return ir_div(g, ir_mul(g, shear, lower_quantity(g, QUANTITY_LENGTH)), ir_constant(g, 2));
+  if (W != IR_NONE) return ir_derivative(g, W, lower_quantity(g, theta));
+  return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
+}
+
+static void lower_bond_results(lowering *c, lowered_law *out) {
+  out->N = result_node(c, RESULT_N);
+  if (out->N == IR_NONE && out->W == IR_NONE)
+    out->N = lower_fail(c, c->law->tree->name_where, "the law gives no force");
+  else if (out->N == IR_NONE)
+    out->N = force_of_energy(c, out->W);
+  if (c->law->tree->law == LAW_MICROPOLAR_BOND) {
+    out->M_i = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I);
+    out->M_j = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J);
+  }
+  span nowhere = {0, 0, 0};
+  lower_name_node(c->graph, out->N, "N", nowhere);
+  lower_name_node(c->graph, out->M_i, "M_i", nowhere);
+  lower_name_node(c->graph, out->M_j, "M_j", nowhere);
+}
+
+static const stmt *find_force_state(const law *l) {
+  for (int k = 0; k < l->rule_count; k++)
+    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];
+  return NULL;
+}
+
+static void lower_force_state(lowering *c, lowered_law *out) {
+  const stmt *given = find_force_state(c->law);
+  out->F = given ? value_of(c, given->symbol) : IR_NONE;
+  out->along_reference = given && given->along_reference;
+  if (out->F == IR_NONE && out->W == IR_NONE)
+    out->F = lower_fail(c, c->law->tree->name_where, "the law gives no force state");
+  else if (out->F == IR_NONE)
+    out->F = lower_force_state_of_energy(c, out->W);
+  else if (lower_is_per_volumes(given->symbol->dim))
+    out->F = lower_force_of_density(c, out->F);
+  lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
+}
+
+static void lower_results(lowering *c, lowered_law *out) {
+  const symbol_list *outputs = &c->law->outputs;
+  out->W = result_node(c, RESULT_W);
+  if (lower_is_state_law(c))
+    lower_force_state(c, out);
+  else
+    lower_bond_results(c, out);
+  for (int k = 0; k < outputs->count; k++) {
+    out->outputs[k] = value_of(c, outputs->items[k]);
+    if (out->outputs[k] == IR_NONE)
+      out->outputs[k] =
+          lower_fail(c, outputs->items[k]->where,
+                     "an output is a number: give the parts of a tensor or vector that matter, "
+                     "such as `principal(sigma, 1)`");
+  }
+}
+
+static void resolve_text(lowering *c, const ir_node *from, const ir_node *to) {
+  ir *g = c->graph;
+  lowered_text *t = &c->text;
+  if (c->mode != LOWER_STEP) return;
+  int fields = c->law->fields.count,
+      count = fields + t->line_count + t->place_count + 2 * t->flow_count;
+  ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all), *at = all;
+  for (int k = 0; k < fields; k++)
+    *at++ = t->rules[k];
+  for (int k = 0; k < t->line_count; k++)
+    *at++ = t->lines[k].guard;
+  for (int k = 0; k < t->place_count; k++)
+    *at++ = t->places[k].node;
+  for (int k = 0; k < t->flow_count; k++) {
+    *at++ = t->flows[k].when;
+    *at++ = t->flows[k].overstress;
+  }
+  ir_substitute(g, all, count, from, to, c->rule_count, all);
+  at = all;
+  for (int k = 0; k < fields; k++)
+    t->rules[k] = *at++;
+  for (int k = 0; k < t->line_count; k++)
+    t->lines[k].guard = *at++;
+  for (int k = 0; k < t->place_count; k++)
+    t->places[k].node = *at++;
+  for (int k = 0; k < t->flow_count; k++) {
+    t->flows[k].when = *at++;
+    t->flows[k].overstress = *at++;
+  }
+  free(all);
+}
+
+static void *keep(arena *memory, void *items, int count, size_t size) {
+  void *kept = arena_alloc(memory, ((size_t)count + 1) * size);
+  if (count) memcpy(kept, items, (size_t)count * size);
+  free(items);
+  return kept;
+}
+
+/* Puts the rules in place of the opaque new values. A rule reads new values of rules above it. */
+static void resolve_fields(lowering *c, lowered_law *out) {
+  ir *g = c->graph;
+  int fields = c->law->fields.count;
+  ir_node *from = must_alloc(((size_t)fields + 1) * sizeof *from);
+  ir_node *to = must_alloc(((size_t)fields + 1) * sizeof *to);
+  ir_substitution *known = ir_substitution_new(g);
+  for (int k = 0; k < c->rule_count; k++) { /* every field has a rule: the checker sees to that */
+    int f = c->rule_order[k];
+    out->fields[f] = ir_substitution_apply(known, c->rule[f]);
+    lower_name_node(g, out->fields[f], c->law->fields.items[f]->name,
+                    c->law->fields.items[f]->rule->where);
+    from[k] = c->new_value[f];
+    to[k] = out->fields[f];
+    ir_substitution_add(known, from[k], to[k]);
+  }
+  ir_substitution_free(known);
+  ir_node *results[] = {&out->N, &out->M_i, &out->M_j, &out->F, &out->W};
+  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
+    if (*results[k] != IR_NONE)
+      ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
+  ir_substitute(g, out->outputs, c->law->outputs.count, from, to, c->rule_count, out->outputs);
+  resolve_text(c, from, to);
+  free(from);
+  free(to);
+}
+
+/* Stands for the new value of field k until all rules are known. */
+static ir_node opaque_field(ir *g, const law *l, int k) {
+  const symbol *s = l->fields.items[k];
+  return ir_input(g, IR_FROM_FIELD, l->fields.count + k, s->name, s->place);
+}
+
+bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
+               diagnostics *d) {
+  int fields = l->fields.count;
+  size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
+  lowering c = {.law = l, .graph = g, .mode = mode, .memory = memory, .said = d};
+  *out = (lowered_law){.N = IR_NONE, .M_i = IR_NONE, .M_j = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  c.text.rules = arena_alloc(memory, field_bytes);
+  c.new_value = must_alloc(field_bytes);
+  c.rule = must_alloc(field_bytes);
+  c.rule_order = must_alloc(((size_t)fields + 1) * sizeof *c.rule_order);
+  out->fields = arena_alloc(memory, field_bytes);
+  out->outputs = arena_alloc(memory, ((size_t)l->outputs.count + 1) * sizeof(ir_node));
+  for (int k = 0; k < fields; k++) {
+    c.new_value[k] = mode == LOWER_FROZEN ? lower_field(g, l, k) : opaque_field(g, l, k);
+    c.text.rules[k] = out->fields[k] = lower_field(g, l, k);
+  }
+  for (int k = 0; k < l->rule_count && !c.failed; k++)
+    lower_rule(&c, l->rules[k]);
+  if (!c.failed) lower_results(&c, out);
+  if (!c.failed && mode != LOWER_FROZEN) resolve_fields(&c, out);
+  lowered_text *t = &c.text;
+  t->lines = keep(memory, t->lines, t->line_count, sizeof *t->lines);
+  t->places = keep(memory, t->places, t->place_count, sizeof *t->places);
+  t->flows = keep(memory, t->flows, t->flow_count, sizeof *t->flows);
+  out->text = c.text;
+  free(c.bound);
+  free(c.new_value);
+  free(c.rule);
+  free(c.rule_order);
+  return !c.failed;
+}
+
+ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d) {
+  if (!bound) return ir_constant(g, infinite);
+  arena *memory = arena_new();
+  lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = d};
+  ir_node n = lower_expr(&c, bound);
+  free(c.bound);
+  arena_free(memory);
+  return c.failed ? IR_NONE : n;
+}

@@ -1,0 +1,136 @@
+/* What a law of bonds stores and what its rate terms take (see lower.h). */
+#include "generator/lower/lower_parts.h"
+
+#include "generator/ir/rewrite.h"
+
+/* --- energy ----------------------------------------------------------------------------------- */
+
+enum { ENERGY_PAIRS = 3 }; /* N with the stretch, M_i with theta_i, M_j with theta_j */
+
+typedef struct energy_parts {
+  ir_node force[ENERGY_PAIRS];  /* N, M_i, M_j at zero rate; IR_NONE where there is none */
+  ir_node motion[ENERGY_PAIRS]; /* stretch, theta_i, theta_j */
+  ir_node s, length;
+} energy_parts;
+
+static energy_parts parts_at_zero_rate(ir *g, const lowered_law *frozen) {
+  energy_parts p = {{frozen->N, frozen->M_i, frozen->M_j},
+                    {lower_quantity(g, QUANTITY_STRETCH), IR_NONE, IR_NONE},
+                    lower_quantity(g, QUANTITY_S),
+                    lower_quantity(g, QUANTITY_LENGTH)};
+  ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
+  for (int k = 0; k < ENERGY_PAIRS; k++)
+    if (p.force[k] != IR_NONE) rewrite_zero(g, &p.force[k], 1, &rate, 1, &p.force[k]);
+  if (frozen->M_i != IR_NONE) {
+    p.motion[1] = lower_quantity(g, QUANTITY_THETA_I);
+    p.motion[2] = lower_quantity(g, QUANTITY_THETA_J);
+  }
+  return p;
+}
+
+static bool is_homogeneous(const ir *g, ir_node f, const energy_parts *p) {
+  if (rewrite_depends(g, &f, 1, &p->length, 1)) /* s (1 + stretch) is not */
+    return false;
+  double degree = rewrite_degree(g, f, p->motion, ENERGY_PAIRS);
+  return degree == 1 || degree == REWRITE_ZERO;
+}
+
+/* Work of force k over its motion; that of N is N s d(stretch). */
+static ir_node work(ir *g, const energy_parts *p, int k, ir_node force) {
+  ir_node w = ir_mul(g, force, p->motion[k]);
+  return k == 0 ? ir_mul(g, w, p->s) : w;
+}
+
+static ir_node half(ir *g, ir_node n) {
+  return ir_mul(g, ir_constant(g, 0.5), n);
+}
+
+static ir_node add_some(ir *g, ir_node a, ir_node b) {
+  return a == IR_NONE ? b : ir_add(g, a, b);
+}
+
+static ir_node half_work(ir *g, const energy_parts *p, int first) {
+  ir_node sum = IR_NONE;
+  for (int k = first; k < ENERGY_PAIRS; k++)
+    if (p->force[k] != IR_NONE) sum = add_some(g, sum, half(g, work(g, p, k, p->force[k])));
+  return sum;
+}
+
+/* N = k (stretch - stretch_0): s N^2/(2k), zero where it is stress-free. With k = 0 the bond
+   carries nothing. IR_NONE when N is not of this form. */
+static ir_node affine_energy(ir *g, const energy_parts *p) {
+  ir_node N = p->force[0];
+  ir_node moving[] = {p->motion[0], p->motion[1], p->motion[2], p->length};
+  ir_node k = ir_derivative(g, N, p->motion[0]);
+  if (rewrite_depends(g, &N, 1, moving + 1, 3) || rewrite_depends(g, &k, 1, moving, 4) ||
+      ir_operation(g, k) == IR_CONSTANT)
+    return IR_NONE;
+  ir_node one = ir_constant(g, 1);
+  ir_node none = binary(g, IR_EQ, k, ir_constant(g, 0));
+  ir_node divisor = ir_select(g, none, one, k);
+  return half(g, ir_div(g, ir_mul(g, ir_mul(g, N, N), p->s), divisor));
+}
+
+/* Integral over the straight path from rest: Gauss-Legendre on [0, 1]. */
+static ir_node path_energy(ir *g, const energy_parts *p) {
+  static const double at[2] = {0.86113631159405257522, 0.33998104358485626480};
+  static const double weight[2] = {0.34785484513745385737, 0.65214515486254614263};
+  ir_node sum = IR_NONE;
+  for (int point = 0; point < 4; point++) {
+    double sign = point < 2 ? -1 : 1;
+    ir_node fraction = ir_constant(g, 0.5 * (1 + sign * at[point % 2]));
+    ir_node from[ENERGY_PAIRS + 1], to[ENERGY_PAIRS + 1];
+    int count = 0;
+    for (int k = 0; k < ENERGY_PAIRS; k++) {
+      if (p->motion[k] == IR_NONE) continue;
+      from[count] = p->motion[k];
+      to[count++] = ir_mul(g, fraction, p->motion[k]);
+    }
+    from[count] = p->length;
+    to[count++] = ir_add(g, p->s, ir_mul(g, fraction, ir_sub(g, p->length, p->s)));
+    for (int k = 0; k < ENERGY_PAIRS; k++) {
+      if (p->force[k] == IR_NONE) continue;
+      ir_node here;
+      ir_substitute(g, &p->force[k], 1, from, to, count, &here);
+      sum =
+          add_some(g, sum, ir_mul(g, ir_constant(g, 0.5 * weight[point % 2]), work(g, p, k, here)));
+    }
+  }
+  return sum;
+}
+
+ir_node lower_stored_energy(const law *l, ir *g, const lowered_law *frozen) {
+  (void)l;
+  if (frozen->W != IR_NONE) {
+    ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE), W;
+    rewrite_zero(g, &frozen->W, 1, &rate, 1, &W);
+    return W;
+  }
+  energy_parts p = parts_at_zero_rate(g, frozen);
+  bool homogeneous[ENERGY_PAIRS];
+  for (int k = 0; k < ENERGY_PAIRS; k++)
+    homogeneous[k] = p.force[k] == IR_NONE || is_homogeneous(g, p.force[k], &p);
+  if (homogeneous[0] && homogeneous[1] && homogeneous[2]) return half_work(g, &p, 0);
+  ir_node moments[] = {p.force[1], p.force[2]};
+  bool central = p.force[1] == IR_NONE;
+  bool apart = central || !rewrite_depends(g, moments, 2, p.motion, 1);
+  ir_node axial = apart && homogeneous[1] && homogeneous[2] ? affine_energy(g, &p) : IR_NONE;
+  if (axial == IR_NONE) return path_energy(g, &p);
+  return central ? axial : ir_add(g, axial, half_work(g, &p, 1));
+}
+
+ir_node lower_rate_power(const law *l, ir *g, const lowered_law *frozen, ir_node theta_rate_i,
+                         ir_node theta_rate_j) {
+  (void)l;
+  energy_parts p = parts_at_zero_rate(g, frozen);
+  ir_node whole[ENERGY_PAIRS] = {frozen->N, frozen->M_i, frozen->M_j};
+  ir_node length_rate = ir_mul(g, lower_quantity(g, QUANTITY_STRETCH_RATE), p.s);
+  ir_node rate[ENERGY_PAIRS] = {length_rate, theta_rate_i, theta_rate_j};
+  ir_node power = IR_NONE, stretch_rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
+  for (int k = 0; k < ENERGY_PAIRS; k++) {
+    if (whole[k] == IR_NONE || !rewrite_depends(g, &whole[k], 1, &stretch_rate, 1)) continue;
+    ir_node part = ir_sub(g, whole[k], p.force[k]);
+    power = add_some(g, power, ir_mul(g, part, rate[k]));
+  }
+  return power;
+}

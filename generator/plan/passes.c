@@ -1,0 +1,468 @@
+#include "generator/plan/passes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "generator/lower/law_inputs.h"
+#include "generator/plan/plan_parts.h"
+#include "generator/ir/rewrite.h"
+
+static const char *const pass_names[PASS_COUNT] = {
+#define X(pass, member, task) [pass] = #member,
+    STRIP_PASSES(X)
+#undef X
+        [PASS_STATES] = "states",
+    [PASS_TANGENT] = "tangent",
+    [PASS_BOUNDS] = "bounds",
+};
+
+typedef struct planner {
+  kernel_plan *plan;
+  lowered_law step;   /* protectable, reciprocals shared */
+  lowered_law frozen; /* as lowered */
+} planner;
+
+/* The law in terms of what particles have. */
+typedef struct seen_law {
+  bond_forces force;
+  lowered_law step;
+  ir_node stored;     /* J, with the fields at hand */
+  ir_node rate_power; /* W, with the fields at hand; IR_NONE */
+  ir_node *outputs;   /* with the fields at hand */
+} seen_law;
+
+/* --- substitution ----------------------------------------------------------------------------- */
+
+/* One root after the other. */
+static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, const ir_node *to,
+                       int pairs) {
+  ir_substitution *s = ir_substitution_new(g);
+  for (int k = 0; k < pairs; k++)
+    ir_substitution_add(s, from[k], to[k]);
+  for (int k = 0; k < count; k++)
+    if (nodes[k] != IR_NONE) nodes[k] = ir_substitution_apply(s, nodes[k]);
+  ir_substitution_free(s);
+}
+
+static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,
+                           const ir_node *to, int pairs) {
+  ir_node *results[PL_STATE_RESULTS] = {&p->N, &p->M_i, &p->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
+    substitute(g, results[k], 1, from, to, pairs);
+  substitute(g, p->fields, l->fields.count, from, to, pairs);
+}
+
+static ir_node *copy_nodes(arena *memory, const ir_node *nodes, int count) {
+  ir_node *copy = arena_alloc(memory, ((size_t)count + 1) * sizeof *copy);
+  memcpy(copy, nodes, (size_t)count * sizeof *copy);
+  return copy;
+}
+
+/* Shares reciprocals among all that a step computes, once for all passes, so that they agree to the
+   bit. */
+static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
+  int fields = l->fields.count;
+  size_t field_bytes = (size_t)fields * sizeof(ir_node);
+  ir_node *all = must_alloc(PL_STATE_RESULTS * sizeof *all + field_bytes);
+  all[0] = p->N;
+  all[1] = p->M_i; /* IR_NONE stays IR_NONE */
+  all[2] = p->M_j;
+  memcpy(all + PL_STATE_RESULTS, p->fields, field_bytes);
+  rewrite_reciprocals(g, all, PL_STATE_RESULTS + fields, all);
+  p->N = all[0];
+  p->M_i = all[1];
+  p->M_j = all[2];
+  memcpy(p->fields, all + PL_STATE_RESULTS, field_bytes);
+  free(all);
+}
+
+/* --- the law on particles --------------------------------------------------------------------- */
+
+/* Parameters that differ from bond to bond, and the values that a strip brings. */
+static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
+  for (int k = 0; k < p->varying_count; k++) {
+    from[k] = lower_parameter(p->graph, p->law, p->varying[k]);
+    to[k] = ir_input(p->graph, IR_FROM_BOND_PARAMETER, k,
+                     p->law->parameters.items[p->varying[k]]->name, ON_BOND);
+  }
+  return p->varying_count;
+}
+
+/* Law-level inputs and the kinematics that take their place. */
+static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_node *to) {
+  const ir_node values[PL_STATE_INPUTS] = {k->stretch, k->stretch_rate, k->theta_i, k->theta_j,
+                                           k->length};
+  int pairs = 0;
+  for (int q = 0; q < PL_STATE_INPUTS; q++) {
+    if (values[q] == IR_NONE) continue;
+    from[pairs] = lower_quantity(g, law_motion[q]);
+    to[pairs++] = values[q];
+  }
+  return pairs;
+}
+
+/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all passes compute a value
+   in the same way, and energies with old and new fields differ in no bit where the fields do not differ. */
+static void fuse(planner *p, seen_law *t) {
+  const law *l = p->plan->law;
+  const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
+  ir_node *all = must_alloc((size_t)most * sizeof *all);
+  ir_node *const single[] = {&t->force.f_x,      &t->force.f_y, &t->force.moment_i,
+                             &t->force.moment_j, &t->stored,    &t->rate_power};
+  const int singles = (int)(sizeof single / sizeof *single);
+  int count = 0;
+  for (int k = 0; k < singles; k++)
+    all[count++] = *single[k];
+  for (int k = 0; k < l->fields.count; k++)
+    all[count++] = t->step.fields[k];
+  for (int k = 0; k < l->outputs.count; k++)
+    all[count++] = t->outputs[k];
+  rewrite_factors(p->plan->graph, all, count, all);
+  rewrite_fused(p->plan->graph, all, count, all);
+  for (int k = 0; k < singles; k++)
+    *single[k] = all[k];
+  memcpy(t->step.fields, all + singles, (size_t)l->fields.count * sizeof *all);
+  memcpy(t->outputs, all + singles + l->fields.count, (size_t)l->outputs.count * sizeof *all);
+  free(all);
+}
+
+static seen_law see_law(planner *p) {
+  ir *g = p->plan->graph;
+  const law *l = p->plan->law;
+  arena *memory = p->plan->memory;
+  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR);
+  seen_law t = {.step = p->step};
+  const size_t most = (size_t)(PL_STATE_INPUTS + p->plan->varying_count);
+  ir_node *from = arena_alloc(memory, most * sizeof *from);
+  ir_node *to = arena_alloc(memory, most * sizeof *to);
+  int pairs = kinematic_pairs(g, &k, from, to);
+  pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
+  t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
+  substitute_law(g, l, &t.step, from, to, pairs);
+  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
+
+  t.stored = lower_stored_energy(l, g, &p->frozen);
+  rewrite_reciprocals(g, &t.stored, 1, &t.stored);
+  substitute(g, &t.stored, 1, from, to, pairs);
+  t.rate_power = lower_rate_power(l, g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
+  if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
+  substitute(g, &t.rate_power, 1, from, to, pairs);
+  t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
+  rewrite_reciprocals(g, t.outputs, l->outputs.count, t.outputs);
+  substitute(g, t.outputs, l->outputs.count, from, to, pairs);
+  fuse(p, &t);
+  return t;
+}
+
+/* The same node with the new fields in place of those at hand. */
+static ir_node with_new_fields(planner *p, const seen_law *t, ir_node n) {
+  ir *g = p->plan->graph;
+  int fields = p->plan->law->fields.count;
+  ir_node *at_hand = must_alloc(((size_t)fields + 1) * sizeof *at_hand), result;
+  for (int k = 0; k < fields; k++)
+    at_hand[k] = lower_field(g, p->plan->law, k);
+  ir_substitute(g, &n, 1, at_hand, t->step.fields, fields, &result);
+  free(at_hand);
+  return result;
+}
+
+/* --- passes ----------------------------------------------------------------------------------- */
+
+static pass *begin_pass(kernel_plan *p, pass_kind kind, int most_roots) {
+  pass *a = &p->passes[kind];
+  a->kind = kind;
+  a->name = pass_names[kind];
+  a->roots = arena_alloc(p->memory, ((size_t)most_roots + 1) * sizeof *a->roots);
+  a->root_count = 0;
+  return a;
+}
+
+static void write_root(pass *a, ir_node node, pass_target target, int index) {
+  a->roots[a->root_count++] = (pass_root){node, target, index};
+}
+
+static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
+  int fields = p->plan->law->fields.count;
+  pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
+  const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j};
+  for (int k = 0; k < p->plan->force_planes; k++)
+    write_root(a, planes[k], TO_FORCE, k);
+  for (int k = 0; k < fields; k++)
+    write_root(a, t->step.fields[k], TO_FIELD, k);
+}
+
+/* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
+   with the new ones, both at the present deformation. Lost to rate terms: their power over the
+   step. */
+static void plan_ledger(planner *p, const seen_law *t, pass_kind kind) {
+  ir *g = p->plan->graph;
+  plan_step(p, t, kind);
+  pass *a = &p->plan->passes[kind];
+  ir_node kept = with_new_fields(p, t, t->stored), zero = ir_constant(g, 0);
+  ir_node lost = kept == t->stored ? zero : ir_sub(g, t->stored, kept);
+  ir_node rate_lost = zero;
+  if (t->rate_power != IR_NONE)
+    rate_lost =
+        ir_mul(g, with_new_fields(p, t, t->rate_power), kinematics_input(g, ENDS_TIME_STEP));
+  write_root(a, lost, TO_DISSIPATED_STATE, 0);
+  write_root(a, rate_lost, TO_DISSIPATED_RATE, 0);
+}
+
+static void plan_observe(planner *p, const seen_law *t, pass_kind kind) {
+  int outputs = p->plan->law->outputs.count;
+  pass *a = begin_pass(p->plan, kind, 1 + outputs);
+  write_root(a, t->stored, TO_OBSERVED, 0);
+  for (int k = 0; k < outputs; k++)
+    write_root(a, t->outputs[k], TO_OBSERVED, 1 + k);
+}
+
+/* The step law of a bond that is not protected. */
+static lowered_law unprotected_step(planner *p) {
+  ir *g = p->plan->graph;
+  const law *l = p->plan->law;
+  lowered_law bare = p->step;
+  bare.fields = copy_nodes(p->plan->memory, p->step.fields, l->fields.count);
+  ir_node from = kinematics_input(g, ENDS_PROTECTED), to = ir_constant(g, 0);
+  substitute_law(g, l, &bare, &from, &to, 1);
+  return bare;
+}
+
+static void plan_states(planner *p, const lowered_law *bare) {
+  int fields = p->plan->law->fields.count;
+  pass *a = begin_pass(p->plan, PASS_STATES, PL_STATE_RESULTS + fields);
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
+    write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
+  for (int k = 0; k < fields; k++)
+    write_root(a, bare->fields[k], TO_OUT, PL_STATE_RESULTS + k);
+}
+
+/* d(result)/d(stretch): the present length follows the stretch, L = s (1 + stretch). */
+static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
+  ir_node direct = ir_derivative(g, result, lower_quantity(g, by));
+  if (by != QUANTITY_STRETCH) return direct;
+  ir_node by_length = ir_derivative(g, result, lower_quantity(g, QUANTITY_LENGTH));
+  return ir_add(g, direct, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
+}
+
+static void plan_tangent(planner *p, const lowered_law *bare) {
+  ir *g = p->plan->graph;
+  pass *a = begin_pass(p->plan, PASS_TANGENT, PL_TANGENTS);
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
+    for (int q = 0; q < PL_STATE_RATES; q++) {
+      ir_node d = results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);
+      rewrite_zero(g, &d, 1, NULL, 0, &d);
+      write_root(a, d, TO_OUT, k * PL_STATE_RATES + q);
+    }
+}
+
+bool plan_bounds(kernel_plan *p, diagnostics *d) {
+  const law *l = p->law;
+  pass *a = begin_pass(p, PASS_BOUNDS, 2 * l->parameters.count);
+  for (int k = 0; k < l->parameters.count; k++) {
+    const bounds *in = &l->parameters.items[k]->declared->in;
+    ir_node lower = lower_bound(p->graph, l, in->lower, -INFINITY, d);
+    ir_node upper = lower_bound(p->graph, l, in->upper, INFINITY, d);
+    if (lower == IR_NONE || upper == IR_NONE) return false;
+    write_root(a, lower, TO_LOWER, k);
+    write_root(a, upper, TO_UPPER, k);
+  }
+  return true;
+}
+
+/* --- what is hoisted -------------------------------------------------------------------------- */
+
+static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
+  if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
+}
+
+typedef struct hoisting {
+  const ir *graph;
+  unsigned char *hoisted;
+} hoisting;
+
+static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_count) {
+  const hoisting *h = context;
+  const ir *g = h->graph;
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  ir_mark(g, roots, root_count, needed);
+  for (int k = 0; k < root_count; k++)
+    mark_hoisted(g, roots[k], h->hoisted);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      mark_hoisted(g, ir_operand(g, n, k), h->hoisted);
+  }
+  free(needed);
+}
+
+static void visit_program(const family_program *q, plan_visitor visit, void *context) {
+  for (int k = 0; k < q->pass_count; k++)
+    for (int s = 0; s < q->passes[k].segment_count; s++) {
+      const segment *a = &q->passes[k].segments[s];
+      ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+      for (int r = 0; r < a->root_count; r++)
+        nodes[r] = a->roots[r].node;
+      visit(context, nodes, a->root_count);
+      free(nodes);
+    }
+}
+
+void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
+  for (int k = 0; k < PASS_COUNT; k++) {
+    const pass *a = &p->passes[k];
+    if (k == PASS_BOUNDS) continue;
+    ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+    for (int r = 0; r < a->root_count; r++)
+      nodes[r] = a->roots[r].node;
+    visit(context, nodes, a->root_count);
+    free(nodes);
+  }
+  visit_program(&p->step, visit, context);
+  visit_program(&p->observe, visit, context);
+}
+
+void plan_hoist(kernel_plan *p) {
+  int count = ir_count(p->graph);
+  unsigned char *hoisted = must_calloc((size_t)count + 1, 1);
+  plan_visit(p, mark_hoisted_of_roots, &(hoisting){p->graph, hoisted});
+  for (ir_node n = 0; n < count; n++)
+    p->uniform_count += hoisted[n];
+  p->uniforms = arena_alloc(p->memory, ((size_t)p->uniform_count + 1) * sizeof *p->uniforms);
+  int at = 0;
+  for (ir_node n = 0; n < count; n++)
+    if (hoisted[n]) p->uniforms[at++] = n;
+  free(hoisted);
+}
+
+ir_cost plan_cost(const kernel_plan *p, const pass *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, ON_PARTICLE);
+  free(nodes);
+  return cost;
+}
+
+/* --- the plan --------------------------------------------------------------------------------- */
+
+static bool lower_both(planner *p, diagnostics *d) {
+  kernel_plan *plan = p->plan;
+  if (!lower_law(plan->law, plan->graph, LOWER_PROTECTABLE, plan->memory, &p->step, d) ||
+      !lower_law(plan->law, plan->graph, LOWER_FROZEN, plan->memory, &p->frozen, d))
+    return false;
+  share_reciprocals(plan->graph, plan->law, &p->step);
+  return true;
+}
+
+kernel_plan *plan_begin(const law *l) {
+  kernel_plan *plan = must_calloc(1, sizeof *plan);
+  plan->law = l;
+  plan->graph = ir_new();
+  ir_set_sources(plan->graph, l->sources);
+  plan->memory = arena_new();
+  return plan;
+}
+
+bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
+  ir_node rate = lower_quantity(plan->graph, QUANTITY_STRETCH_RATE);
+  const ir_node results[] = {step->N, step->M_i, step->M_j, step->F};
+  for (int k = 0; k < 4; k++)
+    if (results[k] != IR_NONE && rewrite_depends(plan->graph, &results[k], 1, &rate, 1))
+      return true;
+  return rewrite_depends(plan->graph, step->fields, plan->law->fields.count, &rate, 1);
+}
+
+static bool plan_strips(kernel_plan *plan, diagnostics *d) {
+  planner p = {.plan = plan};
+  if (!lower_both(&p, d)) return false;
+  static void (*const plan_strip[])(planner *, const seen_law *, pass_kind) = {
+      [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
+  const seen_law seen = see_law(&p);
+#define X(pass, member, task) plan_strip[task](&p, &seen, pass);
+  STRIP_PASSES(X)
+#undef X
+  lowered_law bare = unprotected_step(&p);
+  plan->stores = plan->law->nonconservative == NULL;
+  plan->reads_rates = plan_reads_rates(plan, &bare);
+  plan_states(&p, &bare);
+  plan_tangent(&p, &bare);
+  return true;
+}
+
+static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
+  if (!good || !plan_bounds(plan, d)) {
+    plan_free(plan);
+    return NULL;
+  }
+  plan_hoist(plan);
+  return plan;
+}
+
+kernel_plan *plan_kernel(const law *l, diagnostics *d) {
+  return plan_kernel_varying(l, NULL, 0, d);
+}
+
+static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d) {
+  kernel_plan *plan = plan_begin(l);
+  plan->kind = PL_STATE;
+  plan->form = form;
+  return finish(plan, plan_programs(plan, d), d);
+}
+
+/* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them only where they change. */
+static bool is_for_pairs(const law *l) {
+  enum { WRITTEN_OUT_FASTER = 12 };
+  bool on_bonds = false;
+  for (int k = 0; k < l->fields.count; k++)
+    on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
+  return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
+}
+
+kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+  enum { MOST_WRITTEN_OUT = 18 };
+  if (l->irregular || l->neighbours == 0) return plan_families(l, FAMILY_LOOPS, d);
+  if (is_for_pairs(l)) {
+    kernel_plan *plan = plan_families(l, FAMILY_PAIRS, d);
+    if (!plan || program_sum_count(&plan->step) > 0) return plan;
+    plan_free(plan); /* nothing is the same or opposite at both ends */
+  }
+  return plan_families(l, l->neighbours <= MOST_WRITTEN_OUT ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
+}
+
+kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
+                                 diagnostics *d) {
+  if (l->tree->law == LAW_STATE && varying_count == 0) return plan_kernel_of_families(l, d);
+  if (l->tree->law == LAW_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
+                "parameters of a law of families cannot differ from bond to bond yet");
+    return NULL;
+  }
+  kernel_plan *plan = plan_begin(l);
+  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
+  for (int k = 0; k < varying_count; k++)
+    kept[k] = varying[k];
+  plan->varying = kept;
+  plan->varying_count = varying_count;
+  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
+  plan->dimensions = 2;
+  plan->dof = micropolar ? 3 : 2;
+  plan->force_planes = micropolar ? 4 : 2;
+  plan = finish(plan, plan_strips(plan, d), d);
+  if (!plan) return NULL;
+  ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
+  plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
+  plan->divisions_per_bond = cost.divisions;
+  return plan;
+}
+
+void plan_free(kernel_plan *p) {
+  if (!p) return;
+  ir_free(p->graph);
+  arena_free(p->memory);
+  free(p);
+}

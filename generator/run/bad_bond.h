@@ -1,0 +1,19 @@
+/* When a run stops because a state went bad: the bond at fault as a path for `perilat drive`. */
+#ifndef PERILAT_GENERATOR_BAD_BOND_H
+#define PERILAT_GENERATOR_BAD_BOND_H
+
+#include "generator/kernel/model.h"
+#include "runtime/lattice/rows.h"
+#include "runtime/simulation/simulation.h"
+
+/* Writes the bond's last state, its lattice and all parameters. `m` may be NULL (a stand-alone
+   solver): then the law is named, not found. What is not finite is left out and said in a comment.
+   False with a sentence in `error`. */
+bool bad_bond_write(const char *path, const char *deck_name, const model *m,
+                    const simulation_law *l, const rows *w, const bad_state *b, char *error,
+                    size_t size);
+
+/* `<result>_bad_bond.nml` for `<result>.h5`. */
+void bad_bond_path(const char *result, char *path, size_t size);
+
+#endif

@@ -1,0 +1,73 @@
+/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told before, during and after.
+   A stand-alone solver made by `perilat build` is this same run with deck and kernels built in. */
+#ifndef PERILAT_GENERATOR_RUN_H
+#define PERILAT_GENERATOR_RUN_H
+
+#include "dsl/base/c_linkage.h"
+#include "dsl/base/diagnostics_json.h"
+#include "generator/kernel/model.h"
+#include "runtime/deck/deck.h"
+#include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
+
+#define DECK_LIMIT ((size_t)16 << 20) /* B: the longest deck */
+
+/* A law that is already compiled into the program (stand-alone solvers). */
+typedef struct built_in_law {
+  const char *model; /* as the deck names it */
+  const pl_law *law;
+  const char *law_text, *c_text;
+  const char *choices; /* "onset=rankine;..." decided when it was built */
+  const char *compiler, *flags;
+} built_in_law;
+
+/* A table that a load of the built-in deck names. */
+typedef struct built_in_file {
+  const char *path; /* where the deck would find it */
+  const char *text;
+} built_in_file;
+
+typedef struct run_options {
+  const char *program;      /* as it is called: "perilat run", or a solver's name */
+  const char *deck_path;    /* file, or the name of the built-in deck */
+  const char *deck_text;    /* built-in deck, or NULL: read the file */
+  const built_in_law *laws; /* NULL: compile the deck's models */
+  int law_count;
+  const built_in_file *files; /* of a built-in deck */
+  int file_count;
+  deck_override *overrides;
+  int override_count;
+  int threads; /* 0: as the deck or the machine says */
+  bool resume;
+  bool interpret;    /* no compiler: run on the interpreter */
+  bool check_kernel; /* compare kernel and interpreter on random states first */
+  bool check_only;   /* `perilat check deck.nml`: everything but the run */
+  bool profile;      /* say at the end where the time went */
+  bool json;         /* the command is asked for a document; run_deck looks at `report` */
+  bool no_physics;   /* leave out the physics checks of the deck's laws */
+  diag_json *report; /* NULL, or diagnostics go here: of a check alone; of a run to stderr, too, and
+                        how it ended follows them in the document */
+} run_options;
+
+/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
+   is has been written then, whole. */
+int run_deck(const run_options *o);
+
+/* Opens the law in the file `path` with the options that the material chooses, which are taken out of its assignments. */
+bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said);
+/* Opens and plans the law of a material with the options that the deck chooses (these are taken out of its assignments); the
+   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The law takes the setting of
+   the lattice (NULL: a bond is of a lattice in plane stress), and is planned for it. The model must be closed when
+   out->memory is set. */
+bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
+                       diagnostics *said);
+
+/* main() of a stand-alone solver. */
+int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
+                        const built_in_law *laws, int law_count, const built_in_file *files,
+                        int file_count);
+
+C_LINKAGE_END
+
+#endif

@@ -1,0 +1,533 @@
+/* What a run says: before, during, after. */
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/elementary.h"
+#include "generator/run/bad_bond.h"
+#include "generator/kernel/document.h"
+#include "generator/drive/explain_bad.h"
+#include "generator/run/run_parts.h"
+#include "runtime/simulation/checkpoint.h"
+#include "runtime/analysis/implied.h"
+#include "runtime/lattice/notch_depth.h"
+#include "runtime/lattice/random_field.h"
+#include "runtime/analysis/uniform_strain.h"
+
+/* --- before the run --------------------------------------------------------------------------- */
+
+static void print_quantity(const char *text, double value, const char *unit_name) {
+  static const struct {
+    double factor;
+    const char *prefix;
+  } scales[] = {{1e9, "G"}, {1e6, "M"}, {1e3, "k"}, {1, ""}, {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
+  size_t k = 0;
+  while (k < 6 && fabs(value) < scales[k].factor)
+    k++;
+  printf("%s%.4g %s%s", text, value / scales[k].factor, scales[k].prefix, unit_name);
+}
+
+/* Irregular particles have no lattice that implies anything: they are asked. */
+static void announce_uniform_strain(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  uniform_response u;
+  if (!uniform_strain_response(r->laws[lattice].law, r->laws[lattice].parameters, w, plane_strain,
+                               &u)) {
+    printf(": no stiffness\n");
+    return;
+  }
+  print_quantity(": held in a uniform strain E = ", u.E, "Pa");
+  printf(
+      ", nu = %.4f\n  residuals  force left on a particle %.2g %% of stress times its face "
+      "(median), sum of forces %.1g of all; %ld particles whose bonds do not resolve all strains\n",
+      u.nu, 100 * u.left_force, u.momentum, u.unresolved);
+}
+
+static void announce_law(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const pl_law *kernel = r->laws[lattice].law;
+  implied_elasticity e;
+  printf("  law        %s", kernel->name);
+  if (r->open_models > lattice && r->models[lattice].path) {
+    const char *path = r->models[lattice].path;
+    printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
+  }
+  if (w->list) {
+    announce_uniform_strain(r, lattice);
+    return;
+  }
+  if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
+    print_quantity(": on this lattice E = ", e.E[0], "Pa");
+    printf(", nu = %.4f", e.nu[0]);
+    double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
+    if (isfinite(strength))
+      print_quantity(", largest stress ", strength, "Pa under uniform strain along x, sides held");
+  }
+  putchar('\n');
+}
+
+/* Per cent of the bonds of whole families that the body lacks. */
+static double lost_bonds(const rows *w) {
+  return 100 * (1 - (double)w->bond_count / ((double)w->particle_count * w->directions));
+}
+
+/* Where edges lack bonds, the body is softer than its lattice: said from 1 % on. With few bonds
+   lost it cannot be. */
+static void announce_body(const run *r, int lattice) {
+  const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const simulation_law *l = &r->laws[lattice];
+  const random_fields *f = simulation_fields(r->simulation);
+  implied_elasticity e;
+  double E[3];
+  if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
+  if ((double)w->bond_count > many) {
+    printf(
+        "  body       lacks %.2g %% of the bonds of its lattice at edges; too large to be held in "
+        "a uniform strain here\n",
+        lost_bonds(w));
+    return;
+  }
+  if (!uniform_strain_moduli(l->law, l->parameters, f ? f->value : NULL, w, E)) return;
+  bool differs = false;
+  for (int c = 0; c < 2; c++)
+    differs = differs || fabs(E[c] / e.E[c] - 1) > difference;
+  if (!differs) return;
+  fputs("  body       held in a uniform strain", stdout);
+  for (int c = 0; c < 2; c++) {
+    if (isnan(E[c])) continue;
+    print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
+    printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
+  }
+  puts(": edges and notches lack bonds");
+}
+
+static void announce_notch(const notch_depth *n, int number, bool only) {
+  char name[24] = "notch";
+  if (!only) snprintf(name, sizeof name, "notch %d", number);
+  printf("  %-10s ", name);
+  if (n->kind == NOTCH_THROUGH)
+    printf("%.4g mm deep: it cuts the body through\n", 1e3 * n->drawn);
+  else if (n->kind == NOTCH_INSIDE)
+    printf("%.4g mm long as drawn, %.4g mm from bond to bond; ligaments %.4g and %.4g mm\n",
+           1e3 * n->drawn, 1e3 * n->cut, 1e3 * n->ligament[0], 1e3 * n->ligament[1]);
+  else
+    printf("%.4g mm deep as drawn, %.4g mm to the first bond left; ligament %.4g mm\n",
+           1e3 * n->drawn, 1e3 * n->cut, 1e3 * n->ligament[0]);
+}
+
+static void announce_notches(const run *r, int lattice) {
+  enum { MOST = 8 };
+  const deck *k = r->deck;
+  int said = 0, left = 0;
+  for (int n = 0; n < k->notch_count; n++) {
+    if (said == MOST) {
+      left++;
+      continue;
+    }
+    const notch_depth depth =
+        notch_depth_of(simulation_rows(r->simulation, lattice), &k->notchs[n].shape);
+    if (depth.kind == NOTCH_NONE) continue;
+    announce_notch(&depth, n + 1, k->notch_count == 1);
+    said++;
+  }
+  if (left > 0) printf("             and %d more\n", left);
+}
+
+/* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
+static void announce_fields(const run *r) {
+  const random_fields *f = simulation_fields(r->simulation);
+  const pl_law *kernel = r->laws[0].law;
+  for (int k = 0; f && k < f->count; k++) {
+    const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
+    const char *in = unit_is_pure(p->unit) ? "" : p->unit;
+    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
+           "%.5g\n",
+           p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
+           r->laws[0].parameters[kernel->varying[k]]);
+  }
+}
+
+static void announce_particles(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  char depth[32] = "";
+  int fewest = ROWS_MAX_NEIGHBOURS, most = 0;
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  for (long p = 0; p < w->particle_count; p++) {
+    const int degree = rows_degree(w, w->particle_site[p]);
+    fewest = degree < fewest ? degree : fewest;
+    most = degree > most ? degree : most;
+  }
+  printf("  particles  %s: %ld of %s, spacing %.6g mm, %.5g x %.5g%s mm between outermost ones\n"
+         "  neighbours %d to %d, mean %.4g, %ld bonds\n",
+         k->name, w->particle_count, k->file ? k->file : "blue noise", 1e3 * w->spacing,
+         1e3 * w->width, 1e3 * w->height, depth, fewest, most,
+         2 * (double)w->bond_count / (double)w->particle_count, w->bond_count);
+}
+
+static void announce_lattice(const run *r, int lattice) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const deck_lattice *k = &r->deck->lattices[lattice];
+  char depth[32] = "", family[64] = "";
+  if (w->dimensions == 3) snprintf(depth, sizeof depth, " x %.5g", 1e3 * w->depth);
+  if (w->shell[w->directions - 1] > 1)
+    snprintf(family, sizeof family, ", %d neighbours", 2 * w->directions);
+  printf(
+      "  lattice    %s: %s, spacing %.6g mm%s, %ld particles, %ld bonds, %.5g x %.5g%s mm between "
+      "outermost sites\n",
+      k->name, k->kind, 1e3 * w->spacing, family, w->particle_count, w->bond_count, 1e3 * w->width,
+      1e3 * w->height, depth);
+}
+
+/* Loads come in the deck's time, which has nothing to do with that of the steps. */
+static void announce_increments(const run *r) {
+  const deck_relaxation *k = &r->deck->relaxation;
+  printf(
+      "  increments %d, quasi-static, each until the unbalanced force is %.4g of the reactions or "
+      "loads, or for %ld steps\n",
+      k->increments, k->tolerance, (long)k->most_steps);
+  fputs("  steps      of ", stdout);
+}
+
+void announce(const run *r) {
+  const deck_simulation *s = &r->deck->simulation;
+  const step_limit *limit = simulation_step_limit(r->simulation);
+  printf("%s\n", s->title ? s->title : r->options->deck_path);
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    if (simulation_rows(r->simulation, k)->list)
+      announce_particles(r, k);
+    else
+      announce_lattice(r, k);
+    announce_notches(r, k);
+    announce_law(r, k);
+    announce_body(r, k);
+  }
+  announce_fields(r);
+  if (r->deck->relaxation.increments > 0)
+    announce_increments(r);
+  else
+    printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
+           simulation_step_count(r->simulation));
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s rules)\n", 1e6 * limit->step,
+         limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
+         limit->at_surface ? " at a surface" : "");
+  printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
+         simulation_threads(r->simulation) == 1 ? "" : "s",
+         simulation_memory(r->simulation) / 1048576.0);
+  printf("  result     %s\n", r->result_path);
+  fflush(stdout);
+}
+
+const char *moment(const run *r, double time, char text[MOMENT_TEXT]) {
+  const int increments = r->deck->relaxation.increments;
+  if (increments > 0)
+    snprintf(text, MOMENT_TEXT, "increment %ld of %d",
+             lround(time / r->deck->simulation.end_time * increments), increments);
+  else
+    snprintf(text, MOMENT_TEXT, "t = %.5g ms", 1e3 * time);
+  return text;
+}
+
+/* --- during the run, and when it goes wrong --------------------------------------------------- */
+
+/* "load 3100 N (peak 11020 N), cmod 1.2e-5 m": monitors at the last sample. */
+void describe_monitors(const run *r, char *text, size_t size) {
+  const double *time;
+  long samples = simulation_history(r->simulation, &time);
+  char now[MOMENT_TEXT];
+  int n = snprintf(text, size, "%s", moment(r, simulation_time(r->simulation), now));
+  for (int k = 0; samples > 0 && k < r->deck->monitor_count && k < 2 && n > 0 && (size_t)n < size;
+       k++) {
+    const char *unit_name;
+    const double *values;
+    const char *name = simulation_series(r->simulation, k, &unit_name, &values);
+    const double last = values[samples - 1] + 0.0; /* no minus before zeros */
+    const bool pure = unit_is_pure(unit_name);
+    n += snprintf(text + n, size - (size_t)n, ", %s %.4g%s%s", name, last, pure ? "" : " ",
+                  pure ? "" : unit_name);
+    if (k == 0 && (size_t)n < size)
+      n += snprintf(text + n, size - (size_t)n, " (peak %.4g)",
+                    simulation_monitor_peak(r->simulation, k, NULL) + 0.0);
+  }
+}
+
+/* The bond at fault, for `perilat drive`. */
+static void write_bad_bond(const run *r, const bad_state *b) {
+  char path[4200], error[ERROR_LENGTH + 4200];
+  bad_bond_path(r->result_path, path, sizeof path);
+  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL,
+                     &r->laws[0], simulation_rows(r->simulation, 0), b, error, sizeof error))
+    fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
+  else
+    fprintf(stderr, "  %s\n", error);
+}
+
+static void print_fields(const pl_law *kernel, const double *values, bool on_particles) {
+  for (int f = 0; f < kernel->field_count; f++)
+    if ((kernel->fields[f].place == PL_ON_PARTICLE) == on_particles)
+      fprintf(stderr, ", %s %.6g", kernel->fields[f].name, values[f]);
+}
+
+/* What the particle's law read: its family. */
+static void print_family(const run *r, const bad_state *b) {
+  const pl_law *kernel = r->laws[0].law;
+  fprintf(stderr, "  the particle has %d bonds", b->family_count);
+  print_fields(kernel, b->own_fields, true);
+  fputc('\n', stderr);
+  for (int k = 0; k < b->family_count; k++) {
+    const bad_neighbour *n = &b->family[k];
+    fprintf(stderr, "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s", n->particle,
+            n->stretch, n->stretch_rate);
+    print_fields(kernel, n->fields, false);
+    print_fields(kernel, n->fields, true);
+    fputc('\n', stderr);
+  }
+}
+
+/* Samples of a series; NULL where there is none of that name. */
+static const double *series_of(const run *r, const char *name) {
+  for (int k = 0; k < simulation_series_count(r->simulation); k++) {
+    const double *values;
+    if (strcmp(simulation_series(r->simulation, k, NULL, &values), name) == 0) return values;
+  }
+  return NULL;
+}
+
+/* The first or the last sample; NaN where there is none. */
+static double sample_of(const run *r, const char *name, bool last) {
+  const double *time, *values = series_of(r, name);
+  const long samples = simulation_history(r->simulation, &time);
+  return values && samples > 0 ? values[last ? samples - 1 : 0] : NAN;
+}
+
+static double last_value(const run *r, const char *name) {
+  return sample_of(r, name, true);
+}
+
+/* Where no particle is at fault. */
+static void report_bad_energy(const run *r, const bad_state *b) {
+  char when[MOMENT_TEXT];
+  say_error("%s after %ld steps (%s): kinetic %.3g J, stored %.3g J\n"
+            "  no stable step does that: the step is too long for this body, or the law's stored "
+            "energy is "
+            "not that of its forces\n"
+            "  what was computed until then is in the result; a smaller `step_safety` tells which",
+            b->what, b->step, moment(r, b->time, when), last_value(r, "energy/kinetic"),
+            last_value(r, "energy/stored"));
+}
+
+void report_bad(const run *r) {
+  bad_state b = simulation_bad(r->simulation);
+  char place_text[ROWS_PLACE_TEXT], when[MOMENT_TEXT];
+  if (b.particle < 0) {
+    report_bad_energy(r, &b);
+    return;
+  }
+  say_error("%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
+            r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+            rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
+  if (b.family) print_family(r, &b);
+  if (b.bond_particle >= 0) {
+    fprintf(stderr,
+            "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
+            "%.6g\n",
+            b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
+    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, 0), 0);
+    if (r->open_models > 0) explain_bad(r->models[0].plan, b.parameters, &bonds, &b, stderr);
+    write_bad_bond(r, &b);
+  }
+  fprintf(stderr,
+          "  what was computed until then is in the result; a smaller `step_safety` or a law that "
+          "stays finite there mends it\n");
+}
+
+/* --- stopped and resumed ---------------------------------------------------------------------- */
+
+/* As a word of a shell. */
+static void print_word(const char *word, FILE *out) {
+  static const char plain[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "_./:=,+-";
+  if (*word && strspn(word, plain) == strlen(word)) {
+    fputs(word, out);
+    return;
+  }
+  fputc('\'', out);
+  for (; *word; word++)
+    fputs(*word == '\'' ? "'\\''" : (char[]){*word, 0}, out);
+  fputc('\'', out);
+}
+
+void print_resume(const run *r, FILE *out) {
+  const run_options *o = r->options;
+  if (o->deck_text)
+    fputs("  ", out);
+  else
+    fprintf(out, "  %s ", o->program);
+  print_word(o->deck_text ? o->program : o->deck_path, out);
+  for (int k = 0; k < o->override_count; k++) {
+    fputs(" --set ", out);
+    print_word(o->overrides[k].text, out);
+  }
+  fputs(o->interpret ? " --interpret --resume\n" : " --resume\n", out);
+}
+
+/* One line, cut to what is near the byte at which two lines begin to differ. */
+static void print_near(const char *title, const char *line, size_t differs) {
+  enum { BEFORE = 50, WIDTH = 120 };
+  size_t length = strcspn(line, "\n"), from = differs > BEFORE ? differs - BEFORE : 0;
+  size_t shown = length - from < WIDTH ? length - from : WIDTH;
+  fprintf(stderr, "    %s %s%.*s%s\n", title, from ? "..." : "", (int)shown, line + from,
+          from + shown < length ? "..."
+          : length              ? ""
+                                : "nothing more");
+}
+
+void print_misfit(const run *r) {
+  char *stopped = checkpoint_fingerprint(r->checkpoint_path);
+  if (!stopped || strcmp(stopped, r->fingerprint) == 0) {
+    free(stopped);
+    return;
+  }
+  size_t line = 0, at = 0;
+  for (; stopped[at] == r->fingerprint[at]; at++)
+    if (stopped[at] == '\n') line = at + 1;
+  fputs("  they differ first here:\n", stderr);
+  print_near("stopped run:", stopped + line, at - line);
+  print_near("this run:   ", r->fingerprint + line, at - line);
+  fputs("  a run goes on with the deck and the --set options that it began with\n", stderr);
+  free(stopped);
+}
+
+/* --- after the run ---------------------------------------------------------------------------- */
+
+/* What is lost in rounding and in the integration's own wave is nothing. */
+static double unless_nothing(double energy, double external) {
+  return fabs(energy) < 1e-7 * fabs(external) ? 0 : energy;
+}
+
+static void conclude_energy(const run *r) {
+  double external = last_value(r, "energy/external"), imbalance = last_value(r, "energy/imbalance");
+  if (!isfinite(external)) return;
+  printf("  energy     external work %.5g J: kinetic %.3g, stored %.3g, dissipated by damage %.5g, "
+         "by damping %.3g; ",
+         external, last_value(r, "energy/kinetic"), last_value(r, "energy/stored"),
+         unless_nothing(last_value(r, "energy/dissipated_damage"), external),
+         last_value(r, "energy/dissipated_damping"));
+  const char *unchecked;
+  simulation_imbalance(r->simulation, &unchecked);
+  if (unchecked)
+    printf("imbalance not checked: %s", unchecked);
+  else
+    printf("imbalance %.2g J", imbalance);
+  if (!unchecked && fabs(external) > 0) printf(" (%.2g %%)", 100 * fabs(imbalance / external));
+  putchar('\n');
+}
+
+/* What states, damage and rate terms cannot do: give more than they have taken. */
+static void warn_of_gain(const run *r) {
+  static const struct {
+    const char *series, *words;
+  } parts[] = {{"energy/dissipated_damage", "its damage and states have"},
+               {"energy/dissipated_damping", "its rate terms and the deck's damping have"}};
+  const double given = pl_fmax(fabs(last_value(r, "energy/external")),
+                               fabs(sample_of(r, "energy/kinetic", false))),
+               scale = pl_fmax(given, fabs(last_value(r, "energy/stored")));
+  for (size_t k = 0; k < sizeof parts / sizeof *parts; k++) {
+    const double lost = last_value(r, parts[k].series);
+    if (!(lost < -1e-3 * scale)) continue;
+    fprintf(stderr,
+            "perilat: warning: the law gives energy: %s dissipated %.5g J, less than nothing\n"
+            "  `perilat drive` along a closed path shows where (`perilat help dissipation`)%s\n",
+            parts[k].words, lost,
+            k ? ""
+              : "; a law that locks energy in its states should give W (`perilat help energy`)");
+  }
+}
+
+static double largest_of(const run *r, const char *name) {
+  const double *time, *values = series_of(r, name);
+  const long samples = simulation_history(r->simulation, &time);
+  double largest = 0;
+  for (long k = 0; values && k < samples; k++)
+    largest = pl_fmax(largest, values[k]);
+  return largest;
+}
+
+/* How well the increments of a quasi-static run ended. */
+static void conclude_increments(const run *r) {
+  long unbalanced;
+  const long increments = simulation_increments(r->simulation, &unbalanced);
+  if (increments == 0) return;
+  printf("  increments %ld, in the mean %ld steps each, at most %.0f; unbalanced force left: at "
+         "most %.2g of the "
+         "reactions or loads\n",
+         increments, simulation_step_done(r->simulation) / increments,
+         largest_of(r, "relaxation_steps"), largest_of(r, "relaxation_unbalance"));
+  if (unbalanced > 0)
+    printf("             %ld of them without balance after %ld steps\n", unbalanced,
+           (long)r->deck->relaxation.most_steps);
+}
+
+/* The value that is largest in size, with its sign. */
+static void conclude_monitor(const run *r, int k) {
+  const char *unit_name;
+  const char *name = simulation_series(r->simulation, k, &unit_name, NULL);
+  double when = 0;
+  const double peak = simulation_monitor_peak(r->simulation, k, &when) + 0.0;
+  const bool pure = unit_is_pure(unit_name);
+  char text[MOMENT_TEXT];
+  printf("  %-10s largest %.6g%s%s at %s\n", name, peak, pure ? "" : " ", pure ? "" : unit_name,
+         moment(r, when, text));
+}
+
+void conclude(const run *r, double seconds, long steps) {
+  const rows *w = simulation_rows(r->simulation, 0);
+  double rate = (double)steps / pl_fmax(seconds, 1e-9);
+  printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
+         1e-6 * rate * (double)w->bond_count);
+  conclude_increments(r);
+  for (int k = 0; k < r->deck->monitor_count; k++)
+    conclude_monitor(r, k);
+  conclude_energy(r);
+  fflush(stdout);
+  warn_of_gain(r);
+  long frames = (long)result_mark(r->result).count;
+  printf("  written    %s (%ld frame%s) and its .xdmf for ParaView\n", r->result_path, frames,
+         frames == 1 ? "" : "s");
+}
+
+/* "load was below 5 % of its peak" */
+static void describe_stop(const deck_stop *s, char *text, size_t size) {
+  const char *side = s->below ? "below" : "above";
+  if (s->of_peak)
+    snprintf(text, size, "%s was %s %.4g %% of its peak", s->monitor, side, 100 * s->level);
+  else
+    snprintf(text, size, "%s was %s %.6g", s->monitor, side, s->level);
+}
+
+/* "ended early at t = 25.9 ms: load was below 5 % of its peak". */
+void print_stop(const run *r) {
+  const deck_stop *s = simulation_stopped_by(r->simulation);
+  if (!s) return;
+  char text[MOMENT_TEXT], why[256];
+  describe_stop(s, why, sizeof why);
+  printf("  ended early at %s: %s\n", moment(r, simulation_time(r->simulation), text), why);
+}
+
+void describe_end(const run *r, const run_end *end, char *text, size_t size) {
+  const deck_stop *s = simulation_stopped_by(r->simulation);
+  char now[MOMENT_TEXT], why[256] = "";
+  moment(r, simulation_time(r->simulation), now);
+  if (end->status == STEP_BAD) {
+    const bad_state b = simulation_bad(r->simulation);
+    snprintf(text, size, "failed at %s: %s in step %ld", now, b.what, b.step);
+  } else if (end->status == STEP_STOPPED && s) {
+    describe_stop(s, why, sizeof why);
+    snprintf(text, size, "stopped by &stop at %s: %s", now, why);
+  } else if (end->status == STEP_OK)
+    snprintf(text, size, "interrupted at %s%s", now, r->is_kept ? ": the run can be resumed" : "");
+  else
+    snprintf(text, size, "end of the run");
+}

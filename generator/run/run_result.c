@@ -1,0 +1,381 @@
+/* What a run writes: paths, result, frames, checkpoints. */
+#include <errno.h>
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "dsl/base/hash.h"
+#include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
+#include "generator/run/run_parts.h"
+#include "generator/kernel/version.h"
+#include "runtime/lattice/shape_matrix.h"
+#include "runtime/base/whole_file.h"
+
+/* --- paths and fingerprint -------------------------------------------------------------------- */
+
+/* The result stands in the working folder, named by the deck or after it. */
+void choose_paths(run *r) {
+  const char *given = r->deck->output.result;
+  char path[4096];
+  if (given) {
+    snprintf(path, sizeof path, "%s", given);
+  } else {
+    const char *slash = strrchr(r->options->deck_path, '/');
+    const char *name = slash ? slash + 1 : r->options->deck_path;
+    const char *dot = strrchr(name, '.');
+    snprintf(path, sizeof path, "%.*s.h5", dot ? (int)(dot - name) : (int)strlen(name), name);
+  }
+  char *target =
+      realpath(path, NULL); /* through links, so that the data lie where the user has put them */
+  const char *chosen = target ? target : path;
+  struct stat about;
+  if (lstat(path, &about) != 0 || !S_ISLNK(about.st_mode)) chosen = path;
+  r->result_path = arena_text(r->memory, chosen, strlen(chosen));
+  free(target);
+  r->checkpoint_path = arena_printf(r->memory, "%s.checkpoint", r->result_path);
+}
+
+/* What is in the way of a file that is to be put there; NULL: nothing. */
+static const char *obstacle(const char *path) {
+  struct stat about;
+  if (lstat(path, &about) != 0) return NULL;
+  if (S_ISDIR(about.st_mode)) return "a folder";
+  if (S_ISLNK(about.st_mode)) return "a link";
+  if (!S_ISREG(about.st_mode)) return "not an ordinary file";
+  return about.st_mode & 0222 ? NULL : "protected against writing";
+}
+
+/* The longest of the names beside the result. */
+static bool has_room(const run *r) {
+  whole_file probe;
+  const bool room = whole_file_begin(&probe, r->checkpoint_path);
+  if (room) whole_file_end(&probe, false);
+  return room;
+}
+
+/* Hours of computing must not end in a path that cannot be written. */
+bool result_can_be_written(run *r) {
+  const span where = deck_where(&r->deck->output.item, "result");
+  char sidecar[WHOLE_FILE_PATH];
+  result_sidecar(r->result_path, sidecar, sizeof sidecar);
+  const char *slash = strrchr(r->result_path, '/');
+  const int folder = slash ? (int)(slash - r->result_path) + 1 : 0;
+  if (obstacle(r->result_path))
+    diag_report(&r->said, DIAG_FILE, where, "the result `%s` is %s", r->result_path,
+                obstacle(r->result_path));
+  else if (obstacle(sidecar))
+    diag_report(&r->said, DIAG_FILE, where, "`%s`, which belongs to the result, is %s", sidecar,
+                obstacle(sidecar));
+  else if (!has_room(r))
+    diag_report(&r->said, DIAG_FILE, where, "cannot write the result into the folder `%.*s`: %s",
+                folder > 0 ? folder : 1, folder > 0 ? r->result_path : ".", strerror(errno));
+  else
+    return true;
+  diag_hint(&r->said, "give `result` another path in &output, or --set output.result=PATH");
+  return false;
+}
+
+static bool result_spares(run *r, const char *input) {
+  if (!same_file(r->result_path, input)) return true;
+  diag_report(&r->said, DIAG_FILE, deck_where(&r->deck->output.item, "result"),
+              "the result would overwrite `%s`", input);
+  diag_hint(&r->said, "give `result` another name in &output");
+  return false;
+}
+
+bool result_spares_inputs(run *r) {
+  bool good = r->options->deck_text || result_spares(r, r->options->deck_path);
+  for (int k = 0; k < r->open_models; k++)
+    for (int f = 0; f < r->models[k].sources.count; f++)
+      good = good && result_spares(r, r->models[k].sources.items[f].name);
+  for (int k = 0; k < r->deck->file_count; k++)
+    good = good && result_spares(r, r->sources.items[r->deck->files[k].source].name);
+  for (int k = 0; good && k < r->deck->lattice_count; k++) {
+    if (!r->deck->lattices[k].file) continue;
+    char *particles = deck_file_path(r->deck->name, r->deck->lattices[k].file);
+    good = result_spares(r, particles);
+    free(particles);
+  }
+  return good;
+}
+
+void fingerprint(run *r) {
+  char *text = arena_printf(r->memory, "perilat %s\n", perilat_version);
+  for (int k = 0; k < r->deck->lattice_count; k++)
+    text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
+                        r->laws[k].law->key);
+  for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
+    const source *s = &r->sources.items[r->deck->files[k].source];
+    text = arena_printf(r->memory, "%sfile %s, contents %016" PRIx64 "\n", text,
+                        r->deck->files[k].name, hash_more(HASH_START, s->text, s->length));
+  }
+  text = arena_printf(r->memory, "%s%s", text, r->deck->identity);
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    const uint64_t particles = rows_fingerprint(simulation_rows(r->simulation, k));
+    if (particles) text = arena_printf(r->memory, "%s\nparticles %016" PRIx64, text, particles);
+  }
+  r->fingerprint = text;
+}
+
+/* --- result ----------------------------------------------------------------------------------- */
+
+static result_text *collect_texts(run *r, bool c_text, int *count) {
+  *count = r->deck->lattice_count;
+  result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
+  int opened = 0;
+  for (int k = 0; k < *count; k++) {
+    const built_in_law *b = r->built_in[k];
+    const model *m = b ? NULL : &r->models[opened++];
+    texts[k].name = r->laws[k].law->name;
+    if (b)
+      texts[k].text = c_text ? b->c_text : b->law_text;
+    else
+      texts[k].text = c_text ? m->c_text : m->sources.items[0].text;
+  }
+  return texts;
+}
+
+/* A name in HDF5 has no slash. */
+static result_text *collect_files(run *r) {
+  result_text *texts = arena_alloc(r->memory, (size_t)r->deck->file_count * sizeof *texts);
+  for (int k = 0; k < r->deck->file_count; k++) {
+    const deck_file *f = &r->deck->files[k];
+    char *name = arena_text(r->memory, f->name, strlen(f->name));
+    for (char *c = name; *c; c++)
+      if (*c == '/') *c = ':';
+    texts[k] = (result_text){name, r->sources.items[f->source].text};
+  }
+  return texts;
+}
+
+static void particle_table(run *r, const rows *w, result_header *h) {
+  size_t n = (size_t)w->particle_count;
+  const size_t dimensions = (size_t)w->dimensions;
+  double *reference = arena_alloc(r->memory, dimensions * n * sizeof *reference);
+  double *volume = arena_alloc(r->memory, n * sizeof *volume);
+  int32_t *body = arena_alloc(r->memory, n * sizeof *body);
+  for (size_t p = 0; p < n; p++) {
+    double at[3];
+    rows_place(w, w->particle_site[p], at);
+    memcpy(reference + dimensions * p, at, dimensions * sizeof *at);
+    volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
+  }
+  rows_bodies(w, r->deck, 0, body);
+  if (w->list) {
+    int32_t *resolved = arena_alloc(r->memory, n * sizeof *resolved);
+    shape_unresolved(w, resolved);
+    h->resolved = resolved;
+  }
+  h->dimensions = w->dimensions;
+  h->particle_count = w->particle_count;
+  h->reference = reference;
+  h->volume = volume;
+  h->body = body;
+  rows_bond *bonds = rows_bonds(w);
+  int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
+  for (long m = 0; m < w->bond_count; m++) {
+    pairs[2 * m] = bonds[m].i;
+    pairs[2 * m + 1] = bonds[m].j;
+  }
+  free(bonds);
+  h->bond_count = w->bond_count;
+  h->bonds = pairs;
+}
+
+/* What a law says may take several lines. */
+static const char *one_line(const run *r, const char *words) {
+  char *line = arena_text(r->memory, words, strlen(words));
+  for (char *at = line; (at = strchr(at, '\n')); at++)
+    *at = ' ';
+  return line;
+}
+
+/* Fields of the frames, as the simulation offers them. */
+static void frame_table(run *r, result_header *h, const char *interaction) {
+  const frame_field *offered;
+  h->field_count = simulation_frame_fields(r->simulation, &offered);
+  result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
+  for (int k = 0; k < h->field_count; k++)
+    fields[k] = (result_field){offered[k].name,
+                               offered[k].unit,
+                               offered[k].on_bonds ? interaction : NULL,
+                               offered[k].components,
+                               offered[k].on_bonds ? h->bond_count : h->particle_count,
+                               offered[k].kind,
+                               one_line(r, offered[k].long_name)};
+  h->fields = fields;
+}
+
+/* What made the kernels: now, when the solver was built, or nothing. */
+static void name_compiler(run *r, result_header *h) {
+  char version[512];
+  const built_in_law *b = r->built_in[0];
+  if (b)
+    h->compiler = b->compiler, h->flags = b->flags;
+  else if (r->models[0].loaded.law) {
+    toolchain_version(version, sizeof version);
+    h->compiler = arena_text(r->memory, version, strlen(version));
+    h->flags = arena_printf(r->memory, "%s", toolchain_flags());
+  } else
+    h->compiler = "none: the law was interpreted", h->flags = "";
+}
+
+static char *list_overrides(run *r) {
+  char *text = arena_text(r->memory, "", 0);
+  for (int k = 0; k < r->options->override_count; k++)
+    text = arena_printf(r->memory, "%s%s\n", text, r->options->overrides[k].text);
+  return text;
+}
+
+bool open_result(run *r) {
+  result_header h = {.path = r->result_path,
+                     .fingerprint = r->fingerprint,
+                     .title = r->deck->simulation.title ? r->deck->simulation.title : "",
+                     .started = r->started,
+                     .version = perilat_version,
+                     .kernel_key = r->laws[0].law->key,
+                     .threads = simulation_threads(r->simulation),
+                     .deck_text = r->sources.items[0].text,
+                     .overrides = list_overrides(r),
+                     .interaction = r->deck->lattices[0].name};
+  h.models = collect_texts(r, false, &h.model_count);
+  h.kernels = collect_texts(r, true, &h.kernel_count);
+  h.files = collect_files(r);
+  h.file_count = r->deck->file_count;
+  name_compiler(r, &h);
+  particle_table(r, simulation_rows(r->simulation, 0), &h);
+  frame_table(r, &h, h.interaction);
+  char error[ERROR_LENGTH];
+  r->result = result_open(&h, r->options->resume, error, sizeof error);
+  if (!r->result) {
+    say_error("%s", error);
+    return false;
+  }
+  whole_file_clear(r->checkpoint_path);
+  size_t total = 0;
+  for (int k = 0; k < h.field_count; k++)
+    total += (size_t)(h.fields[k].count * h.fields[k].components);
+  r->frame_buffer = must_alloc((total + 1) * sizeof(double));
+  return true;
+}
+
+/* Its frames are about to go. */
+static bool give_up_checkpoint(const run *r) {
+  if (unlink(r->checkpoint_path) == 0)
+    fprintf(stderr, "perilat: warning: this run starts anew; `%s` of an earlier one is given up\n",
+            r->checkpoint_path);
+  else if (errno != ENOENT) {
+    say_error("cannot remove `%s` of an earlier run: %s", r->checkpoint_path, strerror(errno));
+    return false;
+  }
+  return true;
+}
+
+bool begin_anew(run *r) {
+  char error[ERROR_LENGTH];
+  if (!give_up_checkpoint(r)) return false;
+  if (result_begin(r->result, error, sizeof error)) return true;
+  say_error("%s", error);
+  result_discard(r->result);
+  return false;
+}
+
+static void keep(run *r) {
+  r->is_kept = true;
+  r->kept_time = simulation_time(r->simulation);
+}
+
+bool resume(run *r) {
+  char error[ERROR_LENGTH];
+  frame_mark frames;
+  if (!simulation_restore(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
+                          sizeof error)) {
+    say_error("cannot resume: %s", error);
+    print_misfit(r);
+    return false;
+  }
+  if (!result_resume(r->result, &frames, error, sizeof error)) {
+    say_error("cannot resume: %s", error);
+    return false;
+  }
+  char text[MOMENT_TEXT];
+  printf("resumed at %s (step %ld)\n", moment(r, simulation_time(r->simulation), text),
+         simulation_step_done(r->simulation));
+  fflush(stdout);
+  keep(r);
+  return true;
+}
+
+bool write_frame(run *r) {
+  const frame_field *fields;
+  int count = simulation_frame_fields(r->simulation, &fields);
+  const rows *w = simulation_rows(r->simulation, 0);
+  const double **values = must_alloc((size_t)(count + 1) * sizeof *values);
+  double *at = r->frame_buffer;
+  for (int k = 0; k < count; k++) {
+    values[k] = at;
+    simulation_frame_values(r->simulation, k, at);
+    at += (fields[k].on_bonds ? w->bond_count : w->particle_count) * fields[k].components;
+  }
+  char error[ERROR_LENGTH];
+  bool good = result_frame(r->result, simulation_time(r->simulation), values, error, sizeof error);
+  free(values);
+  if (good)
+    simulation_frame_taken(r->simulation);
+  else /* a resumed run takes it again */
+    say_error("%s", error);
+  return good;
+}
+
+bool write_checkpoint(run *r) {
+  char error[ERROR_LENGTH];
+  const frame_mark frames = result_mark(r->result);
+  bool good = result_sync(r->result, error, sizeof error) &&
+              simulation_save(r->simulation, r->checkpoint_path, r->fingerprint, &frames, error,
+                              sizeof error);
+  if (good)
+    keep(r);
+  else
+    say_error("no checkpoint was written: %s", error);
+  return good;
+}
+
+bool can_go_on(const run *r) {
+  return r->is_kept && result_frames_hold(r->result);
+}
+
+/* The frames go last: the lock on them is on the checkpoint, too. */
+void remove_remains(run *r) {
+  unlink(r->checkpoint_path);
+  result_discard(r->result);
+}
+
+bool finish_result(run *r, const run_end *end) {
+  const int count = simulation_series_count(r->simulation);
+  result_series *series = arena_alloc(r->memory, (size_t)count * sizeof *series);
+  char ended[512], error[ERROR_LENGTH];
+  for (int k = 0; k < count; k++) {
+    series[k] = (result_series){.judges = false};
+    series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
+    series[k].long_name = one_line(r, simulation_series_words(r->simulation, k, r->memory));
+  }
+  const char *unchecked;
+  const int imbalance = simulation_imbalance(r->simulation, &unchecked);
+  if (imbalance >= 0) series[imbalance].judges = true;
+  if (imbalance >= 0) series[imbalance].unchecked = unchecked;
+  describe_end(r, end, ended, sizeof ended);
+  result_ending e = {.ended = ended,
+                     .status = end->exit_status,
+                     .seconds = end->seconds,
+                     .dt = simulation_step_limit(r->simulation)->step,
+                     .steps = simulation_step_done(r->simulation),
+                     .series = series,
+                     .series_count = count};
+  e.history_count = simulation_history(r->simulation, &e.time);
+  const bool good = result_finish(r->result, &e, error, sizeof error);
+  if (!good) say_error("%s", error);
+  return good;
+}

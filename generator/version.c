@@ -1,2 +1,0 @@
-#include "generator/version.h"
-const char perilat_version[] = PERILAT_VERSION;

@@ -1,0 +1,160 @@
+#include "runtime/analysis/stability.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/elementary.h"
+#include "runtime/analysis/body_limit.h"
+#include "runtime/analysis/bond_forms.h"
+#include "runtime/analysis/stencil.h"
+#include "runtime/analysis/waves.h"
+
+enum { MOST_DOF = WAVES_MOST_DOF, MOST_ORDER = 2 * MOST_DOF };
+
+/* --- one bond to matrices --------------------------------------------------------------------- */
+
+/* Rates of stretch, theta_i, theta_j by the velocities of the ends: co-rotational kinematics about
+   rest, with the chord's rotation (n . du)/s, n = e turned by +90 degrees. The transpose gives the
+   particles' forces, V included. */
+static void kinematic_matrix(const double chord[2], double s, int dof,
+                             double b[BOND_MOTIONS][MOST_ORDER]) {
+  memset(b, 0, BOND_MOTIONS * sizeof b[0]);
+  const double e[2] = {chord[0] / s, chord[1] / s}, n[2] = {-e[1], e[0]};
+  for (int c = 0; c < 2; c++) {
+    b[0][c] = -e[c] / s;
+    b[0][dof + c] = e[c] / s;
+    if (dof < MOST_DOF) continue;
+    for (int end = 1; end <= 2; end++) {
+      b[end][c] = n[c] / s;
+      b[end][dof + c] = -n[c] / s;
+    }
+  }
+  if (dof < MOST_DOF) return;
+  b[1][2] = 1;
+  b[2][dof + 2] = 1;
+}
+
+static void congruence(double b[BOND_MOTIONS][MOST_ORDER], bond_form d, int order,
+                       double out[MOST_ORDER][MOST_ORDER]) {
+  for (int p = 0; p < order; p++)
+    for (int q = 0; q < order; q++) {
+      double sum = 0;
+      for (int m = 0; m < BOND_MOTIONS; m++)
+        for (int n = 0; n < BOND_MOTIONS; n++)
+          sum += b[m][p] * b[n][q] * d[m][n];
+      out[p][q] = sum;
+    }
+}
+
+/* B^T D B, as what the ends feel. */
+static void bond_part(const pl_bond_class *bonds, bond_form d, int dof, wave_part *out) {
+  double b[BOND_MOTIONS][MOST_ORDER], m[MOST_ORDER][MOST_ORDER];
+  kinematic_matrix(bonds->chord, bonds->s, dof, b);
+  congruence(b, d, 2 * dof, m);
+  for (int p = 0; p < dof; p++)
+    for (int q = 0; q < dof; q++) {
+      out->self[p][q] = m[p][q] + m[dof + p][dof + q];
+      out->forward[p][q] = m[p][dof + q];
+      out->backward[p][q] = m[dof + p][q];
+    }
+}
+
+/* --- the infinite lattice --------------------------------------------------------------------- */
+
+/* `definite`: no body of such bonds is faster. */
+static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
+                                const random_fields *fields, const rows *w, bool *definite) {
+  crystal c = crystal_new(w, law->dof, w->directions);
+  *definite = true;
+  for (int k = 0; k < w->directions; k++) {
+    const pl_bond_class bonds = rows_bond_class(w, k);
+    bond_forms f = fields ? bond_forms_between(law, parameters, &bonds, fields)
+                          : bond_forms_of(law, parameters, &bonds);
+    bond_part(&bonds, f.stiffness, c.dof, &c.terms[k].stiffness);
+    bond_part(&bonds, f.damping, c.dof, &c.terms[k].damping);
+    memcpy(c.terms[k].R, bonds.chord, sizeof bonds.chord);
+    c.finite = c.finite && f.finite;
+    c.damped = c.damped || f.damped;
+    *definite = *definite && f.definite;
+  }
+  return c;
+}
+
+/* Of a law of bonds as one of families: every block is that of a bond, from differences of
+   forces. */
+static bool blocks_are_definite(const crystal *c) {
+  const double tolerance = -STABILITY_LEAST;
+  for (int n = 1; n < c->term_count; n++) {
+    double stiffness[MOST_DOF * MOST_DOF], damping[MOST_DOF * MOST_DOF];
+    for (int p = 0; p < c->dof; p++)
+      for (int q = 0; q < c->dof; q++) {
+        stiffness[p * c->dof + q] = -c->terms[n].stiffness.forward[p][q];
+        damping[p * c->dof + q] = -c->terms[n].damping.forward[p][q];
+      }
+    if (!form_is_definite(c->dof, stiffness, tolerance) ||
+        !form_is_definite(c->dof, damping, tolerance))
+      return false;
+  }
+  return true;
+}
+
+static crystal crystal_of(const pl_law *law, const double *parameters, const random_fields *fields,
+                          const rows *w, bool *definite) {
+  if (law->kind != PL_STATE) return crystal_of_bonds(law, parameters, fields, w, definite);
+  const crystal c = stencil_crystal(law, parameters, w);
+  *definite = law->pairwise && blocks_are_definite(&c);
+  return c;
+}
+
+/* --- the limit -------------------------------------------------------------------------------- */
+
+double stability_rounded(double x) {
+  enum { KEPT = 10, EXPONENT = 19 }; /* places in d.ddddddddddddddddde-xx */
+  char digits[40];
+  if (!isfinite(x) || !(x > 0)) return x;
+  snprintf(digits, sizeof digits, "%.17e", x * (1 + 1e-12));
+  memmove(digits + KEPT, digits + EXPONENT, strlen(digits + EXPONENT) + 1);
+  return strtod(digits, NULL);
+}
+
+static void take_body(const pl_law *law, const double *parameters, const random_fields *fields,
+                      const rows *w, step_limit *out) {
+  step_limit body = *out;
+  body_limit(law, parameters, fields ? fields->value : NULL, w, &body);
+  body.at_surface = body.limit < out->limit * (1 - BODY_ACCURACY);
+  if (body.at_surface) *out = body;
+  out->least = body.least;
+}
+
+static void find_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+                       const rows *w, step_limit *out) {
+  bool definite;
+  out->at_surface = false;
+  out->least = 0;
+  if (w->list) {
+    out->limit = 0;
+    body_limit(law, parameters, NULL, w, out);
+    return;
+  }
+  crystal c = crystal_of(law, parameters, fields, w, &definite);
+  waves_limit(&c, out);
+  crystal_free(&c);
+  if (!definite && out->limit > 0) take_body(law, parameters, fields, w, out);
+}
+
+void stability_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+                     const rows *w, step_limit *out) {
+  find_limit(law, parameters, fields, w, out);
+  out->limit = stability_rounded(out->limit);
+}
+
+double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx,
+                       double ky) {
+  bool definite;
+  crystal c = crystal_of(law, parameters, NULL, w, &definite);
+  const double omega = waves_omega(&c, (const double[3]){kx, ky, 0});
+  crystal_free(&c);
+  return omega;
+}

@@ -1,0 +1,322 @@
+/* A deck: Fortran namelist groups read into plain structures, every value in SI, every item with
+   its place in the text so that later errors (an empty region, say) can point at the line. Reading
+   a deck reads the tables of its loads, touches no other file, and checks what can be checked
+   without lattices or laws. */
+#ifndef PERILAT_RUNTIME_DECK_H
+#define PERILAT_RUNTIME_DECK_H
+
+#include <stdbool.h>
+#include <stdio.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/c_linkage.h"
+#include "dsl/base/diagnostics.h"
+#include "dsl/base/units.h"
+#include "runtime/geometry/shape.h"
+#include "runtime/deck/time_function.h"
+
+C_LINKAGE_BEGIN
+
+typedef struct deck_key { /* where a key was written, for messages about its value */
+  const char *name;
+  span name_where, value_where;
+} deck_key;
+
+typedef struct deck_item { /* what every group has */
+  span where;              /* of the group's name */
+  const deck_key *keys;
+  int key_count;
+  bool faulty; /* while reading: some of it was reported */
+} deck_item;
+
+/* Place of a key's value in the item, or of the group when the key was not written. */
+span deck_where(const deck_item *item, const char *key);
+
+typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction;
+
+typedef struct deck_lattice {
+  deck_item item;
+  const char *name;
+  const char *kind; /* "hexagonal", "square", "cubic", "fcc"; "blue_noise", "particles" */
+  double spacing;   /* m; on no lattice: of the hexagonal or fcc one with as large particles */
+  double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
+  int shells;       /* 0: the nearest neighbours */
+  int neighbours;   /* blue_noise, particles: so many nearest ones; 0: `horizon` decides */
+  int seed;         /* blue_noise */
+  const char *file; /* particles: as written; deck_file_path finds it */
+  enum volume_correction volume_correction;
+  double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
+  double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
+  double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
+  double thickness;                           /* m; these three are 0 in space */
+  double stiffness_thickness, mass_thickness; /* m; default: thickness */
+  const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
+} deck_lattice;
+
+/* True for particles that stand on no lattice: kinds "blue_noise" and "particles". */
+bool deck_lattice_is_irregular(const deck_lattice *l);
+/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown kind. */
+int deck_lattice_dimensions(const deck_lattice *l);
+
+typedef struct deck_assignment { /* parameter = value in a &material */
+  const char *name;              /* as written */
+  double value;                  /* SI */
+  bool has_unit;
+  dimension dim;    /* when has_unit */
+  const char *word; /* a string that is not a number: an option's choice; else NULL */
+  span name_where, value_where;
+} deck_assignment;
+
+typedef struct deck_material {
+  deck_item item;
+  const char *lattice; /* name */
+  const char *model;   /* name in models/ or a path ending in .plm */
+  deck_assignment *assignments;
+  int assignment_count;
+  const char *
+      *varying; /* [varying_count] parameters that a &field makes differ from bond to bond */
+  const span *varying_where;
+  int varying_count;
+} deck_material;
+
+typedef enum field_kind { FIELD_UNIFORM, FIELD_NORMAL, FIELD_LOGNORMAL, FIELD_WEIBULL } field_kind;
+
+typedef struct deck_number { /* in the unit of a parameter, which the law knows */
+  bool given, has_unit;
+  double value; /* SI */
+  dimension dim;
+} deck_number;
+
+typedef struct deck_field { /* a parameter that differs from bond to bond at random */
+  deck_item item;
+  const char *lattice, *parameter;
+  bool on_particles; /* one value a particle; a bond has the mean of its ends' */
+  field_kind kind;
+  deck_number mean, low, high, scale; /* mean not given: the material's value */
+  double cv, shape;                   /* 0: not given */
+  double correlation_length;          /* m; 0: every bond or particle for itself */
+  int seed;
+  bool clip; /* values out of the law's range are moved to its bound */
+} deck_field;
+
+typedef struct deck_body { /* adds sites */
+  deck_item item;
+  const char *lattice;
+  deck_shape shape;
+} deck_body;
+
+typedef struct deck_notch { /* removes sites, and bonds whose chord crosses it */
+  deck_item item;
+  const char *lattice;
+  deck_shape shape;
+  bool cut_bonds; /* default true */
+} deck_notch;
+
+typedef struct deck_region {
+  deck_item item;
+  const char *name;
+  const char *lattice; /* filled in when the deck has only one */
+  deck_shape shape;
+} deck_region;
+
+/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in space 0 x, 1 y, 2 z.
+   Bits of `fix` are 1 << component. */
+enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
+
+typedef struct deck_support {
+  deck_item item;
+  const char *region;
+  int fix; /* bits */
+} deck_support;
+
+typedef struct deck_drive { /* prescribed motion: velocity or displacement; free before `start` */
+  deck_item item;
+  const char *region;
+  int component;
+  bool is_displacement;
+  time_function motion; /* m/s or m (rad/s, rad) */
+} deck_drive;
+
+typedef struct deck_force { /* total force on the region, shared equally by its particles */
+  deck_item item;
+  const char *region;
+  int component;       /* a rotation: moment in N*m */
+  time_function force; /* N */
+} deck_force;
+
+typedef struct deck_end_moment { /* horizontal forces, linear in y over the region, without
+                                    resultant; N*m */
+  deck_item item;
+  const char *region;
+  time_function moment; /* positive: counter-clockwise on the body */
+} deck_end_moment;
+
+typedef struct deck_protect { /* bonds that touch a particle within radius * spacing of the region:
+                                 no damage */
+  deck_item item;
+  const char *region;
+  double radius; /* in spacings; default 0: the region's own particles */
+} deck_protect;
+
+typedef struct deck_damping { /* kind 'mass': force -rate * mass * velocity on every particle */
+  deck_item item;
+  double rate;        /* 1/s */
+  double from, until; /* s; until may be infinite */
+} deck_damping;
+
+typedef struct deck_gravity { /* force mass * acceleration on every particle */
+  deck_item item;
+  double acceleration[3]; /* m/s^2 */
+  time_function factor;   /* 1: full */
+} deck_gravity;
+
+typedef struct deck_initial_velocity { /* of each particle of the region when the run begins */
+  deck_item item;
+  const char *region;
+  int component;
+  double value; /* m/s, rad/s */
+} deck_initial_velocity;
+
+typedef struct deck_stop {
+  deck_item item;
+  const char *monitor;
+  bool below;   /* else above; compared with the monitor's absolute value */
+  double level; /* in the monitor's unit, or a fraction when of_peak */
+  bool of_peak; /* level times the largest absolute value so far */
+  double after; /* s: not before; default 0 */
+} deck_stop;
+
+typedef enum monitor_kind {
+  MONITOR_REACTION, /* N: force that a support or drive exerts on the body, on the support: `scale`
+                     * = -1
+                     */
+  MONITOR_DISPLACEMENT, /* m: mean over the region */
+  MONITOR_VELOCITY,     /* m/s: mean over the region */
+  MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
+  MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
+  MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
+  MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
+  MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
+} monitor_kind;
+
+typedef struct deck_monitor {
+  deck_item item;
+  const char *name;
+  monitor_kind kind;
+  const char *region;
+  const char *between[2];
+  const char *field;
+  int component;
+  double average; /* s: mean over this time before each sample; 0: value at the sample */
+  double zero_at; /* s: the value then is subtracted; negative: never */
+  double above;   /* DAMAGED: default 0; BROKEN: default 1 */
+  double scale;   /* factor on the value; default 1 (-1: downward load positive) */
+} deck_monitor;
+
+typedef struct deck_output {
+  deck_item item;
+  const char *result;  /* path; default: the deck's file name with .h5, in the working directory */
+  int frames;          /* default 20 */
+  double sample;       /* s: history interval; 0: chosen */
+  const char **fields; /* "displacement", "velocity", "rotation", "force", "damage", "dissipated",
+                          law fields */
+  int field_count;
+  const span *field_where; /* [field_count]; NULL when the key was not written */
+  bool energy;             /* ledger on: default true */
+} deck_output;
+
+typedef struct deck_checkpoint {
+  deck_item item;
+  double interval; /* seconds of wall time; default 600; 0: only when stopped */
+} deck_checkpoint;
+
+typedef struct deck_relaxation { /* increments 0: a dynamic run */
+  deck_item item;
+  int increments;
+  double tolerance; /* unbalanced force over the force needed */
+  int most_steps;   /* of an increment */
+} deck_relaxation;
+
+typedef struct deck_simulation {
+  deck_item item;
+  const char *title;
+  double end_time;    /* s */
+  double step;        /* s; 0: auto */
+  double step_safety; /* default 0.25; of quasi-static runs 0.9 */
+  int threads;        /* 0: as the machine offers */
+} deck_simulation;
+
+typedef struct deck_file { /* a table that a load was read from */
+  const char *name;        /* as written, without columns */
+  int source;              /* its text among the sources */
+} deck_file;
+
+typedef struct deck_names deck_names;
+
+typedef struct deck {
+  const char *name;     /* of the source */
+  const char *identity; /* text that is equal for decks that compute the same: overrides applied,
+                           without comments, title, number of threads and checkpoints */
+  deck_file *files;     /* each once */
+  int file_count;
+  unsigned lacks;    /* groups of which items were left out: see deck_lacks */
+  deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
+  deck_simulation simulation;
+  deck_relaxation relaxation;
+  deck_output output;
+  deck_checkpoint checkpoint;
+#define DECK_LISTS(X)                                                                              \
+  X(lattice)                                                                                       \
+  X(material)                                                                                      \
+  X(field)                                                                                         \
+  X(body)                                                                                          \
+  X(notch)                                                                                         \
+  X(region)                                                                                        \
+  X(support)                                                                                       \
+  X(drive)                                                                                         \
+  X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop) X(monitor)
+#define X(group)                                                                                   \
+  deck_##group *group##s;                                                                          \
+  int group##_count;
+  DECK_LISTS(X)
+#undef X
+} deck;
+
+/* "group.key=value" as given by --set; a group that occurs several times is named group[k] (from 1)
+   or, where groups have a name, group[name]. */
+typedef struct deck_override {
+  const char *text;
+} deck_override;
+
+/* Reads sources->items[file]. NULL on errors (all are reported). Overrides become sources of their
+   own, named "--set", so that errors in them point at their text. Tables of loads become sources,
+   too, and one that is there already, under its path, is not read from the disk. */
+deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                int override_count, diagnostics *d);
+/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
+   Faulty items are left out, but for materials whose law is known. */
+deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
+                              const deck_override *overrides, int override_count, diagnostics *d);
+/* Some item of that group ("body") may have been left out; NULL: of any group. */
+bool deck_lacks(const deck *k, const char *group);
+
+/* Every group and key with its value, unit, default and meaning, as Markdown. */
+void deck_reference(FILE *out);
+
+/* Index of the named thing, or -1. */
+int deck_find_region(const deck *k, const char *name);
+int deck_find_lattice(const deck *k, const char *name);
+int deck_find_monitor(const deck *k, const char *name);
+/* Index of the first &material of a lattice, or -1. */
+int deck_find_material(const deck *k, const char *lattice);
+
+/* A file that the deck at a path names, beside the deck unless its name begins with `/`;
+   malloc'ed. */
+char *deck_file_path(const char *deck_path, const char *name);
+
+/* "x", "y", and "rotation" in the plane or "z" in space. */
+const char *deck_component_name(int dimensions, int component);
+
+C_LINKAGE_END
+
+#endif

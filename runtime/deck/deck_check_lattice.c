@@ -1,0 +1,247 @@
+/* Lattices, and what belongs to one: its material and the random fields of its parameters. */
+#include <ctype.h>
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/deck/deck_check_parts.h"
+#include "runtime/deck/deck_value.h"
+
+/* --- lattices --------------------------------------------------------------------------------- */
+
+enum {
+  PLANE = 2, /* by dimensions, and particles that stand on no lattice in space */
+  SPACE,
+  IRREGULAR_SPACE,
+  IN_PLANE = 1 << PLANE,
+  IN_SPACE = 1 << SPACE,
+  IN_IRREGULAR_SPACE = 1 << IRREGULAR_SPACE
+};
+static const char *const dimension_words[] = {[PLANE] = "a lattice in the plane",
+                                              [SPACE] = "a lattice in space",
+                                              [IRREGULAR_SPACE] =
+                                                  "a lattice of particles in space"};
+static const deck_key_use dimension_uses[] = {{"axis", IN_SPACE, false},
+                                              {"thickness", IN_PLANE, true},
+                                              {"stiffness_thickness", IN_PLANE, false},
+                                              {"mass_thickness", IN_PLANE, false},
+                                              {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
+
+enum {
+  REGULAR,
+  BLUE_NOISE,
+  FROM_FILE,
+  IS_BLUE_NOISE = 1 << BLUE_NOISE,
+  IS_FROM_FILE = 1 << FROM_FILE
+};
+static const char *const arrangement_words[] = {"a regular lattice", "a lattice of blue noise",
+                                                "a lattice of particles"};
+static const deck_key_use arrangement_uses[] = {{"neighbours", IS_BLUE_NOISE | IS_FROM_FILE, false},
+                                                {"seed", IS_BLUE_NOISE, false},
+                                                {"file", IS_FROM_FILE, true}};
+
+static int arrangement_of(const deck_lattice *l) {
+  if (!deck_lattice_is_irregular(l)) return REGULAR;
+  return strcmp(l->kind, "particles") == 0 ? FROM_FILE : BLUE_NOISE;
+}
+
+/* What only sites of a lattice have. */
+static bool refuse_keys_of_sites(deck_reader *r, const namelist_group *from) {
+  static const struct {
+    const char *key, *reason;
+  } none[] = {{"shells", "have no shells of neighbours: give `neighbours` or a `horizon`"},
+              {"rotation", "have no direction that could be turned"},
+              {"axis", "have no direction that could be turned"},
+              {"origin", "have no origin; the bodies say where they are"},
+              {"volume_correction", "have no volume correction: they have volumes of their own"}};
+  bool good = true;
+  for (size_t k = 0; k < sizeof none / sizeof *none; k++) {
+    const namelist_key *key = namelist_find(from, none[k].key);
+    if (!key) continue;
+    diag_report(r->d, DIAG_CONFLICT, key->name_where, "particles that stand on no lattice %s",
+                none[k].reason);
+    good = false;
+  }
+  return good;
+}
+
+static bool has_spacing(deck_reader *r, const namelist_group *from, int arrangement) {
+  if (arrangement == FROM_FILE || namelist_find(from, "spacing")) return true;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&lattice` has no `spacing`");
+  diag_hint(r->d, arrangement == BLUE_NOISE
+                      ? "spacing: that of the lattice whose particles are as large (m)"
+                      : "spacing: distance of nearest neighbours (m)");
+  return false;
+}
+
+static void check_neighbours(deck_reader *r, const namelist_group *from, deck_lattice *item,
+                             int dimensions) {
+  deck_refuse_both(r, from, "horizon", "neighbours");
+  if (namelist_find(from, "neighbours") && item->neighbours == 0)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "neighbours"),
+                "a particle has at least one neighbour");
+  if (!namelist_find(from, "neighbours") && !namelist_find(from, "horizon"))
+    item->neighbours = dimensions == 2 ? 12 : 18;
+}
+
+static bool setting_suits(deck_reader *r, const deck_lattice *item, int dimensions) {
+  if (dimensions != 2 || !item->setting || strcmp(item->setting, "space") != 0) return true;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "setting"),
+              "a %s lattice lies in the plane", item->kind);
+  diag_hint(r->d, "lattices in space are 'cubic', 'fcc', 'blue_noise' and 'particles'");
+  return false;
+}
+
+/* Which keys a lattice has depends on its dimensions and on whether there are sites at all. */
+static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  const int dimensions = deck_lattice_dimensions(item), arrangement = arrangement_of(item);
+  const int kind = arrangement != REGULAR && dimensions == 3 ? IRREGULAR_SPACE : dimensions;
+  if (arrangement != REGULAR && !refuse_keys_of_sites(r, from)) return;
+  if (!has_spacing(r, from, arrangement) || !setting_suits(r, item, dimensions) ||
+      !deck_keys_fit(from, arrangement_uses, 3, arrangement, arrangement_words[arrangement],
+                     r->d) ||
+      !deck_keys_fit(from, dimension_uses, 5, kind, dimension_words[kind], r->d))
+    return;
+  deck_check_place(r, from, "origin", dimensions);
+  if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";
+  if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
+}
+
+void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+  static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
+                                      "force", "damage",     "rotation",     "."};
+  check_kind(r, from, item);
+  deck_refuse_both(r, from, "horizon", "shells");
+  if (namelist_find(from, "shells") && item->shells == 0)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "shells"),
+                "a particle has at least one shell of neighbours");
+  if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
+  if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
+  span where = deck_where(&item->item, "name");
+  if (deck_is_one_of(item->name, taken, 8))
+    diag_report(r->d, DIAG_RESERVED_NAME, where,
+                "a lattice cannot be called `%s`: the result has a field of that name", item->name);
+  else if (strchr(item->name, '/'))
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a lattice's name must not hold `/`");
+  int first = deck_find_lattice(r->k, item->name);
+  deck_check_name(r, "lattice", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->lattices[first].item);
+}
+
+static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assignment *a) {
+  if (!deck_values_counted(key, 1, r->d)) return false;
+  const namelist_value *v = &key->values[0];
+  *a = (deck_assignment){
+      .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
+  const char *text = v->kind == NAMELIST_TEXT ? v->text + strspn(v->text, " \t") : "0";
+  if (isalpha((unsigned char)*text) || *text == '_') {
+    a->word = text;
+    return true;
+  }
+  deck_quantity q;
+  if (!deck_quantity_read(v, key->name, &q, r->d)) return false;
+  a->value = q.value;
+  a->has_unit = q.has_unit;
+  a->dim = q.dim;
+  return true;
+}
+
+void deck_check_material(deck_reader *r, const namelist_group *from, deck_material *item) {
+  item->assignments = arena_alloc(r->memory, (size_t)from->key_count * sizeof(*item->assignments));
+  for (int i = 0; i < from->key_count; i++) {
+    if (deck_key_find(&deck_groups[DECK_GROUP_material], from->keys[i].name) >= 0) continue;
+    if (read_assignment(r, &from->keys[i], &item->assignments[item->assignment_count]))
+      item->assignment_count++;
+  }
+  if (!deck_lattice_known(r, &item->item, item->lattice)) return;
+  const int first = deck_find_material(r->k, item->lattice);
+  if (first < 0) return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
+              "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
+  diag_note(r->d, r->k->materials[first].item.where, "it is given here");
+}
+
+/* --- random fields ---------------------------------------------------------------------------- */
+
+enum { OF_UNIFORM = 1 << FIELD_UNIFORM, OF_WEIBULL = 1 << FIELD_WEIBULL };
+static const char *const field_words[] = {"a uniform distribution", "a normal distribution",
+                                          "a lognormal distribution", "a Weibull distribution"};
+static const deck_key_use field_uses[] = {{"low", OF_UNIFORM, false},
+                                          {"high", OF_UNIFORM, false},
+                                          {"shape", OF_WEIBULL, false},
+                                          {"scale", OF_WEIBULL, false}};
+
+static bool read_number(deck_reader *r, const namelist_group *from, const char *name,
+                        deck_number *n) {
+  const namelist_key *key = namelist_find(from, name);
+  deck_quantity q;
+  if (!key) return true;
+  if (!deck_values_counted(key, 1, r->d) || !deck_quantity_read(&key->values[0], name, &q, r->d))
+    return false;
+  *n = (deck_number){true, q.has_unit, q.value, q.dim};
+  return true;
+}
+
+/* What makes a distribution whole, and no more than that. */
+static void check_distribution(deck_reader *r, const namelist_group *from, const deck_field *f) {
+  const bool range = f->low.given || f->high.given;
+  deck_refuse_both(r, from, "low", "cv");
+  deck_refuse_both(r, from, "low", "mean");
+  deck_refuse_both(r, from, "shape", "cv");
+  deck_refuse_both(r, from, "scale", "mean");
+  if (range && !(f->low.given && f->high.given)) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`low` and `high` belong together");
+  } else if (range && f->high.value <= f->low.value) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&f->item, "high"),
+                "`high` must be larger than `low`");
+  } else if (f->scale.given && f->shape == 0) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`scale` needs `shape`");
+  } else if (!range && f->cv == 0 && f->shape == 0) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs %s", field_words[f->kind],
+                f->kind == FIELD_UNIFORM   ? "`low` and `high`, or `cv`"
+                : f->kind == FIELD_WEIBULL ? "`shape` or `cv`"
+                                           : "`cv`");
+  }
+}
+
+static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
+  const int count = m->varying_count;
+  for (int k = 0; k < count; k++) {
+    if (strcasecmp(m->varying[k], f->parameter) != 0) continue;
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&f->item, "parameter"),
+                "`%s` has a random field already", deck_shown(r->memory, f->parameter));
+    diag_note(r->d, m->varying_where[k], "it is given here");
+    return;
+  }
+  const char **names = arena_room(r->memory, m->varying, count, sizeof *names);
+  span *where = arena_room(r->memory, m->varying_where, count, sizeof *where);
+  names[count] = f->parameter;
+  where[count] = deck_where(&f->item, "parameter");
+  m->varying = names;
+  m->varying_where = where;
+  m->varying_count++;
+}
+
+void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *item) {
+  const namelist_key *on = namelist_find(from, "on");
+  if (on) item->on_particles = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1;
+  if (!deck_keys_fit(from, field_uses, 4, (int)item->kind, field_words[item->kind], r->d)) return;
+  bool good = read_number(r, from, "mean", &item->mean);
+  good &= read_number(r, from, "low", &item->low);
+  good &= read_number(r, from, "high", &item->high);
+  good &= read_number(r, from, "scale", &item->scale);
+  if (good) check_distribution(r, from, item);
+  if (item->lattice) {
+    if (!deck_lattice_known(r, &item->item, item->lattice)) return;
+  } else if (r->k->lattice_count == 1) {
+    item->lattice = r->k->lattices[0].name;
+  } else {
+    if (r->names_known && r->k->lattice_count > 1) {
+      diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&field` needs `lattice` here");
+      diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+    }
+    return;
+  }
+  for (int i = 0; i < r->k->material_count; i++)
+    if (deck_same_name(r->k->materials[i].lattice, item->lattice))
+      add_varying(r, &r->k->materials[i], item);
+}

@@ -1,0 +1,95 @@
+#include "runtime/deck/deck_check_parts.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "runtime/deck/deck_value.h"
+
+/* --- names ------------------------------------------------------------------------------------ */
+
+static void report_unknown(deck_reader *r, span where, const char *kind, const char *name,
+                           const char **names, int count) {
+  char intro[32];
+  diag_report(r->d, DIAG_UNKNOWN_NAME, where, "there is no %s `%s`", kind,
+              deck_shown(r->memory, name));
+  snprintf(intro, sizeof(intro), "the deck's %ss are", kind);
+  deck_suggest(r->d, name, names, count, intro);
+}
+
+/* A name must be that of a group of this kind; else the kind's names are shown. */
+#define KNOWN(group)                                                                               \
+  static bool group##_is_known(deck_reader *r, span where, const char *name) {                     \
+    const deck *k = r->k;                                                                          \
+    const bool found = deck_find_##group(k, name) >= 0;                                            \
+    if (found || !r->names_known) return found;                                                    \
+    const char **names = must_calloc((size_t)k->group##_count + 1, sizeof *names);                 \
+    for (int i = 0; i < k->group##_count; i++)                                                     \
+      names[i] = k->group##s[i].name;                                                              \
+    report_unknown(r, where, #group, name, names, k->group##_count);                               \
+    free(names);                                                                                   \
+    return false;                                                                                  \
+  }
+KNOWN(lattice)
+KNOWN(region)
+KNOWN(monitor)
+
+bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name) {
+  return lattice_is_known(r, deck_where(item, "lattice"), name);
+}
+
+bool deck_region_known(deck_reader *r, span where, const char *name) {
+  return region_is_known(r, where, name);
+}
+
+bool deck_monitor_known(deck_reader *r, span where, const char *name) {
+  return monitor_is_known(r, where, name);
+}
+
+bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name) {
+  return deck_region_known(r, deck_where(item, "region"), name);
+}
+
+void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
+                     const deck_item *first) {
+  if (name && strlen(name) > NAMELIST_LONGEST_NAME)
+    diag_report(r->d, DIAG_TOO_LONG, deck_where(item, "name"),
+                "this name has %zu bytes; a name may have up to %d", strlen(name),
+                NAMELIST_LONGEST_NAME);
+  if (!first) return;
+  diag_report(r->d, DIAG_DUPLICATE_NAME, deck_where(item, "name"), "a %s `%s` exists already", kind,
+              deck_shown(r->memory, name));
+  diag_note(r->d, deck_where(first, "name"), "it is named here");
+}
+
+bool deck_same_name(const char *a, const char *b) {
+  return a && b && strcmp(a, b) == 0;
+}
+
+bool deck_is_one_of(const char *name, const char *const *words, int count) {
+  for (int i = 0; i < count; i++)
+    if (strcmp(words[i], name) == 0) return true;
+  return false;
+}
+
+void deck_refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b) {
+  const namelist_key *first = namelist_find(from, a), *second = namelist_find(from, b);
+  if (!first || !second) return;
+  diag_report(r->d, DIAG_CONFLICT, second->name_where, "`%s` and `%s` exclude each other", a, b);
+  diag_note(r->d, first->name_where, "`%s` is given here", a);
+}
+
+void deck_check_place(deck_reader *r, const namelist_group *from, const char *name,
+                      int dimensions) {
+  const namelist_key *key = namelist_find(from, name);
+  if (!key || key->value_count == dimensions) return;
+  diag_report(r->d, DIAG_BAD_VALUE, key->value_where,
+              "`%s` takes %d values in %s, but %d are given", name, dimensions,
+              dimensions == 2 ? "the plane" : "space", key->value_count);
+}
+
+int deck_dimensions_of(const deck_reader *r, const char *lattice) {
+  const int l = lattice ? deck_find_lattice(r->k, lattice) : r->k->lattice_count == 1 ? 0 : -1;
+  return l < 0 || !r->k->lattices[l].kind ? 0 : deck_lattice_dimensions(&r->k->lattices[l]);
+}

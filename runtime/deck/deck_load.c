@@ -1,0 +1,319 @@
+#include "runtime/deck/deck_load.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "runtime/deck/text_table.h"
+
+enum { FROM_FILE = TIME_TABLE + 1, WAYS };
+
+static const char *const shape_choices = "constant|ramp|ramp and hold|cosine|table";
+static const char *const way_words[WAYS] = {"a constant load", "a ramp",  "a ramp and hold",
+                                            "a cosine",        "a table", "a table from a file"};
+
+enum {
+  RISING = 1 << TIME_RAMP | 1 << TIME_RAMP_HOLD | 1 << TIME_COSINE,
+  TABULATED = 1 << TIME_TABLE
+};
+static const deck_key_use uses[] = {{"rise", RISING, true},
+                                    {"times", TABULATED, true},
+                                    {"values", TABULATED, true},
+                                    {"file", 1 << FROM_FILE, true}};
+
+/* The shape, FROM_FILE for a table that stands in a file; -1 after a message. */
+static int way_of(arena *a, const namelist_group *g, diagnostics *d) {
+  const namelist_key *history = namelist_find(g, "history");
+  int way = TIME_CONSTANT;
+  if (history)
+    way = deck_choice_read(a, history, shape_choices, d);
+  else if (namelist_find(g, "rise"))
+    way = TIME_RAMP_HOLD;
+  else if (namelist_find(g, "times") || namelist_find(g, "values") || namelist_find(g, "file"))
+    way = TIME_TABLE;
+  if (way == TIME_TABLE && namelist_find(g, "file")) way = FROM_FILE;
+  return way >= 0 && deck_keys_fit(g, uses, 4, way, way_words[way], d) ? way : -1;
+}
+
+static bool read_time(const namelist_group *g, const char *name, deck_bound bound, double *time,
+                      diagnostics *d) {
+  const namelist_key *key = namelist_find(g, name);
+  if (!key) return true;
+  return deck_values_counted(key, 1, d) &&
+         deck_real_read(&key->values[0], name, "s", bound, time, d);
+}
+
+static double *read_list(arena *a, const namelist_key *key, const char *name, const char *unit_text,
+                         diagnostics *d) {
+  double *list = arena_alloc(a, (size_t)key->value_count * sizeof(double));
+  for (int i = 0; i < key->value_count; i++)
+    if (!deck_real_read(&key->values[i], name, unit_text, BOUND_NONE, &list[i], d)) return NULL;
+  return list;
+}
+
+static bool check_times(const namelist_key *key, const double *times, diagnostics *d) {
+  if (key->value_count < 2) {
+    diag_report(d, DIAG_BAD_VALUE, key->value_where, "a table has at least two points");
+    return false;
+  }
+  for (int i = 0; i < key->value_count; i++) {
+    if (i == 0 ? times[i] >= 0 : times[i] > times[i - 1]) continue;
+    diag_report(d, DIAG_OUT_OF_BOUNDS, key->values[i].where,
+                i == 0 ? "`times` must not be negative"
+                       : "each of the `times` must be later than the one before");
+    return false;
+  }
+  return true;
+}
+
+/* Takes over values of the load itself. */
+static void set_table(arena *a, const double *times, double *values, int count, time_function *f) {
+  double *integrals = arena_alloc(a, (size_t)count * sizeof *integrals);
+  time_table_integrals(times, values, count, integrals);
+  f->times = times;
+  f->values = values;
+  f->integrals = integrals;
+  f->count = count;
+}
+
+static bool report_large(span where, diagnostics *d) {
+  diag_report(d, DIAG_BAD_NUMBER, where, "the value of the load is too large");
+  return false;
+}
+
+/* The table's factors times the full value: the function then needs no other. */
+static bool read_table(arena *a, const namelist_group *g, double full, time_function *f,
+                       diagnostics *d) {
+  const namelist_key *times = namelist_find(g, "times"), *values = namelist_find(g, "values");
+  double *t = read_list(a, times, "times", "s", d);
+  double *v = t ? read_list(a, values, "values", "1", d) : NULL;
+  if (!v) {
+    if (d->items[d->count - 1].code == DIAG_UNITS && t)
+      diag_hint(d, "`values` are factors on the full value");
+    return false;
+  }
+  if (!check_times(times, t, d)) return false;
+  if (times->value_count != values->value_count) {
+    diag_report(d, DIAG_BAD_VALUE, values->value_where,
+                "`times` and `values` must be equally many, but they are %d and %d",
+                times->value_count, values->value_count);
+    diag_note(d, times->value_where, "the times");
+    return false;
+  }
+  for (int i = 0; i < values->value_count; i++) {
+    v[i] *= full;
+    if (!isfinite(v[i])) return report_large(values->values[i].where, d);
+  }
+  set_table(a, t, v, times->value_count, f);
+  return true;
+}
+
+/* --- a table from a file ---------------------------------------------------------------------- */
+
+enum { TIME, VALUE, PAIR };
+
+typedef struct load_file {
+  text_table text;
+  int column[PAIR]; /* of time and value */
+} load_file;
+
+static bool report_columns(const load_file *l, span where, diagnostics *d) {
+  diag_report(d, DIAG_BAD_VALUE, where, "`%s` has %d column%s; a load has two, time and value",
+              l->text.path, l->text.column_count, l->text.column_count == 1 ? "" : "s");
+  if (l->text.column_count > PAIR)
+    diag_hint(d, "say which, by names or numbers: file = 'FILE:%s,%s'",
+              *l->text.columns[0].name ? l->text.columns[0].name : "1",
+              *l->text.columns[1].name ? l->text.columns[1].name : "2");
+  return false;
+}
+
+static bool choose_columns(load_file *l, const char *columns, span where, diagnostics *d) {
+  char *names[PAIR] = {NULL, NULL};
+  bool good =
+      columns ? text_table_names(columns, names, PAIR) == PAIR : l->text.column_count == PAIR;
+  if (!good && columns)
+    diag_report(d, DIAG_BAD_VALUE, where,
+                "a load has two columns, time and value: FILE:TIME,VALUE");
+  if (!good && !columns) report_columns(l, where, d);
+  for (int c = 0; c < PAIR; c++) {
+    if (good) l->column[c] = columns ? text_table_column(&l->text, names[c], where, d) : c;
+    good = good && l->column[c] >= 0;
+    free(names[c]);
+  }
+  return good;
+}
+
+/* Its text stays among the sources. To be freed in either case. */
+static bool open_file(load_file *l, const namelist_group *g, diagnostics *d) {
+  const namelist_key *key = namelist_find(g, "file");
+  const char *columns;
+  *l = (load_file){.text = {.source = -1}};
+  if (!deck_values_counted(key, 1, d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (v->kind != NAMELIST_TEXT || !*v->text) {
+    diag_report(d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table in quotes");
+    return false;
+  }
+  char *name = text_table_split(v->text, &columns);
+  char *path = deck_file_path(d->sources->items[g->where.file].name, name);
+  free(name);
+  if (!text_table_read(&l->text, path, v->where, d)) return false;
+  text_table_source(&l->text, d);
+  return choose_columns(l, columns, v->where, d);
+}
+
+static const char *name_of(const load_file *l, int c) {
+  const char *name = l->text.columns[l->column[c]].name;
+  return *name ? name : c == TIME ? "time" : "value";
+}
+
+/* Factors have no unit, loads have theirs. */
+static bool unit_suits(load_file *l, const namelist_key *full, const deck_load_kind *kind,
+                       diagnostics *d) {
+  unit given;
+  const bool has_unit = text_table_has_unit(&l->text, l->column[VALUE]);
+  if (!text_table_unit(&l->text, l->column[VALUE], &given, d)) return false;
+  if (full && !dim_is_none(given.dim)) {
+    diag_report(d, DIAG_CONFLICT, text_table_title(&l->text, l->column[VALUE], d),
+                "with `%s` in the deck `%s` holds factors on it, which have no unit", full->name,
+                name_of(l, VALUE));
+    diag_note(d, full->name_where, "`%s` is given here", full->name);
+    diag_hint(d, "leave `%s` out where the column is the load itself", full->name);
+  } else if (!full && !has_unit && !kind->implied) {
+    diag_report(d, DIAG_MISSING_KEY, text_table_title(&l->text, l->column[VALUE], d),
+                "`%s` has no unit: it is a load with one, or a factor on `%s`, which the deck does "
+                "not give",
+                name_of(l, VALUE), kind->key);
+    diag_hint(d, "write `%s [%s]`, or give `%s`", name_of(l, VALUE), kind->unit, kind->key);
+  } else {
+    return true;
+  }
+  return false;
+}
+
+static bool times_ascend(load_file *l, const double *t, diagnostics *d) {
+  if (l->text.rows < 2) {
+    diag_report(d, DIAG_BAD_VALUE, text_table_header(&l->text, d),
+                "a table has at least two points");
+    return false;
+  }
+  for (long i = 0; i < l->text.rows; i++) {
+    if (i == 0 ? t[i] >= 0 : t[i] > t[i - 1]) continue;
+    diag_report(d, DIAG_OUT_OF_BOUNDS, text_table_cell(&l->text, i, l->column[TIME], d),
+                i == 0 ? "times must not be negative"
+                       : "each time must be later than the one before");
+    return false;
+  }
+  return true;
+}
+
+static bool take_columns(arena *a, load_file *l, const char *unit_text, double full,
+                         time_function *f, diagnostics *d) {
+  const size_t bytes = (size_t)l->text.rows * sizeof(double);
+  double *read[PAIR] = {text_table_values(&l->text, l->column[TIME], "s", false, d), NULL};
+  bool good = read[TIME] && times_ascend(l, read[TIME], d);
+  if (good) read[VALUE] = text_table_values(&l->text, l->column[VALUE], unit_text, false, d);
+  for (long i = 0; read[VALUE] && good && i < l->text.rows; i++) {
+    read[VALUE][i] *= full;
+    if (!isfinite(read[VALUE][i]))
+      good = report_large(text_table_cell(&l->text, i, l->column[VALUE], d), d);
+  }
+  good = good && read[VALUE];
+  if (good)
+    set_table(a, memcpy(arena_alloc(a, bytes), read[TIME], bytes),
+              memcpy(arena_alloc(a, bytes), read[VALUE], bytes), (int)l->text.rows, f);
+  free(read[TIME]);
+  free(read[VALUE]);
+  return good;
+}
+
+/* With the full value in the deck the column holds factors; without it the load itself. */
+static bool read_file(arena *a, const namelist_group *g, const deck_load_kind *kind, double full,
+                      time_function *f, diagnostics *d) {
+  load_file l;
+  const namelist_key *given = namelist_find(g, kind->key);
+  const bool good = open_file(&l, g, d) && unit_suits(&l, given, kind, d) &&
+                    take_columns(a, &l, given ? "1" : kind->unit, full, f, d);
+  text_table_free(&l.text);
+  return good;
+}
+
+/* --- loads ------------------------------------------------------------------------------------ */
+
+/* The one whose unit the file's column has. */
+static int kind_by_unit(const namelist_group *g, const deck_load_kind *kinds, int count,
+                        diagnostics *d) {
+  load_file l;
+  unit given, of_kind;
+  int found = -1;
+  const char *bad;
+  size_t bad_length;
+  bool good = open_file(&l, g, d) && text_table_unit(&l.text, l.column[VALUE], &given, d) &&
+              unit_suits(&l, NULL, &kinds[0], d);
+  for (int k = 0; good && k < count && found < 0; k++)
+    if (unit_parse(kinds[k].unit, strlen(kinds[k].unit), &of_kind, &bad, &bad_length) &&
+        dim_equal(given.dim, of_kind.dim))
+      found = k;
+  if (good && found < 0) {
+    diag_report(d, DIAG_UNITS, text_table_title(&l.text, l.column[VALUE], d),
+                "the unit of `%s` is one of `%s`%s%s%s", name_of(&l, VALUE), kinds[0].unit,
+                count > 1 ? " (" : "", count > 1 ? kinds[0].key : "", count > 1 ? ")" : "");
+    if (count > 1) diag_hint(d, "or one of `%s` (%s)", kinds[1].unit, kinds[1].key);
+  }
+  text_table_free(&l.text);
+  return found;
+}
+
+static int report_none(const namelist_group *g, const deck_load_kind *kinds, int count,
+                       diagnostics *d) {
+  diag_report(d, DIAG_MISSING_KEY, g->where, "`&%s` needs `%s`%s%s%s", g->name, kinds[0].key,
+              count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "", count > 1 ? "`" : "");
+  diag_hint(d, "or a `file` with times and values in two columns, with their units");
+  return -1;
+}
+
+int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int count,
+                      diagnostics *d) {
+  int found = -1;
+  for (int k = 0; k < count; k++) {
+    const namelist_key *key = namelist_find(g, kinds[k].key);
+    if (key && found >= 0) {
+      diag_report(d, DIAG_CONFLICT, key->name_where, "`%s` and `%s` exclude each other",
+                  kinds[found].key, kinds[k].key);
+      diag_note(d, namelist_find(g, kinds[found].key)->name_where, "`%s` is given here",
+                kinds[found].key);
+      return -1;
+    }
+    if (key) found = k;
+  }
+  if (found >= 0) return found;
+  return namelist_find(g, "file") ? kind_by_unit(g, kinds, count, d)
+                                  : report_none(g, kinds, count, d);
+}
+
+static bool read_times(arena *a, const namelist_group *g, const deck_load_kind *kind, double full,
+                       time_function *f, diagnostics *d) {
+  bool good = read_time(g, "start", BOUND_NOT_NEGATIVE, &f->start, d);
+  good &= read_time(g, "rise", BOUND_POSITIVE, &f->rise, d);
+  const int way = way_of(a, g, d);
+  if (way < 0 || !good) return false;
+  f->shape = way == FROM_FILE ? TIME_TABLE : (time_shape)way;
+  if (way == FROM_FILE) return read_file(a, g, kind, full, f, d);
+  return f->shape != TIME_TABLE || read_table(a, g, full, f, d);
+}
+
+bool deck_factor_read(arena *a, const namelist_group *g, const char *key, time_function *f,
+                      diagnostics *d) {
+  *f = (time_function){.value = 1};
+  return read_times(a, g, &(deck_load_kind){.key = key}, 1, f, d);
+}
+
+bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,
+                    diagnostics *d) {
+  const namelist_key *key = namelist_find(g, kind->key);
+  *f = (time_function){.value = 1};
+  const bool good =
+      !key || (deck_values_counted(key, 1, d) &&
+               deck_real_read(&key->values[0], key->name, kind->unit, BOUND_NONE, &f->value, d));
+  return read_times(a, g, kind, f->value, f, d) && good;
+}

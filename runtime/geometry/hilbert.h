@@ -1,0 +1,18 @@
+/* The order of points along a Hilbert curve: points that follow each other there are near each other. */
+#ifndef PERILAT_RUNTIME_HILBERT_H
+#define PERILAT_RUNTIME_HILBERT_H
+
+#include <stdint.h>
+
+#include "runtime/geometry/neighbour_search.h"
+
+enum { HILBERT_BITS = 20 }; /* a coordinate */
+
+/* Place along the curve through the grid of 2^HILBERT_BITS cells a side (Skilling 2004, AIP Conf. Proc. 707, 381). */
+uint64_t hilbert_place(int dimensions, const uint32_t cell[3]);
+
+/* order[count]: the points along a curve through the smallest cube (square) around them; those of one cell by x, y, z. It does
+   not depend on how they are numbered. */
+void hilbert_order(const point_cloud *c, int32_t *order);
+
+#endif

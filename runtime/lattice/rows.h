@@ -1,0 +1,174 @@
+/* A Bravais lattice (bravais.h) as rows: row r holds consecutive sites along the first lattice vector, all rows in one
+   array with one pitch. In space the rows of a layer follow those of the layer below. Neighbour k of site q is always
+   q + rows_offset(row, k): the number is the same along a row, and rows fall into one or two classes by their shift.
+   Empty rows before the first, behind the last and between layers, and empty columns before each, which serve the row before,
+   too, make every neighbour of every site of a row a place of the array. Nothing that an absent site's offset leads to is
+   its neighbour by a bond that exists. Sites cut away stay as absent sites. Rows begin on aligned
+   addresses.
+
+   Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first `directions`, in the
+   order of bravais_family, are those whose bonds a site owns: they lie in a higher layer, else in a higher row, else
+   further along the row.
+
+   Particles that stand on no lattice are rows with a list (scattered.h): sites of all rows one after the other, each with
+   neighbours of its own. Particles, and with them results, are in the order of rows; on lists in that in which they were
+   given. */
+#ifndef PERILAT_RUNTIME_ROWS_H
+#define PERILAT_RUNTIME_ROWS_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "dsl/base/c_linkage.h"
+#include "runtime/deck/bravais.h"
+#include "runtime/deck/deck.h"
+#include "runtime/kernel.h"
+
+C_LINKAGE_BEGIN
+
+/* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the bonds of a particle those
+   it owns have different numbers below `directions`, those others own have different numbers from there on, and
+   a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. Where there
+   is no neighbour of a number, an absent site without bonds stands for it, at a chord of a spacing along x. */
+typedef struct neighbour_list {
+  int32_t *neighbour; /* [2 directions][size] how much further the neighbour stands than the site */
+  uint64_t *incoming; /* [size] bit k: bond k + directions exists */
+  double *length, *chord[3]; /* [2 directions][size] m; of reference chords to the neighbours */
+} neighbour_list;
+
+enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
+
+typedef struct rows {
+  bravais infinite; /* the lattice without ends */
+  int dimensions;   /* 2 or 3 */
+  int row_count; /* rows from the first with sites to the last, empty ones between layers included */
+  int layer_rows; /* rows from the first of a layer to the first of the next */
+  int margin;     /* empty rows before the first, and as many behind the last */
+  long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
+  long first;     /* site at which row 0 starts */
+  long size;      /* length of every site array */
+  int directions; /* owned bonds of a site of the infinite lattice: half the neighbours */
+  long offset[ROWS_CLASSES][ROWS_MAX_NEIGHBOURS];
+  unsigned char *row_class;           /* [margin + row_count + margin] */
+  double chord[PL_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */
+  double length[PL_MAX_DIRECTIONS];   /* m */
+  double weight[PL_MAX_DIRECTIONS];   /* part of the partner's volume that lies in the horizon */
+  int shell[PL_MAX_DIRECTIONS];       /* 1: of the nearest neighbours */
+  double horizon;                     /* m */
+  double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
+  double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
+  double stiffness_thickness; /* m: `t` of the laws; 0 in space */
+  double mass, inertia;       /* kg, kg m^2: see rows_set_density; on lists their mean */
+  neighbour_list *list;       /* NULL on lattices */
+  double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
+  uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
+  uint64_t *held_bonds;            /* [size] bit k: the damage of the owned bond k stays as it is */
+  uint64_t *held;                  /* [size] 1: the particle is protected */
+  unsigned char *present;          /* [size] the site exists */
+  double *x, *y, *z; /* [size] reference position, m (absent sites too); z is NULL in the plane */
+  long particle_count, bond_count;
+  int32_t *particle_site;      /* [particle_count] site of each particle, in the order of results */
+  int32_t *site_particle;      /* [size] particle of each site, or -1 */
+  double width, height, depth; /* extent of the present sites along x, y and z, m */
+} rows;
+
+/* First site of row r (0 .. row_count-1; in the margins, too). */
+static inline long rows_start(const rows *w, int r) {
+  return w->first + (long)r * w->pitch;
+}
+
+/* Row of a site of rows 0 .. row_count-1. */
+static inline int rows_row(const rows *w, long site) {
+  return (int)((site - w->first) / w->pitch);
+}
+
+/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. Not on lists. */
+static inline long rows_offset(const rows *w, int row, int direction) {
+  return w->offset[w->row_class[row + w->margin]][direction];
+}
+
+static inline long rows_partner(const rows *w, long site, int direction) {
+  if (w->list) return site + w->list->neighbour[direction * w->size + site];
+  return site + rows_offset(w, rows_row(w, site), direction);
+}
+
+/* The bond that the site owns in that direction exists. */
+static inline bool rows_has_bond(const rows *w, long site, int direction) {
+  return w->bonds[site] >> direction & 1;
+}
+
+/* Reference position of a site; at[2] is 0 in the plane. */
+static inline void rows_place(const rows *w, long site, double at[3]) {
+  at[0] = w->x[site];
+  at[1] = w->y[site];
+  at[2] = w->z ? w->z[site] : 0;
+}
+
+/* "(x, y) mm" or "(x, y, z) mm", as messages name a place of the lattice. */
+enum { ROWS_PLACE_TEXT = 80 };
+const char *rows_place_text(int dimensions, const double at[3], char text[ROWS_PLACE_TEXT]);
+
+/* The bond to the neighbour in that direction, 0 .. 2 directions - 1, exists. */
+static inline bool rows_has_neighbour(const rows *w, long site, int direction) {
+  if (direction < w->directions) return rows_has_bond(w, site, direction);
+  const int k = direction - w->directions;
+  if (w->list) return w->list->incoming[site] >> k & 1;
+  return rows_has_bond(w, rows_partner(w, site, direction), k);
+}
+
+/* Reference chord (m) from a site to its neighbour in that direction, 0 .. 2 directions - 1. Returns its length. */
+static inline double rows_chord(const rows *w, long site, int direction, double chord[3]) {
+  const int k = direction % w->directions;
+  const double sign = direction < w->directions ? 1 : -1;
+  for (int a = 0; a < 3; a++)
+    chord[a] = !w->list            ? sign * w->chord[k][a]
+               : a < w->dimensions ? w->list->chord[a][direction * w->size + site]
+                                   : 0;
+  return w->list ? w->list->length[direction * w->size + site] : w->length[k];
+}
+
+/* Number of bonds of a site. */
+int rows_degree(const rows *w, long site);
+
+/* Masses of all particles of a density (kg/m^3); a particle turns as a ball of half a spacing does,
+   I = 2/5 m (s/2)^2 (Asadollahi 2014). */
+void rows_set_density(rows *w, double rho);
+
+/* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:
+   in runs, in checks, by `drive` and `info`. Masses as `mass` says. `area` is 0: no bars here. On
+   lists all are told the same, a bond of a spacing along x between particles of mean size, with the
+   mean number of bonds, rounded. */
+pl_bond_class rows_bond_class(const rows *w, int direction);
+
+/* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
+   present neighbours whose chord crosses no notch. Particles that stand on no lattice become rows with a list
+   (scattered.h). NULL on errors (a body without sites, a point body with no
+   lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
+rows *rows_build(const deck *k, int lattice, diagnostics *d);
+void rows_free(rows *w);
+
+/* Particles inside or on the shape, ascending; a point gives the nearest within its tolerance. `list` is malloc'ed.
+   Returns the count. */
+long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
+
+/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
+void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
+
+/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the bonds of these. */
+void rows_protect(rows *w, const int32_t *particles, long count, double radius);
+
+/* Bond m of the results: its ends as particles and where its fields stand (direction * size + site). */
+typedef struct rows_bond {
+  int32_t i, j;
+  int64_t slot;
+} rows_bond;
+/* All bonds, in the order of the particles that own them; malloc'ed, bond_count long. */
+rows_bond *rows_bonds(const rows *w);
+
+/* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks describe. */
+uint64_t rows_fingerprint(const rows *w);
+
+C_LINKAGE_END
+
+#endif

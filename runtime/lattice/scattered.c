@@ -1,0 +1,342 @@
+#include "runtime/lattice/scattered.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/lattice/bond_numbers.h"
+#include "runtime/geometry/hilbert.h"
+#include "runtime/particles/particle_set.h"
+#include "runtime/lattice/rows_parts.h"
+#include "runtime/geometry/shape.h"
+#include "runtime/lattice/shape_matrix.h"
+#include "runtime/particles/site_marks.h"
+
+enum { ROW_SITES = 512, PITCH = ROW_SITES + PL_LANES };
+
+/* --- particles to sites ----------------------------------------------------------------------- */
+
+typedef struct builder {
+  const scattered *from;
+  int32_t *order; /* [count] particles along the curve */
+  double *at[3];  /* [count] their places, in that order */
+  point_cloud points;
+  point_pairs pairs; /* of these */
+  rows *rows;
+} builder;
+
+static long site_of(long rank) {
+  return rank / ROW_SITES * PITCH + rank % ROW_SITES;
+}
+
+/* Where missing neighbours of the site stand. */
+static long absent_of(long site) {
+  return site / PITCH * PITCH + ROW_SITES;
+}
+
+static void order_points(builder *b) {
+  const point_cloud *given = &b->from->points;
+  const size_t n = (size_t)given->count + 1;
+  b->order = must_alloc(n * sizeof *b->order);
+  hilbert_order(given, b->order);
+  b->points = *given;
+  for (int a = 0; a < given->dimensions; a++) {
+    b->points.at[a] = b->at[a] = must_alloc(n * sizeof(double));
+    for (long r = 0; r < given->count; r++)
+      b->at[a][r] = given->at[a][b->order[r]];
+  }
+}
+
+static void free_builder(builder *b) {
+  for (int a = 0; a < 3; a++)
+    free(b->at[a]);
+  free(b->order);
+  free(b->pairs.items);
+}
+
+/* Summed along the curve: the same to the last bit for other numbers. */
+static double mean_measure(const builder *b) {
+  double sum = 0;
+  for (long r = 0; r < b->points.count; r++)
+    sum += b->from->measure[b->order[r]];
+  return sum / (double)b->points.count;
+}
+
+/* Of a disc or a sphere of so many particles. */
+static double radius_of(int dimensions, double measure) {
+  return dimensions == 2 ? sqrt(measure / M_PI) : pl_cbrt(0.75 * measure / M_PI);
+}
+
+static double horizon_of(const builder *b) {
+  if (b->from->horizon > 0) return b->from->horizon;
+  return radius_of(b->points.dimensions, (b->from->neighbours + 1) * mean_measure(b));
+}
+
+static bool allocate(rows *w) {
+  const long planes = 2 * (long)w->directions * w->size;
+  neighbour_list *l = w->list = must_calloc(1, sizeof *l);
+  w->row_class = must_calloc((size_t)w->row_count + 1, 1);
+  l->neighbour = rows_array(planes, sizeof *l->neighbour);
+  l->incoming = rows_array(w->size, sizeof *l->incoming);
+  l->length = rows_array(planes, sizeof *l->length);
+  w->site_volume = rows_array(w->size, sizeof *w->site_volume);
+  w->site_mass = rows_array(w->size, sizeof *w->site_mass);
+  bool good = l->neighbour && l->incoming && l->length && w->site_volume && w->site_mass;
+  for (int a = 0; a < w->dimensions; a++)
+    good = (l->chord[a] = rows_array(planes, sizeof(double))) && good;
+  return rows_new_sites(w) && good;
+}
+
+/* Without bonds there still is one number, so that no array is empty. */
+static bool new_rows(builder *b, int numbers) {
+  const scattered *from = b->from;
+  const bool plane = from->points.dimensions == 2;
+  const double measure = mean_measure(b);
+  const long row_count = (from->points.count + ROW_SITES - 1) / ROW_SITES;
+  rows *w = b->rows = must_calloc(1, sizeof *w);
+  *w = (rows){.infinite = {.dimensions = from->points.dimensions, .spacing = from->spacing},
+              .dimensions = from->points.dimensions,
+              .row_count = (int)row_count,
+              .layer_rows = (int)row_count,
+              .pitch = PITCH,
+              .size = row_count * PITCH,
+              .directions = numbers > 0 ? numbers : 1,
+              .horizon = horizon_of(b),
+              .spacing = from->spacing,
+              .volume = measure * (plane ? from->mass_thickness : 1),
+              .site_area = plane ? measure : 0,
+              .stiffness_thickness = plane ? from->stiffness_thickness : 0,
+              .particle_count = from->points.count};
+  for (int k = 0; k < w->directions; k++) { /* what laws are told of all bonds together */
+    w->chord[k][0] = w->length[k] = from->spacing;
+    w->weight[k] = w->shell[k] = 1;
+  }
+  return allocate(w);
+}
+
+static void place_particles(builder *b) {
+  rows *w = b->rows;
+  const double thickness = w->dimensions == 2 ? b->from->mass_thickness : 1;
+  double *const at[3] = {w->x, w->y, w->z};
+  w->particle_site = must_alloc(((size_t)w->particle_count + 1) * sizeof *w->particle_site);
+  for (long q = 0; q < w->size; q++) {
+    w->site_particle[q] = -1;
+    w->site_volume[q] = w->volume; /* of absent sites, so that nothing is divided by 0 */
+    for (int a = 0; a < w->dimensions; a++)
+      at[a][q] = b->at[a][0];
+  }
+  for (long r = 0; r < w->particle_count; r++) {
+    const long site = site_of(r);
+    const int32_t particle = b->order[r];
+    w->present[site] = 1;
+    w->site_particle[site] = particle;
+    w->particle_site[particle] = (int32_t)site;
+    w->site_volume[site] = b->from->measure[particle] * thickness;
+    for (int a = 0; a < w->dimensions; a++)
+      at[a][site] = b->at[a][r];
+  }
+  rows_find_extent(w);
+}
+
+/* --- bonds ------------------------------------------------------------------------------------ */
+
+/* As if no neighbour were there. */
+static void clear_neighbours(rows *w) {
+  for (long k = 0; k < 2 * w->directions; k++)
+    for (long q = 0; q < w->size; q++) {
+      w->list->neighbour[k * w->size + q] = (int32_t)(absent_of(q) - q);
+      w->list->length[k * w->size + q] = w->list->chord[0][k * w->size + q] = w->spacing;
+    }
+}
+
+static void set_neighbour(rows *w, long here, long there, int number) {
+  const long slot = number * w->size + here;
+  double from[3], to[3], square = 0;
+  rows_place(w, here, from);
+  rows_place(w, there, to);
+  for (int a = 0; a < w->dimensions; a++) {
+    w->list->chord[a][slot] = to[a] - from[a];
+    square += (to[a] - from[a]) * (to[a] - from[a]);
+  }
+  w->list->length[slot] = sqrt(square);
+  w->list->neighbour[slot] = (int32_t)(there - here);
+}
+
+static void join_neighbours(rows *w, const numbered_bond *bonds, long count) {
+  clear_neighbours(w);
+  for (long m = 0; m < count; m++) {
+    const long owner = site_of(bonds[m].owner), other = site_of(bonds[m].other);
+    const uint64_t bit = UINT64_C(1) << bonds[m].number;
+    w->bonds[owner] |= bit;
+    w->list->incoming[other] |= bit;
+    set_neighbour(w, owner, other, bonds[m].number);
+    set_neighbour(w, other, owner, bonds[m].number + w->directions);
+  }
+  w->bond_count = count;
+}
+
+rows *scattered_rows(const scattered *from, long *crowded) {
+  builder b = {.from = from};
+  *crowded = -1;
+  order_points(&b);
+  b.pairs = from->horizon > 0 ? pairs_within(&b.points, from->horizon, ROWS_MAX_NEIGHBOURS)
+                              : pairs_of_nearest(&b.points, from->neighbours, ROWS_MAX_NEIGHBOURS);
+  if (b.pairs.crowded >= 0) {
+    *crowded = b.order[b.pairs.crowded];
+    free_builder(&b);
+    return NULL;
+  }
+  if (b.pairs.count > INT32_MAX) { /* bonds have 32-bit numbers */
+    free_builder(&b);
+    return NULL;
+  }
+  numbered_bond *bonds = must_alloc(((size_t)b.pairs.count + 1) * sizeof *bonds);
+  const int numbers = bond_numbers(&b.pairs, b.points.count, bonds);
+  const bool good = new_rows(&b, numbers);
+  if (good) {
+    place_particles(&b);
+    join_neighbours(b.rows, bonds, b.pairs.count);
+  } else {
+    rows_free(b.rows);
+    b.rows = NULL;
+  }
+  free(bonds);
+  free_builder(&b);
+  return b.rows;
+}
+
+/* --- from a deck ------------------------------------------------------------------------------ */
+
+static double longest_bond(const rows *w) {
+  double longest = 0;
+  for (long q = 0; q < w->size; q++)
+    for (int k = 0; k < w->directions; k++)
+      if (rows_has_bond(w, q, k)) longest = pl_fmax(longest, w->list->length[k * w->size + q]);
+  return longest;
+}
+
+/* A notch does nothing when no particle stands near it: around those that it has removed there are others. */
+static void cut_notch(rows *w, const deck_notch *notch, const deck_lattice *l, double longest,
+                      diagnostics *d) {
+  double lower[3], upper[3];
+  long near = 0, cut = 0;
+  shape_box(&notch->shape, lower, upper);
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    double at[3];
+    bool inside = true;
+    rows_place(w, site, at);
+    for (int a = 0; a < w->dimensions; a++)
+      inside = inside && at[a] >= lower[a] - longest && at[a] <= upper[a] + longest;
+    if (!inside) continue;
+    near++;
+    if (notch->cut_bonds) cut += rows_cut(w, site, &notch->shape);
+  }
+  if (cut > 0 || (near > 0 && !notch->cut_bonds)) return;
+  const double wide =
+      pl_fmax(pl_fmax(upper[0] - lower[0], upper[1] - lower[1]), upper[2] - lower[2]);
+  if (near > 0 && wide > longest) return; /* what it has removed leaves no bond to cut */
+  diag_report(d, DIAG_DECK_WARNING, notch->item.where,
+              "the notch removes no particle%s of lattice '%s'",
+              notch->cut_bonds ? " and cuts no bond" : "", l->name);
+}
+
+static bool has_bonds(const rows *w, const deck_lattice *l, diagnostics *d) {
+  if (w->bond_count > 0) return true;
+  const char *key = l->horizon > 0 ? "horizon" : l->file ? "file" : "spacing";
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, key),
+              "no two particles of lattice '%s' are neighbours", l->name);
+  diag_hint(d, l->horizon > 0 ? "a larger `horizon` reaches more particles"
+               : l->file      ? "a single particle has none"
+                              : "a single particle has none; a smaller `spacing` makes more");
+  return false;
+}
+
+static void report_failure(const deck_lattice *l, const particle_set *set, long crowded,
+                           diagnostics *d) {
+  const char *key = l->horizon > 0 ? "horizon" : "neighbours";
+  char text[ROWS_PLACE_TEXT];
+  if (crowded < 0) {
+    diag_report(d, DIAG_OUT_OF_BOUNDS, l->item.where,
+                "there is not enough memory for %ld particles and their neighbours", set->count);
+    return;
+  }
+  double at[3] = {0, 0, 0};
+  for (int a = 0; a < set->dimensions; a++)
+    at[a] = set->at[a][crowded];
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, key),
+              "with this `%s` a particle has more than %d neighbours, the most there can be", key,
+              ROWS_MAX_NEIGHBOURS);
+  diag_hint(d, "it is the one at %s; a smaller `%s` takes fewer",
+            rows_place_text(set->dimensions, at, text), key);
+}
+
+static double mean_nearest(const rows *w) {
+  double sum = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    double nearest = INFINITY, chord[3];
+    for (int n = 0; n < 2 * w->directions; n++)
+      if (rows_has_neighbour(w, w->particle_site[p], n))
+        nearest = pl_fmin(nearest, rows_chord(w, w->particle_site[p], n, chord));
+    sum += isfinite(nearest) ? nearest : w->spacing;
+  }
+  return sum / (double)w->particle_count;
+}
+
+/* Particles as far apart as they are large: volumes in another unit than the file says are the usual slip. */
+static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) {
+  const double apart = mean_nearest(w), ratio = apart / w->spacing;
+  if (ratio > 0.3 && ratio < 2) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(&l->item, "file"),
+              "particles are %.4g mm from their nearest neighbours in the mean, but are as large "
+              "as those of a "
+              "lattice with a spacing of %.4g mm",
+              1e3 * apart, 1e3 * w->spacing);
+  diag_hint(d, "are volumes and `spacing` in the units that they say?%s",
+            w->dimensions == 2 ? " In the plane a volume counts the thickness" : "");
+}
+
+/* A few at corners and slits are no matter. */
+static void count_unresolved(const rows *w, const deck_lattice *l, diagnostics *d) {
+  const long count = shape_unresolved(w, NULL);
+  if (100 * count <= w->particle_count) return;
+  diag_report(
+      d, DIAG_DECK_WARNING, deck_where(&l->item, l->horizon > 0 ? "horizon" : "neighbours"),
+      "%ld of %ld particles have too few bonds to tell all strains apart: the body may fall "
+      "to pieces or move without force",
+      count, w->particle_count);
+  diag_hint(d, "12 neighbours in the plane and 18 in space do");
+}
+
+rows *scattered_build(const deck *k, int lattice, diagnostics *d) {
+  const deck_lattice *l = &k->lattices[lattice];
+  particle_set *set = particle_set_make(k, lattice, d);
+  if (!set) return NULL;
+  long crowded;
+  const scattered from = {
+      .points = {set->dimensions, set->count, {set->at[0], set->at[1], set->at[2]}},
+      .measure = set->volume,
+      .spacing = set->spacing,
+      .horizon = l->horizon * (1 + BRAVAIS_REACH_TOLERANCE) * set->spacing,
+      .neighbours = l->neighbours,
+      .stiffness_thickness = l->stiffness_thickness,
+      .mass_thickness = l->mass_thickness};
+  rows *w = scattered_rows(&from, &crowded);
+  if (!w) report_failure(l, set, crowded, d);
+  particle_set_free(set);
+  if (w && !has_bonds(w, l, d)) {
+    rows_free(w);
+    return NULL;
+  }
+  if (!w) return NULL;
+  if (l->horizon > 0) w->horizon = l->horizon * w->spacing;
+  const double longest = longest_bond(w);
+  for (int n = 0; n < k->notch_count; n++)
+    if (site_of_lattice(l, k->notchs[n].lattice)) cut_notch(w, &k->notchs[n], l, longest, d);
+  rows_count_bonds(w);
+  compare_sizes(w, l, d);
+  count_unresolved(w, l, d);
+  return w;
+}

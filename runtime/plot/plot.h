@@ -1,0 +1,74 @@
+/* Pictures through Cairo: curves of histories and maps of a frame, as PNG, SVG or PDF by the path's ending. */
+#ifndef PERILAT_RUNTIME_PLOT_H
+#define PERILAT_RUNTIME_PLOT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+#include "dsl/base/c_linkage.h"
+
+C_LINKAGE_BEGIN
+
+/* Beside computed curves, in SI: points (x, y), a band (x, low, high), or both; without x over the
+   whole width, a line at y[0] or a band from low[0] to high[0]. What is not there is NULL; a value
+   that is no number is a gap. */
+typedef struct plot_beside {
+  const char *label;
+  const double *x, *y, *low, *high; /* [count] */
+  long count;
+} plot_beside;
+
+typedef struct plot_curve_options {
+  const char *output;          /* path */
+  const char *x, *y;           /* histories: "cmod", "load", "time", "energy/kinetic" */
+  const char *const *ys;       /* several histories of one unit, a curve each, instead of y */
+  int y_count;                 /* of ys; 0: y alone */
+  const char *x_unit, *y_unit; /* shown unit, e.g. "mm", "kN"; NULL: a readable one is chosen */
+  const char *title;           /* NULL: the result's title */
+  const char *const *labels;   /* legend, one a result; NULL: file names */
+  const plot_beside *beside;
+  int beside_count;
+} plot_curve_options;
+
+typedef struct plot_map_options {
+  const char *output;
+  long frame; /* from 0; negative: from the end (-1 the last) */
+  const char *
+      field; /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
+  int component; /* of a vector field; -1: magnitude */
+  double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
+  int slice_axis; /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
+  double slice_at; /* m */
+  /* "yielded", "S_p > 1e-6": dots where a field is above 0, above or below a value; NULL: none */
+  const char *mark;
+  const char *title;
+  /* Several frames instead of one, a panel each, with what stands above it; NULL: its time. */
+  const long *frames;
+  const char *const *captions;
+  int frame_count;
+} plot_map_options;
+
+enum { PLOT_MOST_PANELS = 48 };
+
+/* One curve a result file and history in one picture. */
+bool plot_curve(const char *const *results, int result_count, const plot_curve_options *o,
+                char *error, size_t size);
+/* Two histories of a result as a diagram has them, malloc'ed, with their units: the time of a
+   quasi-static run is a pure number. */
+typedef struct plot_histories {
+  double *x, *y;
+  long count;
+  char x_unit[64], y_unit[64];
+} plot_histories;
+bool plot_histories_read(plot_histories *h, const char *path, const char *x, const char *y,
+                         char *error, size_t size);
+/* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI units. */
+bool plot_values(const double *x, const double *y, long count, const char *x_unit,
+                 const char *y_unit, const plot_curve_options *o, char *error, size_t size);
+/* Particles and bonds of one frame, or of several beside each other, deformed, with a legend and a
+   scale bar in mm. */
+bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
+
+C_LINKAGE_END
+
+#endif

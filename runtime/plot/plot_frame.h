@@ -1,0 +1,43 @@
+/* A frame of a result as a map shows it: places in the plane of the picture. A body in the plane is shown as it is; of
+   a body in space a slice, or what is seen of its surface. */
+#ifndef PERILAT_RUNTIME_PLOT_FRAME_H
+#define PERILAT_RUNTIME_PLOT_FRAME_H
+
+#include <stdint.h>
+
+#include "runtime/plot/plot.h"
+
+typedef struct plot_frame {
+  int dimensions; /* of the result; from plot_frame_read on, places have two coordinates */
+  long particles, bonds;
+  double *reference, *moved; /* [particles][2] m */
+  double *damage;            /* [bonds] NULL without */
+  int32_t *pairs;            /* [bonds][2] */
+  double *values;            /* of the particles, or of the bonds; NULL: a map of damage */
+  long value_count;
+  bool of_bonds; /* the values are those of bonds */
+  /* Of the particles, or of the bonds: 1 where there is a mark, else 0; NULL without marks. */
+  double *marked;
+  bool marks_on_bonds;
+  bool
+      of_damage; /* damages, to be shown in their classes: of bonds, or the values as means on particles */
+  bool surface; /* particles alone, from the farthest to the nearest */
+  int components;
+  char unit_text[64], title[512];
+  const char *damage_of; /* what the damages shown are those of */
+  char view[80];         /* of a body in space: what is shown, for the picture's head */
+  double axes[3][2];     /* of a body in space: unit vectors along x, y, z in the picture, m a m */
+  char extents[128]; /* of a body in space: "x 0 to 100 mm, ...", where it stood in the beginning */
+  double time, factor, spacing;
+  long increment; /* of a quasi-static run, whose time means nothing; -1: a dynamic one */
+} plot_frame;
+
+/* False with a sentence in `error`. To be freed in either case. */
+bool plot_frame_read(plot_frame *m, const char *path, const plot_map_options *o, char *error,
+                     size_t size);
+void plot_frame_free(plot_frame *m);
+
+/* Component of value k, or its size for component -1. */
+double plot_frame_value(const plot_frame *m, long k, int component);
+
+#endif

@@ -1,0 +1,512 @@
+/* Map of one frame, or of several side by side: bonds and particles where they have moved to.
+   Damage is shown in the classes of Asadollahi (2014, table 4.3): up to 0.3 yellow, 0.6 orange, 0.8
+   brown, below 1 red; separated bonds as black crack lines. Other fields colour the particles or
+   the bonds by their value. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/plot/canvas.h"
+#include "runtime/plot/plot_frame.h"
+
+enum {
+  WIDTH = 1500,
+  MARGIN = 40,
+  HEAD = 64,
+  FOOT = 84,
+  AXES = 76, /* above the foot: the axes of a body in space */
+  GAP = 28,  /* between panels */
+  CAPTION = 30,
+  LEAST_HEIGHT = 300,
+  MOST_HEIGHT = 1500
+};
+
+static const struct {
+  double up_to;
+  colour ink;
+  const char *text;
+} classes[] = {{0.0, {0.80, 0.82, 0.85}, "sound"},     {0.3, {0.95, 0.80, 0.10}, "0 - 0.3"},
+               {0.6, {0.95, 0.50, 0.05}, "0.3 - 0.6"}, {0.8, {0.55, 0.30, 0.10}, "0.6 - 0.8"},
+               {1.0, {0.85, 0.05, 0.05}, "0.8 - 1"},   {INFINITY, {0, 0, 0}, "separated"}};
+enum { CLASSES = sizeof classes / sizeof *classes, SEPARATED = CLASSES - 1 };
+
+static const colour mark_ink = {0.05, 0.25, 0.80};
+
+typedef struct
+    map { /* a panel: x = origin_x + (X - left) * scale, y = origin_y - (Y - bottom) * scale */
+  plot_frame frame;
+  double left, bottom, scale, origin_x, origin_y;
+  char caption[128];
+} map;
+
+typedef struct sheet {
+  map *panels;
+  int count, columns;
+  double low[2], high[2];     /* what all panels show, m */
+  double scale, height, foot; /* of the picture, below the panels */
+  double caption;             /* above each panel; 0: a single one has none */
+} sheet;
+
+/* --- drawing ---------------------------------------------------------------------------------- */
+
+static void add_extent(const plot_frame *f, sheet *s) {
+  for (long p = 0; p < f->particles; p++)
+    for (int c = 0; c < 2; c++) {
+      s->low[c] = pl_fmin(s->low[c], f->moved[2 * p + c] - f->spacing);
+      s->high[c] = pl_fmax(s->high[c], f->moved[2 * p + c] + f->spacing);
+    }
+}
+
+static int rows_of(const sheet *s, int columns) {
+  return (s->count + columns - 1) / columns;
+}
+
+/* Pixels a metre with so many columns. */
+static double scale_with(const sheet *s, int columns) {
+  const int rows = rows_of(s, columns);
+  const double width = (WIDTH - 2 * MARGIN - (columns - 1) * GAP) / (double)columns,
+               height = (MOST_HEIGHT - HEAD - s->foot - (rows - 1) * GAP) / rows - s->caption;
+  return pl_fmin(width / (s->high[0] - s->low[0]), height / (s->high[1] - s->low[1]));
+}
+
+/* As many columns as let the panels be largest, or nearly so; each in the middle of its part of the
+   picture. */
+static void place_panels(sheet *s) {
+  for (int columns = 1; columns <= s->count; columns++) {
+    const double scale = scale_with(s, columns);
+    if (columns > 1 && scale < 0.95 * s->scale) continue;
+    s->scale = scale;
+    s->columns = columns;
+  }
+  const int rows = rows_of(s, s->columns);
+  const double high = (s->high[1] - s->low[1]) * s->scale + s->caption,
+               part = (WIDTH - 2 * MARGIN + GAP) / (double)s->columns - GAP,
+               indent = (part - (s->high[0] - s->low[0]) * s->scale) / 2;
+  s->height = pl_fmax(LEAST_HEIGHT, HEAD + s->foot + rows * high + (rows - 1) * GAP);
+  for (int k = 0; k < s->count; k++) {
+    map *m = &s->panels[k];
+    const int column = k % s->columns, below = rows - 1 - k / s->columns;
+    m->left = s->low[0];
+    m->bottom = s->low[1];
+    m->scale = s->scale;
+    m->origin_x = MARGIN + column * (part + GAP) + indent;
+    m->origin_y = s->height - s->foot - below * (high + GAP);
+  }
+}
+
+static bool fit_picture(sheet *s, char *error, size_t size) {
+  for (int c = 0; c < 2; c++) {
+    s->low[c] = INFINITY;
+    s->high[c] = -INFINITY;
+  }
+  for (int k = 0; k < s->count; k++)
+    add_extent(&s->panels[k].frame, s);
+  if (!(s->high[0] - s->low[0] < 1e12) || !(s->high[1] - s->low[1] < 1e12) ||
+      !(s->high[0] > s->low[0])) {
+    snprintf(error, size, "the frame's displacements are not finite or too large to draw");
+    return false;
+  }
+  s->foot = FOOT + (s->panels[0].frame.dimensions == 3 ? AXES : 0);
+  s->caption = s->count > 1 ? CAPTION : 0;
+  place_panels(s);
+  return true;
+}
+
+static double at_x(const map *m, double x) {
+  return m->origin_x + (x - m->left) * m->scale;
+}
+static double at_y(const map *m, double y) {
+  return m->origin_y - (y - m->bottom) * m->scale;
+}
+
+static int class_of(double damage) {
+  if (damage >= 1) return SEPARATED;
+  int k = 0;
+  while (k < SEPARATED - 1 && damage > classes[k].up_to)
+    k++;
+  return k;
+}
+
+static int class_of_bond(const map *m, long b) {
+  return m->frame.damage ? class_of(m->frame.damage[b]) : 0;
+}
+
+static void stroke_bond(canvas *c, const map *m, long b) {
+  const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
+               *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
+  cairo_move_to(c->cr, at_x(m, i[0]), at_y(m, i[1]));
+  cairo_line_to(c->cr, at_x(m, j[0]), at_y(m, j[1]));
+}
+
+/* A separated bond: the edge between the two particles' cells, across the middle of the bond. */
+static void stroke_crack(canvas *c, const map *m, long b) {
+  const double *i = &m->frame.moved[2 * m->frame.pairs[2 * b]],
+               *j = &m->frame.moved[2 * m->frame.pairs[2 * b + 1]];
+  double x = (i[0] + j[0]) / 2, y = (i[1] + j[1]) / 2, dx = j[0] - i[0], dy = j[1] - i[1];
+  double half = 0.5 / sqrt(3) * m->frame.spacing / pl_fmax(pl_hypot(dx, dy), 1e-300);
+  cairo_move_to(c->cr, at_x(m, x - dy * half), at_y(m, y + dx * half));
+  cairo_line_to(c->cr, at_x(m, x + dy * half), at_y(m, y - dx * half));
+}
+
+static void draw_bonds(canvas *c, const map *m, bool coloured) {
+  double thin = pl_fmax(0.4, 0.12 * m->frame.spacing * m->scale);
+  for (int k = 0; k < CLASSES; k++) { /* the worse above the better */
+    if (!coloured && k != SEPARATED) continue;
+    canvas_colour(c, classes[k].ink);
+    cairo_set_line_width(c->cr, k == 0 ? 0.6 * thin : k == SEPARATED ? 1.6 * thin : 1.4 * thin);
+    cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+    for (long b = 0; b < m->frame.bonds; b++) {
+      if (class_of_bond(m, b) != k) continue;
+      if (k == SEPARATED)
+        stroke_crack(c, m, b);
+      else
+        stroke_bond(c, m, b);
+    }
+    cairo_stroke(c->cr);
+  }
+}
+
+/* Dark blue - green - yellow; equal steps look equal, also in grey. */
+static colour shade(double v) {
+  static const colour stops[] = {{0.27, 0.00, 0.33},
+                                 {0.23, 0.32, 0.55},
+                                 {0.13, 0.57, 0.55},
+                                 {0.37, 0.79, 0.38},
+                                 {0.99, 0.91, 0.14}};
+  double at = pl_fmin(pl_fmax(v, 0), 1) * 4;
+  int k = at >= 4 ? 3 : (int)at;
+  double w = at - k;
+  return (colour){stops[k].r + w * (stops[k + 1].r - stops[k].r),
+                  stops[k].g + w * (stops[k + 1].g - stops[k].g),
+                  stops[k].b + w * (stops[k + 1].b - stops[k].b)};
+}
+
+/* Place in the colour bar, 0 to 1; what is no number stands with the lowest. */
+static double place_of(double value, double low, double high) {
+  return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
+}
+
+static colour particle_colour(const map *m, long p, int component, double low, double high) {
+  const double value = plot_frame_value(&m->frame, p, component);
+  return m->frame.of_damage ? classes[class_of(value)].ink : shade(place_of(value, low, high));
+}
+
+static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius) {
+  canvas_colour(c, ink);
+  cairo_arc(c->cr, at_x(m, m->frame.moved[2 * p]), at_y(m, m->frame.moved[2 * p + 1]), radius, 0,
+            2 * M_PI);
+  cairo_fill_preserve(c->cr);
+  if (m->frame.surface) { /* an edge, so that those in front stand out */
+    canvas_colour(c, (colour){0.25, 0.25, 0.28});
+    cairo_set_line_width(c->cr, pl_fmin(0.08 * radius, 1.5));
+    cairo_stroke(c->cr);
+  }
+  cairo_new_path(c->cr);
+}
+
+/* In the plane the more damaged above the less damaged; in a view of a surface those in front above those behind. */
+static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
+  const bool coloured = m->frame.values && !m->frame.of_bonds;
+  const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
+  const double radius = pl_fmax(0.7, (coloured ? 0.5 : 0.1) * m->frame.spacing * m->scale);
+  const colour plain = {0.45, 0.48, 0.52};
+  cairo_new_path(c->cr);
+  for (int k = 0; k < (by_class ? CLASSES : 1); k++)
+    for (long p = 0; p < m->frame.particles; p++)
+      if (!by_class || class_of(m->frame.values[p]) == k)
+        draw_particle(c, m, p, coloured ? particle_colour(m, p, component, low, high) : plain,
+                      radius);
+}
+
+static bool is_separated(const map *m, long b) {
+  return m->frame.damage && m->frame.damage[b] >= 1;
+}
+
+enum { SHADES = 64 };
+static int shade_of(double value, double low, double high) {
+  return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
+}
+
+/* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their crack. */
+static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
+  const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
+  cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+  for (int k = 0; k < 2 * SHADES; k++) {
+    const bool separated = k < SHADES;
+    canvas_colour(c, shade((k % SHADES + 0.5) / SHADES));
+    cairo_set_line_width(c->cr, separated ? 0.3 * wide : wide);
+    for (long b = 0; b < m->frame.bonds; b++)
+      if (is_separated(m, b) == separated &&
+          shade_of(plot_frame_value(&m->frame, b, component), low, high) == k % SHADES)
+        stroke_bond(c, m, b);
+    cairo_stroke(c->cr);
+  }
+}
+
+/* --- marks ------------------------------------------------------------------------------------ */
+
+static void draw_mark(canvas *c, double x, double y, double radius) {
+  cairo_new_path(c->cr);
+  cairo_arc(c->cr, x, y, radius, 0, 2 * M_PI);
+  canvas_colour(c, mark_ink);
+  cairo_fill_preserve(c->cr);
+  canvas_colour(c, (colour){1, 1, 1});
+  cairo_set_line_width(c->cr, pl_fmax(0.5, 0.25 * radius));
+  cairo_stroke(c->cr);
+}
+
+/* On particles, or on the middle of bonds. */
+static void draw_marks(canvas *c, const map *m) {
+  const double radius = pl_fmax(1.6, 0.22 * m->frame.spacing * m->scale);
+  const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
+  for (long k = 0; m->frame.marked && k < count; k++) {
+    if (!(m->frame.marked[k] > 0)) continue;
+    const int32_t *ends = &m->frame.pairs[2 * k];
+    const double *i = &m->frame.moved[2 * (m->frame.marks_on_bonds ? ends[0] : k)],
+                 *j = &m->frame.moved[2 * (m->frame.marks_on_bonds ? ends[1] : k)];
+    draw_mark(c, at_x(m, (i[0] + j[0]) / 2), at_y(m, (i[1] + j[1]) / 2), radius);
+  }
+}
+
+static bool has_mark(const map *m) {
+  const long count = m->frame.marks_on_bonds ? m->frame.bonds : m->frame.particles;
+  for (long k = 0; m->frame.marked && k < count; k++)
+    if (m->frame.marked[k] > 0) return true;
+  return false;
+}
+
+static void draw_mark_legend(canvas *c, const sheet *s, const char *mark) {
+  const double x = MARGIN + 300, y = s->height - 64;
+  char text[256];
+  bool any = false;
+  for (int k = 0; k < s->count; k++)
+    any = any || has_mark(&s->panels[k]);
+  if (!mark) return;
+  snprintf(text, sizeof text, "%.200s%s", mark, any ? "" : ": nowhere");
+  draw_mark(c, x + 14, y, 7);
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, text);
+}
+
+/* --- head and foot ---------------------------------------------------------------------------- */
+
+static void say_when(const plot_frame *f, char *text, size_t size) {
+  if (f->increment < 0)
+    snprintf(text, size, "t = %.5g ms", 1e3 * f->time);
+  else
+    snprintf(text, size, "increment %ld", f->increment);
+}
+
+static void draw_head(canvas *c, const sheet *s) {
+  const plot_frame *f = &s->panels[0].frame;
+  char text[256], when[64];
+  say_when(f, when, sizeof when);
+  snprintf(text, sizeof text, "%s%s%sdisplacements x %.6g", f->view, s->count > 1 ? "" : when,
+           s->count > 1 ? "" : ", ", f->factor);
+  double right = canvas_text_width(c, 19, text);
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text_within(c, MARGIN, 40, 24, WIDTH - 2 * MARGIN - right - 30, f->title);
+  canvas_text(c, WIDTH - MARGIN, 40, 19, ANCHOR_RIGHT, text);
+}
+
+static void draw_captions(canvas *c, const sheet *s) {
+  const double high = (s->high[1] - s->low[1]) * s->scale,
+               wide = (s->high[0] - s->low[0]) * s->scale;
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  for (int k = 0; k < s->count && s->count > 1; k++)
+    canvas_text_within(c, s->panels[k].origin_x, s->panels[k].origin_y - high - 10, 18, wide,
+                       s->panels[k].caption);
+}
+
+/* Arms of one length along x, y and z, as the body is seen; those toward the eye are left out. */
+static void draw_axes(canvas *c, const sheet *s) {
+  enum { ARM = 44 };
+  const plot_frame *f = &s->panels[0].frame;
+  const double x = MARGIN + 6, y = s->height - FOOT - 14;
+  if (f->dimensions != 3) return;
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  for (int k = 0; k < 3; k++) {
+    const double across = f->axes[k][0], up = f->axes[k][1];
+    if (pl_hypot(across, up) < 0.1) continue;
+    canvas_line(c, x, y, x + ARM * across, y - ARM * up, 2);
+    canvas_text(c, x + (ARM + 12) * across, y - (ARM + 12) * up + 6, 18, ANCHOR_CENTRE,
+                (char[]){"xyz"[k], 0});
+  }
+  canvas_text(c, x + 96, y, 18, ANCHOR_LEFT, f->extents);
+}
+
+static void draw_scale_bar(canvas *c, const sheet *s) {
+  double length = nice_step((WIDTH - 2 * MARGIN) / (s->scale * s->columns), 6), y = s->height - 34;
+  char text[64];
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_line(c, MARGIN, y, MARGIN + length * s->scale, y, 3);
+  snprintf(text, sizeof text, "%.6g mm", 1e3 * length);
+  canvas_text(c, MARGIN, y + 24, 18, ANCHOR_LEFT, text);
+}
+
+/* The classes that occur. */
+static void find_classes(const map *m, bool occurs[CLASSES]) {
+  for (long b = 0; b < m->frame.bonds; b++)
+    occurs[class_of_bond(m, b)] = true;
+  for (long p = 0; m->frame.of_damage && m->frame.values && p < m->frame.value_count; p++)
+    occurs[class_of(m->frame.values[p])] = true;
+}
+
+static void draw_damage_legend(canvas *c, const sheet *s) {
+  double x = WIDTH - MARGIN, y = s->height - 30;
+  bool occurs[CLASSES] = {s->panels[0].frame.bonds == 0};
+  for (int k = 0; k < s->count; k++)
+    find_classes(&s->panels[k], occurs);
+  for (int k = CLASSES - 1; k >= 0; k--) {
+    if (!occurs[k]) continue;
+    x -= canvas_text_width(c, 18, classes[k].text);
+    canvas_colour(c, (colour){0.1, 0.1, 0.1});
+    canvas_text(c, x, y, 18, ANCHOR_LEFT, classes[k].text);
+    x -= 36;
+    canvas_colour(c, classes[k].ink);
+    canvas_line(c, x, y - 6, x + 28, y - 6, k == 0 ? 4 : 5);
+    x -= 22;
+  }
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  canvas_text(c, x, y, 18, ANCHOR_RIGHT, s->panels[0].frame.damage_of);
+}
+
+static void draw_value_legend(canvas *c, const sheet *s, const plot_map_options *o, double low,
+                              double high) {
+  const plot_frame *f = &s->panels[0].frame;
+  double width = 360, x = WIDTH - MARGIN - width, y = s->height - 50, factor;
+  for (int k = 0; k < 180; k++) {
+    canvas_colour(c, shade(k / 179.0));
+    cairo_rectangle(c->cr, x + 2 * k, y, 2.5, 14);
+    cairo_fill(c->cr);
+  }
+  const char *shown = readable_unit(f->unit_text, pl_fmax(fabs(low), fabs(high)), &factor);
+  char text[256];
+  canvas_colour(c, (colour){0.1, 0.1, 0.1});
+  snprintf(text, sizeof text, "%.4g", low * factor);
+  canvas_text(c, x, y + 34, 18, ANCHOR_LEFT, text);
+  snprintf(text, sizeof text, "%.4g", high * factor);
+  canvas_text(c, x + width, y + 34, 18, ANCHOR_RIGHT, text);
+  const char *part = f->components == 1  ? ""
+                     : o->component == 0 ? " x"
+                     : o->component == 1 ? " y"
+                     : o->component == 2 ? " z"
+                                         : " (size)";
+  const bool pure = strcmp(shown, "1") == 0;
+  snprintf(text, sizeof text, "%s%s%s%s%s", o->field, part, pure ? "" : " [", pure ? "" : shown,
+           pure ? "" : "]");
+  canvas_text(c, x - 14, y + 13, 18, ANCHOR_RIGHT, text);
+}
+
+/* Least and largest value that is drawn; false when none is a number. */
+static bool range_of(const sheet *s, int component, double *low, double *high) {
+  *low = INFINITY;
+  *high = -INFINITY;
+  for (int n = 0; n < s->count; n++)
+    for (long k = 0; k < s->panels[n].frame.value_count; k++) {
+      const double v = plot_frame_value(&s->panels[n].frame, k, component);
+      if (!isfinite(v)) continue;
+      *low = pl_fmin(*low, v);
+      *high = pl_fmax(*high, v);
+    }
+  return *low <= *high;
+}
+
+static void draw_crack_legend(canvas *c, const sheet *s) {
+  const double x = MARGIN + 300, y = s->height - 34;
+  bool any = false;
+  for (int n = 0; n < s->count; n++)
+    for (long b = 0; b < s->panels[n].frame.bonds; b++)
+      any = any || is_separated(&s->panels[n], b);
+  if (!any) return;
+  canvas_colour(c, classes[SEPARATED].ink);
+  canvas_line(c, x, y, x + 28, y, 5);
+  canvas_text(c, x + 36, y + 6, 18, ANCHOR_LEFT, classes[SEPARATED].text);
+}
+
+/* --- the picture ------------------------------------------------------------------------------ */
+
+static void draw_field(canvas *c, const map *m, const plot_map_options *o, double low,
+                       double high) {
+  if (m->frame.of_bonds) draw_bond_values(c, m, o->component, low, high);
+  draw_particles(c, m, o->component, low, high);
+  if (m->frame.damage) draw_bonds(c, m, false);
+}
+
+static void draw_damage(canvas *c, const map *m, const plot_map_options *o) {
+  if (m->frame.damage) draw_bonds(c, m, true); /* damage of particles says nothing of bonds */
+  draw_particles(c, m, o->component, 0, 0);
+}
+
+static bool draw_sheet(sheet *s, const plot_map_options *o, char *error, size_t size) {
+  double low = 0, high = 0;
+  if (!fit_picture(s, error, size)) return false;
+  const bool measured = s->panels[0].frame.values && !s->panels[0].frame.of_damage;
+  if (measured && !range_of(s, o->component, &low, &high)) {
+    snprintf(error, size, "`%s` holds no finite value to draw", o->field);
+    return false;
+  }
+  canvas c;
+  if (!canvas_open(&c, o->output, WIDTH, s->height, error, size)) return false;
+  draw_head(&c, s);
+  draw_captions(&c, s);
+  draw_scale_bar(&c, s);
+  draw_axes(&c, s);
+  for (int k = 0; k < s->count; k++) {
+    if (measured)
+      draw_field(&c, &s->panels[k], o, low, high);
+    else
+      draw_damage(&c, &s->panels[k], o);
+    draw_marks(&c, &s->panels[k]);
+  }
+  if (measured) draw_crack_legend(&c, s);
+  if (measured)
+    draw_value_legend(&c, s, o, low, high);
+  else
+    draw_damage_legend(&c, s);
+  draw_mark_legend(&c, s, o->mark);
+  return canvas_close(&c, error, size);
+}
+
+/* All panels, with one factor. Their captions. */
+static bool read_panels(sheet *s, const char *path, const plot_map_options *o, double factor,
+                        char *error, size_t size) {
+  bool good = true;
+  for (int k = 0; good && k < s->count; k++) {
+    map *m = &s->panels[k];
+    plot_map_options one = *o;
+    if (o->frames) one.frame = o->frames[k];
+    one.factor = factor;
+    plot_frame_free(&m->frame);
+    good = plot_frame_read(&m->frame, path, &one, error, size);
+    if (o->captions)
+      snprintf(m->caption, sizeof m->caption, "%s", o->captions[k]);
+    else
+      say_when(&m->frame, m->caption, sizeof m->caption);
+  }
+  return good;
+}
+
+/* The smallest of the factors that the panels would have alone. */
+static double common_factor(const sheet *s) {
+  double least = INFINITY;
+  for (int k = 0; k < s->count; k++)
+    least = pl_fmin(least, s->panels[k].frame.factor);
+  return least;
+}
+
+bool plot_map(const char *path, const plot_map_options *o, char *error, size_t size) {
+  sheet s = {.count = o->frames ? o->frame_count : 1};
+  s.panels = must_calloc((size_t)s.count, sizeof *s.panels);
+  bool good = read_panels(&s, path, o, o->factor, error, size);
+  if (good && s.count > 1 && o->factor < 0)
+    good = read_panels(&s, path, o, common_factor(&s), error, size);
+  good = good && draw_sheet(&s, o, error, size);
+  for (int k = 0; k < s.count; k++)
+    plot_frame_free(&s.panels[k].frame);
+  free(s.panels);
+  return good;
+}

@@ -1,0 +1,26 @@
+/* What a result holds for programs of others, without a copy of the numbers: virtual data sets that
+   show fields as these want them. One unstructured grid has the particles at the beginning as its
+   points and the bonds as its cells, lines. Vectors have three components.
+
+     /VTKHDF                          for VTK's own reader, by the specification of VTKHDF 2.0: a
+                                      grid with steps, all frames of a field one behind the other
+     /xdmf/particles/<field>/<frame>  [N] or [N, 3], and
+     /xdmf/bonds/<field>/<frame>      [M]: a set for each frame, for the sidecar (xdmf.h)  */
+#ifndef PERILAT_RUNTIME_VIEWS_H
+#define PERILAT_RUNTIME_VIEWS_H
+
+#include <hdf5.h>
+
+#include "runtime/result/result.h"
+
+#define VIEWS_POINTS       "/VTKHDF/Points"       /* [N, 3] */
+#define VIEWS_CONNECTIVITY "/VTKHDF/Connectivity" /* [2 M] */
+
+/* After all else has been written. */
+bool views_write(hid_t file, const result_header *h, long frames);
+/* Components in the views: 1 or 3. */
+int views_components(const result_field *f);
+/* The name of the set that shows a frame of a field. */
+void views_frame_name(const result_field *f, long frame, char *name, size_t size);
+
+#endif

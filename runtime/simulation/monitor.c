@@ -1,0 +1,432 @@
+#include "runtime/simulation/monitor.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <strings.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/interaction/damage.h"
+#include "runtime/deck/deck_value.h"
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+static bool counts_damage(const deck_monitor *m) {
+  return m->kind == MONITOR_DAMAGED || m->kind == MONITOR_BROKEN;
+}
+
+static bool has_component(const deck_monitor *m) {
+  return !counts_damage(m) && m->kind != MONITOR_FIELD;
+}
+
+static const char *unit_of(const deck_monitor *m, int dimensions) {
+  const bool turns = m->component >= dimensions;
+  switch (m->kind) {
+  case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
+    return turns ? "N*m" : "N";
+  case MONITOR_VELOCITY:
+    return turns ? "rad/s" : "m/s";
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_OPENING:
+    return turns ? "rad" : "m";
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+  case MONITOR_FIELD: /* the law says */
+    break;
+  }
+  return "1";
+}
+
+static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
+  const int r = name ? deck_find_region(all->deck, name) : -1;
+  if (r < 0) return;
+  const region_sites *at = &all->loads->regions[r];
+  m->indices[list] = must_calloc((size_t)at->count + 1, sizeof(int32_t));
+  m->index_count[list] = at->count;
+  for (long p = 0; p < at->count; p++)
+    m->indices[list][p] = all->state->lattice->particle_site[at->particles[p]];
+}
+
+static void take_reactions(monitor *m, int list, const monitors *all, const char *name) {
+  const int r = name ? deck_find_region(all->deck, name) : -1;
+  if (r >= 0)
+    m->index_count[list] =
+        loads_constraints_of(all->loads, r, m->deck->component, &m->indices[list]);
+}
+
+static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
+  if (!has_component(m) || m->component < law->dof) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "component"),
+              "the particles of the law `%s` do not rotate", law->name);
+  return false;
+}
+
+static bool check_damage(const deck_monitor *m, const pl_law *law, diagnostics *d) {
+  if (!counts_damage(m) || damage_on_bonds(law) || damage_on_particles(law)) return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
+              "the law `%s` has no damage to count", law->name);
+  return false;
+}
+
+/* By its place among the law's fields, then outputs. */
+static const pl_field *law_field(const pl_law *law, int k) {
+  return k < law->field_count ? &law->fields[k] : &law->outputs[k - law->field_count];
+}
+
+static int find_field(const deck_monitor *m, const pl_law *law) {
+  for (int k = law->field_count + law->output_count - 1; k >= 0; k--) {
+    const pl_field *f = law_field(law, k);
+    if (f->place == PL_ON_PARTICLE && strcasecmp(f->name, m->field) == 0) return k;
+  }
+  return -1;
+}
+
+static bool check_field(const deck_monitor *m, const pl_law *law, diagnostics *d) {
+  if (m->kind != MONITOR_FIELD || find_field(m, law) >= 0) return true;
+  const int count = law->field_count + law->output_count;
+  const char **names = must_calloc((size_t)count + 1, sizeof *names);
+  int there = 0;
+  for (int k = 0; k < count; k++)
+    if (law_field(law, k)->place == PL_ON_PARTICLE) names[there++] = law_field(law, k)->name;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "field"),
+              "the law `%s` has no `%s` on particles", law->name, m->field);
+  deck_suggest(d, m->field, names, there, "a monitor can watch");
+  free(names);
+  return false;
+}
+
+bool monitors_check(const deck *k, const pl_law *law, diagnostics *d) {
+  bool good = true;
+  for (int i = 0; i < k->monitor_count; i++) {
+    const deck_monitor *m = &k->monitors[i];
+    good = check_component(m, law, d) && check_damage(m, law, d) && check_field(m, law, d) && good;
+  }
+  return good;
+}
+
+static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
+  static const double most = 1e8; /* values in a ring */
+  const double dt = all->interval, steps = m->deck->average / dt;
+  m->zero_step = m->deck->zero_at >= 0 ? lround(pl_fmin(m->deck->zero_at / dt, 9e15)) : -1;
+  m->window = 1;
+  if (counts_damage(m->deck) || m->deck->average <= 0) return true;
+  if (steps <= most) {
+    m->window = steps < 1 ? 1 : lround(steps);
+    return true;
+  }
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->deck->item, "average"),
+              "a mean over %.3g steps of %.3g s does not fit into memory", steps, dt);
+  return false;
+}
+
+static monitor_time when_known(const monitor *m, const monitors *all) {
+  const bool field = m->deck->kind == MONITOR_FIELD;
+  if (all->deck->relaxation.increments > 0 || (field && m->field >= all->state->law->field_count))
+    return KNOWN_WHEN_OBSERVED;
+  const bool reaction = m->deck->kind == MONITOR_REACTION || m->deck->kind == MONITOR_REACTIONS;
+  return field || reaction ? KNOWN_ONE_LATE : KNOWN_AFTER_STEP;
+}
+
+static void new_monitor(monitors *all, int index, diagnostics *d) {
+  const pl_law *law = all->state->law;
+  monitor *m = &all->items[index];
+  m->deck = &all->deck->monitors[index];
+  m->unit = unit_of(m->deck, all->state->dimensions);
+  m->window = 1;
+  if (!find_steps(m, all, d)) return;
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    take_reactions(m, 0, all, m->deck->region);
+    break;
+  case MONITOR_REACTIONS:
+    take_reactions(m, 0, all, m->deck->between[0]);
+    take_reactions(m, 1, all, m->deck->between[1]);
+    break;
+  case MONITOR_OPENING:
+    take_sites(m, 0, all, m->deck->between[0]);
+    take_sites(m, 1, all, m->deck->between[1]);
+    break;
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_VELOCITY:
+    take_sites(m, 0, all, m->deck->region);
+    break;
+  case MONITOR_FIELD:
+    m->field = find_field(m->deck, law);
+    m->unit = law_field(law, m->field)->unit;
+    take_sites(m, 0, all, m->deck->region);
+    break;
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  m->known = when_known(m, all);
+}
+
+monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
+                       double interval, diagnostics *d) {
+  const int before = d->errors;
+  monitors *m = must_calloc(1, sizeof *m);
+  *m = (monitors){.interval = interval,
+                  .count = k->monitor_count,
+                  .deck = k,
+                  .state = state,
+                  .loads = l,
+                  .bonds = bonds};
+  m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
+  for (int i = 0; i < m->count; i++) {
+    new_monitor(m, i, d);
+    m->ring_size += m->items[i].window;
+  }
+  if (d->errors > before) {
+    monitors_free(m);
+    return NULL;
+  }
+  m->values = must_calloc((size_t)state->lattice->size, sizeof(double));
+  m->ring_memory = must_calloc((size_t)m->ring_size + 1, sizeof(double));
+  double *at = m->ring_memory;
+  for (int i = 0; i < m->count; at += m->items[i].window, i++)
+    m->items[i].ring = at;
+  return m;
+}
+
+void monitors_free(monitors *m) {
+  if (!m) return;
+  for (int i = 0; i < m->count; i++) {
+    free(m->items[i].indices[0]);
+    free(m->items[i].indices[1]);
+  }
+  free(m->items);
+  free(m->values);
+  free(m->ring_memory);
+  free(m);
+}
+
+/* --- in words --------------------------------------------------------------------------------- */
+
+static char *component_words(const monitors *all, const monitor *m, const char *quantity,
+                             arena *a) {
+  const int c = m->deck->component, dimensions = all->state->dimensions;
+  return arena_printf(a, "%s %s %s", quantity, c < dimensions ? "along" : "in",
+                      deck_component_name(dimensions, c));
+}
+
+static char *difference_words(const monitors *all, const monitor *m, const char *quantity,
+                              arena *a) {
+  return arena_printf(a, "%s of `%s` less that of `%s`", component_words(all, m, quantity, a),
+                      m->deck->between[1], m->deck->between[0]);
+}
+
+static char *region_words(const monitors *all, const monitor *m, const char *quantity, arena *a) {
+  return arena_printf(a, "%s of `%s`", component_words(all, m, quantity, a), m->deck->region);
+}
+
+static char *count_words(const monitors *all, const monitor *m, arena *a) {
+  return arena_printf(a, "%s with %s %.6g",
+                      damage_on_bonds(all->state->law) ? "bonds" : "particles",
+                      m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
+                      m->deck->above);
+}
+
+static char *field_words(const monitors *all, const monitor *m, arena *a) {
+  const pl_field *f = law_field(all->state->law, m->field);
+  char *words = arena_printf(a, "mean `%s` of `%s`", f->name, m->deck->region);
+  return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
+}
+
+static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    return region_words(all, m, "reaction", a);
+  case MONITOR_REACTIONS:
+    return difference_words(all, m, "half the reaction", a);
+  case MONITOR_OPENING:
+    return difference_words(all, m, "mean displacement", a);
+  case MONITOR_DISPLACEMENT:
+    return region_words(all, m, "mean displacement", a);
+  case MONITOR_VELOCITY:
+    return region_words(all, m, "mean velocity", a);
+  case MONITOR_FIELD:
+    return field_words(all, m, a);
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  return count_words(all, m, a);
+}
+
+char *monitor_words(const monitors *all, int index, arena *a) {
+  const monitor *m = &all->items[index];
+  char *words = quantity_words(all, m, a);
+  if (m->window > 1) words = arena_printf(a, "%s, mean over %.6g s", words, m->deck->average);
+  if (m->zero_step >= 0)
+    words = arena_printf(a, "%s, less its value at %.6g s", words, m->deck->zero_at);
+  if (m->deck->scale < 1 || m->deck->scale > 1)
+    words = arena_printf(a, "%s, times %.6g", words, m->deck->scale);
+  return words;
+}
+
+/* --- values ----------------------------------------------------------------------------------- */
+
+static double mean_at(const double *values, const int32_t *sites, long count) {
+  double sum = 0;
+  for (long p = 0; p < count; p++)
+    sum += values[sites[p]];
+  return count ? sum / (double)count : 0;
+}
+
+static double reaction_sum(const monitors *all, const monitor *m, int list) {
+  double sum = 0;
+  for (long c = 0; c < m->index_count[list]; c++)
+    sum += all->loads->constraints[m->indices[list][c]].reaction;
+  return sum;
+}
+
+static bool is_counted(const monitor *m, double damage) {
+  return m->deck->kind == MONITOR_BROKEN ? damage >= m->deck->above : damage > m->deck->above;
+}
+
+/* Place by place: several times as fast as bond by bond. */
+static long count_in_places(const rows *g, const monitor *m, const double *damage) {
+  const bool broken = m->deck->kind == MONITOR_BROKEN;
+  const double above = m->deck->above;
+  long count = 0;
+  for (int k = 0; k < g->directions; k++, damage += g->size)
+    for (long q = 0; q < g->size; q++)
+      count += (long)(g->bonds[q] >> k & 1) & (broken ? damage[q] >= above : damage[q] > above);
+  return count;
+}
+
+/* Bonds, or particles where the law's damage is on particles alone. */
+static double count_damaged(const monitors *all, const monitor *m) {
+  const rows *g = all->state->lattice;
+  const bool bonds = damage_on_bonds(all->state->law);
+  const double *in_places = damage_of_all_bonds(all->state);
+  long count = 0;
+  if (in_places) return (double)count_in_places(g, m, in_places);
+  for (long b = 0; bonds && b < g->bond_count; b++)
+    count += is_counted(m, damage_of_bond(all->state, &all->bonds[b]));
+  for (long p = 0; !bonds && p < g->particle_count; p++)
+    count += is_counted(m, damage_of_site(all->state, g->particle_site[p]));
+  return (double)count;
+}
+
+/* Of a law's field or output on particles. */
+static double field_mean(const monitors *all, const monitor *m, double *const *fields) {
+  const int count = all->state->law->field_count;
+  const double *values = m->field < count ? fields[m->field] : all->values;
+  if (m->field >= count) sweep_output(all->state, m->field - count, all->values);
+  return mean_at(values, m->indices[0], m->index_count[0]);
+}
+
+static double velocity_mean(const monitors *all, const monitor *m, long step) {
+  double sum = 0;
+  for (long p = 0; p < m->index_count[0]; p++)
+    sum += loads_velocity(all->loads, all->state, m->deck->component, m->indices[0][p], step);
+  return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
+}
+
+/* A value at the instant of the state observed. */
+static double value_now(const monitors *all, const monitor *m, long step) {
+  const int c = m->deck->component;
+  switch (m->deck->kind) {
+  case MONITOR_REACTION:
+    return reaction_sum(all, m, 0);
+  case MONITOR_REACTIONS:
+    return 0.5 * (reaction_sum(all, m, 1) - reaction_sum(all, m, 0));
+  case MONITOR_DISPLACEMENT:
+    return mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+  case MONITOR_VELOCITY:
+    return velocity_mean(all, m, step);
+  case MONITOR_OPENING:
+    return mean_at(all->state->displacement[c], m->indices[1], m->index_count[1]) -
+           mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+  case MONITOR_FIELD:
+    return field_mean(all, m, all->state->new_field);
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+    break;
+  }
+  return count_damaged(all, m);
+}
+
+/* What a step has made known for a window: the velocity in it, the field of the state that it left; the same for all else. */
+static double value_of_step(const monitors *all, const monitor *m, long step) {
+  if (m->deck->kind == MONITOR_VELOCITY)
+    return mean_at(all->state->velocity[m->deck->component], m->indices[0], m->index_count[0]);
+  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, all->state->field);
+  return value_now(all, m, step);
+}
+
+/* --- windows ---------------------------------------------------------------------------------- */
+
+static void push(monitor *m, double value) {
+  m->ring[m->state.filled++ % m->window] = value;
+}
+
+/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the newest, so that a resumed run
+   sums in the same order. */
+static double mean_of_ring(const monitor *m, long most, const double *more) {
+  const int64_t count = m->state.filled < most ? m->state.filled : most;
+  double sum = 0;
+  for (int64_t k = m->state.filled - count; k < m->state.filled; k++)
+    sum += m->ring[k % m->window];
+  return more ? (sum + *more) / (double)(count + 1) : sum / (double)count;
+}
+
+static double averaged(const monitors *all, const monitor *m, long step) {
+  const bool late = m->known == KNOWN_ONE_LATE;
+  if (m->window > 1 && !late && m->state.filled > 0) return mean_of_ring(m, m->window, NULL);
+  const double now = value_now(all, m, step);
+  return m->window > 1 && late ? mean_of_ring(m, m->window - 1, &now) : now;
+}
+
+void monitors_step(monitors *all, long step) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    const bool of_state = m->known == KNOWN_AFTER_STEP && m->deck->kind != MONITOR_VELOCITY;
+    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED && (step > 0 || of_state))
+      push(m, value_of_step(all, m, step));
+  }
+}
+
+bool monitors_due(const monitors *all, long step) {
+  for (int i = 0; i < all->count; i++) {
+    const monitor *m = &all->items[i];
+    if (step == m->zero_step || (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED)) return true;
+  }
+  return false;
+}
+
+void monitors_look(monitors *all, long step, long position) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    if (m->window > 1 && m->known == KNOWN_WHEN_OBSERVED) push(m, value_now(all, m, step));
+    if (position == m->zero_step) m->state.zero = averaged(all, m, step);
+  }
+}
+
+void monitors_sample(monitors *all, long step, double time, double *values) {
+  for (int i = 0; i < all->count; i++) {
+    monitor *m = &all->items[i];
+    values[i] = m->deck->scale * (averaged(all, m, step) - m->state.zero);
+    if (fabs(values[i]) <= fabs(m->state.peak)) continue;
+    m->state.peak = values[i];
+    m->state.peak_time = time;
+  }
+}
+
+static bool applies(const monitors *all, const deck_stop *stop, double time, const double *values) {
+  const int i = deck_find_monitor(all->deck, stop->monitor);
+  if (i < 0 || time < stop->after) return false;
+  const double peak = fabs(all->items[i].state.peak), value = fabs(values[i]);
+  const double level = stop->of_peak ? stop->level * peak : stop->level;
+  if (stop->of_peak && peak == 0) return false;
+  return stop->below ? value < level : value > level;
+}
+
+int monitors_stop(const monitors *all, double time, const double *values) {
+  for (int i = 0; i < all->deck->stop_count; i++)
+    if (applies(all, &all->deck->stops[i], time, values)) return i;
+  return -1;
+}

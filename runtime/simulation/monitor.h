@@ -1,0 +1,75 @@
+/* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on particles; their running
+   means, zeros and peaks, and the &stop conditions on them. All values at a sample are of one instant: the state observed
+   (sweep.h).
+
+   A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
+   the states of the last `average` seconds, the present one included, or all there were so far; of velocities the steps that
+   led there, so that their mean is way over time. Counts are taken as they are. */
+#ifndef PERILAT_RUNTIME_MONITOR_H
+#define PERILAT_RUNTIME_MONITOR_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/deck/deck.h"
+#include "runtime/simulation/loads.h"
+#include "runtime/interaction/sweep.h"
+
+typedef struct monitor_state { /* what a later step depends on */
+  double zero;                 /* value subtracted */
+  double peak, peak_time;      /* largest absolute value sampled, its sign kept, and when */
+  int64_t filled;              /* values pushed since the start */
+} monitor_state;
+
+/* When a value for the window is known. */
+typedef enum monitor_time {
+  KNOWN_AFTER_STEP,   /* places, and velocities over the step */
+  KNOWN_ONE_LATE,     /* of the state that a step has left: reactions, fields */
+  KNOWN_WHEN_OBSERVED /* outputs; in quasi-static runs all */
+} monitor_time;
+
+typedef struct monitor {
+  const deck_monitor *deck;
+  const char *unit;
+  monitor_state state;
+  int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
+  long index_count[2];
+  int field;    /* of a field monitor: the law's field, or field_count + output */
+  double *ring; /* [window] the last values, value of push k at k % window */
+  long window;  /* steps; 1: no averaging */
+  monitor_time known;
+  long zero_step; /* -1: never */
+} monitor;
+
+typedef struct monitors {
+  double interval; /* s between two monitors_step */
+  monitor *items;
+  int count;
+  const deck *deck;
+  sweep *state;
+  const loads *loads;
+  const rows_bond *bonds; /* [lattice->bond_count], not owned */
+  double *values;         /* [size] an output while it is looked at */
+  double *ring_memory;    /* all rings in one */
+  long ring_size;
+} monitors;
+
+/* False with diagnostics where the deck watches what particles of the law do not have. */
+bool monitors_check(const deck *k, const pl_law *law, diagnostics *d);
+/* Of a deck that was checked. NULL with a diagnostic when a mean does not fit into memory. */
+monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
+                       double interval, diagnostics *d);
+void monitors_free(monitors *m);
+/* "reaction along y of `loader`, times -1, mean over 0.0001 s": what a monitor watches. */
+char *monitor_words(const monitors *m, int index, arena *a);
+
+/* In dynamic runs once at the start and after every step: into the windows what is known. */
+void monitors_step(monitors *m, long step);
+/* The state after that step is to be observed for a window or a zero. */
+bool monitors_due(const monitors *m, long step);
+/* The state after `step` steps was observed: windows and zeros. `position` counts steps, in quasi-static runs increments. */
+void monitors_look(monitors *m, long step, long position);
+/* Values of all monitors in the state observed; remembers peaks. */
+void monitors_sample(monitors *m, long step, double time, double *values);
+/* Which &stop of the deck is the first that applies to values just sampled; -1: none. */
+int monitors_stop(const monitors *m, double time, const double *values);
+
+#endif

@@ -1,0 +1,59 @@
+/* Quasi-static runs by dynamic relaxation: the loads are applied in increments of the deck's time;
+   within one all of them move on evenly for as long as a wave takes through the body and back, then stand
+   still until the body has come to rest. Time steps are those of dynamics; the inertia is a means.
+
+   Mass damping is chosen as they go (Underwood 1983): critical for the frequency of the motion since
+   the last look, omega^2 = -du df/(du m du) with the displacements u and the forces f of the bonds.
+   While the loads move, there is a tenth of it: the drag of the whole on a bar that is drawn out in
+   this time is pi/2 of the force that the increment needs, and breaks what would have held. The
+   ramp takes about a period, so that a bar without damping comes out of it at rest.
+
+   An increment is done when the unbalanced force, the root of the sum of squares over all components
+   that are not held, is at most `tolerance` times the same of the reactions, or of the forces and
+   weights applied if that is larger. What once was needed does not sink below a hundredth of its
+   largest value, so that a broken body comes to rest, too. Moments count over a spacing. */
+#ifndef PERILAT_RUNTIME_RELAXATION_H
+#define PERILAT_RUNTIME_RELAXATION_H
+
+#include "runtime/simulation/loads.h"
+#include "runtime/interaction/sweep.h"
+
+typedef struct relaxation_state { /* what a later step depends on */
+  int64_t done;                   /* increments */
+  int64_t unbalanced;             /* of these: ended after `most_steps` */
+  int64_t steps;                  /* of the last that was done */
+  double rate;                    /* 1/s: mass damping, critical for the motion looked at last */
+  double unbalance;               /* as it was looked at last */
+  double largest;                 /* N: the largest force that it was compared with */
+} relaxation_state;
+
+typedef struct relaxation {
+  relaxation_state state;
+  double *displacement[PL_MAX_DOF]; /* [size] at the last look */
+  double *force[PL_MAX_DOF];
+  double interval;    /* s of the deck's time in an increment */
+  long ramp;          /* steps */
+
+  /* own */
+  const deck_relaxation *deck;
+  sweep *sweep;
+  loads *loads;
+  double *total; /* [size] */
+} relaxation;
+
+/* Forces of the sweep must be kept. `part` of the largest stable step is taken. */
+relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part);
+void relaxation_free(relaxation *r);
+
+/* Before the first step. */
+void relaxation_begin(relaxation *r);
+/* The forces after that many steps should be observed and looked at. */
+bool relaxation_due(const relaxation *r, int64_t step);
+/* Looks at what was observed: damping of the coming steps; true when the increment is done. */
+bool relaxation_look(relaxation *r, int64_t step);
+/* The next increment begins. */
+void relaxation_next(relaxation *r, int64_t step);
+/* Clock of the loads in the increment that began after `first` steps. */
+load_clock relaxation_clock(const relaxation *r, int64_t first);
+
+#endif

@@ -1,0 +1,50 @@
+#!/usr/bin/env bash
+# Holds the sources to the list of rooms: every file stands in one, includes only its own room and those above it, and no room
+# is too full. Arguments: the source folder.
+set -euo pipefail
+list=$(dirname "$0")/rooms.txt
+
+# One line for each fault of the sources in folder $1.
+faults() {
+  (cd "$1" && grep -n '^#include "' -r dsl runtime generator --include='*.[chyl]' || true) | awk -v list="$list" '
+    function room_of(path) { sub(/\/[^\/]*$/, "", path); return path }
+    BEGIN {
+      while ((getline line <list) > 0) {
+        split(line, words, " ")
+        if (words[1] != "" && words[1] != "#") place[words[1]] = ++rooms
+      }
+    }
+    {
+      split($0, part, ":")
+      file = part[1]
+      here = room_of(file)
+      target = $0
+      sub(/^[^"]*"/, "", target)
+      sub(/".*/, "", target)
+      there = room_of(target)
+      at = file ":" part[2] ": "
+      if (!(here in place)) print at "`" here "` is no room: see tests/rooms/rooms.txt"
+      else if (!(there in place)) print at "`" target "` stands in no room: see tests/rooms/rooms.txt"
+      else if (place[there] > place[here])
+        print at "`" target "` stands in a room below `" here "`: a file includes its own room and those above it in tests/rooms/rooms.txt"
+    }'
+  (cd "$1" && find dsl runtime generator -name '*.[chyl]') | sed 's/\.[chyl]$//' | sort -u | sed 's/\/[^/]*$//' | sort | uniq -c |
+    awk '$1 > 20 { print $2 ": " $1 " modules; a room holds 20" }'
+}
+
+sources=$1
+found=$(faults "$sources")
+[ -z "$found" ] || { echo "$found"; exit 1; }
+
+# The check sees what it is for.
+work=$(mktemp -d "${TMPDIR:-/tmp}/perilat_rooms.XXXXXX")
+trap 'rm -rf "$work"' EXIT
+mkdir -p "$work/dsl/base" "$work/runtime/deck" "$work/generator/attic"
+echo '#include "runtime/deck/deck.h"' >"$work/dsl/base/arena.c"
+echo '#include "dsl/base/arena.h"' >"$work/runtime/deck/deck.c"
+echo '#include "dsl/base/arena.h"' >"$work/generator/attic/old.c"
+for k in $(seq 21); do : >"$work/runtime/deck/m$k.c"; done
+planted=$(faults "$work")
+[ "$(echo "$planted" | wc -l)" = 3 ] && grep -q 'dsl/base/arena.c:1: .*below' <<<"$planted" && grep -q attic <<<"$planted" &&
+  grep -q 'runtime/deck: 22 modules' <<<"$planted" || { echo "planted faults are not seen:"; echo "$planted"; exit 1; }
+echo "all files stand in their rooms"
