@@ -226,9 +226,21 @@ static void locate_sample(finding *f, const time_axis *x, const double *a, const
            f->values[1]);
 }
 
+/* A series that is not checked in one of the results says nothing about the other's. */
+static bool is_checked(comparison_run *c, const char *name) {
+  char why[2][256];
+  for (int k = 0; k < 2; k++)
+    result_read_unchecked(c->files[k], name, why[k], sizeof why[k]);
+  if (!*why[0] == !*why[1]) return !*why[0];
+  report_unlike(c, name, "not checked in %s: %s", c->request->results[!*why[0]],
+                name_shown(why[!*why[0]]));
+  return false;
+}
+
 static void compare_history(comparison_run *c, const time_axis *x, const char *name,
                             double energy) {
   char error[1024];
+  if (!is_checked(c, name)) return;
   table_values a, b = {.values = NULL};
   const bool good = table_read(c->files[0], name, -1, &a, error, sizeof error) &&
                     table_read(c->files[1], name, -1, &b, error, sizeof error);

@@ -30,7 +30,6 @@ enum { STOPPING_SIGNALS = sizeof stopping_signals / sizeof *stopping_signals };
 
 static void catch_signals(struct sigaction before[STOPPING_SIGNALS]) {
   interrupted = 0;
-  signal(SIGPIPE, SIG_IGN); /* a run outlives the program that reads what it says */
   for (int k = 0; k < STOPPING_SIGNALS; k++) {
     struct sigaction action = {.sa_handler = on_interrupt, .sa_flags = SA_RESTART};
     sigaction(stopping_signals[k], NULL, &before[k]);
@@ -210,8 +209,12 @@ static void give_up_writing(run *r, step_status status) {
             "  the run is kept in its checkpoint at %s: make room, then go on with --resume:\n",
             moment(r, r->kept_time, text));
     print_resume(r, stderr);
-  } else if (!r->is_kept)
+  } else if (!r->is_kept) {
+    fputs("  nothing is kept of this run: it has no checkpoint to go on from (&checkpoint "
+          "interval)\n",
+          stderr);
     result_discard(r->result);
+  }
 }
 
 /* A run that was asked to stop. Without its last checkpoint it has not stopped as it should. */
@@ -298,8 +301,9 @@ static bool check_kernels(const run *r) {
 static bool has_checkpoint(const run *r) {
   if (access(r->checkpoint_path, F_OK) == 0) return true;
   say_error("cannot resume: there is no checkpoint `%s`\n"
-            "  a run leaves one when it is stopped or killed; run without --resume",
-            r->checkpoint_path);
+            "  a run leaves one when it is stopped, and writes one after %d s or the interval of "
+            "&checkpoint, the shorter; run without --resume",
+            r->checkpoint_path, EARLY_CHECKPOINT);
   return false;
 }
 
@@ -315,11 +319,14 @@ static int start(run *r) {
 int run_deck(const run_options *o) {
   run r = {.options = o, .memory = arena_new(), .ending = "failed"};
   diag_begin(&r.said, &r.sources);
+  signal(SIGPIPE, SIG_IGN); /* a run outlives the program that reads what it says */
   time_t now = time(NULL);
   struct tm utc;
   strftime(r.started, sizeof r.started, "%Y-%m-%dT%H:%M:%SZ", gmtime_r(&now, &utc));
   int status = set_up(&r);
   tell_all(&r);
+  if (!o->report && !status && !o->check_only)
+    diag_print_topics(stderr); /* of these messages, not of the run's */
   if (o->report && !o->check_only) diag_json_end(o->report, status == 0);
   if (!status) {
     if (!o->report || !o->check_only) announce(&r);

@@ -33,9 +33,18 @@ static void label_of(const char *path, char *label, size_t size) {
   snprintf(label, size, "%.*s", (int)(dot ? dot - name : (long)strlen(name)), name);
 }
 
+/* A series that says nothing, and why, is no curve. */
+static bool is_checked(result_file *f, const char *name, char *error, size_t size) {
+  char why[256];
+  result_read_unchecked(f, name, why, sizeof why);
+  if (*why) snprintf(error, size, "`%s` is not checked: %s", name, name_shown(why));
+  return !*why;
+}
+
 static bool read_curve(result_file *f, const char *x, const char *y, curve *c, char *x_unit,
                        char *y_unit, char *error, size_t size) {
   long count_y = 0;
+  if (!is_checked(f, x, error, size) || !is_checked(f, y, error, size)) return false;
   c->x = result_read_series(f, x, &c->count, x_unit, 64, error, size);
   c->y = c->x ? result_read_series(f, y, &count_y, y_unit, 64, error, size) : NULL;
   if (c->x && c->y && count_y < c->count) c->count = count_y;
@@ -249,8 +258,8 @@ static bool units_fit(curve_set *s, int from, const char *y, const char *x_unit,
     snprintf(error, size,
              "`%s` of `%s` is %s%s, but `%s` of `%s` is %s%s; curves of one picture have one unit",
              y, s->results[from], unit_is_pure(y_unit) ? "" : "in ",
-             unit_is_pure(y_unit) ? "a pure number" : name_shown(y_unit), s->o->ys[0], s->results[0],
-             unit_is_pure(s->y_unit) ? "" : "in ",
+             unit_is_pure(y_unit) ? "a pure number" : name_shown(y_unit), s->o->ys[0],
+             s->results[0], unit_is_pure(s->y_unit) ? "" : "in ",
              unit_is_pure(s->y_unit) ? "a pure number" : name_shown(s->y_unit));
   else
     return true;

@@ -336,9 +336,8 @@ bool result_find(result_file *f, const char *group, const char *given, char *nam
 /* --- values ----------------------------------------------------------------------------------- */
 
 void result_read_unchecked(result_file *f, const char *name, char *why, size_t size) {
-  char path[512];
-  snprintf(path, sizeof path, "/history/%.500s", name);
-  hid_t set = open_set(f, path);
+  char error[2048];
+  hid_t set = open_named(f, "/history", name, error, sizeof error);
   if (size > 0) *why = 0;
   if (set < 0) return;
   h5_read_attribute_text(set, "unchecked", why, size);

@@ -19,8 +19,9 @@ typedef struct variant { /* what sets a result apart */
   double load_at_3, energy_at_2, displacement, end, first_x;
   int samples;
   const char *lattice;
+  const char *unchecked; /* why the imbalance says nothing; NULL: there is none of it */
 } variant;
-static const variant plain = {0, 0, 0, 1, 0, SAMPLES, "concrete"};
+static const variant plain = {0, 0, 0, 1, 0, SAMPLES, "concrete", NULL};
 
 static char error[512];
 
@@ -56,8 +57,14 @@ static void make_result(const workplace *w, const char *name, variant v) {
   }
   const result_series series[] = {{.name = "load", .unit = "N", .values = load},
                                   {.name = "energy/kinetic", .unit = "J", .values = kinetic},
-                                  {.name = "energy/external", .unit = "J", .values = external}};
-  assert_true(small_finish(r, time, v.samples, series, 3, error, sizeof error));
+                                  {.name = "energy/external", .unit = "J", .values = external},
+                                  {.name = "energy/imbalance",
+                                   .unit = "J",
+                                   .values = kinetic,
+                                   .judges = true,
+                                   .unchecked = v.unchecked && *v.unchecked ? v.unchecked : NULL}};
+  const int count = v.unchecked ? 4 : 3;
+  assert_true(small_finish(r, time, v.samples, series, count, error, sizeof error));
   result_discard(r);
   result_close(r);
 }
@@ -134,6 +141,25 @@ static void not_a_number_is_a_difference(void **state) {
   expect(w, "compare a.h5 b.h5 --tolerance 1e9", 2, "* load [N]");
   make_result(w, "a.h5", v);
   expect(w, "compare a.h5 b.h5", 0, "same");
+}
+
+/* Series that judge a run, but do not where nobody can: no agreement follows from that. */
+static void what_is_not_checked_is_neither_same_nor_a_curve(void **state) {
+  workplace *w = *state;
+  variant v = plain;
+  v.unchecked = "";
+  make_result(w, "checked.h5", v);
+  v.unchecked = "the law has no energy";
+  make_result(w, "a.h5", v);
+  make_result(w, "b.h5", v);
+  expect(w, "compare a.h5 b.h5", 0, "same: 5 quantities");
+  expect(w, "compare checked.h5 checked.h5", 0, "same: 6 quantities");
+  expect(w, "compare checked.h5 a.h5", 2, "energy/imbalance");
+  assert_non_null(strstr(w->said, "not checked in a.h5: the law has no energy"));
+  expect(w, "compare a.h5 checked.h5", 2, "not checked in a.h5: the law has no energy");
+  expect(w, "plot a.h5 --y energy/imbalance -o p.png", 1, "is not checked: the law has no energy");
+  expect(w, "plot checked.h5 a.h5 --y imbalance -o p.png", 1, "the law has no energy");
+  expect(w, "plot checked.h5 --y imbalance -o p.png", 0, "");
 }
 
 static void other_particles_have_no_common_frames(void **state) {
@@ -260,6 +286,7 @@ int main(void) {
       ONE(fields_differ_where_and_by_what),
       ONE(samples_at_other_times),
       ONE(not_a_number_is_a_difference),
+      ONE(what_is_not_checked_is_neither_same_nor_a_curve),
       ONE(other_particles_have_no_common_frames),
       ONE(wrong_input_of_compare),
       ONE(history_as_table),
