@@ -263,10 +263,6 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
     else
       o->file = argv[at++];
   }
-  if (!bad && o->builtins && o->json) {
-    say_error("--json is for laws and results");
-    bad = 1;
-  }
   if (bad == 2 || (!bad && !o->file == !o->builtins)) {
     say_error("`perilat info` takes one law, deck or result, or --builtins");
     return false;
