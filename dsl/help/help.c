@@ -2,8 +2,8 @@
 
 #include <string.h>
 
-#include "dsl/semantics/builtins.h"
 #include "dsl/base/units.h"
+#include "dsl/semantics/builtins.h"
 
 /* X(code, line of a law) */
 #define FUNCTION_EXAMPLES(X)                                                                       \

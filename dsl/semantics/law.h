@@ -3,9 +3,9 @@
 #ifndef PERILAT_DSL_LAW_H
 #define PERILAT_DSL_LAW_H
 
-#include "dsl/semantics/builtins.h"
 #include "dsl/base/c_linkage.h"
 #include "dsl/base/diagnostics.h"
+#include "dsl/semantics/builtins.h"
 #include "dsl/syntax/tree.h"
 
 C_LINKAGE_BEGIN

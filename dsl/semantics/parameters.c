@@ -2,10 +2,10 @@
 #include <math.h>
 #include <string.h>
 
-#include "dsl/semantics/check.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
 #include "dsl/base/unit_hint.h"
+#include "dsl/semantics/check.h"
 
 /* --- units ------------------------------------------------------------------------------------ */
 

@@ -6,10 +6,10 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/interpreter/comparison.h"
-#include "generator/lower/law_inputs.h"
 #include "generator/check/physics_parameters.h"
+#include "generator/interpreter/comparison.h"
 #include "generator/ir/random_values.h"
+#include "generator/lower/law_inputs.h"
 #include "runtime/analysis/implied.h"
 
 /* --- probes ----------------------------------------------------------------------------------- */

@@ -4,9 +4,9 @@
 #ifndef PERILAT_GENERATOR_PHYSICS_BENCH_H
 #define PERILAT_GENERATOR_PHYSICS_BENCH_H
 
+#include "generator/check/physics.h"
 #include "generator/ir/interpret.h"
 #include "generator/lower/lower.h"
-#include "generator/check/physics.h"
 
 enum {
   BENCH_LANES = INTERPRET_LANES,

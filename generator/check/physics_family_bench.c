@@ -6,8 +6,8 @@
 #include "dsl/base/arena.h"
 #include "generator/check/physics_family_parts.h"
 #include "generator/check/physics_parameters.h"
-#include "generator/plan/plan_parts.h"
 #include "generator/ir/random_values.h"
+#include "generator/plan/plan_parts.h"
 #include "runtime/analysis/implied.h"
 
 /* --- plans ------------------------------------------------------------------------------------ */

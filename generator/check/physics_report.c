@@ -4,9 +4,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/lower/law_inputs.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/check/physics_parts.h"
+#include "generator/lower/law_inputs.h"
 
 const char *const physics_force_names[FORCE_COUNT] = {"N", "M_i", "M_j"};
 const char *const physics_force_units[FORCE_COUNT] = {"N", "N*m", "N*m"};

@@ -4,12 +4,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/emit/c_text.h"
-#include "generator/command/commands.h"
-#include "generator/kernel/document.h"
-#include "generator/drive/drive.h"
-#include "generator/kernel/model.h"
 #include "generator/check/physics.h"
+#include "generator/command/commands.h"
+#include "generator/drive/drive.h"
+#include "generator/emit/c_text.h"
+#include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
 #include "generator/run/run.h"
 
 #define ERROR_LENGTH 8192

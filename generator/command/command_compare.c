@@ -12,9 +12,9 @@
 #include "dsl/base/characters.h"
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
-#include "generator/results/compare_curve.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/results/compare_curve.h"
 #include "generator/results/result_table.h"
 #include "runtime/deck/text_table.h"
 

@@ -7,11 +7,11 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
 #include "generator/drive/drive.h"
 #include "generator/drive/explain_bad.h"
-#include "generator/run/run.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/settings.h"
+#include "generator/run/run.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
 enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };

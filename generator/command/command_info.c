@@ -7,13 +7,13 @@
 #include "dsl/base/characters.h"
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
-#include "generator/drive/drive.h"
 #include "generator/command/info_law.h"
+#include "generator/drive/drive.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/standard_input.h"
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
-#include "generator/kernel/standard_input.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 

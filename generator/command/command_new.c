@@ -5,11 +5,11 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "generator/emit/c_text.h"
 #include "generator/command/commands.h"
+#include "generator/command/templates.h"
+#include "generator/emit/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
-#include "generator/command/templates.h"
 
 enum {
   INPUT_WRONG = 1,

@@ -9,11 +9,11 @@
 #include "dsl/base/arena.h"
 #include "generator/command/commands.h"
 #include "generator/kernel/document.h"
+#include "generator/kernel/model.h"
 #include "generator/results/frame_choice.h"
 #include "generator/results/measured.h"
-#include "generator/kernel/model.h"
-#include "runtime/plot/plot.h"
 #include "runtime/base/quantity.h"
+#include "runtime/plot/plot.h"
 
 /* --data, with the --band of two of its columns; --line; --band of two values. */
 typedef struct beside_request {

@@ -5,15 +5,15 @@
 #include <string.h>
 
 #include "dsl/base/terminal.h"
+#include "generator/check/physics.h"
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
 #include "generator/drive/drive.h"
 #include "generator/ir/interval.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
-#include "generator/plan/passes.h"
-#include "generator/check/physics.h"
-#include "generator/run/run.h"
 #include "generator/kernel/settings.h"
+#include "generator/plan/passes.h"
+#include "generator/run/run.h"
 #include "runtime/simulation/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */

@@ -6,13 +6,13 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/base/terminal.h"
+#include "dsl/help/help.h"
 #include "dsl/print/explain.h"
 #include "dsl/print/format.h"
-#include "dsl/help/help.h"
-#include "dsl/base/terminal.h"
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
 #include "generator/drive/drive.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"
 #include "runtime/deck/deck_table.h"

@@ -5,8 +5,8 @@
 #include <string.h>
 
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
 #include "generator/command/manual.h"
+#include "generator/kernel/document.h"
 
 enum { WRITE_FAILED = 2 };
 

@@ -9,13 +9,13 @@
 
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/settings.h"
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
-#include "generator/kernel/settings.h"
-#include "runtime/deck/deck_value.h"
 #include "runtime/analysis/implied.h"
-#include "runtime/simulation/simulation.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/simulation/simulation.h"
 
 static const char *const law_kinds[] = {"central bond", "micropolar bond", "state"};
 

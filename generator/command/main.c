@@ -6,8 +6,8 @@
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/terminal.h"
 #include "generator/command/commands.h"
-#include "generator/kernel/document.h"
 #include "generator/command/manual.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/version.h"
 
 /* In the order of `command_table`. */

@@ -6,8 +6,8 @@
 #include <strings.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/kernel/document.h"
 #include "generator/drive/drive.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/settings.h"
 #include "runtime/deck/deck_load.h"
 #include "runtime/deck/deck_set.h"

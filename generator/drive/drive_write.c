@@ -9,10 +9,10 @@
 #include "dsl/base/terminal.h"
 #include "generator/drive/drive.h"
 #include "generator/kernel/version.h"
-#include "runtime/result/hdf5_tools.h"
-#include "runtime/plot/plot.h"
-#include "runtime/result/sealed_file.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/plot/plot.h"
+#include "runtime/result/hdf5_tools.h"
+#include "runtime/result/sealed_file.h"
 
 static void heading(const drive_column *c, char *text, size_t size) {
   if (unit_is_pure(c->unit))

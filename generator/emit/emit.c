@@ -6,8 +6,8 @@
 
 #include "dsl/base/arena.h"
 #include "generator/emit/emit_parts.h"
-#include "generator/lower/law_inputs.h"
 #include "generator/emit/prelude.h"
+#include "generator/lower/law_inputs.h"
 
 #define LONGEST_INLINE                                                                             \
   6 /* operations written into one expression before it is broken into lines                       \

@@ -4,8 +4,8 @@
 #define PERILAT_GENERATOR_EMIT_PARTS_H
 
 #include "generator/emit/c_text.h"
-#include "generator/plan/passes.h"
 #include "generator/emit/kernel_parts.h"
+#include "generator/plan/passes.h"
 
 /* The functions differ in where inputs come from and in how the loop, if any, runs. */
 typedef enum scope_kind {

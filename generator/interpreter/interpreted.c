@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "dsl/base/arena.h"
-#include "generator/ir/interpret.h"
 #include "generator/interpreter/interpreted_family.h"
+#include "generator/ir/interpret.h"
 #include "generator/lower/law_inputs.h"
 #include "generator/plan/passes.h"
 

@@ -5,10 +5,10 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/ir/interval.h"
+#include "generator/check/physics_bench.h"
 #include "generator/intervals/interval_parts.h"
 #include "generator/intervals/interval_sums.h"
-#include "generator/check/physics_bench.h"
+#include "generator/ir/interval.h"
 
 enum {
   MOST_CONTEXTS = 600,

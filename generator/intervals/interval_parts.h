@@ -2,8 +2,8 @@
 #ifndef PERILAT_GENERATOR_INTERVAL_PARTS_H
 #define PERILAT_GENERATOR_INTERVAL_PARTS_H
 
-#include "generator/ir/interval.h"
 #include "generator/check/physics_bench.h"
+#include "generator/ir/interval.h"
 
 typedef enum interval_wish {
   WISH_ZERO,

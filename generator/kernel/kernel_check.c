@@ -5,11 +5,11 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/kernel/document.h"
 #include "generator/interpreter/guard_watch.h"
+#include "generator/ir/random_values.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/kernel_check_families.h"
 #include "generator/kernel/kernel_check_strips.h"
-#include "generator/ir/random_values.h"
 
 enum { BATCH = 1024, STATES_PER_BOND = 4 };
 

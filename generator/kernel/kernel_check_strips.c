@@ -8,8 +8,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/plan/passes.h"
 #include "generator/ir/random_values.h"
+#include "generator/plan/passes.h"
 
 enum {
   SITES = 1024,

@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "dsl/syntax/parse.h"
-#include "generator/kernel/document.h"
 #include "generator/emit/emit.h"
+#include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/ordinary_file.h"

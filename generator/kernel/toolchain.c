@@ -16,8 +16,8 @@
 #include <unistd.h>
 
 #include "dsl/base/arena.h"
-#include "generator/emit/kernel_parts.h"
 #include "dsl/base/sha256.h"
+#include "generator/emit/kernel_parts.h"
 
 extern char **environ;
 

@@ -3,9 +3,9 @@
 #ifndef PERILAT_GENERATOR_LAW_INPUTS_H
 #define PERILAT_GENERATOR_LAW_INPUTS_H
 
-#include "generator/ir/interpret.h"
 #include "dsl/semantics/builtins.h"
 #include "dsl/semantics/law.h"
+#include "generator/ir/interpret.h"
 #include "runtime/kernel.h"
 
 /* Quantities of a bond's motion, in the order of the planes of pl_law's `states`; the tangent is by

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/lower/kinematics.h"
 #include "generator/ir/rewrite.h"
+#include "generator/lower/kinematics.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
 

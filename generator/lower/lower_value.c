@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "dsl/base/hash.h"
+#include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
 #include "generator/lower/law_inputs.h"
-#include "generator/ir/rewrite.h"
 
 ir_node lower_fail(lowering *c, span where, const char *what) {
   if (!c->failed) diag_report(c->said, DIAG_NOT_SUPPORTED, where, "%s", what);

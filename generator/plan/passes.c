@@ -5,9 +5,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
 #include "generator/plan/plan_parts.h"
-#include "generator/ir/rewrite.h"
 
 static const char *const pass_names[PASS_COUNT] = {
 #define X(pass, member, task) [pass] = #member,

@@ -3,10 +3,10 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
 #include "generator/plan/particle_parts.h"
 #include "generator/plan/plan_parts.h"
-#include "generator/ir/rewrite.h"
 
 typedef struct family_planner {
   kernel_plan *plan;

@@ -4,8 +4,8 @@
 #include <string.h>
 
 #include "dsl/semantics/builtins.h"
-#include "generator/lower/kinematics.h"
 #include "generator/ir/rewrite.h"
+#include "generator/lower/kinematics.h"
 
 /* The same operation of other operands, with the name of the first. */
 static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/results/curve_gap.h"
 #include "generator/kernel/document.h"
+#include "generator/results/curve_gap.h"
 #include "generator/results/measured.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot.h"

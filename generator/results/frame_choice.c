@@ -10,9 +10,9 @@
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
 #include "generator/kernel/document.h"
+#include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot.h"
-#include "runtime/base/quantity.h"
 #include "runtime/result/result.h"
 
 enum { VALUE_TEXT = 64, CAPTION_TEXT = 128 };

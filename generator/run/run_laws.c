@@ -7,8 +7,8 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/syntax/parse.h"
-#include "generator/kernel/document.h"
 #include "generator/check/physics.h"
+#include "generator/kernel/document.h"
 #include "generator/run/run_parts.h"
 #include "runtime/deck/bravais.h"
 

@@ -4,8 +4,8 @@
 #define PERILAT_GENERATOR_RUN_PARTS_H
 
 #include "generator/run/run.h"
-#include "runtime/simulation/profile.h"
 #include "runtime/result/result.h"
+#include "runtime/simulation/profile.h"
 #include "runtime/simulation/simulation.h"
 
 enum { INPUT_WRONG = 1, RUN_FAILED = 2, ERROR_LENGTH = 1024 };

@@ -4,15 +4,15 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/run/bad_bond.h"
-#include "generator/kernel/document.h"
 #include "generator/drive/explain_bad.h"
+#include "generator/kernel/document.h"
+#include "generator/run/bad_bond.h"
 #include "generator/run/run_parts.h"
-#include "runtime/simulation/checkpoint.h"
 #include "runtime/analysis/implied.h"
+#include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/random_field.h"
-#include "runtime/analysis/uniform_strain.h"
+#include "runtime/simulation/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 

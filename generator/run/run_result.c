@@ -9,10 +9,10 @@
 #include "dsl/base/hash.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
-#include "generator/run/run_parts.h"
 #include "generator/kernel/version.h"
-#include "runtime/lattice/shape_matrix.h"
+#include "generator/run/run_parts.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/lattice/shape_matrix.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 

@@ -6,9 +6,9 @@
 #ifndef PERILAT_RUNTIME_BODY_LIMIT_H
 #define PERILAT_RUNTIME_BODY_LIMIT_H
 
+#include "runtime/analysis/step_limit.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/analysis/step_limit.h"
 
 /* Of the largest eigenvalue, a frequency's square. */
 #define BODY_ACCURACY 1e-3

@@ -6,9 +6,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/waves.h"
 #include "runtime/interaction/family.h"
 #include "runtime/lattice/shape_matrix.h"
-#include "runtime/analysis/waves.h"
 
 static const double nominal_step = 1e-9; /* s; what a step is to a law at rest */
 

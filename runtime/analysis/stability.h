@@ -10,10 +10,10 @@
 #ifndef PERILAT_RUNTIME_STABILITY_H
 #define PERILAT_RUNTIME_STABILITY_H
 
+#include "runtime/analysis/step_limit.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/analysis/step_limit.h"
 
 /* Fills limit, omega_max, damping_ratio, mode as waves_limit does, and at_surface and least. The
    masses of w must be set. `fields` (NULL: none): parameters that differ from bond to bond; the

@@ -6,8 +6,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/lattice/shape_matrix.h"
 #include "runtime/interaction/sweep_parts.h"
+#include "runtime/lattice/shape_matrix.h"
 
 /* LAPACK: solves a system of linear equations. */
 void dgesv_(const int *n, const int *columns, double *a, const int *lda, int *pivot, double *b,

@@ -5,8 +5,8 @@
 #ifndef PERILAT_RUNTIME_WAVES_H
 #define PERILAT_RUNTIME_WAVES_H
 
-#include "runtime/lattice/rows.h"
 #include "runtime/analysis/step_limit.h"
+#include "runtime/lattice/rows.h"
 
 enum { WAVES_MOST_DOF = 3 };
 

@@ -12,8 +12,8 @@
 #include "dsl/base/c_linkage.h"
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/units.h"
-#include "runtime/geometry/shape.h"
 #include "runtime/deck/time_function.h"
+#include "runtime/geometry/shape.h"
 
 C_LINKAGE_BEGIN
 

@@ -6,8 +6,8 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/base/clock.h"
-#include "runtime/interaction/sweep_parts.h"
 #include "runtime/base/team.h"
+#include "runtime/interaction/sweep_parts.h"
 
 enum {
   DIRECTIONS = 3,       /* of a law of bonds */

@@ -10,8 +10,8 @@
 #ifndef PERILAT_RUNTIME_SWEEP_H
 #define PERILAT_RUNTIME_SWEEP_H
 
-#include "runtime/kernel.h"
 #include "runtime/base/pool.h"
+#include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
 
 enum { SWEEP_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */

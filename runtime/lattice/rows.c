@@ -8,9 +8,9 @@
 #include "dsl/base/elementary.h"
 #include "dsl/base/hash.h"
 #include "runtime/geometry/neighbour_search.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/scattered.h"
-#include "runtime/geometry/shape.h"
 #include "runtime/particles/site_marks.h"
 
 #define CHORD_TOLERANCE 1e-9 /* spacings: a chord must enter a notch deeper than this to be cut */

@@ -6,12 +6,12 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/lattice/bond_numbers.h"
 #include "runtime/geometry/hilbert.h"
-#include "runtime/particles/particle_set.h"
-#include "runtime/lattice/rows_parts.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/lattice/bond_numbers.h"
+#include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/particles/particle_set.h"
 #include "runtime/particles/site_marks.h"
 
 enum { ROW_SITES = 512, PITCH = ROW_SITES + PL_LANES };

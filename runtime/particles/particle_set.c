@@ -6,9 +6,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/particles/blue_noise.h"
 #include "runtime/particles/particle_table.h"
-#include "runtime/geometry/shape.h"
 #include "runtime/particles/site_marks.h"
 #include "runtime/particles/solid.h"
 #include "runtime/particles/voronoi.h"

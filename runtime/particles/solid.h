@@ -5,8 +5,8 @@
 
 #include <stdbool.h>
 
-#include "runtime/geometry/cell.h"
 #include "runtime/deck/deck.h"
+#include "runtime/geometry/cell.h"
 
 typedef struct solid {
   int dimensions;

@@ -7,8 +7,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/plot/canvas.h"
 #include "runtime/base/quantity.h"
+#include "runtime/plot/canvas.h"
 #include "runtime/result/result.h"
 
 /* --- reading ---------------------------------------------------------------------------------- */

@@ -5,10 +5,10 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/base/whole_file.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/sealed_file.h"
 #include "runtime/result/views.h"
-#include "runtime/base/whole_file.h"
 #include "runtime/result/xdmf.h"
 
 struct result {

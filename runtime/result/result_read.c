@@ -11,8 +11,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/characters.h"
 #include "dsl/base/diagnostics.h"
-#include "runtime/result/hdf5_tools.h"
 #include "runtime/base/ordinary_file.h"
+#include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result.h"
 #include "runtime/result/sealed_file.h"
 

@@ -19,8 +19,8 @@
 
 #include <stdbool.h>
 
-#include "runtime/simulation/loads.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/loads.h"
 
 /* X(code, name, words) in the order of the history; all in J */
 #define LEDGER_TERMS(X)                                                                            \

@@ -22,8 +22,8 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
-#include "runtime/lattice/rows.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/lattice/rows.h"
 
 typedef struct load_sums { /* J, since the start */
   double work; /* done by applied forces up to now and by reactions up to the last half step */

@@ -6,8 +6,8 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/interaction/damage.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/interaction/damage.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 

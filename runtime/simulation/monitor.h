@@ -10,8 +10,8 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
-#include "runtime/simulation/loads.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/loads.h"
 
 typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */

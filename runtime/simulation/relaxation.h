@@ -15,8 +15,8 @@
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
-#include "runtime/simulation/loads.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/loads.h"
 
 typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */

@@ -8,8 +8,8 @@
 #include <strings.h>
 
 #include "dsl/base/elementary.h"
-#include "runtime/base/clock.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/base/clock.h"
 
 /* --- set-up: mass and step -------------------------------------------------------------------- */
 

@@ -12,11 +12,11 @@
 #include <signal.h>
 
 #include "dsl/base/c_linkage.h"
+#include "runtime/analysis/step_limit.h"
 #include "runtime/deck/deck.h"
-#include "runtime/result/frame_file.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/analysis/step_limit.h"
+#include "runtime/result/frame_file.h"
 
 C_LINKAGE_BEGIN
 

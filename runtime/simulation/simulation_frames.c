@@ -4,8 +4,8 @@
 #include <string.h>
 #include <strings.h>
 
-#include "runtime/interaction/damage.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/interaction/damage.h"
 #include "runtime/simulation/simulation_parts.h"
 
 /* --- what frames hold ------------------------------------------------------------------------- */

@@ -4,15 +4,15 @@
 #define PERILAT_RUNTIME_SIMULATION_PARTS_H
 
 #include "dsl/base/arena.h"
+#include "runtime/base/team.h"
+#include "runtime/interaction/sweep.h"
+#include "runtime/lattice/random_field.h"
 #include "runtime/simulation/ledger.h"
 #include "runtime/simulation/loads.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/profile.h"
-#include "runtime/lattice/random_field.h"
 #include "runtime/simulation/relaxation.h"
 #include "runtime/simulation/simulation.h"
-#include "runtime/interaction/sweep.h"
-#include "runtime/base/team.h"
 
 typedef struct progress_state { /* first part of a checkpoint: the sizes of others depend on it */
   int64_t begun;                /* the sample at step 0 is taken */

@@ -13,9 +13,9 @@
 #include <string.h>
 
 #include "generator/kernel/model.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/simulation/simulation.h"
-#include "runtime/interaction/sweep.h"
 #include "tests/benchmark/handwritten_families.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/naive_families.h"

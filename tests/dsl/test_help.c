@@ -9,9 +9,9 @@
 
 #include <ctype.h>
 
-#include "dsl/semantics/builtins.h"
 #include "dsl/base/diagnostics.h"
 #include "dsl/help/help.h"
+#include "dsl/semantics/builtins.h"
 #include "dsl/semantics/law.h"
 #include "dsl/syntax/parse.h"
 #include "dsl/syntax/parsing.h"

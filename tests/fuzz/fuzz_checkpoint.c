@@ -5,8 +5,8 @@
    touching what is not its own. */
 #include <string.h>
 
-#include "runtime/simulation/checkpoint.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/checkpoint.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/runtime/small_run.h"
 

@@ -7,8 +7,8 @@
 #include <hdf5.h>
 #include <string.h>
 
-#include "runtime/result/hdf5_tools.h"
 #include "runtime/plot/plot.h"
+#include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result.h"
 #include "runtime/result/sealed_file.h"
 #include "tests/fuzz/memory_file.h"

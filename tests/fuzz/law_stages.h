@@ -10,10 +10,10 @@
 #include "dsl/print/explain.h"
 #include "dsl/print/format.h"
 #include "dsl/syntax/parse.h"
+#include "generator/check/physics.h"
 #include "generator/emit/emit.h"
 #include "generator/ir/interval.h"
 #include "generator/plan/passes.h"
-#include "generator/check/physics.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -14,9 +14,9 @@
 #include <time.h>
 
 #include "dsl/syntax/parse.h"
+#include "generator/check/physics_parts.h"
 #include "generator/ir/interval.h"
 #include "generator/kernel/model.h"
-#include "generator/check/physics_parts.h"
 #include "runtime/deck/deck.h"
 
 #define FOLDER SOURCE_DIR "/tests/dsl/physics/"

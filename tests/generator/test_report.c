@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/result/hdf5_tools.h"
 #include "runtime/plot/plot_frame.h"
+#include "runtime/result/hdf5_tools.h"
 #include "tests/generator/command_tools.h"
 
 /* A beam pushed down: the load is negative where nothing turns it round. */

@@ -8,8 +8,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/simulation/checkpoint.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/checkpoint.h"
 #include "tests/runtime/small_run.h"
 
 static const char path[] = "test_checkpoint.state";

@@ -12,8 +12,8 @@
 #include <cmocka.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/lattice/rows.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/lattice/rows.h"
 
 typedef struct bench {
   deck deck;

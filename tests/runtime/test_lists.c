@@ -9,12 +9,12 @@
 
 #include <stdio.h>
 
+#include "runtime/analysis/stability.h"
 #include "runtime/deck/deck.h"
+#include "runtime/interaction/sweep.h"
 #include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/shape_matrix.h"
-#include "runtime/analysis/stability.h"
-#include "runtime/interaction/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/scattered_points.h"
 

@@ -13,11 +13,11 @@
 #include <cmocka.h>
 #include <omp.h>
 
-#include "runtime/result/hdf5_tools.h"
-#include "runtime/particles/particle_set.h"
 #include "runtime/base/random_number.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/particles/particle_set.h"
 #include "runtime/particles/voronoi.h"
+#include "runtime/result/hdf5_tools.h"
 #include "tests/runtime/small_result.h"
 
 typedef struct bench {

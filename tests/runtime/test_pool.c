@@ -6,8 +6,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/kernel.h"
 #include "runtime/base/pool.h"
+#include "runtime/kernel.h"
 
 static const long counts[] = {0, 1, 7, 8, 9, 511, 512, 513, 100000, 5000000, 3, 4096, 1};
 enum { COUNTS = sizeof counts / sizeof *counts };

@@ -11,8 +11,8 @@
 #include <cmocka.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/lattice/rows.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/lattice/rows.h"
 
 enum { MOST_SHAPES = 8 };
 

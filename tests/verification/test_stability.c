@@ -10,8 +10,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/lattice/rows.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/lattice/rows.h"
 
 /* --- laws written by hand: the linear micropolar bond, with dampers --------------------------- */
 
