@@ -91,7 +91,7 @@ static void every_option_in_the_sources_has_a_row(void **state) {
   (void)state;
   glob_t sources;
   int found = 0;
-  assert_int_equal(glob(SOURCE_DIR "/generator/command_*.c", 0, NULL, &sources), 0);
+  assert_int_equal(glob(SOURCE_DIR "/generator/command/command_*.c", 0, NULL, &sources), 0);
   for (size_t k = 0; k < sources.gl_pathc; k++)
     found += check_source(sources.gl_pathv[k]);
   globfree(&sources);
