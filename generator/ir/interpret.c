@@ -7,21 +7,6 @@
 
 #include "dsl/base/elementary.h"
 
-#define TRUTH(condition) ((condition) ? 1.0 : 0.0)
-
-/* X(code, value of the operation on a, b, c) */
-/* clang-format off */
-#define EVALUATIONS(X)                                                                             \
-  X(ADD, a + b) X(SUB, a - b) X(MUL, a * b) X(DIV, a / b) X(NEG, -a) X(FMA, pl_fma(a, b, c))       \
-  X(ABS, pl_abs(a)) X(SQRT, pl_sqrt(a)) X(MIN, pl_min(a, b)) X(MAX, pl_max(a, b))                  \
-  X(SIGN, pl_sign(a)) X(INVERSE_ROOT, pl_inverse_root(a)) X(EXP, pl_exp(a)) X(LOG, pl_log(a)) X(POW, pl_pow(a, b))                     \
-  X(CBRT, pl_cbrt(a)) X(SIN, pl_sin(a)) X(COS, pl_cos(a)) X(TAN, pl_tan(a)) X(TANH, pl_tanh(a))    \
-  X(ATAN2, pl_atan2(a, b)) X(WRAP_ANGLE, pl_wrap_angle(a))                                         \
-  X(LT, TRUTH(a < b)) X(LE, TRUTH(a <= b)) X(EQ, TRUTH(a == b))                                    \
-  X(AND, TRUTH((a != 0.0) & (b != 0.0))) X(OR, TRUTH((a != 0.0) | (b != 0.0)))                     \
-  X(NOT, TRUTH(a == 0.0)) X(SELECT, a != 0.0 ? b : c)
-/* clang-format on */
-
 /* One operation over a strip; unused operands point anywhere readable. */
 typedef void (*lane_function)(int count, const double *a, const double *b, const double *c,
                               double *out);
@@ -35,27 +20,14 @@ typedef void (*lane_function)(int count, const double *a, const double *b, const
       out[k] = value;                                                                              \
     }                                                                                              \
   }
-EVALUATIONS(X)
+OPERATION_VALUES(X)
 #undef X
 
 static const lane_function lane_functions[IR_OP_COUNT] = {
 #define X(code, value) [IR_##code] = lanes_##code,
-    EVALUATIONS(X)
+    OPERATION_VALUES(X)
 #undef X
 };
-
-double interpret_operation(ir_op op, double a, double b, double c) {
-  switch (op) {
-#define X(code, value)                                                                             \
-  case IR_##code:                                                                                  \
-    return value;
-    EVALUATIONS(X)
-#undef X
-  default:
-    assert(op == IR_ADD && "an operation that is computed from its operands");
-    return PL_NAN;
-  }
-}
 
 /* --- the interpreter -------------------------------------------------------------------------- */
 

@@ -9,10 +9,6 @@
 
 typedef struct interpreter interpreter;
 
-/* One operation on numbers, as both readers of the IR compute it: comparisons with NaN are false, logical results are
-   0 or 1, select takes `b` where `a` is not 0. Not for inputs, constants, and reductions over the family. */
-double interpret_operation(ir_op op, double a, double b, double c);
-
 /* Prepares to evaluate `roots` (none of them IR_NONE). The graph must outlive the interpreter and may grow. Reductions over
    the family and IR_NEIGHBOUR are no operations on numbers: programs of families (program.h) have neither, a root that
    does fails an assertion. An interpreter serves one thread at a time. */

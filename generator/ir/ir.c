@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
-#include "generator/ir/interpret.h"
 
 enum { FIRST_NODES = 256, LARGEST_EXPONENT = 16 };
 
@@ -366,7 +365,7 @@ static bool fold(const ir *g, ir_op op, const ir_node operand[3], double *value)
     if (!is_constant(g, operand[k])) return false;
     v[k] = ir_value(g, operand[k]);
   }
-  *value = interpret_operation(op, v[0], v[1], v[2]);
+  *value = operation_value(op, v[0], v[1], v[2]);
   return true;
 }
 

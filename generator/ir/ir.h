@@ -13,33 +13,10 @@
 
 #include "dsl/base/source.h"
 #include "dsl/syntax/tree.h"
+#include "generator/ir/operation.h"
 
 typedef int32_t ir_node;
 #define IR_NONE (-1)
-
-/* X(code, name, arity, logical result) */
-#define IR_OPERATIONS(X)                                                                           \
-  X(CONSTANT, "constant", 0, 0) X(INPUT, "input", 0, 0)                                            \
-  X(ADD, "add", 2, 0) X(SUB, "sub", 2, 0) X(MUL, "mul", 2, 0) X(DIV, "div", 2, 0)                  \
-  X(FMA, "fma", 3, 0) /* a*b + c, rounded once: rewrite_fused */                                \
-  X(NEG, "neg", 1, 0) X(ABS, "abs", 1, 0) X(SQRT, "sqrt", 1, 0)                                    \
-  X(MIN, "min", 2, 0) X(MAX, "max", 2, 0) X(SIGN, "sign", 1, 0)                                    \
-  X(INVERSE_ROOT, "inverse_root", 1, 0) X(EXP, "exp", 1, 0) X(LOG, "log", 1, 0) X(POW, "pow", 2, 0) X(CBRT, "cbrt", 1, 0)                \
-  X(SIN, "sin", 1, 0) X(COS, "cos", 1, 0) X(TAN, "tan", 1, 0) X(TANH, "tanh", 1, 0)                \
-  X(ATAN2, "atan2", 2, 0) X(WRAP_ANGLE, "wrap_angle", 1, 0)                                        \
-  X(LT, "lt", 2, 1) X(LE, "le", 2, 1) X(EQ, "eq", 2, 1)                                            \
-  X(AND, "and", 2, 1) X(OR, "or", 2, 1) X(NOT, "not", 1, 1)                                        \
-  X(SELECT, "select", 3, 0) /* a ? b : c; both are evaluated, neither may trap */                  \
-  /* over the bonds of a particle that exist: 0, -inf, inf where there are none */                 \
-  X(FAMILY_SUM, "family_sum", 1, 0) X(FAMILY_MAX, "family_max", 1, 0) X(FAMILY_MIN, "family_min", 1, 0) \
-  X(NEIGHBOUR, "neighbour", 1, 0) /* of the particle at the other end, toward me where it is directed */
-
-typedef enum ir_op {
-#define X(code, name, arity, logical) IR_##code,
-  IR_OPERATIONS(X)
-#undef X
-  IR_OP_COUNT
-} ir_op;
 
 /* Where an input's value comes from; with `index` it identifies the input. */
 typedef enum ir_source {
