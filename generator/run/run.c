@@ -14,6 +14,7 @@
 #include "generator/run/progress.h"
 #include "generator/run/run_parts.h"
 #include "runtime/base/clock.h"
+#include "runtime/lattice/lattice.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
 
@@ -105,7 +106,7 @@ static void build_lattice(run *r) {
     diag_report(&r->said, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
                 "a run can have one lattice, this is the second");
   else if (k->lattice_count == 1 && !deck_lacks(k, "body") && !deck_lacks(k, "notch"))
-    r->lattice = rows_build(k, 0, &r->said);
+    r->lattice = lattice_build(k, 0, &r->said);
 }
 
 /* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is

@@ -7,6 +7,7 @@
 #include "runtime/analysis/bond_probe.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/analysis/stencil.h"
+#include "runtime/lattice/lattice.h"
 
 /* LAPACK: factors of a symmetric positive matrix, and its inverse from them. The last argument is
  * the hidden text length. */
@@ -228,7 +229,7 @@ rows *implied_lattice_like(const deck_lattice *l, double rho) {
   source_set sources = {NULL, 0};
   diagnostics said;
   diag_begin(&said, &sources);
-  rows *w = rows_build(&k, 0, &said);
+  rows *w = lattice_build(&k, 0, &said);
   diag_clear(&said);
   if (!w) return NULL;
   rows_set_density(w, rho);

@@ -10,7 +10,6 @@
 #include "runtime/geometry/neighbour_search.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/rows_parts.h"
-#include "runtime/lattice/scattered.h"
 #include "runtime/particles/site_marks.h"
 
 #define CHORD_TOLERANCE 1e-9 /* spacings: a chord must enter a notch deeper than this to be cut */
@@ -364,7 +363,6 @@ static bool has_bonds(const rows *w, const builder *b) {
 
 rows *rows_build(const deck *k, int lattice, diagnostics *d) {
   builder b = {.deck = k, .lattice = &k->lattices[lattice], .d = d};
-  if (deck_lattice_is_irregular(b.lattice)) return scattered_build(k, lattice, d);
   if (!lattice_is_sound(&b)) return NULL;
   rows *w = NULL;
   if (site_marks_make(&b.marks, &b.infinite, k, b.lattice, d)) {

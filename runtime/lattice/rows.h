@@ -142,8 +142,7 @@ void rows_set_density(rows *w, double rho);
 pl_bond_class rows_bond_class(const rows *w, int direction);
 
 /* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
-   present neighbours whose chord crosses no notch. Particles that stand on no lattice become rows with a list
-   (scattered.h). NULL on errors (a body without sites, a point body with no
+   present neighbours whose chord crosses no notch. NULL on errors (a body without sites, a point body with no
    lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
 rows *rows_build(const deck *k, int lattice, diagnostics *d);
 void rows_free(rows *w);

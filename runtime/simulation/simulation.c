@@ -1,3 +1,4 @@
+#include "runtime/lattice/lattice.h"
 #include "runtime/simulation/simulation_parts.h"
 
 #include <math.h>
@@ -274,7 +275,7 @@ static bool set_up(simulation *s, diagnostics *d) {
                 "a run can have one lattice, this is the second");
     return false;
   }
-  if (!s->lattice) s->lattice = rows_build(k, 0, d);
+  if (!s->lattice) s->lattice = lattice_build(k, 0, d);
   if (!s->lattice || !is_sound(s, d) || deck_lacks(k, NULL)) return false;
   s->bonds = rows_bonds(s->lattice);
   s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),

@@ -48,7 +48,7 @@ double material_density(const pl_law *law, const double *values);
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
-/* The same on the deck's lattice as rows_build has built it, which belongs to the simulation from
+/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation from
    then on; NULL: to be built. */
 simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
                               diagnostics *d);

@@ -14,6 +14,7 @@
 
 #include "generator/kernel/model.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten_families.h"
@@ -114,7 +115,7 @@ static void build_lattice(contest *c) {
   diag_begin(&c->said, &c->sources);
   int file = source_add(&c->sources, "deck", text, strlen(text));
   c->deck = deck_read(c->memory, &c->sources, file, NULL, 0, &c->said);
-  c->rows = c->deck ? rows_build(c->deck, 0, &c->said) : NULL;
+  c->rows = c->deck ? lattice_build(c->deck, 0, &c->said) : NULL;
   diag_print(&c->said, stderr);
   if (!c->rows) give_up("the lattice of %s cannot be built", c->name);
 }

@@ -15,6 +15,7 @@
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/family.h"
+#include "runtime/lattice/lattice.h"
 #include "tests/runtime/family_law.h"
 
 static const double spacing = 0.01, thickness = 0.1, step = 1e-7;
@@ -43,7 +44,7 @@ static void open_body(body *b, double rotation, int threads, double tau, double 
   diag_begin(&b->said, &b->sources);
   const int file = source_add(&b->sources, "deck.nml", text, strlen(text));
   deck *k = deck_read(b->memory, &b->sources, file, NULL, 0, &b->said);
-  b->lattice = rows_build(k, 0, &b->said);
+  b->lattice = lattice_build(k, 0, &b->said);
   assert_non_null(b->lattice);
   for (int p = 0; p < FAMILY_PARAMETERS; p++)
     b->parameters[p] = family_parameters[p].initial;

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/family_parts.h"
+#include "runtime/lattice/lattice.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/small_run.h"
 
@@ -63,7 +64,7 @@ static void windows_and_whole_bodies_give_the_same_bits(void **state) {
   small_open(&r, &family_hexagon, plate);
   if (!r.simulation) small_print(&r);
   assert_non_null(r.simulation);
-  rows *g = rows_build(r.deck, 0, &r.said);
+  rows *g = lattice_build(r.deck, 0, &r.said);
   assert_non_null(g);
   g->mass = simulation_rows(r.simulation, 0)->mass;
   const int many = g->row_count / 2; /* of two rows: too few for windows */
@@ -98,7 +99,7 @@ static void the_first_bad_site_is_told_whatever_moves_first(void **state) {
   small_run r;
   small_open(&r, &family_hexagon, plate);
   assert_non_null(r.simulation);
-  rows *g = rows_build(r.deck, 0, &r.said);
+  rows *g = lattice_build(r.deck, 0, &r.said);
   assert_non_null(g);
   g->mass = simulation_rows(r.simulation, 0)->mass;
   for (int blocks = 1; blocks <= 2; blocks++) {
@@ -125,7 +126,7 @@ static void a_window_keeps_the_rows_that_passes_need(void **state) {
   small_run r;
   small_open(&r, &family_hexagon, plate);
   assert_non_null(r.simulation);
-  rows *g = rows_build(r.deck, 0, &r.said);
+  rows *g = lattice_build(r.deck, 0, &r.said);
   pl_law near = family_hexagon;
   near.step.at_hand = 1u << 1;
   sweep *far = sweep_new(g, &family_hexagon, r.parameters, 2e-7, 1, false, false),

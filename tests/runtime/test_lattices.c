@@ -13,6 +13,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
 
 typedef struct bench {
@@ -53,7 +54,7 @@ static void add_notch(bench *b, deck_shape shape) {
 }
 
 static rows *build(bench *b) {
-  rows *w = rows_build(&b->deck, 0, &b->d);
+  rows *w = lattice_build(&b->deck, 0, &b->d);
   for (int k = 0; k < b->d.count; k++)
     print_message("%s\n", b->d.items[k].message);
   assert_non_null(w);
@@ -364,7 +365,7 @@ static void random_bodies_agree_with_all_pairs(void **unused) {
     for (int n = 0; n < 12; n++) {
       bench b;
       random_lattice(&b, &families[f], n);
-      rows *w = rows_build(&b.deck, 0, &b.d);
+      rows *w = lattice_build(&b.deck, 0, &b.d);
       if (!w || w->particle_count > 1500) {
         end(&b, w);
         continue;
@@ -488,18 +489,18 @@ static void faults_are_reported(void **unused) {
   bench b;
   begin(&b, "cubic", 4, 0);
   add_body(&b, middle_of("cubic"));
-  assert_null(rows_build(&b.deck, 0, &b.d));
+  assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "more than 128 neighbours"));
   end(&b, NULL);
   begin(&b, "square", 0.9, 0);
   add_body(&b, middle_of("square"));
-  assert_null(rows_build(&b.deck, 0, &b.d));
+  assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "reaches no neighbour"));
   end(&b, NULL);
   begin(&b, "fcc", 0, 0);
   b.lattice.spacing = 1e-3;
   add_body(&b, middle_of("fcc"));
-  assert_null(rows_build(&b.deck, 0, &b.d));
+  assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "sites"));
   end(&b, NULL);
 }

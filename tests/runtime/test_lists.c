@@ -12,6 +12,7 @@
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/deck.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/shape_matrix.h"
@@ -96,7 +97,7 @@ static rows *rows_of_deck(const char *text) {
   diag_begin(&said, &sources);
   deck *k = deck_read(memory, &sources, source_add(&sources, "deck.nml", text, strlen(text)), NULL,
                       0, &said);
-  rows *g = k ? rows_build(k, 0, &said) : NULL;
+  rows *g = k ? lattice_build(k, 0, &said) : NULL;
   if (!g) diag_print(&said, stderr);
   diag_clear(&said);
   source_clear(&sources);

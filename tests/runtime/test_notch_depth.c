@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/notch_depth.h"
 
 /* Depths of the notches of a deck that has these groups besides its lattice's name and
@@ -25,7 +26,7 @@ static notch_depth depth_of(const char *lattice, const char *body, const char *n
            lattice, body, notch);
   deck *k = deck_read(memory, &sources, source_add(&sources, "n.nml", text, strlen(text)), NULL, 0,
                       &said);
-  rows *w = k ? rows_build(k, 0, &said) : NULL;
+  rows *w = k ? lattice_build(k, 0, &said) : NULL;
   if (said.errors) diag_print(&said, stderr);
   assert_non_null(w);
   const notch_depth found = notch_depth_of(w, &k->notchs[0].shape);

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <omp.h>
 
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/random_field.h"
 #include "tests/runtime/small_run.h"
 
@@ -289,7 +290,7 @@ static void sample_open(sample *s, const char *field, double turn, double x, dou
   r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
   if (!r->deck) return;
   assert_true(material_parameters(&r->deck->materials[0], &law, r->parameters, &r->said));
-  s->lattice = rows_build(r->deck, 0, &r->said);
+  s->lattice = lattice_build(r->deck, 0, &r->said);
   s->bonds = rows_bonds(s->lattice);
   s->fields = random_fields_new(r->deck, 0, s->lattice, &law, r->parameters, &r->said);
 }

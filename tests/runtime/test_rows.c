@@ -12,6 +12,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/geometry/shape.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
 
 enum { MOST_SHAPES = 8 };
@@ -61,7 +62,7 @@ static void notch(bench *b, deck_shape shape, bool cut_bonds) {
 }
 
 static rows *build(bench *b) {
-  rows *w = rows_build(&b->deck, 0, &b->d);
+  rows *w = lattice_build(&b->deck, 0, &b->d);
   for (int k = 0; k < b->d.count; k++)
     print_message("%s\n", b->d.items[k].message);
   assert_non_null(w);
@@ -441,7 +442,7 @@ static void protection_reaches_as_far_as_asked(void **unused) {
  */
 
 static void expect(bench *b, diag_code code, const char *part) {
-  rows *w = rows_build(&b->deck, 0, &b->d);
+  rows *w = lattice_build(&b->deck, 0, &b->d);
   assert_true(b->d.count >= 1);
   assert_int_equal(b->d.items[0].code, code);
   assert_non_null(strstr(b->d.items[0].message, part));
@@ -510,16 +511,16 @@ static void conditional_extra_point(void **unused) {
   bench b;
   begin(&b, 6e-3);
   body(&b, rectangle(0, 0, 0.06, 0.06));
-  rows *w = rows_build(&b.deck, 0, &b.d);
+  rows *w = lattice_build(&b.deck, 0, &b.d);
   const long count = w->particle_count;
   rows_free(w);
   body(&b, point(0.0301, -0.0001)); /* nearest to (0.03, 0): present */
-  w = rows_build(&b.deck, 0, &b.d);
+  w = lattice_build(&b.deck, 0, &b.d);
   assert_int_equal(w->particle_count, count);
   assert_int_equal(b.d.count, 0);
   rows_free(w);
   body(&b, point(0.0661, 0.0001)); /* one site beyond the right end */
-  w = rows_build(&b.deck, 0, &b.d);
+  w = lattice_build(&b.deck, 0, &b.d);
   assert_int_equal(w->particle_count, count + 1);
   assert_int_equal(b.d.count, 0);
   check_storage(w);

@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/shape_matrix.h"
 
 enum { MOST_VALUES = PL_SHAPE_PLANES(3) };
@@ -29,7 +30,7 @@ static void strain_of_one_bond(const char *deck_text, double strain[6], double n
   const int file = source_add(&sources, "deck.nml", deck_text, strlen(deck_text));
   deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
   if (said.errors) diag_print(&said, stderr);
-  rows *w = rows_build(k, 0, &said);
+  rows *w = lattice_build(k, 0, &said);
   assert_non_null(w);
   assert_int_equal(w->bond_count, 1);
   const int space = w->dimensions == 3, order = space ? 6 : 3;

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/lattice/lattice.h"
 #include "runtime/simulation/loads.h"
 #include "tests/runtime/small_run.h"
 
@@ -170,7 +171,7 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   small_run r;
   small_open(&r, &elastic_beam, text);
   assert_non_null(r.simulation);
-  rows *w = rows_build(r.deck, 0, &r.said);
+  rows *w = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, w, "m", 3, &r.said);
   assert_non_null(l);
   assert_true(l->force_count >= 6);
@@ -294,7 +295,7 @@ static void reactions_balance_the_momentum(void **state) {
   must_open(&r, &elastic_beam, text);
   sweep *w = simulation_state(r.simulation);
   const rows *g = w->lattice;
-  rows *copy = rows_build(r.deck, 0, &r.said);
+  rows *copy = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, copy, "m", 3, &r.said);
   double largest = 0;
   l->lattice = g;

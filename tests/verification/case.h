@@ -12,6 +12,7 @@
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
 #include "runtime/interaction/pairwise.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/simulation/simulation.h"
 
 /* A law as the interpreter and as the compiled kernel have it, with one set of parameters. */
@@ -101,7 +102,7 @@ static inline bool deck_case_read(deck_case *c, const char *name, const char *te
 /* Only the lattice of the deck. */
 static inline bool deck_case_lattice(deck_case *c, const char *text) {
   if (!deck_case_read(c, "lattice.nml", text, NULL, 0)) return false;
-  c->lattice = rows_build(c->deck, 0, &c->said);
+  c->lattice = lattice_build(c->deck, 0, &c->said);
   if (c->said.errors) diag_print(&c->said, stderr);
   return c->lattice != NULL;
 }

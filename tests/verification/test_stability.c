@@ -11,6 +11,7 @@
 #include <cmocka.h>
 
 #include "runtime/analysis/stability.h"
+#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
 
 /* --- laws written by hand: the linear micropolar bond, with dampers --------------------------- */
@@ -126,7 +127,7 @@ static rows *lattice(double rotation) {
   source_set sources = {NULL, 0};
   diagnostics d;
   diag_begin(&d, &sources);
-  rows *w = rows_build(&k, 0, &d);
+  rows *w = lattice_build(&k, 0, &d);
   assert_non_null(w);
   diag_clear(&d);
   w->mass = density * w->volume;

@@ -1,0 +1,13 @@
+/* The particles of a deck's lattice and the bonds between them, whether they stand on sites that repeat themselves (rows.h) or
+   nowhere in particular (scattered.h). */
+#ifndef PERILAT_RUNTIME_LATTICE_H
+#define PERILAT_RUNTIME_LATTICE_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/deck/deck.h"
+#include "runtime/lattice/rows.h"
+
+/* NULL after messages at the deck's line. To be freed by rows_free. */
+rows *lattice_build(const deck *k, int lattice, diagnostics *d);
+
+#endif
