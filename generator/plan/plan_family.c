@@ -7,6 +7,7 @@
 #include "generator/lower/kinematics.h"
 #include "generator/plan/particle_parts.h"
 #include "generator/plan/plan_parts.h"
+#include "generator/plan/plan_roots.h"
 
 typedef struct family_planner {
   kernel_plan *plan;

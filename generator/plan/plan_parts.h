@@ -19,18 +19,11 @@ bool plan_programs(kernel_plan *p, diagnostics *d);
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
 program_motion plan_motion(const kernel_plan *plan, bool along_reference);
 
-/* Whether forces or new fields depend on the stretch rate. */
-bool plan_reads_rates(const kernel_plan *p, const lowered_law *step);
-
 /* What the roots of a pass cost for each bond. */
 ir_cost plan_cost(const kernel_plan *p, const pass *a);
 
 /* The programs of families, as text: what each segment reads, writes and costs; its nodes. */
 void plan_dump_programs(const kernel_plan *p, FILE *out);
 void plan_dump_programs_ir(const kernel_plan *p, FILE *out);
-
-/* Every root of the plan that a strip or a segment computes, in order. */
-typedef void (*plan_visitor)(void *context, const ir_node *roots, int root_count);
-void plan_visit(const kernel_plan *p, plan_visitor visit, void *context);
 
 #endif

@@ -1,3 +1,4 @@
+#include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parts.h"
 
 #include <assert.h>
@@ -6,215 +7,6 @@
 #include "dsl/semantics/builtins.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
-
-/* The same operation of other operands, with the name of the first. */
-static ir_node made_again(ir *g, ir_node n, const ir_node *operand) {
-  ir_node made = ir_make(g, ir_operation(g, n), operand[0], operand[1], operand[2]);
-  if (made != n && ir_name(g, n) && !is_leaf(g, made))
-    ir_set_name(g, made, ir_name(g, n), ir_where(g, n));
-  if (ir_is_expected(g, n)) ir_expect(g, made);
-  return made;
-}
-
-/* n with its operands replaced by what `image` makes of them. */
-static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir_node)) {
-  ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
-  bool changed = false;
-  for (int k = 0; k < ir_arity(ir_operation(b->g, n)); k++) {
-    ir_node old = ir_operand(b->g, n, k);
-    operand[k] = image(b, old);
-    changed = changed || operand[k] != old;
-  }
-  return changed ? made_again(b->g, n, operand) : n;
-}
-
-int program_cost(const ir *g, ir_node n) {
-  ir_op op = ir_operation(g, n);
-  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT ||
-               ir_is_logical(g, n);
-  return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
-}
-
-/* What a value toward a neighbour costs when it is computed again, in additions. */
-static int cost_again(const ir *g, ir_node n, int most) {
-  if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
-  ir_op op = ir_operation(g, n);
-  int cost = program_cost(g, n);
-  for (int k = 0; k < ir_arity(op) && cost < most; k++)
-    cost += cost_again(g, ir_operand(g, n, k), most - cost);
-  return cost;
-}
-
-/* --- what belongs to the neighbour ------------------------------------------------------------ */
-
-/* Whether the value goes over a family, so that a neighbour cannot compute it again. */
-static bool goes_over_family(builder *b, ir_node n) {
-  int known = map_get(&b->reduced, n);
-  if (known >= 0) return known != 0;
-  ir_op op = ir_operation(b->g, n);
-  bool does = ir_is_reduction(op);
-  for (int k = 0; k < ir_arity(op) && !does; k++)
-    does = goes_over_family(b, ir_operand(b->g, n, k));
-  map_set(&b->reduced, n, does);
-  return does;
-}
-
-static int link_of(builder *b, ir_node n) {
-  int known = map_get(&b->linked, n);
-  if (known >= 0) return known;
-  assert(b->link_count < MOST_LINKS);
-  b->link[b->link_count] = n;
-  b->link_number[b->link_count] =
-      is_of_particle(b->g, n) ? b->links.of_particles++ : b->links.of_bonds++;
-  map_set(&b->linked, n, b->link_count);
-  return b->link_count++;
-}
-
-/* What the link that an input reads from the neighbour holds. */
-static ir_node linked_node(const builder *b, ir_node input) {
-  const bool of_particle = ir_input_source(b->g, input) == IR_FROM_NEIGHBOUR_LINK;
-  int k = 0;
-  while (b->link_number[k] != ir_input_index(b->g, input) ||
-         is_of_particle(b->g, b->link[k]) != of_particle)
-    k++;
-  return b->link[k];
-}
-
-static const char *link_name(builder *b, int link) {
-  const char *name = ir_name(b->g, b->link[link]);
-  return name ? name : arena_printf(b->memory, "link_%d", link);
-}
-
-static ir_node neighbour_link(builder *b, ir_node n) {
-  int link = link_of(b, n);
-  const char *name = arena_printf(b->memory, "%s_j", link_name(b, link));
-  const bool of_particle = is_of_particle(b->g, n);
-  return ir_input(b->g, of_particle ? IR_FROM_NEIGHBOUR_LINK : IR_FROM_NEIGHBOUR_BOND_LINK,
-                  b->link_number[link], name, ON_NEIGHBOUR);
-}
-
-static ir_node own_link(builder *b, ir_node n) {
-  int link = link_of(b, n);
-  const bool of_particle = is_of_particle(b->g, n);
-  return ir_input(b->g, of_particle ? IR_FROM_LINK : IR_FROM_BOND_LINK, b->link_number[link],
-                  link_name(b, link), of_particle ? ON_PARTICLE : ON_NEIGHBOUR);
-}
-
-/* What the ends of a bond exchange. */
-static const ends_input exchanged[][2] = {
-    {ENDS_U_IX, ENDS_U_JX},     {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
-    {ENDS_V_IX, ENDS_V_JX},     {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
-    {ENDS_HELD_I, ENDS_HELD_J}, {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J}};
-
-static ir_node mirror_ends(builder *b, ir_node n) {
-  switch ((ends_input)ir_input_index(b->g, n)) {
-  case ENDS_CLASS_CHORD_X:
-  case ENDS_CLASS_CHORD_Y:
-  case ENDS_CLASS_CHORD_Z:
-  case ENDS_CHORD_X:
-  case ENDS_CHORD_Y:
-  case ENDS_CHORD_Z:
-    return ir_neg(b->g, n);
-  default:
-    break; /* the time step and lengths stay */
-  }
-  for (size_t k = 0; k < sizeof exchanged / sizeof *exchanged; k++)
-    for (int end = 0; end < 2; end++)
-      if ((int)exchanged[k][end] == ir_input_index(b->g, n))
-        return kinematics_input(b->g, exchanged[k][!end]);
-  return n;
-}
-
-static ir_node mirror_quantity(builder *b, ir_node n) {
-  builtin_quantity q = (builtin_quantity)ir_input_index(b->g, n);
-  if (q != QUANTITY_M_END_I && q != QUANTITY_M_END_J) return n;
-  builtin_quantity other = q == QUANTITY_M_END_I ? QUANTITY_M_END_J : QUANTITY_M_END_I;
-  return ir_input(b->g, IR_FROM_QUANTITY, (int)other, builtin_quantities[other].name, ON_BODY);
-}
-
-/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can be told from values
-   toward a neighbour. */
-static ir_node mirror_input(builder *b, ir_node n) {
-  ir *g = b->g;
-  int index = ir_input_index(g, n);
-  switch (ir_input_source(g, n)) {
-  case IR_FROM_QUANTITY:
-    return mirror_quantity(b, n);
-  case IR_FROM_ENDS:
-    return mirror_ends(b, n);
-  case IR_FROM_FIELD:
-    if (ir_place(g, n) == ON_BOND) return n; /* both sides keep the same value */
-    return ir_input(g, IR_FROM_NEIGHBOUR_FIELD, index,
-                    arena_printf(b->memory, "%s_j", ir_name(g, n)),
-                    is_of_particle(g, n) ? ON_BOND : ON_NEIGHBOUR);
-  case IR_FROM_NEIGHBOUR_FIELD: {
-    const char *name = ir_name(g, n);
-    return ir_input(g, IR_FROM_FIELD, index,
-                    arena_text(b->memory, name, strlen(name) - strlen("_j")),
-                    ir_place(g, n) == ON_BOND ? ON_PARTICLE : ON_NEIGHBOUR);
-  }
-  case IR_FROM_NEIGHBOUR_LINK:
-  case IR_FROM_NEIGHBOUR_BOND_LINK:
-    return linked_node(b, n);
-  case IR_FROM_SHARED_ODD:
-    return ir_neg(g, n);
-  case IR_FROM_SHAPE:
-    return neighbour_link(b, n);
-  default:
-    return n;
-  }
-}
-
-ir_node program_mirror(builder *b, ir_node n) {
-  int known = map_get(&b->mirrored, n);
-  if (known >= 0) return known;
-  ir_node image;
-  if (ir_operation(b->g, n) == IR_CONSTANT)
-    image = n;
-  else if (is_leaf(b->g, n))
-    image = mirror_input(b, n);
-  else if (is_of_particle(b->g, n) && goes_over_family(b, n))
-    image = neighbour_link(b, n);
-  else
-    image = with_images(b, n, program_mirror);
-  map_set(&b->mirrored, n, image);
-  return image;
-}
-
-/* Whether the neighbour may have another value than the particle: not for what follows from the bond's own motion. */
-static bool has_sides(builder *b, ir_node n) {
-  int known = map_get(&b->sided, n);
-  if (known >= 0) return known != 0;
-  bool sided = is_of_particle(b->g, n);
-  if (ir_operation(b->g, n) == IR_INPUT) sided = sided || mirror_input(b, n) != n;
-  for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && !sided; k++)
-    sided = has_sides(b, ir_operand(b->g, n, k));
-  map_set(&b->sided, n, sided);
-  return sided;
-}
-
-/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two loads for each
-   neighbour. The motion of the bond, which both sides need anyway, does not count. */
-static bool is_dear(builder *b, ir_node n) {
-  enum { DEAR = 30 };
-  return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && has_sides(b, n) &&
-         cost_again(b->g, n, DEAR) >= DEAR;
-}
-
-/* The value without IR_NEIGHBOUR. */
-static ir_node resolve(builder *b, ir_node n) {
-  int known = map_get(&b->resolved, n);
-  if (known >= 0) return known;
-  ir_node image = n;
-  if (ir_operation(b->g, n) == IR_NEIGHBOUR) {
-    ir_node theirs = resolve(b, ir_operand(b->g, n, 0));
-    image = is_dear(b, theirs) ? neighbour_link(b, theirs) : program_mirror(b, theirs);
-  } else if (!is_leaf(b->g, n))
-    image = with_images(b, n, resolve);
-  map_set(&b->resolved, n, image);
-  return image;
-}
 
 /* --- passes ----------------------------------------------------------------------------------- */
 
@@ -226,7 +18,7 @@ static int level_of(builder *b, ir_node n) {
   if (is_leaf(b->g, n)) {
     ir_source from = ir_operation(b->g, n) == IR_INPUT ? ir_input_source(b->g, n) : IR_SOURCE_COUNT;
     if (from == IR_FROM_NEIGHBOUR_LINK || from == IR_FROM_NEIGHBOUR_BOND_LINK)
-      level = level_of(b, linked_node(b, n)) + 1;
+      level = level_of(b, program_linked_node(b, n)) + 1;
     if (from == IR_FROM_SHARED || from == IR_FROM_SHARED_ODD)
       level = level_of(b, b->shared[ir_input_index(b->g, n) - b->first_shared]) + 1;
   } else {
@@ -264,17 +56,17 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
   if (known >= 0) return known;
   ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   if (!is_leaf(g, n)) {
-    const bool kept = is_of_particle(g, n) ? goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
+    const bool kept = is_of_particle(g, n) ? program_goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
     const segment_root *field = field_before(v, n);
     if (field)
       image = ir_input(g, IR_FROM_NEW_FIELD, field->index, ir_name(g, n) ? ir_name(g, n) : "new",
                        ON_NEIGHBOUR);
     else if (kept && level_of(b, n) < v->now) {
-      image = own_link(b, n);
+      image = program_own_link(b, n);
     } else {
       for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
         operand[k] = seen_in_pass(v, ir_operand(g, n, k));
-      image = made_again(g, n, operand);
+      image = program_made_again(g, n, operand);
       if (ir_is_reduction(ir_operation(g, n)) && b->sharing == SHARE_PAIRS)
         map_set(&v->parity, image, program_parity_of_root(b, ir_operand(g, n, 0)) + 1);
     }
@@ -386,13 +178,13 @@ static ir_node computed_here(segment_view *v, ir_node n) {
   ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   for (int k = 0; k < ir_arity(ir_operation(v->s->g, n)); k++)
     operand[k] = seen_in_segment(v, ir_operand(v->s->g, n, k));
-  return made_again(v->s->g, n, operand);
+  return program_made_again(v->s->g, n, operand);
 }
 
 /* Values toward a neighbour that an earlier loop had: a plane costs a store and a load, and room on the stack (64 KiB). */
 static bool is_worth_a_plane(scheduler *s, ir_node n, int loop) {
   enum { DEAR = 4, MOST_PLANES = 16 };
-  if (phase_of(s, n) >= loop || cost_again(s->g, n, DEAR) < DEAR) return false;
+  if (phase_of(s, n) >= loop || program_cost_again(s->g, n, DEAR) < DEAR) return false;
   return map_get(&s->plane, n) >= 0 || s->pass->plane_count < MOST_PLANES;
 }
 
@@ -827,7 +619,7 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   int last = 0;
   for (int k = 0; k < root_count; k++) {
     own[k] = roots[k];
-    own[k].node = resolve(&b, roots[k].node);
+    own[k].node = program_resolve(&b, roots[k].node);
   }
   substitute(&b, own, root_count, motion->from, motion->to, motion->count);
   if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) share(&b, own, root_count);

@@ -1,4 +1,5 @@
-/* Inside of the making of programs: program.c mirrors, passes and segments; program_share.c finds what both ends of a bond
+/* Inside of the making of programs: program.c passes and segments; program_mirror.c what the
+   neighbour has; program_share.c finds what both ends of a bond
    would compute alike. */
 #ifndef PERILAT_GENERATOR_PROGRAM_PARTS_H
 #define PERILAT_GENERATOR_PROGRAM_PARTS_H
@@ -59,11 +60,6 @@ static inline bool is_uniform(const ir *g, ir_node n) {
 static inline bool is_of_particle(const ir *g, ir_node n) {
   return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
 }
-
-/* What an operation costs, in additions. */
-int program_cost(const ir *g, ir_node n);
-/* What the neighbour has for a resolved value. */
-ir_node program_mirror(builder *b, ir_node n);
 
 /* What the other end of a bond computes for a value: 1: the same; -1: the opposite; 0: something
    else, as far as can be seen. */

@@ -1,4 +1,5 @@
 /* What both ends of a bond share: values whose mirror image is the value itself, or its opposite. */
+#include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parts.h"
 
 /* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
