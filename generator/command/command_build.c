@@ -53,15 +53,14 @@ typedef struct deck_law {
   arena *memory;
   source_set sources;
   const deck *deck;
-  char name[512];    /* as the deck gives it */
-  char choices[512]; /* ";option=choice;..." */
+  const char *name; /* as the deck gives it */
+  c_text choices;   /* ";option=choice;..." */
 } deck_law;
 
-static void list_choices(const law *l, char *text, size_t size) {
-  size_t used = (size_t)snprintf(text, size, ";");
-  for (int k = 0; k < l->options.count && used < size; k++)
-    used += (size_t)snprintf(text + used, size - used, "%s=%s;", l->options.items[k]->name,
-                             l->chosen[k]);
+static void list_choices(const law *l, c_text *out) {
+  c_text_add(out, ";");
+  for (int k = 0; k < l->options.count; k++)
+    c_text_add(out, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
 /* The deck has been checked whole before: its warnings are not said again. */
@@ -76,8 +75,8 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
       k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
   if (good) {
-    snprintf(out->name, sizeof out->name, "%s", k->materials[0].model);
-    list_choices(out->model.law, out->choices, sizeof out->choices);
+    out->name = k->materials[0].model;
+    list_choices(out->model.law, &out->choices);
   }
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
@@ -86,6 +85,7 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
 
 static void close_deck_law(deck_law *l) {
   if (l->opened) model_close(&l->model);
+  free(l->choices.text);
   source_clear(&l->sources);
   if (l->memory) arena_free(l->memory);
 }
@@ -106,7 +106,7 @@ static const char solver_main[] =
     "int main(int argc, char **argv) {\n"
     "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
     "                                solver_kernel_text, solver_choices,\n"
-     "                                solver_compiler, solver_flags}};\n"
+    "                                solver_compiler, solver_flags}};\n"
     "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1,\n"
     "                             solver_files, solver_file_count);\n}\n";
 
@@ -138,7 +138,7 @@ static char *solver_text(const deck_law *l, const char *deck_name, const char *d
   put_string(&out, "solver_model", l->name);
   put_string(&out, "solver_law_text", l->model.sources.items[0].text);
   put_string(&out, "solver_kernel_text", l->model.c_text);
-  put_string(&out, "solver_choices", l->choices);
+  put_string(&out, "solver_choices", l->choices.text);
   put_files(&out, l);
   toolchain_version(compiler, sizeof compiler);
   put_string(&out, "solver_compiler", compiler);

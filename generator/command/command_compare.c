@@ -231,7 +231,11 @@ static bool is_checked(comparison_run *c, const char *name) {
   char why[2][256];
   for (int k = 0; k < 2; k++)
     result_read_unchecked(c->files[k], name, why[k], sizeof why[k]);
-  if (!*why[0] == !*why[1]) return !*why[0];
+  if (!*why[0] && !*why[1]) return true;
+  if (*why[0] && *why[1]) {
+    printf("  %-34s not checked in either: %s\n", name_shown(name), name_shown(why[0]));
+    return false;
+  }
   report_unlike(c, name, "not checked in %s: %s", c->request->results[!*why[0]],
                 name_shown(why[!*why[0]]));
   return false;

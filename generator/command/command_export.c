@@ -75,29 +75,21 @@ static void write_row(FILE *out, const table_values *columns, int count, long ro
 
 /* --- as JSON ---------------------------------------------------------------------------------- */
 
-static void open_column(json *w, const char *name, const char *ending, const char *unit_name) {
+/* unchecked: of a history, why it says nothing, or ""; NULL: no history. */
+static void open_column(json *w, const char *name, const char *ending, const char *unit_name,
+                        const char *unchecked) {
   char title[300];
   snprintf(title, sizeof title, "%s%s", name, ending);
   json_object(w);
   json_put_text(w, "name", title);
   json_put_text(w, "unit", *unit_name ? unit_name : "1");
+  if (unchecked) json_put_text(w, "unchecked", *unchecked ? unchecked : NULL);
   json_put_array(w, "values");
 }
 
 static void close_column(json *w) {
   json_array_end(w);
   json_object_end(w);
-}
-
-static void put_columns(json *w, const table_values *columns, int count) {
-  for (int k = 0; k < count; k++)
-    for (int c = 0; c < columns[k].components; c++) {
-      const table_values *v = &columns[k];
-      open_column(w, v->name, table_component(v->components, c), v->unit);
-      for (long row = 0; row < v->count; row++)
-        json_number(w, v->values[row * v->components + c] + 0.0);
-      close_column(w);
-    }
 }
 
 /* --- tables ----------------------------------------------------------------------------------- */
@@ -109,6 +101,18 @@ typedef struct table {
   int count;
   long rows, frame; /* frame -1: histories */
 } table;
+
+static void put_columns(json *w, const table *t) {
+  for (int k = 0; k < t->count; k++)
+    for (int c = 0; c < t->columns[k].components; c++) {
+      const table_values *v = &t->columns[k];
+      open_column(w, v->name, table_component(v->components, c), v->unit,
+                  t->frame < 0 ? v->unchecked : NULL);
+      for (long row = 0; row < v->count; row++)
+        json_number(w, v->values[row * v->components + c] + 0.0);
+      close_column(w);
+    }
+}
 
 static table table_new(result_file *f, const export_request *q, long frame) {
   table t = {.names = result_members(f, frame < 0 ? "/history" : "/frames"), .frame = frame};
@@ -151,8 +155,8 @@ static bool add_asked(table *t, result_file *f, const export_request *q) {
     const int n = result_names_find(&t->names, q->names[k]);
     const char *name = n < 0 ? q->names[k] : t->names.items[n];
     if (n >= 0 && t->frame >= 0 && table_on_bonds(name) != q->bonds) {
-      say_error("`%s` is a field of %s; %s --bonds", name_shown(name), q->bonds ? "particles" : "bonds",
-                q->bonds ? "leave out" : "add");
+      say_error("`%s` is a field of %s; %s --bonds", name_shown(name),
+                q->bonds ? "particles" : "bonds", q->bonds ? "leave out" : "add");
       good = false;
     } else
       good = add_column(t, f, name);
@@ -177,7 +181,7 @@ static void put_history(json *w, const table *t) {
   json_put_text(w, "of", "history");
   json_put_integer(w, "rows", t->rows);
   json_put_array(w, "columns");
-  put_columns(w, t->columns, t->count);
+  put_columns(w, t);
   json_array_end(w);
 }
 
@@ -231,7 +235,7 @@ static void write_frame(FILE *out, const frame_rows *rows, const table_values *c
 }
 
 static void put_whole(json *w, const char *name, const int32_t *values, int stride, long count) {
-  open_column(w, name, "", "");
+  open_column(w, name, "", "", NULL);
   for (long row = 0; row < count; row++)
     json_integer(w, values ? values[stride * row] : row);
   close_column(w);
@@ -248,13 +252,17 @@ static void put_frame(json *w, const frame_rows *rows, const table *t, double ti
   for (int e = 0; rows->bonds && e < 2; e++)
     put_whole(w, e ? "j" : "i", rows->bonds + e, 2, rows->count);
   for (int c = 0; c < places; c++) {
-    open_column(w, (const char[]){"xyz"[c % n], 0}, !rows->bonds ? "" : c < n ? "_i" : "_j", "m");
+    open_column(w, (const char[]){"xyz"[c % n], 0},
+                !rows->bonds ? ""
+                : c < n      ? "_i"
+                             : "_j",
+                "m", NULL);
     for (long row = 0; row < rows->count; row++)
       json_number(w,
                   rows->reference[n * (rows->bonds ? rows->bonds[2 * row + c / n] : row) + c % n]);
     close_column(w);
   }
-  put_columns(w, t->columns, t->count);
+  put_columns(w, t);
   json_array_end(w);
 }
 

@@ -7,6 +7,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "generator/check/physics.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/settings.h"
@@ -572,6 +573,19 @@ static void put_law(json *j, const facts *f) {
 
 /* --- all of it -------------------------------------------------------------------------------- */
 
+/* The verdict of a deck with these values on this lattice; where a value is missing, that of
+   `perilat check`. */
+static bool obeys(facts *f) {
+  diagnostics found;
+  diag_begin(&found, &f->model.sources);
+  const bool good = f->missing ? physics_check(f->model.law, NULL, &found, NULL)
+                               : run_law_obeys(&f->model, &f->lattice, f->values,
+                                               f->material.item.where, &found, &f->said);
+  tell(f, &found);
+  diag_clear(&found);
+  return good;
+}
+
 static bool learn(facts *f, const info_law_options *o) {
   if (!open_law(f, o)) return false;
   f->law = plan_interpreted(f->model.plan, "");
@@ -581,12 +595,12 @@ static bool learn(facts *f, const info_law_options *o) {
 int info_law(const info_law_options *o) {
   facts f = {.memory = arena_new(), .report = o->report};
   diag_begin(&f.said, &f.sources);
-  const bool good = learn(&f, o);
+  const bool known = learn(&f, o), good = known && obeys(&f);
   tell(&f, &f.said);
   if (o->report) diag_json_end(o->report, good);
-  if (good && o->report)
+  if (known && o->report)
     put_law(o->report->document, &f);
-  else if (good)
+  else if (known)
     print_text(&f);
   if (f.law) plan_interpreted_free(f.law);
   if (f.model.memory) model_close(&f.model);

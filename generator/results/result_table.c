@@ -25,10 +25,11 @@ bool table_close(result_file *f, bool good) {
 bool table_read(result_file *f, const char *name, long frame, table_values *out, char *error,
                 size_t size) {
   *out = (table_values){.name = name, .components = 1};
-  if (frame < 0)
+  if (frame < 0) {
     out->values =
         result_read_series(f, name, &out->count, out->unit, sizeof out->unit, error, size);
-  else
+    result_read_unchecked(f, name, out->unchecked, sizeof out->unchecked);
+  } else
     out->values = result_read_frame(f, name, frame, &out->count, &out->components, out->unit,
                                     sizeof out->unit, error, size);
   return out->values != NULL;

@@ -15,9 +15,10 @@ bool table_close(result_file *f, bool good);
 typedef struct table_values {
   const char *name;
   char unit[64];
-  double *values; /* [count][components]; owned */
-  long count;     /* samples, particles or bonds */
-  int components; /* of a frame's field; 1 in a history */
+  double *values;      /* [count][components]; owned */
+  long count;          /* samples, particles or bonds */
+  int components;      /* of a frame's field; 1 in a history */
+  char unchecked[256]; /* why a history that judges the run says nothing, or "" */
 } table_values;
 /* False with a sentence in error. frame < 0: the history of that name. */
 bool table_read(result_file *f, const char *name, long frame, table_values *out, char *error,

@@ -313,35 +313,39 @@ static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
 }
 
 /* What `perilat check law.plm` judges is more than a deck needs. */
-static void warn_of_other_values(run *r, const deck_material *m, model *opened) {
+static void warn_of_other_values(model *opened, span where, diagnostics *d) {
   const law_setting setting = opened->law->setting;
   diagnostics found;
   diag_begin(&found, &opened->sources);
   opened->law->setting = law_first_setting(opened->law);
   if (!physics_check(opened->law, NULL, &found, NULL)) {
-    diag_report(
-        &r->said, DIAG_DECK_WARNING, deck_where(&m->item, "model"),
-        "the law `%s` obeys mechanics with the values and the lattice of this deck, but not "
-        "with all that its bounds allow",
-        opened->law->tree->name);
-    diag_hint(&r->said, "`perilat check %s`, with the options chosen here, shows where",
-              opened->path);
+    diag_report(d, DIAG_DECK_WARNING, where,
+                "the law `%s` obeys mechanics with these values on this lattice, but not with all "
+                "that its bounds allow",
+                opened->law->tree->name);
+    diag_hint(d, "`perilat check %s`, with the options chosen here, shows where", opened->path);
   }
   opened->law->setting = setting;
   diag_clear(&found);
 }
 
-bool obeys_mechanics(run *r, int lattice) {
-  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattice);
-  const physics_options options = {
-      .parameters = r->laws[lattice].parameters, .lattice = &like, .effort = 0.5};
-  model *opened = &r->models[lattice];
+bool run_law_obeys(model *opened, const deck_lattice *lattice, const double *parameters, span where,
+                   diagnostics *of_law, diagnostics *of_values) {
+  const physics_options options = {.parameters = parameters, .lattice = lattice, .effort = 0.5};
   const bool irregular = opened->law->irregular;
   opened->law->irregular = false;
-  const bool good = physics_check(opened->law, &options, &opened->said, NULL);
-  if (good) warn_of_other_values(r, material_of(r, lattice), opened);
+  const bool good = physics_check(opened->law, &options, of_law, NULL);
+  if (good) warn_of_other_values(opened, where, of_values);
   opened->law->irregular = irregular;
   return good;
+}
+
+bool obeys_mechanics(run *r, int lattice) {
+  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattice);
+  model *opened = &r->models[lattice];
+  return run_law_obeys(opened, &like, r->laws[lattice].parameters,
+                       deck_where(&material_of(r, lattice)->item, "model"), &opened->said,
+                       &r->said);
 }
 
 /* --- opening ---------------------------------------------------------------------------------- */

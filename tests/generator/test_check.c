@@ -166,7 +166,7 @@ static void a_length_of_its_own_is_judged_on_the_lattice_of_the_deck(void **stat
   expect(w, "check two.nml", 0, "no errors");
   /* that the two verdicts differ both say */
   assert_non_null(
-      strstr(w->said, "with the values and the lattice of this deck, but not with all"));
+      strstr(w->said, "with these values on this lattice, but not with all"));
   expect(w, "check two.nml --set material.reach=2.1", 1, "[rest-force]");
 }
 
@@ -183,6 +183,9 @@ static void verdicts_that_depend_on_values_say_so(void **state) {
   expect(w, "check deck.nml", 0, "but not with all that its bounds allow");
   expect(w, "check deck.nml --set material.c=0.6", 1, "[stiffness]");
   expect(w, "check turning.plm --set c=0.4", 0, "no errors");
+  expect(w, "info turning.plm --set E='30 GPa' --set c=0.4 --spacing 10mm", 0,
+         "but not with all that its bounds allow");
+  expect(w, "info turning.plm --set E='30 GPa' --set c=0.6 --spacing 10mm", 1, "[stiffness]");
 }
 
 /* --- one verdict ------------------------------------------------------------------------------ */

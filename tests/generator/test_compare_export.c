@@ -153,6 +153,9 @@ static void what_is_not_checked_is_neither_same_nor_a_curve(void **state) {
   make_result(w, "a.h5", v);
   make_result(w, "b.h5", v);
   expect(w, "compare a.h5 b.h5", 0, "same: 5 quantities");
+  assert_non_null(strstr(w->said, "not checked in either: the law has no energy"));
+  expect(w, "export a.h5 --json", 0, "\"unchecked\": \"the law has no energy\"");
+  expect(w, "export checked.h5 --json", 0, "\"unchecked\": null");
   expect(w, "compare checked.h5 checked.h5", 0, "same: 6 quantities");
   expect(w, "compare checked.h5 a.h5", 2, "energy/imbalance");
   assert_non_null(strstr(w->said, "not checked in a.h5: the law has no energy"));
