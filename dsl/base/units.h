@@ -34,6 +34,9 @@ bool dim_pow(dimension a, int numerator, int denominator, dimension *result);
 bool unit_parse(const char *text, size_t length, unit *result, const char **bad,
                 size_t *bad_length);
 
+/* Of a unit that the program itself writes: dimension_of("N/m"). What is no unit is a pure number. */
+dimension dimension_of(const char *unit_text);
+
 /* "a stress (Pa)", "a pure number", or "a quantity in kg^2*m/s" where the field has no word for it.
    Writes at most `size` bytes including the NUL. */
 void dim_describe(dimension d, char *text, size_t size);

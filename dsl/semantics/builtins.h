@@ -16,28 +16,33 @@ enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 
   X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_ANY, "time derivative of the stretch")   \
   X(THETA_I, "theta_i", "1", BENDING, BOND, IN_MICROPOLAR, "rotation of end i less the chord's")   \
   X(THETA_J, "theta_j", "1", BENDING, BOND, IN_MICROPOLAR, "rotation of end j less the chord's")   \
-  X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, "rotation of end j about the bond less that of end i; 0 in 2D") \
+  X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR,                                              \
+    "rotation of end j about the bond less that of end i; 0 in 2D")                                \
   X(LENGTH, "length", "m", SCALAR, BOND, IN_ANY, "present length of the bond")                     \
   X(S, "s", "m", SCALAR, BOND, IN_ANY, "reference length of the bond")                             \
   X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, "distance of nearest sites of the lattice")     \
   X(T, "t", "m", SCALAR, BODY, IN_ANY, "thickness used for stiffness")                             \
-  X(V, "V", "m^3", SCALAR, PARTICLE, IN_ANY, "volume of the particle; all have the same on a lattice") \
+  X(V, "V", "m^3", SCALAR, PARTICLE, IN_ANY,                                                       \
+    "volume of the particle; all have the same on a lattice")                                      \
   X(M_BOND, "m", "kg", SCALAR, BOND, IN_ANY, "smaller mass of the two particles of the bond")      \
   X(M_END_I, "m_i", "kg", SCALAR, BOND, IN_ANY, "mass of particle i")                              \
   X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, "mass of particle j")                              \
   X(AREA, "area", "m^2", SCALAR, BODY, IN_PAIR, "cross-section of a bar")                          \
   X(SHELL, "shell", "1", SCALAR, BOND, IN_ANY, "shell of the neighbour: 1 nearest, 2 second, ...") \
-  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, "distance up to which particles are neighbours")   \
-  X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes") \
-  X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, "number of bonds of the particle")               \
-  X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE, "1 where the particle's bonds resolve all strains, else 0") \
+  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY,                                                 \
+    "distance up to which particles are neighbours")                                               \
+  X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE,                                                 \
+    "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes")           \
+  X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, "number of bonds of the particle")             \
+  X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE,                                         \
+    "1 where the particle's bonds resolve all strains, else 0")                                    \
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, "unit vector along the reference bond")
 
 typedef enum builtin_quantity {
 #define X(code, name, unit, shape, place, kinds, meaning) QUANTITY_##code,
   BUILTIN_QUANTITIES(X)
 #undef X
-  QUANTITY_COUNT
+      QUANTITY_COUNT
 } builtin_quantity;
 
 /* X(code, name, least arguments, most arguments, meaning) */
@@ -65,8 +70,8 @@ typedef enum builtin_quantity {
   X(DEVIATOR, "deviator", 1, 1, "directed quantity less its mean")                                 \
   X(VIRTUAL_WORK, "virtual_work", 1, 1, "stress tensor of a force state")                          \
   X(FIT, "fit", 1, 1, "strain tensor that fits the family's stretches best")                       \
-  X(UNIFORM_FORCE, "uniform_force", 1, 1, "force state toward each neighbour of a uniform stress")   \
-  X(UNIFORM_STRETCH, "uniform_stretch", 1, 1, "stretch toward each neighbour of a uniform strain")  \
+  X(UNIFORM_FORCE, "uniform_force", 1, 1, "force state toward each neighbour of a uniform stress") \
+  X(UNIFORM_STRETCH, "uniform_stretch", 1, 1, "stretch toward each neighbour of a uniform strain") \
   X(HOOKE, "hooke", 3, 3, "stress of a strain: hooke(eps, E, nu), isotropic")                      \
   X(PRINCIPAL, "principal", 2, 2, "principal value 1, 2 or 3 of a tensor, largest first")          \
   X(TRACE, "trace", 1, 1, "trace of a tensor")                                                     \
@@ -78,7 +83,7 @@ typedef enum builtin_function {
 #define X(code, name, least, most, meaning) FUNCTION_##code,
   BUILTIN_FUNCTIONS(X)
 #undef X
-  FUNCTION_COUNT
+      FUNCTION_COUNT
 } builtin_function;
 
 typedef struct builtin_quantity_info {

@@ -1,7 +1,10 @@
-/* Calls of built-in functions and of the law's own. */
+#include "dsl/semantics/calls.h"
+
 #include <string.h>
 
-#include "dsl/semantics/check.h"
+#include "dsl/semantics/names.h"
+#include "dsl/semantics/order.h"
+#include "dsl/semantics/types.h"
 
 static expr *operand(const expr *e, int i) {
   return e->arguments[i].value;
@@ -332,13 +335,13 @@ static value principal(checker *ck, expr *e) {
   X(SIN, pure)                                                                                     \
   X(COS, pure)                                                                                     \
   X(TAN, pure)                                                                                     \
-  X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure) X(MACAULAY, same_unit)       \
-      X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous) X(DIFF, derivative)      \
-          X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator) X(VIRTUAL_WORK, virtual_work)            \
-              X(FIT, fit) X(UNIFORM_FORCE, uniform_force) X(UNIFORM_STRETCH, uniform_stretch)      \
-                  X(HOOKE, hooke) X(PRINCIPAL, principal) X(TRACE, tensor_to_scalar)               \
-                      X(DEV, tensor_argument) X(J2, tensor_to_scalar)                              \
-                          X(VON_MISES, tensor_to_scalar)
+  X(TANH, pure)                                                                                    \
+  X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure) X(MACAULAY, same_unit) X(MIN, extreme)     \
+      X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous) X(DIFF, derivative) X(SUM, sum)          \
+          X(MEAN, mean) X(DEVIATOR, deviator) X(VIRTUAL_WORK, virtual_work) X(FIT, fit)            \
+              X(UNIFORM_FORCE, uniform_force) X(UNIFORM_STRETCH, uniform_stretch) X(HOOKE, hooke)  \
+                  X(PRINCIPAL, principal) X(TRACE, tensor_to_scalar) X(DEV, tensor_argument)       \
+                      X(J2, tensor_to_scalar) X(VON_MISES, tensor_to_scalar)
 
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
 #define X(code, function) [FUNCTION_##code] = function,

@@ -87,32 +87,9 @@ typedef struct law {
   const char *nonconservative; /* reason, or NULL */
 } law;
 
-/* Checks names, units, placement, definite assignment, options. All errors of the file are reported.
-   `choices` selects options (NULL, 0: the first of each). Returns NULL when there are errors.
-   What cannot be compiled is no error here: the generator says so. */
-law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
-               int choice_count, diagnostics *d);
-
 const char *law_setting_name(law_setting setting);
 /* The first that the law names in its line `for`; plane stress without one. */
 law_setting law_first_setting(const law *l);
-
-/* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of
-   law->parameters; used for bounds. Infinite bounds have no expression. */
-double law_constant_value(const expr *e, const double *parameters);
-
-/* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
-   what the bounds are, e.g. "(20, inf)". */
-bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
-/* The bounds as numbers, SI: lower and upper, infinite where there is none, NAN where one depends on a value that is NAN;
-   and whether the bound itself is left out. */
-typedef struct law_limits {
-  double lower, upper;
-  bool lower_open, upper_open;
-} law_limits;
-law_limits law_parameter_limits(const law *l, int p, const double *values);
-/* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
-void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
 
 C_LINKAGE_END
 

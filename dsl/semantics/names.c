@@ -1,9 +1,8 @@
-/* Declares the names of a law and finds them again. */
+#include "dsl/semantics/names.h"
+
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
-
-#include "dsl/semantics/check.h"
 
 /* Words of the deck's material group, which a law's parameters and options stand beside. */
 static const char *const deck_words[] = {"name", "model", "lattice"};
@@ -612,7 +611,11 @@ entry *names_resolve(checker *ck, expr *e) {
   if (!context_allows(ck, e, s)) return NULL;
   if (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE)
     return field_may_be_read(ck, e, found) ? found : NULL;
-  if (found->declared_at < ck->now || ck->context == IN_BOUNDS || ck->call_depth > 0) return found;
-  report_undefined(ck, e, found);
-  return NULL;
+  return found;
+}
+
+bool names_is_below(const checker *ck, const entry *e) {
+  const symbol_kind kind = e->symbol.kind;
+  if (kind == SYMBOL_STATE || kind == SYMBOL_DAMAGE || kind == SYMBOL_ARGUMENT) return false;
+  return e->declared_at >= ck->now && ck->context != IN_BOUNDS && ck->call_depth == 0;
 }

@@ -1,8 +1,9 @@
-/* What depends on what: cycles, and names that reach no force and no output. */
+#include "dsl/semantics/order.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/check.h"
+#include "dsl/semantics/names.h"
 
 /* A search along the names that rules read, with a stack of its own: chains may be as long as the
  * file. */

@@ -12,7 +12,7 @@
 #include "dsl/base/diagnostics.h"
 #include "dsl/help/help.h"
 #include "dsl/semantics/builtins.h"
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "dsl/syntax/parsing.h"
 #include "runtime/deck/deck_table.h"

@@ -12,7 +12,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
+#include "dsl/semantics/law_limits.h"
 #include "dsl/syntax/parse.h"
 
 /* One text and what became of it. */
