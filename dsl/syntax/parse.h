@@ -24,10 +24,9 @@ typedef struct parse_options {
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
 
-/* What a text is, by its first word behind comments: what a person has not named himself is not
-   quoted unless it is a law, or a text that laws include. */
+/* Is a text a law, by its first word behind comments? What a person has not named himself is not
+   quoted unless it is one. */
 bool parse_begins_law(const char *text);
-bool parse_begins_include(const char *text); /* or holds no word at all */
 
 C_LINKAGE_END
 

@@ -7,7 +7,7 @@
 #include <cmocka.h>
 
 #include "dsl/semantics/builtins.h"
-#include "dsl/syntax/parsing.h"
+#include "dsl/syntax/words.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/dsl/text_files.h"
 

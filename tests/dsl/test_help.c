@@ -14,7 +14,7 @@
 #include "dsl/semantics/builtins.h"
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
-#include "dsl/syntax/parsing.h"
+#include "dsl/syntax/words.h"
 #include "runtime/deck/deck_table.h"
 #include "tests/dsl/text_files.h"
 
