@@ -7,43 +7,20 @@
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
 
+/* The function that a call has a value of numbers for, or NULL. */
+static const builtin_function_info *plain_function(const expr *e) {
+  const builtin_function_info *f = e->builtin < 0 ? NULL : &builtin_functions[e->builtin];
+  return f && (f->of_one || f->of_many) ? f : NULL;
+}
+
 static double call_value(const expr *e, const double *values) {
-  double x = e->argument_count > 0 ? law_constant_value(e->arguments[0].value, values) : NAN;
-  switch (e->builtin) {
-  case FUNCTION_ABS:
-    return fabs(x);
-  case FUNCTION_SQRT:
-    return sqrt(x);
-  case FUNCTION_CBRT:
-    return pl_cbrt(x);
-  case FUNCTION_EXP:
-    return pl_exp(x);
-  case FUNCTION_LOG:
-    return pl_log(x);
-  case FUNCTION_SIN:
-    return pl_sin(x);
-  case FUNCTION_COS:
-    return pl_cos(x);
-  case FUNCTION_TAN:
-    return pl_tan(x);
-  case FUNCTION_TANH:
-    return pl_tanh(x);
-  case FUNCTION_SIGN:
-    return (x > 0) - (x < 0);
-  case FUNCTION_MACAULAY:
-    return pl_max(x, 0);
-  case FUNCTION_SOFT_SIGN:
-    return x / (1 + fabs(x));
-  case FUNCTION_MIN:
-  case FUNCTION_MAX:
-    for (int i = 1; i < e->argument_count; i++) {
-      double y = law_constant_value(e->arguments[i].value, values);
-      x = e->builtin == FUNCTION_MIN ? pl_min(x, y) : pl_max(x, y);
-    }
-    return x;
-  default:
-    return NAN;
-  }
+  const builtin_function_info *f = plain_function(e);
+  if (!f) return NAN;
+  double x = law_constant_value(e->arguments[0].value, values);
+  if (f->of_one) return f->of_one(x);
+  for (int i = 1; i < e->argument_count; i++)
+    x = f->of_many(x, law_constant_value(e->arguments[i].value, values));
+  return x;
 }
 
 static double binary_value(const expr *e, const double *values) {
@@ -92,6 +69,27 @@ double law_constant_value(const expr *e, const double *values) {
     return NAN;
   }
   return NAN;
+}
+
+bool law_is_plain(const expr *e) {
+  switch (e->kind) {
+  case EXPR_NUMBER:
+  case EXPR_NAME:
+    return true;
+  case EXPR_UNARY:
+    return e->unary != OP_NOT && law_is_plain(e->left);
+  case EXPR_BINARY:
+    return e->binary > OP_GE && e->binary != OP_CONTRACT && law_is_plain(e->left) &&
+           law_is_plain(e->right);
+  case EXPR_CALL:
+    if (!plain_function(e)) return false;
+    for (int i = 0; i < e->argument_count; i++)
+      if (!law_is_plain(e->arguments[i].value)) return false;
+    return true;
+  case EXPR_CASES:
+    return false;
+  }
+  return false;
 }
 
 law_limits law_parameter_limits(const law *l, int p, const double *values) {

@@ -10,6 +10,9 @@ C_LINKAGE_BEGIN
 /* NAN where it reads a parameter and `values` is NULL, or something else than numbers and parameters. */
 double law_constant_value(const expr *e, const double *values);
 
+/* Does law_constant_value know it: numbers, names, + - * / ** and functions with a value of numbers? */
+bool law_is_plain(const expr *e);
+
 /* The bounds as numbers: infinite where there is none, NAN where one depends on a value that is NAN; and whether the
    bound itself is left out. */
 typedef struct law_limits {

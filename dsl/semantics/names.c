@@ -497,18 +497,8 @@ static void report_unknown(checker *ck, const expr *e) {
 }
 
 bool is_fixed(const symbol *s) {
-  if (s->kind != SYMBOL_QUANTITY) return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
-  switch (s->index) {
-  case QUANTITY_STRETCH:
-  case QUANTITY_STRETCH_RATE:
-  case QUANTITY_THETA_I:
-  case QUANTITY_THETA_J:
-  case QUANTITY_TWIST:
-  case QUANTITY_LENGTH:
-    return false;
-  default:
-    return true;
-  }
+  if (s->kind == SYMBOL_QUANTITY) return builtin_quantities[s->index].fixed;
+  return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
 }
 
 static const char *law_that_has(int kinds) {

@@ -7,36 +7,12 @@
 #include "dsl/semantics/literals.h"
 #include "dsl/semantics/types.h"
 
-/* Calls and cases that law_constant_value does not know are refused where a plain value is asked
- * for. */
-static bool is_plain(const expr *e) {
-  switch (e->kind) {
-  case EXPR_NUMBER:
-  case EXPR_NAME:
-    return true;
-  case EXPR_UNARY:
-    return e->unary != OP_NOT && is_plain(e->left);
-  case EXPR_BINARY:
-    return e->binary > OP_GE && e->binary != OP_CONTRACT && is_plain(e->left) && is_plain(e->right);
-  case EXPR_CALL:
-    if (e->builtin < 0 || e->builtin == FUNCTION_ATAN2 ||
-        (e->builtin > FUNCTION_MAX && e->builtin < FUNCTION_COUNT))
-      return false;
-    for (int i = 0; i < e->argument_count; i++)
-      if (!is_plain(e->arguments[i].value)) return false;
-    return true;
-  case EXPR_CASES:
-    return false;
-  }
-  return false;
-}
-
 static value check_plain(checker *ck, expr *e, context where) {
   context before = ck->context;
   ck->context = where;
   value v = check_number(ck, e);
   ck->context = before;
-  if (!v.broken && !is_plain(e)) {
+  if (!v.broken && !law_is_plain(e)) {
     complain(ck, DIAG_BAD_NUMBER, e->where,
              "a value given here is made of numbers, + - * / ** and plain functions");
     return BROKEN;
