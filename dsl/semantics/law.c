@@ -2,9 +2,11 @@
 
 #include <string.h>
 
-static const char *const setting_names[] = {[SETTING_PLANE_STRESS] = "plane_stress",
-                                            [SETTING_PLANE_STRAIN] = "plane_strain",
-                                            [SETTING_SPACE] = "space"};
+static const char *const setting_names[] = {
+#define X(code, word) word,
+    LAW_SETTINGS(X)
+#undef X
+};
 
 const char *law_setting_name(law_setting setting) {
   return setting_names[setting];

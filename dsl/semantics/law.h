@@ -65,7 +65,11 @@ typedef struct law_choice {
 } law_choice;
 
 /* What the lattice of a law is: it decides `when plane_strain` and the third direction of tensors. */
-typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
+typedef enum law_setting {
+#define X(code, word) SETTING_##code,
+  LAW_SETTINGS(X)
+#undef X
+} law_setting;
 
 typedef struct law {
   struct tree *tree;

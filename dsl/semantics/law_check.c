@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "dsl/semantics/calls.h"
+#include "dsl/semantics/declarations.h"
 #include "dsl/semantics/names.h"
 #include "dsl/semantics/order.h"
 #include "dsl/semantics/parameters.h"
@@ -487,7 +488,7 @@ static void publish_types(checker *ck) {
 }
 
 static void check_all(checker *ck, const law_choice *choices, int choice_count) {
-  names_declare(ck);
+  declare_names(ck);
   ck->now = ck->statement_count;
   check_choices(ck, choices, choice_count);
   if (has_state(ck)) infer_states(ck);

@@ -1,4 +1,5 @@
-/* The names of a law: declared by its statements, found again in expressions. */
+/* The table of a law's names: entered where they are declared, found again where expressions read
+   them. The same word may stand for a quantity, a function, and a choice of an option. */
 #ifndef PERILAT_DSL_NAMES_H
 #define PERILAT_DSL_NAMES_H
 
@@ -6,8 +7,7 @@
 
 void names_begin(checker *ck);
 void names_end(checker *ck);
-/* Declares what every statement declares; duplicates and reserved names are reported. */
-void names_declare(checker *ck);
+entry *names_add(checker *ck, name_space space, const char *key, symbol what);
 entry *names_find(const checker *ck, name_space space, const char *name);
 /* Several options may have choices of the same name. */
 entry *names_find_choice(const checker *ck, const symbol *option, const char *name);

@@ -100,7 +100,9 @@ void line_law(parsing *p, word first, word second, span where) {
 }
 
 void line_settings(parsing *p, const words *list, span where) {
-  static const char *const known[] = {"plane_stress", "plane_strain", "space", LAW_IRREGULAR};
+#define X(code, word) word,
+  static const char *const known[] = {LAW_SETTINGS(X) LAW_IRREGULAR};
+#undef X
   if (refuse_in_include(p, where) || !inside_model(p, where)) return;
   if (p->setting_seen) {
     complain(p, where, "the settings are given twice", "put them all into one `for` line");

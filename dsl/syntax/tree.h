@@ -13,6 +13,12 @@
 
 C_LINKAGE_BEGIN
 
+/* What the lattice of a law may be, after `for` and `when`. X(code, word) */
+#define LAW_SETTINGS(X)                                                                            \
+  X(PLANE_STRESS, "plane_stress")                                                                  \
+  X(PLANE_STRAIN, "plane_strain")                                                                  \
+  X(SPACE, "space")
+
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
 
