@@ -1,4 +1,4 @@
-/* Unit, shape and place of values: when two agree, what they have in common, how they are called in messages. */
+/* Unit, shape and place of values: when two agree, and how they are called in messages. */
 #ifndef PERILAT_DSL_AGREEMENT_H
 #define PERILAT_DSL_AGREEMENT_H
 

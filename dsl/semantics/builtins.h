@@ -1,5 +1,5 @@
-/* What the language brings along: quantities of lattice and motion, functions. One table each: a new one is a row here,
-   and what it computes in the compiler (generator/README.md, "A new function"). */
+/* What the language brings along: quantities of lattice and motion, functions. One table each; what
+   else a new function needs stands in generator/README.md. */
 #ifndef PERILAT_DSL_BUILTINS_H
 #define PERILAT_DSL_BUILTINS_H
 
@@ -58,11 +58,11 @@ enum { MOVES, FIXED };
   X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, FIXED, "x = norm(direction)",               \
     "unit vector along the reference bond")
 
-/* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, as a formula,
+/* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, formula,
      a line of a law that calls it, meaning)
-   The value, of numbers alone, is ONE(f) of one argument, MANY(f) where f(f(a, b), c) goes on from two to many, or
-   NO_VALUE. In the formula # stands for the argument; without #, it is a name before bracketed arguments, "" the
-   function's own. */
+   The value, of numbers alone, is ONE(f) of one argument, MANY(f) where f(f(a, b), c) goes on from
+   two to many, or NO_VALUE. In the formula (LaTeX) # stands for the argument; without #, it is a
+   name before bracketed arguments, and "" is the function's own name. */
 #define BUILTIN_FUNCTIONS(X)                                                                       \
   X(ABS, "abs", 1, 1, same_unit, ONE(pl_abs), "\\left|#\\right|", "x = abs(stretch)",              \
     "absolute value")                                                                              \

@@ -368,8 +368,8 @@ static bool check_arity(checker *ck, const expr *e, int least, int most, const c
 }
 
 /* A function has no units of its own: with f(p, q) = p*q, f(s, s) is in m^2 and f(k, stretch) in N.
-   The body is checked once where it is declared, its arguments agreeing with everything, and again at
-   each call with the arguments' units; what is wrong there is reported at the call. */
+   The body is checked once where it is declared, its arguments agreeing with everything, and again
+   at each call with the arguments' units; what is wrong there is reported at the call. */
 static value expand(checker *ck, expr *e, entry *function) {
   value values[MOST_ARGUMENTS];
   bool broken = false;

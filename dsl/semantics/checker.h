@@ -1,4 +1,4 @@
-/* What is known of a law while it is checked, and how the checks report: the lowest module of the checks. */
+/* What is known of a law while it is checked, and how the checks report: the lowest of them. */
 #ifndef PERILAT_DSL_CHECKER_H
 #define PERILAT_DSL_CHECKER_H
 

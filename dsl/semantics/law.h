@@ -1,5 +1,6 @@
-/* A checked law: every name resolved, every unit agreed, every quantity placed, in an order in which it
-   can be evaluated. The checker annotates the tree in place; the generator reads this and nothing else. */
+/* A checked law: every name resolved, every unit agreed, every quantity placed, in an order in
+   which it can be evaluated. The checker annotates the tree in place; the generator reads this and
+   nothing else. */
 #ifndef PERILAT_DSL_LAW_H
 #define PERILAT_DSL_LAW_H
 
@@ -64,7 +65,7 @@ typedef struct law_choice {
   const char *option, *choice;
 } law_choice;
 
-/* What the lattice of a law is: it decides `when plane_strain` and the third direction of tensors. */
+/* The lattice of a law: it decides `when plane_strain` and the third direction of tensors. */
 typedef enum law_setting {
 #define X(code, word) SETTING_##code,
   LAW_SETTINGS(X)
@@ -73,8 +74,7 @@ typedef enum law_setting {
 
 typedef struct law {
   struct tree *tree;
-  law_setting
-      setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  law_setting setting; /* first that the law names; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
   int neighbours; /* of a full family, where they are known; else 0 */
   arena *memory;  /* not owned */

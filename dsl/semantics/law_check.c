@@ -43,7 +43,8 @@ static void check_fields(checker *ck) {
   }
 }
 
-/* A product or sum in which the bond's length is the only thing that differs from neighbour to neighbour. */
+/* A product or sum in which the bond's length is the only thing that differs from neighbour to
+   neighbour. */
 static bool is_made_of_length(const expr *e) {
   if (!e || e->place <= ON_PARTICLE) return false;
   if (e->kind == EXPR_NAME) return strcmp(e->name, "s") == 0;

@@ -1,5 +1,5 @@
-/* The room from tree to law: every name is resolved, units and shapes agree, every value has its place;
-   all that is wrong is said, each slip once. This module leads; a law passes through the others so:
+/* The room from tree to law: every name is resolved, units and shapes agree, every value has its
+   place; all that is wrong is said, each slip once. Here it is led, in this order:
 
      declarations   each statement enters its names, so that all are known before one is read
      names          what an expression reads: a quantity of the law, a built-in one, an option
@@ -14,8 +14,8 @@
      parameter k = 2 [MN]           k: N, a scalar of the body
      state top = 0                  a bare 0 has any unit: a first round, which says nothing, finds
      top = max(top, stretch)          1 in this rule; the `top` in it is that of the last step
-     force N = k*(top + s)          top is a pure number, s is in m: reported as `top + s`; N is in N
-                                    all the same, so that who reads N hears nothing of it */
+     force N = k*(top + s)          `top` is a pure number, `s` a length: reported, and N is broken:
+                                      no message follows for what reads it */
 #ifndef PERILAT_DSL_LAW_CHECK_H
 #define PERILAT_DSL_LAW_CHECK_H
 
@@ -23,9 +23,9 @@
 
 C_LINKAGE_BEGIN
 
-/* Checks names, units, placement, definite assignment, options. All errors of the file are reported.
-   `choices` selects options (NULL, 0: the first of each). Returns NULL when there are errors.
-   What cannot be compiled is no error here: the generator says so. */
+/* Checks names, units, placement, definite assignment, options. All errors of the file are
+   reported. `choices` selects options (NULL, 0: the first of each). Returns NULL when there are
+   errors. What cannot be compiled is no error here: the generator says so. */
 law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
                int choice_count, diagnostics *d);
 

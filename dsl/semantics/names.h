@@ -16,7 +16,7 @@ void names_suggest(checker *ck, name_space space, const char *name);
 
 /* Resolves a name in an expression, wherever it is declared; NULL after a message. */
 entry *names_resolve(checker *ck, expr *e);
-/* Is it declared only below the statement that reads it? A state has its value of the last step there. */
+/* Is it declared only below the statement that reads it? States have their old value there. */
 bool names_is_below(const checker *ck, const entry *e);
 
 /* Does not change in time. */

@@ -75,11 +75,12 @@ static bool search_run(search *s, const entry *goal) {
   return false;
 }
 
-/* --- cycles: a = b + 1, b = 2*c, c = a --------------------------------------------------------- */
-/* While `a` is checked, `b` is found below. A search from `b` along what rules read arrives at `a`:
-   "`a` needs `b`, which needs `c`, which needs `a`". Without `c = a` it does not arrive, and `b` is
-   only used above its definition. A state whose rule stands below is read with its value of the last
-   step: it ends the search. */
+/* --- cycles ----------------------------------------------------------------------------------- */
+
+/* a = b + 1, b = 2*c, c = a: while `a` is checked, `b` is found below. A search from `b` along what
+   rules read arrives at `a`: "`a` needs `b`, which needs `c`, which needs `a`". Without `c = a` it
+   does not arrive, and `b` is only used above its definition. A state whose rule stands below is
+   read with its value of the last step: it ends the search. */
 
 /* "`a` needs `b`, which needs `a`": the chain from the target back to what is being defined. */
 static const char *chain_text(checker *ck, const entry *self) {

@@ -1,5 +1,5 @@
-/* Gives every expression its dimension, shape and placement. Calls are in calls.c: arguments are expressions again,
-   and so is the body of a function. */
+/* Gives every expression its dimension, shape and placement. Calls are in calls.c: arguments are
+   expressions again, and so is the body of a function. */
 #ifndef PERILAT_DSL_TYPES_H
 #define PERILAT_DSL_TYPES_H
 

@@ -8,8 +8,8 @@
 
 C_LINKAGE_BEGIN
 
-/* Answers `include "name"`: returns the text (malloc'ed, NUL-terminated) and its name for messages in
-   *found (malloc'ed), or NULL when there is no such file. `from` is the including source's name. */
+/* Answers `include "name"`: returns the text (malloc'ed, NUL-terminated) and its name for messages
+   in *found (malloc'ed), or NULL when there is no such file. `from` names the including source. */
 typedef char *(*include_reader)(void *context, const char *name, const char *from, char **found);
 
 typedef struct parse_options {
@@ -17,10 +17,10 @@ typedef struct parse_options {
   void *context;
 } parse_options;
 
-/* Parses sources->items[file]. Returns the tree, also after errors if a model line was read (then with
-   what could be understood), or NULL. All syntax errors of the file are reported, one a statement;
-   after 200 reading stops. An `include` stays in the tree, followed by the statements it brought;
-   a text that is included twice brings them once. */
+/* Parses sources->items[file]. Returns the tree, also after errors if a model line was read (then
+   with what could be understood), or NULL. All syntax errors of the file are reported, one a
+   statement; after 200 reading stops. An `include` stays in the tree, followed by the statements it
+   brought; a text that is included twice brings them once. */
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
 

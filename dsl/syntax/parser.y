@@ -93,7 +93,8 @@ line:
 only_text:
   NONCONSERVATIVE                   { $$ = build_stmt(p, STMT_NONCONSERVATIVE, no_word, no_word,
                                                       NULL, @1); }
-| INCLUDE                           { $$ = build_stmt(p, STMT_INCLUDE, no_word, no_word, NULL, @1); }
+| INCLUDE                           { $$ = build_stmt(p, STMT_INCLUDE, no_word, no_word,
+                                                      NULL, @1); }
 ;
 
 declaration:

@@ -1,5 +1,5 @@
-/* What lexer, grammar, tree and syntax messages know of a text while it is read. Internal to the front end: callers
-   see parse.h only. */
+/* What lexer, grammar, tree and syntax messages know of a text while it is read. Internal to the
+   front end: callers see parse.h only. */
 #ifndef PERILAT_DSL_PARSING_H
 #define PERILAT_DSL_PARSING_H
 

@@ -1,4 +1,4 @@
-/* Nodes of the tree with their spans, as the grammar makes them; depth and index are checked here. */
+/* Nodes of the tree with their spans, as the grammar makes them; checks depth and index. */
 #ifndef PERILAT_DSL_TREE_BUILD_H
 #define PERILAT_DSL_TREE_BUILD_H
 

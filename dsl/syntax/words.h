@@ -20,7 +20,7 @@
   X(OR, "or") X(NOT, "not") X(BY, "by") X(ALONG, "along") X(RETURNED, "returned") X(ON, "on")
 /* clang-format on */
 
-/* Is the first word of a text, behind comments, one of these? "" stands for a text without words. */
+/* Is the first word of a text, behind comments, one of these? "" is a text without words. */
 bool first_word_is(const char *text, const char *const *any, size_t count);
 
 #endif

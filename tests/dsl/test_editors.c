@@ -1,5 +1,6 @@
-/* Lists of words outside of the program, the editors' grammars and the fuzzers' dictionary, hold exactly the words that
-   the lexer and the checker know. With PERILAT_BLESS=1 they are written anew from the language's own tables. */
+/* Lists of words outside of the program, the editors' grammars and the fuzzers' dictionary, hold
+   exactly the words that the lexer and the checker know. With PERILAT_BLESS=1 they are written anew
+   from the language's own tables. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -38,7 +39,8 @@ static const word_list lists[LISTS] = {
     [FUNCTION] = LIST(function_list),
 };
 
-/* A file that holds the lists: each stands between its head and the tail, with the separator between words. */
+/* A file that holds the lists: each stands between its head and the tail, with the separator
+   between words. */
 typedef struct holder {
   const char *path, *heads[LISTS], *separator, *tail;
 } holder;

@@ -591,8 +591,8 @@ static void assert_messages_are_placed(const checked *c, size_t length) {
   }
 }
 
-/* Words and signs of the language in any order: each program is refused, in words and in places of its
-   own text. Programs that are accepted: test_homogeneous.c. */
+/* Words and signs of the language in any order: each program is refused, in words and in places of
+   its own text. Programs that are accepted: test_homogeneous.c. */
 static void any_program_is_survived(void **state) {
   (void)state;
   static const char *const words[] = {
