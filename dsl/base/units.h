@@ -1,5 +1,5 @@
 /* Physical dimensions and units. A dimension is a vector of rational exponents over the SI base
-   quantities; angles are pure numbers. `30 [GPa]` is a value times a unit; values are held in SI. */
+   quantities; angles are pure numbers. `30 [GPa]` is a value times a unit; all in SI. */
 #ifndef PERILAT_DSL_UNITS_H
 #define PERILAT_DSL_UNITS_H
 
