@@ -1,5 +1,5 @@
 /* What the language brings along: quantities of lattice and motion, functions. One table each; what
-   else a new function needs stands in generator/README.md. */
+   else a new function needs stands in dsl/README.md, "Modules". */
 #ifndef PERILAT_DSL_BUILTINS_H
 #define PERILAT_DSL_BUILTINS_H
 
