@@ -1,8 +1,7 @@
-/* What the checker accepts is homogeneous in its units: thousands of random expressions are computed
-   in SI and in a system whose metre, kilogram and second are 1/4096 of ours. The numbers of an
-   expression in m^a kg^b s^c must differ by 4096^(a + b + c); twelfths of exponents are whole powers
-   of 2 then, and the comparison is nearly exact. Example: s + 2 [m] is accepted, as 0.7 + 2 = 2.7 and
-   2867.2 + 8192 = 4096*2.7; s + stretch would be no such thing. */
+/* What the checker accepts is homogeneous in its units: thousands of random expressions are
+   computed in SI and in a system whose metre, kilogram and second are 1/4096 of ours. Values in
+   m^a kg^b s^c must differ by 4096^(a + b + c): a power of 2, also of roots, so that this is nearly
+   exact. Example: s + 2 [m] is accepted, as 0.9 + 2 = 2.9 and 3686.4 + 8192 = 4096*2.9. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

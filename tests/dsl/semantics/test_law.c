@@ -342,6 +342,49 @@ static void defaults_are_computed(void **state) {
   release(&c);
 }
 
+/* Every function that has a value of numbers, against values of sixteen digits. */
+static void defaults_may_call_functions(void **state) {
+  (void)state;
+  static const struct {
+    const char *text;
+    double value;
+  } calls[] = {{"abs(-1.5)", 1.5},
+               {"sqrt(1.5)", 1.224744871391589},
+               {"cbrt(-3.375)", -1.5},
+               {"exp(0.5)", 1.6487212707001282},
+               {"log(2)", 0.6931471805599453},
+               {"sin(0.5)", 0.479425538604203},
+               {"cos(0.5)", 0.8775825618903728},
+               {"tan(0.5)", 0.5463024898437905},
+               {"tanh(0.5)", 0.46211715726000973},
+               {"sign(-0.5)", -1},
+               {"soft_sign(-3)", -0.75},
+               {"positive_part(-3)", 0},
+               {"min(3, -1, 2)", -1},
+               {"max(-3, 2, 1)", 2}};
+  int plain = 0;
+  for (int f = 0; f < FUNCTION_COUNT; f++)
+    plain += builtin_functions[f].of_one != NULL || builtin_functions[f].of_many != NULL;
+  assert_int_equal(plain, sizeof(calls) / sizeof(calls[0]));
+  for (size_t i = 0; i < sizeof(calls) / sizeof(calls[0]); i++) {
+    char text[200];
+    snprintf(text, sizeof(text), CENTRAL("parameter p = %s\nforce N = p*EA*stretch"),
+             calls[i].text);
+    checked c = check_with(text, NULL, NULL, 0);
+    assert_non_null(c.law);
+    const double found = symbol_named(c.law, "p")->initial;
+    if (fabs(found - calls[i].value) > 2e-16 * fabs(calls[i].value))
+      fail_msg("%s is %.17g", calls[i].text, found);
+    release(&c);
+  }
+  /* no number is lost on the way: sign(NaN) is no number either, as in compiled laws */
+  checked c =
+      check_with(CENTRAL("parameter p = sign(log(-1))\nforce N = p*EA*stretch"), NULL, NULL, 0);
+  assert_null(c.law);
+  assert_int_equal(c.d.items[0].code, DIAG_BAD_NUMBER);
+  release(&c);
+}
+
 static void state_law_is_understood(void **state) {
   (void)state;
   checked c = check(STATE(
@@ -664,6 +707,7 @@ int main(void) {
       cmocka_unit_test(options_are_chosen),
       cmocka_unit_test(bounds_are_kept),
       cmocka_unit_test(defaults_are_computed),
+      cmocka_unit_test(defaults_may_call_functions),
       cmocka_unit_test(state_law_is_understood),
       cmocka_unit_test(libraries_may_hold_more_than_is_used),
       cmocka_unit_test(what_is_used_is_marked),
