@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "dsl/semantics/law_check.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/toolchain.h"
 #include "tests/fuzz/c_alphabet.h"
