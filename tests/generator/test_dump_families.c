@@ -6,6 +6,7 @@
 
 #include <cmocka.h>
 
+#include "generator/emit/plan_dump.h"
 #include "law_text.h"
 #include "tests/dsl/text_files.h"
 

@@ -1,4 +1,4 @@
-#include "generator/emit/c_text.h"
+#include "generator/target/c_text.h"
 
 #include <ctype.h>
 #include <math.h>
