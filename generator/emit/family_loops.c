@@ -68,7 +68,6 @@ void family_loops_particles(emitter *e, const segment *a) {
   static const scope in = {.before = "    ",
                            .indent = "      ",
                            .uniform = SAY_UNIFORM,
-                           .numbers_roots = true,
                            .declare = family_loops_declare,
                            .input = family_loops_input};
   family_segment_open(e, a, &in);
@@ -83,7 +82,6 @@ void family_loops_neighbours(emitter *e, const segment *a) {
   const scope in = {.before = "      ",
                     .indent = "        ",
                     .uniform = list ? SAY_UNIFORM : SAY_UNIFORM_OF_NEIGHBOUR,
-                    .numbers_roots = true,
                     .declare = family_loops_declare,
                     .input = family_loops_input};
   family_segment_open(e, a, &in);

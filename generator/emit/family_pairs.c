@@ -58,7 +58,6 @@ static const char *input(emitter *e, ir_node n) {
 static const scope in_pairs = {.before = "      ",
                                .indent = "        ",
                                .uniform = SAY_UNIFORM_OF_NEIGHBOUR,
-                               .numbers_roots = true,
                                .declare = family_loops_declare,
                                .input = input};
 

@@ -176,14 +176,8 @@ static void write_neighbours(emitter *e, const segment *a, int neighbours) {
 }
 
 static void write_segment(emitter *e, const segment *a) {
-  static const scope of_particles = {.indent = "      ",
-                                     .uniform = SAY_UNIFORM,
-                                     .numbers_roots = true,
-                                     .input = input},
-                     of_neighbours = {.indent = "        ",
-                                      .uniform = SAY_UNIFORM,
-                                      .numbers_roots = true,
-                                      .input = input};
+  static const scope of_particles = {.indent = "      ", .uniform = SAY_UNIFORM, .input = input},
+                     of_neighbours = {.indent = "        ", .uniform = SAY_UNIFORM, .input = input};
   static const family_index own = {.first = ""};
   const int neighbours = e->plan->law->neighbours;
   family_segment_open(e, a, a->kind == OVER_PARTICLES ? &of_particles : &of_neighbours);

@@ -123,6 +123,13 @@ static const char *wished_name(const emitter *e, ir_node n) {
   return given ? given : arena_printf(e->memory, "v%d", (int)n);
 }
 
+/* An input that is called like the array it is from: slot_0, plane_0. */
+static bool is_pass_own(const emitter *e, ir_node n) {
+  if (ir_operation(e->graph, n) != IR_INPUT || !ir_name(e->graph, n)) return false;
+  const ir_source from = ir_input_source(e->graph, n);
+  return from == IR_FROM_SLOT || from == IR_FROM_PLANE;
+}
+
 /* The model's names first, so that they stay as they are; then those of the nameless. */
 static void choose_names(emitter *e) {
   for (ir_node n = 0; n < e->node_count; n++) {
@@ -136,7 +143,9 @@ static void choose_names(emitter *e) {
   for (int named = 1; named >= 0; named--)
     for (ir_node n = 0; n < e->node_count; n++)
       if (e->needed[n] && (ir_name(e->graph, n) != NULL) == named && !is_inline(e, n))
-        e->name[n] = c_names_make(&e->names, wished_name(e, n));
+        e->name[n] = is_pass_own(e, n) && c_names_reserve(&e->names, ir_name(e->graph, n))
+                         ? ir_name(e->graph, n)
+                         : c_names_make(&e->names, wished_name(e, n));
 }
 
 /* --- a function's nodes ----------------------------------------------------------------------- */
@@ -160,7 +169,7 @@ static void open_nodes(emitter *e, const scope *in, const ir_node *nodes, int co
   size_t n = (size_t)e->node_count + 1;
   e->scope = in;
   e->names = (c_names){0};
-  words_reserve(&e->names, in->numbers_roots ? count : 0);
+  words_reserve(&e->names);
   e->needed = must_calloc(n, 1);
   e->uses = must_calloc(n, sizeof *e->uses);
   e->user = must_calloc(n, sizeof *e->user);

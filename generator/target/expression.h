@@ -25,7 +25,6 @@ typedef struct scope {
   const char *before, *indent; /* indentation before the loop and in it */
   word uniform;                /* where values are that `prepare` has computed; SAY_NOTHING: here */
   bool strip; /* each case of a chain has its line, and what is expected is asked by sizes */
-  bool numbers_roots; /* what belongs to a root has its number: to_0, value_0 */
   /* Writes what stands before the loop for an input; may be NULL. */
   void (*declare)(emitter *e, ir_node input);
   /* What the line of an input says. */

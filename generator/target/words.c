@@ -36,25 +36,20 @@ const char *words_join(arena *memory, const char *list, const char *separator, c
   return list ? arena_printf(memory, "%s%s%s", list, separator, item) : item;
 }
 
-void words_reserve(c_names *names, int roots) {
+void words_reserve(c_names *names) {
   static const char *const own[] = {
-      "law",        "uniforms",    "strip",         "count",  "q",       "flags",    "in",
-      "out",        "bonds",       "present",       "lower",  "upper",   "low_open", "high_open",
-      "parameters", "present_bit", "protected_bit", "family", "first",   "lanes",    "k",
-      "to",         "half",        "back",          "last",   "kept",    "unusual",  "owned",
-      "owner",      "sign",        "zeros",         "got",    "link_to", "changed",  "constant",
-      "above",      "large",       "told",          "before", "group",   "lent",     "size_0",
-      "size_1",     "largest_0",   "largest_1"};
-  static const char *const of_root[] = {"to", "value", "values", "far"};
+      "law",    "uniforms",    "strip",         "count",       "q",
+      "flags",  "in",          "out",           "bonds",       "present",
+      "lower",  "upper",       "low_open",      "high_open",   "parameters",
+      "family", "present_bit", "protected_bit", "first",       "lanes",
+      "k",      "to",          "half",          "back",        "last",
+      "kept",   "unusual",     "owned",         "owner",       "sign",
+      "zeros",  "got",         "link_to",       "changed",     "constant",
+      "above",  "large",       "told",          "before",      "group",
+      "lent",   "UNIFORMS",    "are_equal",     "some_marked", "store_at_ends"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(names, own[k]);
 #define X(pass, member, task) c_names_reserve(names, #member "_unusual");
   STRIP_PASSES(X)
 #undef X
-  for (int root = 0; root < roots; root++)
-    for (size_t k = 0; k < sizeof of_root / sizeof *of_root; k++) {
-      char name[32];
-      snprintf(name, sizeof name, "%s_%d", of_root[k], root);
-      c_names_reserve(names, name);
-    }
 }

@@ -26,8 +26,7 @@ const char *words_text(arena *memory, word w, const char *const *pieces);
 /* `list`, the separator and `item`; `item` where the list is NULL. */
 const char *words_join(arena *memory, const char *list, const char *separator, const char *item);
 
-/* Takes the names that words use in a function, and those that belong to so many roots of a
-   segment: to_0, value_0. */
-void words_reserve(c_names *names, int roots);
+/* Takes the names that words use in a function. */
+void words_reserve(c_names *names);
 
 #endif
