@@ -7,8 +7,8 @@
 #include <cmocka.h>
 
 #include "generator/emit/plan_dump.h"
-#include "law_text.h"
 #include "tests/dsl/text_files.h"
+#include "tests/generator/law_text.h"
 
 static char *dumped(void (*dump)(const kernel_plan *, FILE *)) {
   tested_law *t = open_law_file(SOURCE_DIR "/tests/generator/families/stored.plm");
@@ -26,7 +26,7 @@ static char *dumped(void (*dump)(const kernel_plan *, FILE *)) {
 static void passes_show_reads_writes_and_costs(void **state) {
   (void)state;
   char *text = dumped(plan_dump);
-  assert_golden(SOURCE_DIR "/tests/generator/golden/stored.passes", text);
+  assert_golden(SOURCE_DIR "/tests/generator/plan/golden/stored.passes", text);
   free(text);
 }
 
