@@ -8,9 +8,9 @@
 #include <cmocka.h>
 #include <float.h>
 
+#include "generator/emit/plan_dump.h"
 #include "generator/ir/interpret.h"
 #include "generator/ir/rewrite.h"
-#include "generator/emit/plan_dump.h"
 #include "tests/generator/law_text.h"
 
 #define MODEL SOURCE_DIR "/models/mplm_bilinear.plm"
