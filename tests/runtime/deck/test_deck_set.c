@@ -1,4 +1,5 @@
-/* Overrides: which group and key is meant, what shells leave of quotes, what is taken back, former names. */
+/* Overrides: which group and key is meant, what shells leave of quotes, what is taken back,
+   former names. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
