@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
-# Holds the objects to what includes say: a header declares only what its own .c defines, and files do not call each other in
-# circles. What calls.txt allows is not told, but what it allows in vain; PERILAT_BLESS=1 takes that out. Arguments: the source
-# folder, nm, and a file that lists the objects, one a line.
+# Holds the objects to what includes say: a header declares only what its own .c defines, and files
+# do not call each other in circles. What calls.txt allows is not told, but what it allows in vain;
+# PERILAT_BLESS=1 takes that out. Arguments: the source folder, nm, and a file that lists the
+# objects, one a line.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 sources=$1 nm=$2 objects=$3
 [ -x "$nm" ] || { echo "no nm here"; exit 77; }
 
-# "FILE + SYMBOL" for what a file defines, "FILE - SYMBOL" for what it needs; a file is the path of its source without its ending.
-# Texts that the build makes C of have no source.
+# "FILE + SYMBOL" for what a file defines, "FILE - SYMBOL" for what it needs; a file is the path of
+# its source without its ending. Texts that the build makes C of have no source.
 symbols() {
   while IFS= read -r object; do
     file=${object##*.dir/} file=${file#./} file=${file#generated/} file=${file%.c.o}
@@ -17,7 +18,8 @@ symbols() {
   done <"$objects"
 }
 
-# Files of each circle of the symbols on the standard input, a line each, and below each what calls what (Tarjan 1972).
+# Files of each circle of the symbols on the standard input, a line each, and below each what calls
+# what (Tarjan 1972).
 circles() {
   awk '
     function visit(v, list, count, k, w, n, members) {
@@ -57,8 +59,8 @@ circles() {
     }'
 }
 
-# Functions and data that headers of the folder $1 declare and other files than theirs define, by the symbols in $2: a line
-# "HEADER FILE NAMES" for each of these files.
+# Functions and data that headers of the folder $1 declare and other files than theirs define, by
+# the symbols in $2: a line "HEADER FILE NAMES" for each of these files.
 foreign() {
   (cd "$1" && find dsl runtime generator -name '*.h' | LC_ALL=C sort | xargs awk -v table="$2" '
     BEGIN { while ((getline line <table) > 0) if (split(line, f, " ") == 3 && f[2] == "+") home[f[3]] = f[1] }
@@ -89,8 +91,8 @@ foreign() {
     END { if (header) look(header, text) }')
 }
 
-# What is wrong with circles and foreign declarations on the standard input, but for those that the list $1 allows; or, when $2
-# is `allowed`, lines of a list with those that are needed.
+# What is wrong with circles and foreign declarations on the standard input, but for those that the
+# list $1 allows; or, when $2 is `allowed`, lines of a list with those that are needed.
 faults() {
   awk -v list="$1" -v allowed="${2:-}" '
     BEGIN {
@@ -128,8 +130,8 @@ fi
 found=$(faults "$here/calls.txt" <"$work/found")
 [ -z "$found" ] || { echo "$found"; exit 1; }
 
-# The check sees what it is for: a circle of three with a fourth file beside it, a declaration in a wrong place, a list that
-# allows too much.
+# The check sees what it is for: a circle of three with a fourth file beside it, a declaration in a
+# wrong place, a list that allows too much.
 mkdir -p "$work/dsl" "$work/runtime" "$work/generator"
 printf '%s\n' 'dsl/a + a' 'dsl/a - b' 'dsl/b + b' 'dsl/b - c' 'dsl/c + c' 'dsl/c - a' 'dsl/d - a' 'dsl/d + d' >"$work/planted"
 printf '%s\n' '/* int d(void); */' 'int a(void);' 'static inline int e(void) {' '  return b();' '}' 'int' 'c(int b, int f(void));' \

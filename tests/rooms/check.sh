@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# Holds the sources to the list of rooms: every file stands in one, includes only its own room and those above it, and no room
-# is too full; and that some test includes each header of the runtime, but for those in untested.txt. Arguments: the source folder.
+# Holds the sources to the list of rooms: every file stands in one, includes only its own room and
+# those above it, and no room is too full; and that some test includes each header of the runtime,
+# but for those in untested.txt. Arguments: the source folder.
 set -euo pipefail
 list=$(cd "$(dirname "$0")" && pwd)/rooms.txt
 
@@ -32,8 +33,8 @@ faults() {
     awk '$1 > 20 { print $2 ": " $1 " modules; a room holds 20" }'
 }
 
-# One line for each header of the runtime of folder $1 that no test includes and the list $2 does not name, and for each that
-# it names in vain.
+# One line for each header of the runtime of folder $1 that no test includes and the list $2 does
+# not name, and for each that it names in vain.
 untested() {
   (cd "$1" && comm -3 <(find runtime -name '*.h' | LC_ALL=C sort | comm -23 - <(grep -rhoE '^#include "runtime/[^"]*"' \
     tests --include='*.[ch]' --exclude-dir=fuzz --exclude-dir=benchmark | cut -d'"' -f2 | LC_ALL=C sort -u)) \

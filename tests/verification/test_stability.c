@@ -411,8 +411,8 @@ static void odd_laws_do_no_harm(void **unused) {
   assert_true(l.limit == 0);
 }
 
-/* Standing translations of a central law have neither stiffness nor damping, and no ratio of the two; the fastest wave rules
-   all the same, with the frequency and the ratio of the closed form. */
+/* Standing translations of a central law have neither stiffness nor damping, and no ratio of the
+   two; the fastest wave rules all the same, with the frequency and the ratio of the closed form. */
 static void modes_without_stiffness_do_not_rule(void **unused) {
   (void)unused;
   const double nu = 1.0 / 3, zeta = 0.2;

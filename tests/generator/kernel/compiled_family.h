@@ -1,5 +1,6 @@
-/* Compiled kernels of laws of families against the interpreter: families of many bonds, and a law in every setting that it
-   names, planned in one way. Each way is a test of its own, since compilers take their time. */
+/* Compiled kernels of laws of families against the interpreter: families of many bonds, and a
+   law in every setting that it names, planned in one way. Each way is a test of its own, since
+   compilers take their time. */
 #ifndef PERILAT_TESTS_COMPILED_FAMILY_H
 #define PERILAT_TESTS_COMPILED_FAMILY_H
 
@@ -84,8 +85,8 @@ static inline int check_settings(const char *path, const law_choice *choice, fam
   return checked;
 }
 
-/* The models that come along, and those of the tests: damage, slip, energies and values of neighbours of neighbours, in the
-   plane and in space. */
+/* The models that come along, and those of the tests: damage, slip, energies and values of
+   neighbours of neighbours, in the plane and in space. */
 static inline void check_laws_of_families(law_test *test) {
   check_folder(SOURCE_DIR "/models/*.plm", test);
   check_folder(SOURCE_DIR "/tests/generator/families/*.plm", test);

@@ -1,5 +1,6 @@
-/* Compiled kernels against the interpreter, bit for bit: a law opened and compiled, random states and
-   parameters for it, and its text through both C compilers. PERILAT_DEEP=1 takes ten times as many states. */
+/* Compiled kernels against the interpreter, bit for bit: a law opened and compiled, random
+   states and parameters for it, and its text through both C compilers. PERILAT_DEEP=1 takes ten
+   times as many states. */
 #ifndef PERILAT_TESTS_COMPILED_KERNEL_H
 #define PERILAT_TESTS_COMPILED_KERNEL_H
 
@@ -108,7 +109,8 @@ static inline long states_asked(void) {
   return getenv("PERILAT_DEEP") ? 1000000 : 120000;
 }
 
-/* What is done with a law for one choice of its options (NULL: the first of each). Returns how many kernels were checked. */
+/* What is done with a law for one choice of its options (NULL: the first of each). Returns how
+   many kernels were checked. */
 typedef int law_test(const char *path, const law_choice *choice);
 
 /* Each choice of each option once, the other options at their first. */

@@ -1,5 +1,5 @@
-/* Every law of bonds in models/ and beside the tests of kernels: its compiled kernel against the interpreter, and its text
-   through both compilers, with loops that are vector instructions. */
+/* Every law of bonds in models/ and beside the tests of kernels: its compiled kernel against the
+   interpreter, and its text through both compilers, with loops that are vector instructions. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

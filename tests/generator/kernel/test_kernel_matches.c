@@ -1,5 +1,5 @@
-/* Kernels of other forms than their laws': laws of bonds as laws of families, loops cut in all ways, more fields than any
-   law has needed; and faulty kernels, which are caught. */
+/* Kernels of other forms than their laws': laws of bonds as laws of families, loops cut in all
+   ways, more fields than any law has needed; and faulty kernels, which are caught. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -37,7 +37,8 @@ static void laws_of_bonds_match_as_laws_of_families(void **state) {
     }
 }
 
-/* The plan's text with its loops cut as told, compiled; the same bits as the interpreter. Returns the text. */
+/* The plan's text with its loops cut as told, compiled; the same bits as the interpreter.
+   Returns the text. */
 static char *check_cut(model *m, loop_cutting cutting) {
   char error[2000];
   loaded_kernel loaded = {0};

@@ -1,4 +1,5 @@
-/* Every law of families planned for large families: bonds add to both ends where these would compute the same. */
+/* Every law of families planned for large families: bonds add to both ends where these would
+   compute the same. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

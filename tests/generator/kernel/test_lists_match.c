@@ -1,5 +1,5 @@
-/* Every law of families planned for lists of neighbours of particles that stand on no lattice, whether its line `for` names
-   these or not. */
+/* Every law of families planned for lists of neighbours of particles that stand on no lattice,
+   whether its line `for` names these or not. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* Every law of families planned for rows of sites with any number of neighbours, its text through both compilers. */
+/* Every law of families planned for rows of sites with any number of neighbours, its text
+   through both compilers. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* Waves in lattices of springs and dashpots against closed forms: the fastest wave, its step, and the speed of sound. */
+/* Waves in lattices of springs and dashpots against closed forms: the fastest wave, its step,
+   and the speed of sound. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -71,7 +72,8 @@ static void the_fastest_wave_rules_the_step(void **state) {
   }
 }
 
-/* Dashpots in proportion to the springs: xi = c omega/(2 k) of each wave; the fastest is the worst. */
+/* Dashpots in proportion to the springs: xi = c omega/(2 k) of each wave; the fastest is the
+   worst. */
 static void dashpots_shorten_the_step(void **state) {
   (void)state;
   for (int n = 0; n < CASES; n++) {
@@ -90,8 +92,9 @@ static void dashpots_shorten_the_step(void **state) {
   }
 }
 
-/* Long waves of the hexagonal lattice travel at sqrt(9 k s^2/(8 m)) in every direction, with an error that falls as the
-   square of their number; and a wave is the same a reciprocal vector further. */
+/* Long waves of the hexagonal lattice travel at sqrt(9 k s^2/(8 m)) in every direction, with an
+   error that falls as the square of their number; and a wave is the same a reciprocal vector
+   further. */
 static void long_waves_travel_at_the_speed_of_sound(void **state) {
   (void)state;
   built_rows b;
@@ -117,7 +120,8 @@ static void long_waves_travel_at_the_speed_of_sound(void **state) {
   built_end(&b);
 }
 
-/* The cell that the primitive vectors span is that of one particle, and all chords are whole multiples of them. */
+/* The cell that the primitive vectors span is that of one particle, and all chords are whole
+   multiples of them. */
 static void primitive_vectors_span_one_particle(void **state) {
   (void)state;
   for (int n = 0; n < CASES; n++) {

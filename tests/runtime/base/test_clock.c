@@ -1,4 +1,5 @@
-/* Time that passes: it never goes back, and a sleep takes as long as the machine's own clock says. */
+/* Time that passes: it never goes back, and a sleep takes as long as the machine's own clock
+   says. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

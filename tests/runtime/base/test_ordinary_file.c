@@ -1,4 +1,5 @@
-/* What is opened is an ordinary file: folders, pipes, links and other names are refused, and nothing is waited for. */
+/* What is opened is an ordinary file: folders, pipes, links and other names are refused, and
+   nothing is waited for. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Lattices without ends: how many neighbours stand how far, that places and numbers fit each other, and what lies out of them. */
+/* Lattices without ends: how many neighbours stand how far, that places and numbers fit each
+   other, and what lies out of them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -60,8 +61,8 @@ static void shells_are_those_of_crystallography(void **state) {
   assert_int_equal(bravais_dimensions("quartz"), 0);
 }
 
-/* From any site a neighbour stands where its numbers say, a chord further; the list goes from near to far, with one of each
-   pair of opposite neighbours. */
+/* From any site a neighbour stands where its numbers say, a chord further; the list goes from
+   near to far, with one of each pair of opposite neighbours. */
 static void chords_lead_from_site_to_site(void **state) {
   (void)state;
   for (int n = 0; n < CASES; n++) {
@@ -112,7 +113,8 @@ static void coordinates_undo_places(void **state) {
   }
 }
 
-/* Laws of bonds run bond by bond on the hexagon of nearest neighbours, however it is asked for, and on nothing else. */
+/* Laws of bonds run bond by bond on the hexagon of nearest neighbours, however it is asked for,
+   and on nothing else. */
 static void one_lattice_is_the_hexagon(void **state) {
   (void)state;
   static const struct {

@@ -9,7 +9,8 @@
 #include "runtime/geometry/bins.h"
 #include "tests/runtime/scattered_points.h"
 
-/* Each point is in one box, numbers ascend in each, and all within a box's size are in the boxes around. */
+/* Each point is in one box, numbers ascend in each, and all within a box's size are in the boxes
+   around. */
 static void check_boxes(const test_points *p, double size) {
   const long count = p->cloud.count;
   const int dimensions = p->cloud.dimensions;
@@ -55,7 +56,8 @@ static void every_point_is_in_one_box(void **state) {
   }
 }
 
-/* Boxes stay about as many as points, though one of these is a million times as far away as all others. */
+/* Boxes stay about as many as points, though one of these is a million times as far away as all
+   others. */
 static void one_far_point_does_not_make_boxes_large(void **state) {
   (void)state;
   static const double sides[3] = {1, 1, 1};

@@ -36,7 +36,8 @@ static void boxes_have_their_size(void **state) {
   }
 }
 
-/* A plane through x + y + z = 2 takes a corner tetrahedron of edge 1 off the cube: volume 1/6, centroid 3/4 on each axis. */
+/* A plane through x + y + z = 2 takes a corner tetrahedron of edge 1 off the cube: volume 1/6,
+   centroid 3/4 on each axis. */
 static void a_corner_is_cut_off(void **state) {
   (void)state;
   cell c = box(3);
@@ -57,7 +58,8 @@ static void a_corner_is_cut_off(void **state) {
   cell_end(&c);
 }
 
-/* A thousand cuts at the distance r of a circle leave the regular polygon of area n r^2 tan(pi/n). */
+/* A thousand cuts at the distance r of a circle leave the regular polygon of area n r^2
+   tan(pi/n). */
 static void many_cuts_make_a_polygon(void **state) {
   (void)state;
   for (int n = 5; n < 1000; n = 3 * n + 1) {
@@ -73,8 +75,8 @@ static void many_cuts_make_a_polygon(void **state) {
   }
 }
 
-/* Cuts that touch a ball: how much more than the ball is left falls as the area of a face does, and points, edges and faces
-   are as Euler says. */
+/* Cuts that touch a ball: how much more than the ball is left falls as the area of a face does,
+   and points, edges and faces are as Euler says. */
 static double around_a_ball(int n) {
   cell c = box(3);
   for (int k = 0; k < n; k++) {

@@ -1,4 +1,5 @@
-/* Outlines of straight edges and arcs against closed forms: boxes, distances, what is inside, circles of edges. */
+/* Outlines of straight edges and arcs against closed forms: boxes, distances, what is inside,
+   circles of edges. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -62,7 +63,8 @@ static void boxes_hold_arcs(void **state) {
   assert_true(isnan(lower[0]) && isnan(upper[0]) && lower[1] == 0 && upper[1] == 1);
 }
 
-/* A circle of two arcs: whatever its chord's direction, the distance is that from the centre less the radius. */
+/* A circle of two arcs: whatever its chord's direction, the distance is that from the centre
+   less the radius. */
 static void a_circle_of_two_arcs_is_round(void **state) {
   (void)state;
   for (int turn = 0; turn < 24; turn++) {

@@ -1,4 +1,5 @@
-/* Damage of bonds and particles: the largest of a bond's, the largest on a particle, else the mean over its bonds. */
+/* Damage of bonds and particles: the largest of a bond's, the largest on a particle, else the
+   mean over its bonds. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* Sums that wait for particles ahead and marks of fields: whose rows they hold, what is forgotten, where fields are not 0. */
+/* Sums that wait for particles ahead and marks of fields: whose rows they hold, what is
+   forgotten, where fields are not 0. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -21,7 +22,8 @@ static void open_block(small_run *r, const pl_law *law) {
   assert_non_null(r->simulation);
 }
 
-/* Sums reach from the rows before a block, whose bonds reach it, to the rows that its own bonds reach. */
+/* Sums reach from the rows before a block, whose bonds reach it, to the rows that its own bonds
+   reach. */
 static void sums_hold_all_rows_that_bonds_reach(void **state) {
   (void)state;
   enum { REACH = 2 };

@@ -1,4 +1,5 @@
-/* Blue noise by itself: all points in the body, none too near another, cells of equal size, and the same bits of one seed. */
+/* Blue noise by itself: all points in the body, none too near another, cells of equal size, and
+   the same bits of one seed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

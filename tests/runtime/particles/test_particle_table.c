@@ -39,7 +39,8 @@ static void forget(reading *r) {
   free(r);
 }
 
-/* Volumes in the plane become areas by the thickness, here half a metre; blank lines and remarks are no particles. */
+/* Volumes in the plane become areas by the thickness, here half a metre; blank lines and remarks
+   are no particles. */
 static void columns_are_known_by_their_names(void **state) {
   (void)state;
   char text[PARTICLE_TABLE_TEXT];

@@ -1,4 +1,5 @@
-/* Which sites bodies and notches take: counts against closed forms, ends that belong to a body, points, and what is refused. */
+/* Which sites bodies and notches take: counts against closed forms, ends that belong to a body,
+   points, and what is refused. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -91,7 +92,8 @@ static void what_is_left_is_trimmed(void **state) {
   unmark(&m);
 }
 
-/* A point takes the nearest site, if one is within half a spacing; of equally near ones the first. */
+/* A point takes the nearest site, if one is within half a spacing; of equally near ones the
+   first. */
 static void a_point_takes_one_site(void **state) {
   (void)state;
   marked m = mark(DECK(BODY("'point' at = 0.033, 0.023")));

@@ -18,8 +18,8 @@ static axis set_axis(const char *unit, const char *wanted, double low, double hi
   return a;
 }
 
-/* Ends are whole steps around the values, a step is 1, 2 or 5 times a power of ten, and the range holds 5 to 12.5 of them, so
- * that whole ones are 5 to 14. */
+/* Ends are whole steps around the values, a step is 1, 2 or 5 times a power of ten, and the
+   range holds 5 to 12.5 of them, so that whole ones are 5 to 14. */
 static void axes_hold_their_values_in_whole_steps(void **state) {
   (void)state;
   for (int k = 0; k < 400; k++) {

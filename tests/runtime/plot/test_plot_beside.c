@@ -1,4 +1,5 @@
-/* What stands beside curves: the range that it needs, and that it is drawn where it belongs, gaps left out. */
+/* What stands beside curves: the range that it needs, and that it is drawn where it belongs,
+   gaps left out. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
@@ -90,7 +91,8 @@ static void bands_are_shaded_between_their_values(void **state) {
   end(&p);
 }
 
-/* Marks stand on the points, a line joins them but not across a gap; a single value is a dashed line. */
+/* Marks stand on the points, a line joins them but not across a gap; a single value is a dashed
+   line. */
 static void points_are_marked_and_joined(void **state) {
   (void)state;
   const double at[] = {1, 2, 3, 5}, height[] = {2, 2, NAN, 8};

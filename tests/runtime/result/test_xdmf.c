@@ -1,4 +1,5 @@
-/* The sidecar of a result: a grid for each frame, names that mean something in XML, and a disk that is full. */
+/* The sidecar of a result: a grid for each frame, names that mean something in XML, and a disk
+   that is full. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Rows of particles joined by bars or beams, whose runs have closed forms: of a hexagonal lattice only one row stands. */
+/* Rows of particles joined by bars or beams, whose runs have closed forms: of a hexagonal
+   lattice only one row stands. */
 #ifndef PERILAT_TESTS_CHAIN_H
 #define PERILAT_TESTS_CHAIN_H
 

@@ -1,4 +1,5 @@
-/* Fields of frames, and counts of damaged bonds: of one and of several damages, with bonds that are protected. */
+/* Fields of frames, and counts of damaged bonds: of one and of several damages, with bonds that
+   are protected. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -51,8 +52,8 @@ static void damage_is_counted_and_protection_kept(void **state) {
   }
 }
 
-/* A law with two damages and a state before them: the larger damage of a bond counts everywhere. The chain has two
-   bonds, far below any growth of damage. */
+/* A law with two damages and a state before them: the larger damage of a bond counts everywhere.
+   The chain has two bonds, far below any growth of damage. */
 static void the_larger_of_two_damages_counts(void **state) {
   (void)state;
   static const pl_field fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE, PL_ON_BOND},

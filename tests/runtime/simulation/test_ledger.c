@@ -1,4 +1,5 @@
-/* The energy ledger: it closes as steps get shorter, and what it says of laws and of steps that are too long. */
+/* The energy ledger: it closes as steps get shorter, and what it says of laws and of steps that
+   are too long. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -97,8 +98,8 @@ static const double *series_of(const small_run *r, ledger_term term) {
   return values;
 }
 
-/* Leapfrog steps of linear springs: half m v- v+ and the energy stored keep their sum, and the first may be negative, but
-   never by more than (omega dt/2)^2 of what is stored. */
+/* Leapfrog steps of linear springs: half m v- v+ and the energy stored keep their sum, and the
+   first may be negative, but never by more than (omega dt/2)^2 of what is stored. */
 static void energies_of_long_steps_keep_their_sum(void **state) {
   (void)state;
   small_run r;
@@ -118,8 +119,8 @@ static void energies_of_long_steps_keep_their_sum(void **state) {
   small_close(&r);
 }
 
-/* Of a state with negative kinetic energy: sound for the frequency that the step was chosen by, and energy from nothing if
-   the step were short for it. */
+/* Of a state with negative kinetic energy: sound for the frequency that the step was chosen by,
+   and energy from nothing if the step were short for it. */
 static void steps_that_make_energy_are_told(void **state) {
   (void)state;
   small_run r;

@@ -1,4 +1,5 @@
-/* Supports, drives, forces and moments: what they do to the motion, to reactions and to the work of loads. */
+/* Supports, drives, forces and moments: what they do to the motion, to reactions and to the work
+   of loads. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -62,7 +63,8 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   small_close(&r);
 }
 
-/* What turns a free body: its angular momentum is moment times time, here from half a step before the start on. */
+/* What turns a free body: its angular momentum is moment times time, here from half a step
+   before the start on. */
 static void each_end_moment_comes_in_its_own_time(void **state) {
   (void)state;
   enum { TURNS = 200 };
@@ -136,7 +138,8 @@ static void a_drive_is_followed_exactly_from_its_start(void **state) {
   small_close(&r);
 }
 
-/* Support, drive, force, damping and the impulses of drives that begin: their sum is the rate of the momentum, step by step. */
+/* Support, drive, force, damping and the impulses of drives that begin: their sum is the rate of
+   the momentum, step by step. */
 static void reactions_balance_the_momentum(void **state) {
   (void)state;
   static const char text[] =
@@ -241,7 +244,8 @@ static void loads_keep_their_bits_on_many_threads(void **state) {
   small_close(&one);
 }
 
-/* A row of particles, each with a load of its own along y; bars in a straight row do not resist that. */
+/* A row of particles, each with a load of its own along y; bars in a straight row do not resist
+   that. */
 static void open_many(small_run *r, const char *load) {
   enum { LONGEST = 8192 };
   char text[LONGEST];
@@ -257,7 +261,8 @@ static void open_many(small_run *r, const char *load) {
   must_open(r, &elastic_bar, text);
 }
 
-/* Values of few functions are remembered in a step: those of many loads are their own all the same. */
+/* Values of few functions are remembered in a step: those of many loads are their own all the
+   same. */
 static void each_of_many_drives_goes_its_own_way(void **state) {
   (void)state;
   small_run r;
@@ -309,7 +314,8 @@ static void a_force_on_a_held_particle_is_its_reaction(void **state) {
   small_close(&r);
 }
 
-/* A drive takes up what the force does on the way: what is left is the impulse that both particles begin with, m v^2. */
+/* A drive takes up what the force does on the way: what is left is the impulse that both
+   particles begin with, m v^2. */
 static void a_force_on_a_driven_particle_does_no_work(void **state) {
   (void)state;
   small_run r;

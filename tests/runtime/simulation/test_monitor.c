@@ -54,7 +54,8 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   small_close(&r);
 }
 
-/* A chain stretched from both ends, unevenly so that it also speeds up: the ends carry differently. */
+/* A chain stretched from both ends, unevenly so that it also speeds up: the ends carry
+   differently. */
 static void the_reaction_between_two_regions_is_the_mean_of_both_ends(void **state) {
   (void)state;
   char text[2048];
@@ -105,7 +106,7 @@ typedef struct watched {
   "&monitor name = 'mean' kind = 'displacement' region = 'right' component = 'x' average = 3e-7 "  \
   "zero_at = 5e-7 /\n"                                                                             \
   "&stop monitor = 'way' above = 3 after = 4e-6 /\n"                                               \
-  "&stop monitor = 'mean' below = 0.5 of = 'peak' /\n"                                                  \
+  "&stop monitor = 'mean' below = 0.5 of = 'peak' /\n"                                             \
   "&output frames = 0 energy = .false. /\n"
 
 static watched watch(void) {

@@ -100,9 +100,8 @@ static void the_way_does_not_matter_to_a_linear_body(void **state) {
   assert_true(fabs(force[0] - force[1]) <= 1e-5 * fabs(force[0]));
 }
 
-/* The bar's increment takes a period, in which damping drags at it: the work of that, beside half of
-   force times displacement. Critical damping would take 0.9 of that
-   and more. */
+/* The bar's increment takes a period, in which damping drags at it: the work of that, beside
+   half of force times displacement. Critical damping would take 0.9 of that and more. */
 static void an_increment_costs_little_more_than_it_stores(void **state) {
   (void)state;
   const pl_law *const kernels[] = {&family_hexagon, &elastic_beam, &elastic_bar};
@@ -150,7 +149,8 @@ static void no_load_jumps(void **state) {
   expect_loads("velocity = 1e-7 start = 0.5", (double[]){0, 0, 0, 0.25, 0.5});
 }
 
-/* A bar that hangs from its upper end and is drawn down at its lower: weight and force grow evenly. */
+/* A bar that hangs from its upper end and is drawn down at its lower: weight and force grow
+   evenly. */
 static void forces_and_gravity_grow_together(void **state) {
   (void)state;
   small_run r;
@@ -183,7 +183,8 @@ static void forces_and_gravity_grow_together(void **state) {
   small_close(&r);
 }
 
-/* Two particles side by side that only their inertia holds in y: bonds do not answer, and the unbalance is that of the loads. */
+/* Two particles side by side that only their inertia holds in y: bonds do not answer, and the
+   unbalance is that of the loads. */
 static double unbalance_under(const char *groups) {
   char text[2048];
   snprintf(text, sizeof text,
@@ -206,7 +207,8 @@ static double unbalance_under(const char *groups) {
   return unbalance;
 }
 
-/* Each particle weighs w and is drawn up by 3 w: 2 w of them are left, beside the loads sqrt(1 + 9) w. */
+/* Each particle weighs w and is drawn up by 3 w: 2 w of them are left, beside the loads sqrt(1 +
+   9) w. */
 static void weight_is_a_load(void **state) {
   (void)state;
   const double weight = 2323 * sqrt(3) / 2 * 0.01 * 0.01 * 0.1 * 1e-3;
@@ -226,7 +228,8 @@ static void a_moment_counts_over_a_spacing(void **state) {
   assert_true(fabs(unbalance - 1 / sqrt(5)) < 1e-9);
 }
 
-/* No particle is free, and nothing unbalanced: an increment lasts until its loads have come all the same. */
+/* No particle is free, and nothing unbalanced: an increment lasts until its loads have come all
+   the same. */
 static void loads_come_in_full(void **state) {
   (void)state;
   small_run r;
@@ -382,8 +385,8 @@ static void relax_no_more(pair *p) {
   small_close(&p->run);
 }
 
-/* Two spacings there and back at half the stable step, half a spacing a step at most: sixteen steps of a period. While the
-   loads move there is a tenth of the critical damping. */
+/* Two spacings there and back at half the stable step, half a spacing a step at most: sixteen
+   steps of a period. While the loads move there is a tenth of the critical damping. */
 static void an_increment_begins_with_a_ramp(void **state) {
   (void)state;
   pair p = relax_pair();
@@ -400,7 +403,8 @@ static void an_increment_begins_with_a_ramp(void **state) {
   relax_no_more(&p);
 }
 
-/* Moved by u with forces that fall by k u, the right particle is an oscillator: critical is 2 sqrt(k/m). */
+/* Moved by u with forces that fall by k u, the right particle is an oscillator: critical is 2
+   sqrt(k/m). */
 static void damping_is_critical_for_the_motion_seen(void **state) {
   (void)state;
   pair p = relax_pair();

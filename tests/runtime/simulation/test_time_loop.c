@@ -58,7 +58,8 @@ static void frames_are_taken_at_the_nearest_step(void **state) {
   small_close(&r);
 }
 
-/* The condition holds from the first sample after the start; the run goes on to the first after 4.5 us. */
+/* The condition holds from the first sample after the start; the run goes on to the first after
+   4.5 us. */
 static void a_stop_waits_for_its_time(void **state) {
   (void)state;
   char text[2048];
@@ -77,7 +78,8 @@ static void a_stop_waits_for_its_time(void **state) {
   small_close(&r);
 }
 
-/* Times that lie between two steps are those of the nearest: samples 2.7 steps apart, a zero at 4.7, a mean over 2.7. */
+/* Times that lie between two steps are those of the nearest: samples 2.7 steps apart, a zero at
+   4.7, a mean over 2.7. */
 static void times_between_steps_are_rounded_to_the_nearest(void **state) {
   (void)state;
   char text[2048];
