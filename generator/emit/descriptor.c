@@ -3,13 +3,12 @@
 static void write_symbol(c_text *out, const symbol *s) {
   char si[64];
   dim_unit(s->dim, si, sizeof si);
+  const char *texts[] = {s->name, si, s->doc};
   c_text_add(out, "    {");
-  c_text_string(out, s->name);
-  c_text_add(out, ", ");
-  c_text_string(out, si);
-  c_text_add(out, ", ");
-  c_text_string(out, s->doc);
-  c_text_add(out, ", ");
+  for (int k = 0; k < 3; k++) {
+    c_text_string(out, texts[k]);
+    c_text_add(out, ", ");
+  }
   c_text_number(out, s->initial);
 }
 

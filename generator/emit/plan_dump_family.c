@@ -24,31 +24,27 @@ static const char *observed_name(const kernel_plan *p, int index) {
 
 /* "slot 5 d", "sum into slot 19", "field w_t", "force x". */
 static const char *root_name(const kernel_plan *p, const segment_root *r, char *text, size_t size) {
+  static const char
+      *const places[] = {[TO_SLOT] = "slot",
+                         [TO_LINK] = "link",
+                         [TO_BOND_LINK] = "link of bonds",
+                         [TO_SHARED] = "shared",
+                         [TO_PLANE] = "plane"},
+             *const reductions[] = {
+                 [TO_SUM] = "sum", [TO_LARGEST] = "largest", [TO_SMALLEST] = "smallest"};
   const char *name = own_name(p, r->node), *blank = *name ? " " : "";
   switch (r->target) {
   case TO_SLOT:
-    snprintf(text, size, "slot %d%s%s", r->index, blank, name);
-    break;
   case TO_LINK:
-    snprintf(text, size, "link %d%s%s", r->index, blank, name);
-    break;
   case TO_BOND_LINK:
-    snprintf(text, size, "link of bonds %d%s%s", r->index, blank, name);
-    break;
   case TO_SHARED:
-    snprintf(text, size, "shared %d%s%s", r->index, blank, name);
-    break;
   case TO_PLANE:
-    snprintf(text, size, "plane %d%s%s", r->index, blank, name);
+    snprintf(text, size, "%s %d%s%s", places[r->target], r->index, blank, name);
     break;
   case TO_SUM:
-    snprintf(text, size, "sum%s%s into slot %d", blank, name, r->index);
-    break;
   case TO_LARGEST:
-    snprintf(text, size, "largest%s%s into slot %d", blank, name, r->index);
-    break;
   case TO_SMALLEST:
-    snprintf(text, size, "smallest%s%s into slot %d", blank, name, r->index);
+    snprintf(text, size, "%s%s%s into slot %d", reductions[r->target], blank, name, r->index);
     break;
   case TO_PARTICLE_FORCE:
     snprintf(text, size, "force %s", axes[r->index]);

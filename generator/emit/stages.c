@@ -9,10 +9,6 @@ bool stages_is_loaded(const emitter *e, ir_node n) {
   return expression_is_input(e, n) && !expression_is_ends_input(e, n, ENDS_TIME_STEP);
 }
 
-bool stages_is_line(const emitter *e, ir_node n) {
-  return e->name[n] && !expression_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
-}
-
 static bool is_damage(const emitter *e, int field) {
   return e->plan->law->fields.items[field]->kind == SYMBOL_DAMAGE;
 }
@@ -29,20 +25,11 @@ bool stages_in_result_array(const pass_root *r) {
   return r->target == TO_FORCE || r->target == TO_OBSERVED;
 }
 
-int stages_last(const stages *s) {
-  return s->count - 1 - s->changes;
-}
-
 bool stages_give(const emitter *e, const stages *s, int stage, const pass_root *r) {
   if (stage < stages_last(s)) return false;
   if (!s->changes) return true;
   if (stage > stages_last(s)) return stages_is_of_change(e, r);
   return r->target == TO_FIELD || !stages_is_of_change(e, r);
-}
-
-bool stages_take(const stages *s, ir_node n, int stage) {
-  if (s->of[n] < 0 || s->of[n] >= stage) return false;
-  return s->of[n] < stages_last(s) || s->result[n];
 }
 
 int stages_operands(const emitter *e, const stages *s, ir_node n, unsigned relies,

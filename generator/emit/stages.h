@@ -56,7 +56,9 @@ void stages_free(stages *s);
 /* An input that is neither number nor value of the whole strip; a node that is computed on a line
    of its own. */
 bool stages_is_loaded(const emitter *e, ir_node n);
-bool stages_is_line(const emitter *e, ir_node n);
+static inline bool stages_is_line(const emitter *e, ir_node n) {
+  return e->name[n] && !expression_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
+}
 /* A result whose array is a buffer until the last stage writes it. */
 bool stages_in_result_array(const pass_root *r);
 /* A result of the stage behind the last, which most steps leave as it is nearly everywhere: damage,
@@ -64,13 +66,18 @@ bool stages_in_result_array(const pass_root *r);
 bool stages_is_of_change(const emitter *e, const pass_root *r);
 
 /* The stage that ends with what the pass gives, in every part. */
-int stages_last(const stages *s);
+static inline int stages_last(const stages *s) {
+  return s->count - 1 - s->changes;
+}
 /* Whether the pass gives a result in that stage: all in the last one but those of a change. New
    damage is asked for there, too. */
 bool stages_give(const emitter *e, const stages *s, int stage, const pass_root *r);
 /* Whether the stage takes a node from an earlier one. That of changes takes results from the one
    before it, and computes what else that has again: it is rare. */
-bool stages_take(const stages *s, ir_node n, int stage);
+static inline bool stages_take(const stages *s, ir_node n, int stage) {
+  if (s->of[n] < 0 || s->of[n] >= stage) return false;
+  return s->of[n] < stages_last(s) || s->result[n];
+}
 /* Whether a stage stores a line in a buffer; what is in the array of a result is a result. */
 bool stages_store(const stages *s, ir_node n, int stage);
 /* A choice by a condition that is expected to hold, the first to ask for it: later ones rely on the

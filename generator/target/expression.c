@@ -12,14 +12,6 @@ const char *numeral(const emitter *e, int number) {
 
 /* --- what a function is written from ---------------------------------------------------------- */
 
-bool expression_is_uniform(const emitter *e, ir_node n) {
-  return e->scope->uniform != SAY_NOTHING && e->uniform_of[n] >= 0;
-}
-
-bool expression_is_input(const emitter *e, ir_node n) {
-  return ir_operation(e->graph, n) == IR_INPUT && !expression_is_uniform(e, n);
-}
-
 bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which) {
   return expression_is_input(e, n) && ir_input_source(e->graph, n) == IR_FROM_ENDS &&
          ir_input_index(e->graph, n) == (int)which;

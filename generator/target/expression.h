@@ -78,8 +78,12 @@ void expression_open_roots(emitter *e, const scope *in, const pass_root *roots, 
 void expression_close(emitter *e);
 
 /* A value loaded from `uniforms`; in `prepare` the same node is computed. */
-bool expression_is_uniform(const emitter *e, ir_node n);
-bool expression_is_input(const emitter *e, ir_node n);
+static inline bool expression_is_uniform(const emitter *e, ir_node n) {
+  return e->scope->uniform != SAY_NOTHING && e->uniform_of[n] >= 0;
+}
+static inline bool expression_is_input(const emitter *e, ir_node n) {
+  return ir_operation(e->graph, n) == IR_INPUT && !expression_is_uniform(e, n);
+}
 bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which);
 /* Whether the function needs an input from there. */
 bool expression_reads(const emitter *e, ir_source from);
