@@ -9,6 +9,7 @@
 #include "generator/ir/random_values.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
+#include "generator/lower/lower_inputs.h"
 
 static const double REST_TOLERANCE = 1e-12;     /* of the force at a stretch and rotation of 1e-3 */
 static const double STIFFNESS_TOLERANCE = 1e-6; /* stretches of 1e-7 leave nine digits */

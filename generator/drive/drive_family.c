@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "generator/drive/drive.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_parts.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"

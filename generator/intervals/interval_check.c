@@ -9,6 +9,7 @@
 #include "generator/intervals/interval_parts.h"
 #include "generator/intervals/interval_sums.h"
 #include "generator/ir/interval.h"
+#include "generator/lower/lower_inputs.h"
 
 enum {
   MOST_CONTEXTS = 600,

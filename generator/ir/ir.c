@@ -233,8 +233,7 @@ static bool is_constant(const ir *g, ir_node n) {
   return at(g, n)->op == IR_CONSTANT;
 }
 
-/* The number `value`; of zero either sign. */
-static bool is_number(const ir *g, ir_node n, double value) {
+bool ir_is_number(const ir *g, ir_node n, double value) {
   return is_constant(g, n) && at(g, n)->value == value;
 }
 
@@ -267,16 +266,16 @@ static ir_node make_commuting(ir *g, ir_op op, ir_node a, ir_node b) {
 }
 
 static ir_node simplify_add(ir *g, ir_node a, ir_node b) {
-  if (is_number(g, a, 0.0)) return b;
-  if (is_number(g, b, 0.0)) return a;
+  if (ir_is_number(g, a, 0.0)) return b;
+  if (ir_is_number(g, b, 0.0)) return a;
   if (is_op(g, b, IR_NEG)) return ir_sub(g, a, ir_operand(g, b, 0));
   if (is_op(g, a, IR_NEG)) return ir_sub(g, b, ir_operand(g, a, 0));
   return make_commuting(g, IR_ADD, a, b);
 }
 
 static ir_node simplify_sub(ir *g, ir_node a, ir_node b) {
-  if (is_number(g, b, 0.0)) return a;
-  if (is_number(g, a, 0.0)) return ir_neg(g, b);
+  if (ir_is_number(g, b, 0.0)) return a;
+  if (ir_is_number(g, a, 0.0)) return ir_neg(g, b);
   if (is_op(g, b, IR_NEG)) return ir_add(g, a, ir_operand(g, b, 0));
   return make_node(g, IR_SUB, a, b, IR_NONE);
 }
@@ -287,8 +286,8 @@ static ir_node simplify_mul(ir *g, ir_node a, ir_node b) {
     a = b;
     b = swapped;
   }
-  if (is_number(g, b, 1.0)) return a;
-  if (is_number(g, b, -1.0)) return ir_neg(g, a);
+  if (ir_is_number(g, b, 1.0)) return a;
+  if (ir_is_number(g, b, -1.0)) return ir_neg(g, a);
   if (is_op(g, a, IR_NEG) && is_constant(g, b))
     return ir_mul(g, ir_operand(g, a, 0), ir_constant(g, -ir_value(g, b)));
   if (is_op(g, a, IR_NEG)) return ir_neg(g, ir_mul(g, ir_operand(g, a, 0), b));
@@ -336,8 +335,8 @@ static ir_node simplify_not(ir *g, ir_node a) {
 /* a and b, a or b: `neutral` leaves the other as it is, its opposite decides. */
 static ir_node simplify_junction(ir *g, ir_op op, ir_node a, ir_node b) {
   const double neutral = op == IR_AND ? 1.0 : 0.0;
-  if (a == b || is_number(g, b, neutral) || is_number(g, a, 1.0 - neutral)) return a;
-  if (is_number(g, a, neutral) || is_number(g, b, 1.0 - neutral)) return b;
+  if (a == b || ir_is_number(g, b, neutral) || ir_is_number(g, a, 1.0 - neutral)) return a;
+  if (ir_is_number(g, a, neutral) || ir_is_number(g, b, 1.0 - neutral)) return b;
   return make_commuting(g, op, a, b);
 }
 

@@ -74,6 +74,8 @@ int ir_arity(ir_op op);
 const char *ir_op_name(ir_op op);
 ir_node ir_operand(const ir *g, ir_node n, int k);
 double ir_value(const ir *g, ir_node n);          /* CONSTANT */
+/* A constant of this value; of zero either sign. */
+bool ir_is_number(const ir *g, ir_node n, double value);
 ir_source ir_input_source(const ir *g, ir_node n); /* INPUT */
 int ir_input_index(const ir *g, ir_node n);        /* INPUT */
 placement ir_place(const ir *g, ir_node n);        /* the most local of its operands */

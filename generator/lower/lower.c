@@ -1,5 +1,4 @@
-/* Rules and results of a law (see lower.h). */
-#include "generator/lower/lower_parts.h"
+#include "generator/lower/lower.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -7,6 +6,10 @@
 
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_family.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_value.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
@@ -43,11 +46,7 @@ static ir_node overstress_of(lowering *c, const expr *when) {
 }
 
 static void note_flow(lowering *c, const stmt *rule, ir_node when) {
-  if (c->mode != LOWER_STEP) return;
-  lowered_text *t = &c->text;
-  t->flows = lower_one_more(t->flows, t->flow_count, sizeof *t->flows);
-  t->flows[t->flow_count++] =
-      (lowered_flow){rule, rule->symbol->index, when, overstress_of(c, rule->when)};
+  if (c->mode == LOWER_STEP) lower_note_flow(c, rule, when, overstress_of(c, rule->when));
 }
 
 /* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how many. */
@@ -224,7 +223,7 @@ static void lower_force_state(lowering *c, lowered_law *out) {
   else if (out->F == IR_NONE)
     out->F = lower_force_state_of_energy(c, out->W);
   else if (lower_is_per_volumes(given->symbol->dim))
-    out->F = lower_force_of_density(c, out->F);
+    out->F = lower_force_of_density(c->graph, c->law, out->F);
   lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
 }
 

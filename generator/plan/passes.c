@@ -7,6 +7,8 @@
 #include "dsl/base/arena.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_parts.h"
 #include "generator/plan/plan_roots.h"
 
@@ -144,10 +146,10 @@ static seen_law see_law(planner *p) {
   substitute_law(g, l, &t.step, from, to, pairs);
   t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
 
-  t.stored = lower_stored_energy(l, g, &p->frozen);
+  t.stored = lower_stored_energy(g, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(l, g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
+  t.rate_power = lower_rate_power(g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);

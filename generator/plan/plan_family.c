@@ -5,6 +5,8 @@
 #include "dsl/base/arena.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/particle_parts.h"
 #include "generator/plan/plan_parts.h"
 #include "generator/plan/plan_roots.h"
@@ -75,7 +77,7 @@ static ir_node stored_energy(family_planner *p) {
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
   if (l->tree->law != LAW_STATE)
-    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(l, g, &p->frozen)));
+    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(g, &p->frozen)));
   ir_node F, W = p->frozen.W;
   if (W != IR_NONE) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);

@@ -4,6 +4,7 @@
 
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower.h"
+#include "generator/lower/lower_inputs.h"
 
 static void visit_program(const family_program *q, plan_visitor visit, void *context) {
   for (int k = 0; k < q->pass_count; k++)

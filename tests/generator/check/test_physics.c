@@ -17,6 +17,7 @@
 #include "generator/check/physics_parts.h"
 #include "generator/ir/interval.h"
 #include "generator/kernel/model.h"
+#include "generator/lower/lower_inputs.h"
 #include "runtime/deck/deck.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/check/physics/"
