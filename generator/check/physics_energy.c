@@ -6,6 +6,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_parts.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_inputs.h"
 

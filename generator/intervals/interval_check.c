@@ -1,4 +1,5 @@
-/* The range of every value of a law, case by case, and what may not be defined within them. */
+#include "generator/intervals/interval_check.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>

@@ -90,10 +90,8 @@ bool ir_is_expected(const ir *g, ir_node n);
 /* Chooses by such a condition. */
 bool ir_is_expected_choice(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
-/* Whether an operation makes NaN of finite numbers: a root, logarithm, power, division or
-   trigonometric function. And whether finite inputs could make a node NaN: one of these, of
-   something that varies over the lattice, stands at or below it. Overflow is left aside. */
-bool ir_makes_nan(ir_op op);
+/* Whether finite inputs could make a node NaN: what MAKES_NAN, of something that varies over the lattice, stands at or
+   below it. Overflow is left aside. */
 bool ir_may_be_nan(const ir *g, ir_node n);
 bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
 const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */
@@ -112,11 +110,6 @@ ir_node ir_substitution_apply(ir_substitution *s, ir_node root);
 void ir_substitution_free(ir_substitution *s);
 /* Marks (1 byte a node, ir_count long, zeroed by the caller) all nodes that the roots need. */
 void ir_mark(const ir *g, const ir_node *roots, int root_count, unsigned char *marks);
-
-/* Symbolic derivative of f by the node x (an input, or any node taken as independent), in time linear in the graph.
-   Kinks: sign(0) = 0 for abs; min and max take the derivative of the side they choose, the second where both are equal;
-   a case keeps its guards; sqrt(u) at 0 takes 0 where u does not change. Every operation has one. */
-ir_node ir_derivative(ir *g, ir_node f, ir_node x);
 
 /* Counts of operations that the roots cost: additions, multiplications, divisions and square roots, other functions,
    selects (with min, max, sign); those of nodes placed `at_least` so locally. */

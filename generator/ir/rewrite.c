@@ -267,8 +267,7 @@ static ir_node factored_quotient(const rebuilding *r, ir_node old, const ir_node
 /* A factor of which the graph shows that it is not below 0. */
 static bool is_size(const ir *g, ir_node n) {
   const ir_op op = ir_operation(g, n);
-  return op == IR_ABS || op == IR_SQRT || op == IR_EXP ||
-         (op == IR_CONSTANT && ir_value(g, n) >= 0);
+  return operations[op].image.low >= 0 || (op == IR_CONSTANT && ir_value(g, n) >= 0);
 }
 
 /* The larger or smaller of two is one operation of the processor, if one is NaN wherever the other is. */
@@ -426,8 +425,7 @@ static double degree_of_power(const ir *g, ir_node n, double base, double expone
    zero. */
 static double degree_of_function(ir_op op, double a) {
   if (!is_zero_degree(a)) return a == 0 ? 0 : NAN;
-  bool vanishes = op == IR_SIN || op == IR_TAN || op == IR_TANH || op == IR_WRAP_ANGLE;
-  return vanishes ? REWRITE_ZERO : 0;
+  return operation_has(op, VANISHES) ? REWRITE_ZERO : 0;
 }
 
 static double degree_of_product(ir_op op, double a, double b) {
@@ -543,16 +541,11 @@ static void walk_end(walk *w) {
   free(w->list);
 }
 
-static bool is_arithmetic(ir_op op) {
-  return op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_DIV || op == IR_FMA ||
-         op == IR_NEG || op == IR_ABS || op == IR_MIN || op == IR_MAX;
-}
-
 /* What, being NaN, surely makes n NaN: n itself, and what arithmetic alone leads from. */
 static walk walk_of_nan(const ir *g, ir_node n) {
   walk w = walk_from(g, n);
   for (int k = 0; k < w.count; k++)
-    if (is_arithmetic(ir_operation(g, w.list[k])) && !walk_on(&w, w.list[k])) break;
+    if (operation_has(ir_operation(g, w.list[k]), ARITHMETIC) && !walk_on(&w, w.list[k])) break;
   return w;
 }
 
@@ -563,7 +556,7 @@ bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
     const ir_node n = open.list[k];
     if (reaching.met[n] || ir_place(g, n) <= ON_BODY) continue;
     const ir_op op = ir_operation(g, n);
-    follows = op != IR_INPUT && !ir_makes_nan(op) && walk_on(&open, n);
+    follows = op != IR_INPUT && !operation_has(op, MAKES_NAN) && walk_on(&open, n);
   }
   walk_end(&reaching);
   walk_end(&open);

@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower_energy.h"

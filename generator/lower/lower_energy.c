@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_inputs.h"
 

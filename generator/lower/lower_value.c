@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_family.h"
 #include "generator/lower/lower_inputs.h"
@@ -286,62 +287,26 @@ static ir_node lower_diff(lowering *c, const expr *e) {
   return ir_derivative(c->graph, f, x);
 }
 
-static ir_node lower_extreme(lowering *c, const expr *e, ir_op op) {
-  ir_node n = lower_expr(c, e->arguments[0].value);
-  for (int k = 1; k < e->argument_count; k++)
-    n = binary(c->graph, op, n, lower_expr(c, e->arguments[k].value));
-  return n;
-}
-
 static ir_node soft_sign(ir *g, ir_node x) {
   return ir_div(g, x, ir_add(g, ir_constant(g, 1), unary(g, IR_ABS, x)));
 }
 
-/* Functions of one argument that are one operation. A bending quantity has one component in a
-   plane: its norm is the absolute value. */
-static ir_op simple_operation(builtin_function f) {
-  switch (f) {
-  case FUNCTION_ABS:
-  case FUNCTION_NORM:
-    return IR_ABS;
-  case FUNCTION_SQRT:
-    return IR_SQRT;
-  case FUNCTION_CBRT:
-    return IR_CBRT;
-  case FUNCTION_EXP:
-    return IR_EXP;
-  case FUNCTION_LOG:
-    return IR_LOG;
-  case FUNCTION_SIN:
-    return IR_SIN;
-  case FUNCTION_COS:
-    return IR_COS;
-  case FUNCTION_TAN:
-    return IR_TAN;
-  case FUNCTION_TANH:
-    return IR_TANH;
-  case FUNCTION_SIGN:
-    return IR_SIGN;
-  default:
-    return IR_OP_COUNT;
-  }
-}
-
+/* What has the name of an operation is that operation, of more than two arguments the first with each of the others. */
 static ir_node lower_builtin_call(lowering *c, const expr *e) {
   ir *g = c->graph;
   builtin_function f = (builtin_function)e->builtin;
   if (f == FUNCTION_PREVIOUS) return lower_previous(c, e);
   if (f == FUNCTION_DIFF) return lower_diff(c, e);
-  if (f == FUNCTION_MIN || f == FUNCTION_MAX)
-    return lower_extreme(c, e, f == FUNCTION_MIN ? IR_MIN : IR_MAX);
-  ir_op op = simple_operation(f);
-  if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY && f != FUNCTION_ATAN2)
+  ir_op op = operation_named(builtin_functions[f].name);
+  if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY)
     return lower_fail(c, e->where, "this function cannot be compiled here");
   ir_node a = lower_expr(c, e->arguments[0].value);
   if (f == FUNCTION_SOFT_SIGN) return soft_sign(g, a);
   if (f == FUNCTION_MACAULAY) return binary(g, IR_MAX, a, ir_constant(g, 0));
-  if (f == FUNCTION_ATAN2) return binary(g, IR_ATAN2, a, lower_expr(c, e->arguments[1].value));
-  return unary(g, op, a);
+  if (e->argument_count == 1 && ir_arity(op) == 1) return unary(g, op, a);
+  for (int k = 1; k < e->argument_count; k++)
+    a = binary(g, op, a, lower_expr(c, e->arguments[k].value));
+  return a;
 }
 
 /* Arguments come first: what goes over a family knows no text. Which principal value is asked for is no value. */

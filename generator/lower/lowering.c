@@ -75,8 +75,7 @@ static void *one_more(void *items, int count, size_t size) {
 
 void lower_note_place(lowering *c, ir_node n, const expr *e) {
   if (c->mode != LOWER_STEP || c->failed || n == IR_NONE) return;
-  ir_op op = ir_operation(c->graph, n);
-  if (op != IR_DIV && op != IR_SQRT && op != IR_LOG && op != IR_POW) return;
+  if (!operation_has(ir_operation(c->graph, n), PARTIAL)) return;
   lowered_text *t = &c->text;
   for (int k = 0; k < t->place_count; k++)
     if (t->places[k].node == n) return;

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
 #include "generator/lower/lower_energy.h"

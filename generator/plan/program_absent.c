@@ -64,8 +64,7 @@ static bool is_finite_input(absent_search *s, int pass, ir_node n) {
 }
 
 static bool keeps_finite(ir_op op) {
-  return op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_FMA || op == IR_NEG ||
-         op == IR_ABS || op == IR_MIN || op == IR_MAX || op == IR_SELECT;
+  return op == IR_SELECT || (operation_has(op, ARITHMETIC) && !operation_has(op, PARTIAL));
 }
 
 static bool is_finite(absent_search *s, int pass, ir_node n) {

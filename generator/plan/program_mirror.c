@@ -27,19 +27,11 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
   return changed ? program_made_again(b->g, n, operand) : n;
 }
 
-int program_cost(const ir *g, ir_node n) {
-  ir_op op = ir_operation(g, n);
-  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT ||
-               ir_is_logical(g, n);
-  return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
-}
-
 /* What a value toward a neighbour costs when it is computed again, in additions. */
 int program_cost_again(const ir *g, ir_node n, int most) {
   if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
   ir_op op = ir_operation(g, n);
-  int cost = program_cost(g, n);
+  int cost = operations[op].weight;
   for (int k = 0; k < ir_arity(op) && cost < most; k++)
     cost += program_cost_again(g, ir_operand(g, n, k), most - cost);
   return cost;

@@ -17,9 +17,7 @@ ir_node program_linked_node(const builder *b, ir_node input);
 /* Whether the value goes over a family, so that a neighbour cannot compute it again. */
 bool program_goes_over_family(builder *b, ir_node n);
 
-/* What an operation costs, and what a value toward a neighbour costs when it is computed again (no more than `most` is
-   counted), in additions. */
-int program_cost(const ir *g, ir_node n);
+/* What a value toward a neighbour costs when it is computed again (no more than `most` is counted), in additions. */
 int program_cost_again(const ir *g, ir_node n, int most);
 
 /* The same operation of other operands, with the name of the first. */

@@ -64,8 +64,8 @@ static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int
   }
   if (op == IR_ADD || op == IR_SUB) return sign[0] == sign[1] ? sign[0] : 0;
   if (op == IR_FMA) return sign[0] * sign[1] == sign[2] ? sign[2] : 0;
-  if (op == IR_MUL || op == IR_DIV || op == IR_NEG) return sign[0] * sign[1];
-  if (op == IR_ABS) return 1;
+  if (op == IR_MUL || op == IR_DIV || operation_has(op, ODD)) return sign[0] * sign[1];
+  if (operation_has(op, EVEN)) return 1;
   return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
 }
 
@@ -79,9 +79,7 @@ static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
   if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
   if (op != ir_operation(b->g, y) || --*left < 0) return 0;
   const int sign = image_of_operands(b, x, y, false, left);
-  const bool commutes =
-      op == IR_ADD || op == IR_MUL || op == IR_FMA; /* the graph orders operands by number */
-  return sign != 0 || !commutes ? sign : image_of_operands(b, x, y, true, left);
+  return sign != 0 || !operation_has(op, COMMUTES) ? sign : image_of_operands(b, x, y, true, left);
 }
 
 /* Takes the mirror image of term k, with that sign, out of the list; in products no sign may change. */
@@ -138,10 +136,10 @@ static int parity_of_others(builder *b, ir_node n) {
   int operand[3] = {1, 1, 1};
   for (int k = 0; k < ir_arity(op); k++)
     operand[k] = program_parity(b, ir_operand(b->g, n, k));
-  if (op == IR_NEG) return operand[0];
+  if (operation_has(op, ODD)) return operand[0];
   if (op == IR_FMA && operand[0] * operand[1] != 0)
     return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
-  if (op == IR_ABS && operand[0]) return 1;
+  if (operation_has(op, EVEN) && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
   if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
   return program_mirror(b, n) == n ? 1 : 0;
@@ -194,7 +192,7 @@ static int cost_in_round(builder *b, ir_node n, int most) {
   for (int k = 0; k < b->shared_count; k++)
     if (b->shared[k] == n) return 0;
   if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
-  int cost = program_cost(b->g, n);
+  int cost = operations[ir_operation(b->g, n)].weight;
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
     cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
   return cost;
