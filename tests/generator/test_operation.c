@@ -114,7 +114,7 @@ static void functions_find_their_operation(void **unused) {
                  builtin_functions[f].most == operations[op].arity));
     found++;
   }
-  assert_int_equal(found, 13);
+  assert_true(found >= 13);
 }
 
 int main(void) {
