@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "generator/emit/emit_parts.h"
 #include "generator/lower/kinematics.h"
+#include "generator/plan/program_facts.h"
 
 /* --- inputs ----------------------------------------------------------------------------------- */
 

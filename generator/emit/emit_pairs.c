@@ -13,6 +13,7 @@
 #include "dsl/base/arena.h"
 #include "generator/emit/emit_parts.h"
 #include "generator/emit/stages.h"
+#include "generator/plan/program_facts.h"
 
 static const char field_functions[] =
     "static const _Alignas(PL_ALIGNMENT) double zeros[%d];\n\n"

@@ -12,6 +12,7 @@
 #include "generator/ir/interpret.h"
 #include "generator/lower/law_inputs.h"
 #include "generator/plan/passes.h"
+#include "generator/plan/program_facts.h"
 
 enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKERS = 64 };
 

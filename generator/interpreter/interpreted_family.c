@@ -7,6 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/ir/interpret.h"
 #include "generator/lower/kinematics.h"
+#include "generator/plan/program_facts.h"
 
 enum { LANES = FAMILY_CHUNK, MOST_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 _Static_assert(FAMILY_CHUNK == INTERPRET_LANES, "a chunk is what the interpreter takes at a time");

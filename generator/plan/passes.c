@@ -12,6 +12,7 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_parts.h"
 #include "generator/plan/plan_roots.h"
+#include "generator/plan/program_facts.h"
 
 static const char *const pass_names[PASS_COUNT] = {
 #define X(pass, member, task) [pass] = #member,

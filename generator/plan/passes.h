@@ -21,7 +21,7 @@ typedef enum pass_kind {
 #define X(pass, member, task) pass,
   STRIP_PASSES(X)
 #undef X
-  PASS_STATES,
+      PASS_STATES,
   PASS_TANGENT,
   PASS_BOUNDS,
   PASS_COUNT
@@ -37,7 +37,7 @@ typedef enum pass_target {
   TO_OBSERVED,         /* observed[index] = present ? node : 0 */
   TO_OUT,              /* out[index] = node */
   TO_LOWER,
-  TO_UPPER             /* lower[index], upper[index] = node; infinite where there is no bound */
+  TO_UPPER /* lower[index], upper[index] = node; infinite where there is no bound */
 } pass_target;
 
 /* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
@@ -70,9 +70,9 @@ typedef enum loop_cutting {
 
 /* How the passes of a law of families go over the neighbours. */
 typedef enum family_form {
-  FAMILY_LOOPS,       /* by loops, of any number of neighbours */
+  FAMILY_LOOPS, /* by loops, of any number of neighbours */
   FAMILY_WRITTEN_OUT, /* one loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
-  FAMILY_PAIRS        /* by loops over bonds that add to both ends (SHARE_PAIRS) */
+  FAMILY_PAIRS /* by loops over bonds that add to both ends (SHARE_PAIRS) */
 } family_form;
 
 typedef struct kernel_plan {
@@ -88,12 +88,13 @@ typedef struct kernel_plan {
                         of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
                         and nothing before it */
   int uniform_count;
-  double flops_per_bond, divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
+  double flops_per_bond,
+      divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
   family_form form; /* of `step`, and of how chords and forces are written */
   family_program step, observe;
   program_links links;
-  bool reads_shape; /* inverse shape matrices */
+  bool reads_shape;         /* inverse shape matrices */
   bool stores, reads_rates; /* pl_law */
   arena *memory;
 } kernel_plan;

@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_PROGRAM_MIRROR_H
 #define PERILAT_GENERATOR_PROGRAM_MIRROR_H
 
-#include "generator/plan/program_parts.h"
+#include "generator/plan/program_builder.h"
 
 /* The value without IR_NEIGHBOUR. */
 ir_node program_resolve(builder *b, ir_node n);
@@ -22,5 +22,9 @@ int program_cost_again(const ir *g, ir_node n, int most);
 
 /* The same operation of other operands, with the name of the first. */
 ir_node program_made_again(ir *g, ir_node n, const ir_node *operand);
+
+/* Puts to[k] in place of from[k] in the roots and in what links hold. */
+void program_substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
+                        const ir_node *to, int pair_count);
 
 #endif

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "generator/plan/program_facts.h"
 #include "tests/generator/law_text.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
