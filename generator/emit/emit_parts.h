@@ -5,7 +5,7 @@
 
 #include "generator/emit/c_text.h"
 #include "generator/emit/kernel_parts.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 /* The functions differ in where inputs come from and in how the loop, if any, runs. */
 typedef enum scope_kind {

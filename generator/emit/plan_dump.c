@@ -4,7 +4,9 @@
 
 #include "dsl/base/arena.h"
 #include "generator/emit/emit.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/emit/plan_dump.h"
+#include "generator/emit/plan_dump_family.h"
+#include "generator/plan/plan_roots.h"
 
 /* --- printing --------------------------------------------------------------------------------- */
 

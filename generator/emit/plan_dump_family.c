@@ -3,8 +3,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/emit/plan_dump_family.h"
 #include "generator/lower/kinematics.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/plan/plan_roots.h"
 
 static const char *const segment_names[] = {[OVER_PARTICLES] = "particle by particle",
                                             [OVER_NEIGHBOURS] = "neighbour by neighbour",

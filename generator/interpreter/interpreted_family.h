@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 #define PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 typedef struct family_runner family_runner;
 

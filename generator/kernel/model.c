@@ -9,6 +9,7 @@
 
 #include "dsl/syntax/parse.h"
 #include "generator/emit/emit.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
 #include "runtime/base/clock.h"

@@ -1,4 +1,5 @@
-/* Programs of a law of families (program.h): what is wanted of a particle, in the terms of the law. */
+#include "generator/plan/plan_family.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -8,7 +9,6 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/particle_parts.h"
-#include "generator/plan/plan_parts.h"
 #include "generator/plan/plan_roots.h"
 
 typedef struct family_planner {

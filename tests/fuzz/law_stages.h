@@ -13,7 +13,7 @@
 #include "generator/check/physics.h"
 #include "generator/emit/emit.h"
 #include "generator/intervals/interval_check.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -6,8 +6,9 @@
 
 #include <cmocka.h>
 
-#include "tests/generator/law_text.h"
+#include "generator/emit/plan_dump.h"
 #include "tests/dsl/text_files.h"
+#include "tests/generator/law_text.h"
 
 static char *dumped(void (*dump)(const kernel_plan *, FILE *)) {
   tested_law *t = open_law_file(SOURCE_DIR "/tests/generator/families/stored.plm");

@@ -7,10 +7,11 @@
 
 #include <cmocka.h>
 
+#include "generator/interpreter/interpreted.h"
 #include "generator/plan/program_facts.h"
-#include "tests/generator/law_text.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
+#include "tests/generator/law_text.h"
 
 #define HEAD                                                                                       \
   "  law state\n  parameter a = 40 [MN] in (0, inf)\n  parameter b = 3 [MN] in (0, inf)\n"         \

@@ -1,11 +1,11 @@
 /* The functions of a kernel, as roots in one graph: what each reads, writes and costs. The emitter
    writes them as C, the interpreter evaluates them; both walk the same nodes. */
-#ifndef PERILAT_GENERATOR_PASSES_H
-#define PERILAT_GENERATOR_PASSES_H
+#ifndef PERILAT_GENERATOR_PLAN_H
+#define PERILAT_GENERATOR_PLAN_H
 
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower.h"
-#include "generator/plan/program.h"
+#include "generator/plan/segment.h"
 #include "runtime/kernel.h"
 
 /* What is done over strips of bonds. */
@@ -99,6 +99,8 @@ typedef struct kernel_plan {
   arena *memory;
 } kernel_plan;
 
+/* An empty plan. */
+kernel_plan *plan_begin(const law *l);
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
    when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
@@ -108,13 +110,5 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
 /* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond evaluate it. */
 kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
 void plan_free(kernel_plan *p);
-void plan_dump(const kernel_plan *p, FILE *out); /* --dump=passes */
-/* --dump=ir: the nodes of every pass, with their names and lines. */
-void plan_dump_ir(const kernel_plan *p, FILE *out);
-
-/* The plan on the interpreter, behind the same interface as a compiled kernel, for any number of
-   threads. The plan must outlive it. */
-pl_law *plan_interpreted(const kernel_plan *p, const char *key);
-void plan_interpreted_free(pl_law *law);
 
 #endif
