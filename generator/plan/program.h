@@ -1,11 +1,28 @@
-/* A law of families as programs. A program is a row of passes over all particles: what a pass needs of a neighbour's
-   present step, an earlier pass has left as a link, a value of the particle. A pass is a row of segments over a chunk
-   of particles: particle by particle, neighbour by neighbour with sums into slots, or bond by bond, which is over the
-   neighbours whose bonds the particle owns; such a loop may also add to sums of both ends (SHARE_PAIRS). Values of particles that later segments need stand in slots; values toward
-   neighbours that are too dear to be computed twice stand in planes. What is dear and the same from either end of a bond
-   is computed once, by the owner in the first pass, and shared by both ends from then on; so, later, is the force of a bond
-   (SHARE_MORE). The emitter writes segments as
-   loops, the interpreter runs them. */
+/* A law of families as programs. A program is a row of passes over all particles: what a pass needs
+   of a neighbour's present step, an earlier pass has left as a link, a value of the particle. A pass
+   is a row of segments over a chunk of particles: particle by particle, neighbour by neighbour with
+   sums into slots, or bond by bond, which is over the neighbours whose bonds the particle owns; such
+   a loop may also add to sums of both ends (SHARE_PAIRS). What is dear and the same from either end
+   of a bond is computed once, by the owner in the first pass, and shared by both ends from then on.
+   The emitter writes segments as loops, the interpreter runs them.
+
+   An example (of the interpreter's form; `perilat check --dump=passes` prints more):
+
+       theta            = mean(stretch[j])
+       force state F[j] = E*spacing*t*(stretch[j] + theta)
+
+   The force of a bond is the mean of what both ends say, so that a particle needs theta of its
+   neighbour. Only the neighbour can add up its own family: theta is a link.
+
+       pass 0  neighbour by neighbour  slot 0 += 1
+               particle by particle    link 1 = 1/slot 0 (1 for no bonds), link 2 = its divisor
+               bond by bond            shared 0 = 1/length           both ends need it, and it is dear
+       pass 1  neighbour by neighbour  slot 0 += stretch             made of shared 0
+               particle by particle    link 0 = theta                of slot 0 and links 1, 2
+       pass 2  neighbour by neighbour  slots 0, 1 += F e_x, F e_y    of theta, theta_j and shared 0
+               particle by particle    force x = slot 0, force y = slot 1
+
+   Passes follow from levels: a value that needs a neighbour's link comes one pass after it. */
 #ifndef PERILAT_GENERATOR_PROGRAM_H
 #define PERILAT_GENERATOR_PROGRAM_H
 

@@ -1,4 +1,11 @@
-/* What the two ends of a bond compute alike, or with the opposite sign. */
+/* What the two ends of a bond compute alike, or with the opposite sign. The other end reads u_i for
+   u_j and the chord the other way round, so that of a law's values
+
+       u_j - u_i              -1   the ends exchange its terms
+       chord + (u_j - u_i)    -1   each term is the opposite
+       length                  1   a root of squares of such
+       theta + theta_j         1   its terms are a pair that the ends exchange
+       theta                   0   the other end has its own */
 #ifndef PERILAT_GENERATOR_PROGRAM_PARITY_H
 #define PERILAT_GENERATOR_PROGRAM_PARITY_H
 
