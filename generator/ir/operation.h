@@ -1,5 +1,6 @@
-/* The operations of the graph: one row holds all that is known of one but its derivative (derive.c). Readers take what
-   they need from the row, so that a function of numbers is added by a row here and a rule there. */
+/* The operations of the graph: one row holds all that is known of one but its derivative
+   (derive.c). Readers take what they need from the row, so that a function of numbers is added by a
+   row here and a rule there. */
 #ifndef PERILAT_GENERATOR_OPERATION_H
 #define PERILAT_GENERATOR_OPERATION_H
 
@@ -41,8 +42,9 @@ typedef struct operation_image {
   bool open;
 } operation_image;
 
-/* Cycles until the result is there, operations it is made of, and divisions or roots among them, of eight doubles on
-   processors with 512-bit vectors (Intel's of 2019 and later); only their ratios matter. */
+/* Cycles until the result is there, operations it is made of, and divisions or roots among them, of
+   eight doubles on processors with 512-bit vectors (Intel's of 2019 and later); only their ratios
+   matter. */
 typedef struct operation_price {
   int latency, operations, divisions;
 } operation_price;
@@ -114,8 +116,8 @@ typedef struct operation {
 /* What has no value of operands alone. X(code, name, operands, traits) */
 #define OPERATION_LEAVES(X)                                                                        \
   X(CONSTANT, "constant", 0, 0) X(INPUT, "input", 0, 0)
-/* Over the bonds of a particle that exist: 0, -inf, inf where there are none; of the particle at the other end, toward
-   me where it is directed. */
+/* Over the bonds of a particle that exist: 0, -inf, inf where there are none; of the particle at
+   the other end, toward me where it is directed. */
 #define OPERATIONS_OF_FAMILIES(X)                                                                  \
   X(FAMILY_SUM, "family_sum", 1, OVER_FAMILY) X(FAMILY_MAX, "family_max", 1, OVER_FAMILY)          \
   X(FAMILY_MIN, "family_min", 1, OVER_FAMILY) X(NEIGHBOUR, "neighbour", 1, 0)
@@ -137,8 +139,9 @@ static inline bool operation_has(ir_op op, unsigned trait) {
 /* The operation of this name, as the built-in functions of laws have it; IR_OP_COUNT: none. */
 ir_op operation_named(const char *name);
 
-/* One operation on numbers, as both readers of the IR compute it: comparisons with NaN are false, logical results are
-   0 or 1, select takes `b` where `a` is not 0. Not for inputs, constants, and reductions over the family. */
+/* One operation on numbers, as both readers of the IR compute it: comparisons with NaN are false,
+   logical results are 0 or 1, select takes `b` where `a` is not 0. Not for inputs, constants, and
+   reductions over the family. */
 double operation_value(ir_op op, double a, double b, double c);
 
 #endif

@@ -14,8 +14,8 @@
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
-/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with either of its
-   particles. */
+/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with
+   either of its particles. */
 static ir_node held_where(lowering *c, placement on) {
   ir *g = c->graph;
   ir_node zero = ir_constant(g, 0);
@@ -50,7 +50,8 @@ static void note_flow(lowering *c, const stmt *rule, ir_node when) {
   if (c->mode == LOWER_STEP) lower_note_flow(c, rule, when, overstress_of(c, rule->when));
 }
 
-/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how many. */
+/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how
+   many. */
 static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **stand_in) {
   ir *g = c->graph;
   const int nodes = ir_count(g), fields = c->law->fields.count;
@@ -85,9 +86,10 @@ static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
   return found;
 }
 
-/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what neighbours have being
-   frozen. Newton's method from lambda = 0 in a fixed number of steps: the returns of the usual convex yield functions
-   have converged to rounding long before; the `flow` check of a law says so where one has not. */
+/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
+   neighbours have being frozen. Newton's method from lambda = 0 in a fixed number of steps: the
+   returns of the usual convex yield functions have converged to rounding long before; the `flow`
+   check of a law says so where one has not. */
 static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node direction) {
   enum { NEWTON_STEPS = 8 };
   ir *g = c->graph;

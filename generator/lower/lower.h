@@ -8,11 +8,11 @@
 
 /* Adds the law's nodes to g. Quantities become inputs IR_FROM_QUANTITY, fields IR_FROM_FIELD.
    Arrays live in `memory`. diff(f, x) and forces derived from `energy W` hold every state and
-   damage (old and new) that is not x itself:
-     N = dW/dL = (dW/dstretch)/s, M_i = dW/dtheta_i, M_j = dW/dtheta_j
-   `force V` gives M_i = M_j = V L/2. A damage rule that is not a number gives a damage that is not
-   a number: it is found, not clamped away. What goes over a family are FAMILY operations, what belongs to a neighbour
-   IR_NEIGHBOUR. False with a NOT_SUPPORTED diagnostic for what cannot be compiled yet. */
+   damage (old and new) that is not x itself: N = dW/dL = (dW/dstretch)/s, M_i = dW/dtheta_i, M_j =
+   dW/dtheta_j `force V` gives M_i = M_j = V L/2. A damage rule that is not a number gives a damage
+   that is not a number: it is found, not clamped away. What goes over a family are FAMILY
+   operations, what belongs to a neighbour IR_NEIGHBOUR. False with a NOT_SUPPORTED diagnostic for
+   what cannot be compiled yet. */
 bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
                diagnostics *d);
 

@@ -1,4 +1,5 @@
-/* What a law of bonds stores and what its rate terms take; forces of laws of families that give an energy. */
+/* What a law of bonds stores and what its rate terms take; forces of laws of families that give an
+   energy. */
 #ifndef PERILAT_GENERATOR_LOWER_ENERGY_H
 #define PERILAT_GENERATOR_LOWER_ENERGY_H
 
@@ -17,7 +18,8 @@ ir_node lower_stored_energy(ir *g, const lowered_law *frozen);
 ir_node lower_rate_power(ir *g, const lowered_law *frozen, ir_node theta_rate_i,
                          ir_node theta_rate_j);
 
-/* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the other side. */
+/* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the
+   other side. */
 ir_node lower_force_state_of_energy(lowering *c, ir_node W);
 
 #endif

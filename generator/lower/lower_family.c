@@ -133,8 +133,8 @@ static components virtual_work(lowering *c, const expr *e, ir_node force) {
   return v;
 }
 
-/* eps = G sum(w n S) with the weight w = 1 on lattices and w = s on irregular families, n = (x^2, y^2, x y), in space
-   (x^2, y^2, z^2, x y, y z, x z), and engineering shear. */
+/* eps = G sum(w n S) with the weight w = 1 on lattices and w = s on irregular families, n = (x^2,
+   y^2, x y), in space (x^2, y^2, z^2, x y, y z, x z), and engineering shear. */
 static components fit(lowering *c, const expr *e, ir_node stretch) {
   ir *g = c->graph;
   int size = strain_count(c->law);
@@ -160,7 +160,8 @@ static components fit(lowering *c, const expr *e, ir_node stretch) {
   return v;
 }
 
-/* F = 2 V (w/s) n.(G sigma) with the weights of `fit`: the force state, linear in n n^T, whose virtual work is sigma. */
+/* F = 2 V (w/s) n.(G sigma) with the weights of `fit`: the force state, linear in n n^T, whose
+   virtual work is sigma. */
 static ir_node uniform_force(ir *g, const law *l, components sigma) {
   int size = strain_count(l);
   components n = dyad(g, l);

@@ -5,8 +5,8 @@
 #include "dsl/semantics/law.h"
 #include "generator/ir/ir.h"
 
-/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j and length vary from
-   bond to bond; the others are those of a bond class. */
+/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j and
+   length vary from bond to bond; the others are those of a bond class. */
 ir_node lower_quantity(ir *g, builtin_quantity q);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
@@ -20,7 +20,8 @@ static inline int lower_dimensions(const law *l) {
 ir_node lower_volume(ir *g, const law *l);
 /* Of families: 1 where the bonds of the particle resolve all strains, else 0. */
 ir_node lower_resolved(ir *g, const law *l);
-/* Entry (row, column) of the particle's inverse shape matrix, which the runtime keeps as an upper triangle. */
+/* Entry (row, column) of the particle's inverse shape matrix, which the runtime keeps as an upper
+   triangle. */
 ir_node lower_inverse_shape(ir *g, const law *l, int row, int column);
 
 #endif

@@ -91,7 +91,8 @@ ir_node tensor_principal(ir *g, components a, int which) {
   return plane ? plane_principal(g, a, which) : space_principal(g, a, which);
 }
 
-/* Isotropic elasticity. In plane stress the third direction is free: sigma_zz = 0 whatever eps_zz says. */
+/* Isotropic elasticity. In plane stress the third direction is free: sigma_zz = 0 whatever eps_zz
+   says. */
 components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, ir_node nu) {
   ir_node one = ir_constant(g, 1), two = ir_constant(g, 2);
   ir_node twice_mu = ir_div(g, E, ir_add(g, one, nu)), lambda, sum;

@@ -168,8 +168,8 @@ static components lower_unary(lowering *c, const expr *e) {
   return a;
 }
 
-/* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an operand of a guard could
-   be NaN, the cases give that NaN instead. */
+/* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an
+   operand of a guard could be NaN, the cases give that NaN instead. */
 static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   ir *g = c->graph;
   if (ir_is_logical(g, guard) && ir_operation(g, guard) != IR_LT &&
@@ -291,7 +291,8 @@ static ir_node soft_sign(ir *g, ir_node x) {
   return ir_div(g, x, ir_add(g, ir_constant(g, 1), unary(g, IR_ABS, x)));
 }
 
-/* What has the name of an operation is that operation, of more than two arguments the first with each of the others. */
+/* What has the name of an operation is that operation, of more than two arguments the first with
+   each of the others. */
 static ir_node lower_builtin_call(lowering *c, const expr *e) {
   ir *g = c->graph;
   builtin_function f = (builtin_function)e->builtin;
@@ -309,7 +310,8 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
   return a;
 }
 
-/* Arguments come first: what goes over a family knows no text. Which principal value is asked for is no value. */
+/* Arguments come first: what goes over a family knows no text. Which principal value is asked for
+   is no value. */
 static components lower_of_family(lowering *c, const expr *e) {
   enum { MOST_ARGUMENTS = 3 };
   components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};

@@ -1,5 +1,5 @@
-/* A law on its way to the graph: the values of its names so far, the first reason why it cannot be compiled, and
-   what became of its text. */
+/* A law on its way to the graph: the values of its names so far, the first reason why it cannot be
+   compiled, and what became of its text. */
 #ifndef PERILAT_GENERATOR_LOWERING_H
 #define PERILAT_GENERATOR_LOWERING_H
 

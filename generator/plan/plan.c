@@ -37,7 +37,8 @@ static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d
   return finish(plan, plan_programs(plan, d), d);
 }
 
-/* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them only where they change. */
+/* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them
+   only where they change. */
 static bool is_for_pairs(const law *l) {
   enum { WRITTEN_OUT_FASTER = 12 };
   bool on_bonds = false;

@@ -71,7 +71,8 @@ typedef enum loop_cutting {
 /* How the passes of a law of families go over the neighbours. */
 typedef enum family_form {
   FAMILY_LOOPS, /* by loops, of any number of neighbours */
-  FAMILY_WRITTEN_OUT, /* one loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
+  /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
+  FAMILY_WRITTEN_OUT,
   FAMILY_PAIRS /* by loops over bonds that add to both ends (SHARE_PAIRS) */
 } family_form;
 
@@ -101,13 +102,14 @@ typedef struct kernel_plan {
 
 /* An empty plan. */
 kernel_plan *plan_begin(const law *l);
-/* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
-   when it cannot be compiled. */
+/* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families.
+   NULL with diagnostics when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
 /* A variant for parameters (indices into law->parameters) that differ from bond to bond. */
 kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
                                  diagnostics *d);
-/* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond evaluate it. */
+/* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond
+   evaluate it. */
 kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
 void plan_free(kernel_plan *p);
 

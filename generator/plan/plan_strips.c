@@ -106,8 +106,9 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_no
   return pairs;
 }
 
-/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all passes compute a value
-   in the same way, and energies with old and new fields differ in no bit where the fields do not differ. */
+/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all
+   passes compute a value in the same way, and energies with old and new fields differ in no bit
+   where the fields do not differ. */
 static void fuse(planner *p, seen_law *t) {
   const law *l = p->plan->law;
   const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;

@@ -43,7 +43,8 @@ typedef struct pass_view {
   node_map seen, parity; /* parity + 1 of what a sum adds up; of sums as the pass sees them */
 } pass_view;
 
-/* The field toward neighbours that an earlier pass has computed the value for, which later ones read; or NULL. */
+/* The field toward neighbours that an earlier pass has computed the value for, which later ones
+   read; or NULL. */
 static const segment_root *field_before(const pass_view *v, ir_node n) {
   if (v->b->sharing != SHARE_PAIRS) return NULL;
   for (int k = 0; k < v->root_count; k++)
@@ -117,7 +118,8 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
 void program_build(family_program *out, const char *name, ir *g, arena *memory,
                    const segment_root *roots, int root_count, const program_motion *motion,
                    program_sharing sharing, program_links *links) {
-  /* What other programs leave stays as it is, so that what a pass may rely on where no run comes stays true. */
+  /* What other programs leave stays as it is, so that what a pass may rely on where no run comes
+     stays true. */
   builder b = {.g = g, .memory = memory, .sharing = sharing, .links = *links};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
   b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);

@@ -13,7 +13,8 @@ static bool is_shared(const ir *g, ir_node n) {
          (ir_input_source(g, n) == IR_FROM_SHARED || ir_input_source(g, n) == IR_FROM_SHARED_ODD);
 }
 
-/* The root that writes to `target`, number `index`, and its pass: the last one before *pass; NULL: none. */
+/* The root that writes to `target`, number `index`, and its pass: the last one before *pass; NULL:
+   none. */
 static segment_root *writer_of(const absent_search *s, segment_target target, int index,
                                int *pass) {
   while (--*pass >= 0) {

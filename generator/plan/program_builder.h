@@ -1,4 +1,5 @@
-/* A program while it is made: what its passes leave to each other, and what is known of each value so far. */
+/* A program while it is made: what its passes leave to each other, and what is known of each value
+   so far. */
 #ifndef PERILAT_GENERATOR_PROGRAM_BUILDER_H
 #define PERILAT_GENERATOR_PROGRAM_BUILDER_H
 

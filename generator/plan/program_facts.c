@@ -173,7 +173,8 @@ static int reaches_behind(unsigned at_hand, int from, int to) {
   return behind;
 }
 
-/* Reaches of rows from a link of an earlier pass, the farthest that the segment reads, to where that pass now is. */
+/* Reaches of rows from a link of an earlier pass, the farthest that the segment reads, to where
+   that pass now is. */
 static int reaches_of_segment(const ir *g, const family_program *p, unsigned at_hand, int pass,
                               const segment *a) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);

@@ -14,13 +14,14 @@ uint64_t program_shared_by(const family_pass *p);
 
 /* Whether bonds of the pass add to both ends. */
 bool program_is_paired(const family_pass *p);
-/* Whether the program writes the field, which stands toward neighbours, bond by bond at both ends. */
+/* Whether the program writes the field, which stands toward neighbours, bond by bond at both
+   ends. */
 bool program_pairs_field(const family_program *p, int field);
-/* How many sums of what is the same for all bonds of a class (segment_is_constant) the program has, or has before that
-   segment's. */
+/* How many sums of what is the same for all bonds of a class (segment_is_constant) the program has,
+   or has before that segment's. */
 int program_constant_sums(const ir *g, const family_program *p, const segment *before);
-/* Which segment of pairs finds out where bonds are as is expected (ir_expect), for all that come later; NULL: none. Later
-   segments may expect only what it has asked of the motion. */
+/* Which segment of pairs finds out where bonds are as is expected (ir_expect), for all that come
+   later; NULL: none. Later segments may expect only what it has asked of the motion. */
 const segment *program_asks(const ir *g, const family_program *p);
 bool program_is_told(const ir *g, const family_program *p, const segment *a);
 /* Sums that one pass adds to far ends, the most. */

@@ -124,8 +124,8 @@ static ir_node mirror_quantity(builder *b, ir_node n) {
   return ir_input(b->g, IR_FROM_QUANTITY, (int)other, builtin_quantities[other].name, ON_BODY);
 }
 
-/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can be told from values
-   toward a neighbour. */
+/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can
+   be told from values toward a neighbour. */
 static ir_node mirror_input(builder *b, ir_node n) {
   ir *g = b->g;
   int index = ir_input_index(g, n);
@@ -173,7 +173,8 @@ ir_node program_mirror(builder *b, ir_node n) {
   return image;
 }
 
-/* Whether the neighbour may have another value than the particle: not for what follows from the bond's own motion. */
+/* Whether the neighbour may have another value than the particle: not for what follows from the
+   bond's own motion. */
 static bool has_sides(builder *b, ir_node n) {
   int known = map_get(&b->sided, n);
   if (known >= 0) return known != 0;
@@ -185,8 +186,9 @@ static bool has_sides(builder *b, ir_node n) {
   return sided;
 }
 
-/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two loads for each
-   neighbour. The motion of the bond, which both sides need anyway, does not count. */
+/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two
+   loads for each neighbour. The motion of the bond, which both sides need anyway, does not
+   count. */
 static bool is_dear(builder *b, ir_node n) {
   enum { DEAR = 30 };
   return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && has_sides(b, n) &&

@@ -28,7 +28,8 @@ bool program_terms(builder *b, ir_node n, bool of_sum, int sign, term_list *t) {
 
 static int image_sign(builder *b, ir_node x, ir_node y, int *left);
 
-/* The same for results of one operation, operand by operand; with `crossed` the first of one is the second of the other. */
+/* The same for results of one operation, operand by operand; with `crossed` the first of one is the
+   second of the other. */
 static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int *left) {
   const ir_op op = ir_operation(b->g, x);
   int sign[3] = {1, 1, 1};
@@ -44,7 +45,8 @@ static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int
   return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
 }
 
-/* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be looked at. */
+/* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be
+   looked at. */
 static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
   const ir_op op = ir_operation(b->g, x);
   const ir_node image = program_mirror(b, x);
@@ -57,7 +59,8 @@ static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
   return sign != 0 || !operation_has(op, COMMUTES) ? sign : image_of_operands(b, x, y, true, left);
 }
 
-/* Takes the mirror image of term k, with that sign, out of the list; in products no sign may change. */
+/* Takes the mirror image of term k, with that sign, out of the list; in products no sign may
+   change. */
 static bool take_partner(builder *b, term_list *t, int k, int sign, bool of_sum) {
   enum { MOST_LOOKS = 1000 };
   for (int other = k + 1; other < t->count; other++) {

@@ -15,8 +15,8 @@ typedef struct scheduler {
   int loop_count;
 } scheduler;
 
-/* Loops over the neighbours that must be done before the value can be had (of a particle), or before the loop in which it
-   can be had (toward a neighbour). */
+/* Loops over the neighbours that must be done before the value can be had (of a particle), or
+   before the loop in which it can be had (toward a neighbour). */
 static int phase_of(scheduler *s, ir_node n) {
   int known = map_get(&s->phase, n);
   if (known >= 0) return known;
@@ -92,7 +92,8 @@ static ir_node plane_of(scheduler *s, ir_node n) {
   return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
 }
 
-/* A value as a segment sees it: `loop` of the neighbours, or after `loop` loops for the particle. */
+/* A value as a segment sees it: `loop` of the neighbours, or after `loop` loops for the
+   particle. */
 typedef struct segment_view {
   scheduler *s;
   segment_kind kind;
@@ -109,7 +110,8 @@ static ir_node computed_here(segment_view *v, ir_node n) {
   return program_made_again(v->s->g, n, operand);
 }
 
-/* Values toward a neighbour that an earlier loop had: a plane costs a store and a load, and room on the stack (64 KiB). */
+/* Values toward a neighbour that an earlier loop had: a plane costs a store and a load, and room on
+   the stack (64 KiB). */
 static bool is_worth_a_plane(scheduler *s, ir_node n, int loop) {
   enum { DEAR = 4, MOST_PLANES = 16 };
   if (phase_of(s, n) >= loop || program_cost_again(s->g, n, DEAR) < DEAR) return false;
@@ -145,7 +147,8 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   return image;
 }
 
-/* Roots in terms of what the segment can read. A root that is itself kept in a slot or a plane is computed here. */
+/* Roots in terms of what the segment can read. A root that is itself kept in a slot or a plane is
+   computed here. */
 static void view_segment(scheduler *s, segment *a, int loop) {
   segment_view v = {.s = s, .kind = a->kind, .loop = loop};
   for (int k = 0; k < a->root_count; k++) { /* more may be added to earlier segments only */
@@ -182,8 +185,8 @@ static void fuse_segment(ir *g, segment *a) {
   free(nodes);
 }
 
-/* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond: what the far end
-   gets is complete when its turn comes. */
+/* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond:
+   what the far end gets is complete when its turn comes. */
 static void pair_ends(ir *g, family_pass *p) {
   segment *loop = NULL;
   int sums = 0;

@@ -5,7 +5,8 @@
 #include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parity.h"
 
-/* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
+/* Whether a value follows from motion and fields alone, without what goes over a family or was left
+   by a pass. */
 static bool is_plain(builder *b, ir_node n) {
   int known = map_get(&b->plain, n);
   if (known >= 0) return known != 0;
@@ -41,7 +42,8 @@ static int cost_beyond(builder *b, ir_node n, int most) {
   return cost_in_round(b, n, most);
 }
 
-/* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
+/* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not
+   stay in a cache, more. */
 static int dear(const builder *b) {
   return b->sharing >= SHARE_MORE ? 12 : 25;
 }
@@ -104,8 +106,8 @@ static void count_users(builder *b, ir_node n) {
     count_users(b, ir_operand(b->g, n, k));
 }
 
-/* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands first, what is still dear
-   given those before. */
+/* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands
+   first, what is still dear given those before. */
 static void choose_shared(builder *b, const segment_root *roots, int root_count) {
   node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
   node_map seen = {0};
@@ -129,7 +131,7 @@ static void choose_shared(builder *b, const segment_root *roots, int root_count)
   free(found.items);
 }
 
-/* --- the force of a bond ------------------------------------------------------------------------ */
+/* --- the force of a bond ---------------------------------------------------------------------- */
 
 /* The factors of what a force adds up over the neighbours; false where it is no such sum. */
 static bool factors_of_force(builder *b, const segment_root *r, term_list *t) {
@@ -176,8 +178,8 @@ static bool find_common(builder *b, const segment_root *roots, int root_count, t
   return any && common->count > 0;
 }
 
-/* What all components of the force have as a factor, the same from either end, that no earlier pass can know: the force of
-   a bond over its length. IR_NONE: nothing that is worth it. */
+/* What all components of the force have as a factor, the same from either end, that no earlier pass
+   can know: the force of a bond over its length. IR_NONE: nothing that is worth it. */
 static ir_node common_factor(builder *b, const segment_root *roots, int root_count) {
   enum { DEAR = 4 }; /* a store and two loads, of fewer values than it is computed from */
   term_list common = {.count = 0};
@@ -209,8 +211,8 @@ static ir_node shared_input(builder *b, int k) {
                   name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
 }
 
-/* What follows from links and is the same from either end, too: its owner computes it in a pass of its own. In the plane
-   that pass costs more than the few bonds spare. */
+/* What follows from links and is the same from either end, too: its owner computes it in a pass of
+   its own. In the plane that pass costs more than the few bonds spare. */
 static void share_factor(builder *b, segment_root *roots, int root_count) {
   if (b->first_shared + b->shared_count >= MOST_SHARED) return;
   const ir_node factor = common_factor(b, roots, root_count);

@@ -4,7 +4,8 @@
 
 #include "generator/ir/ir.h"
 
-/* Particles that the segments of a pass take at a time on the interpreter; in C it may be more (emit_family.c). */
+/* Particles that the segments of a pass take at a time on the interpreter; in C it may be more
+   (emit_family.c). */
 enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind {
@@ -14,8 +15,8 @@ typedef enum segment_kind {
   OVER_PAIRS /* bond by bond: sums of both ends, and fields at both ends */
 } segment_kind;
 
-/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a reduction and
-   gives 0 to a field and to what is observed. */
+/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a
+   reduction and gives 0 to a field and to what is observed. */
 typedef enum segment_target {
   TO_SLOT,              /* slot[index] = node */
   TO_LINK,              /* link[index] = node */
@@ -39,7 +40,8 @@ typedef struct segment_root {
   int parity;  /* at the other end of the bond: 1: the same; -1: the opposite; 0: something else */
   bool paired; /* of OVER_PAIRS */
   int sum;     /* of those: which pl_family.sum TO_SUM adds to at the far end */
-  /* Where the bond is absent TO_SHARED writes 0, TO_SUM adds what is 0 by itself, and does not ask. */
+  /* Where the bond is absent TO_SHARED writes 0, TO_SUM adds what is 0 by itself, and does not
+     ask. */
   bool vanishes;
 } segment_root;
 
@@ -71,18 +73,23 @@ typedef struct family_program {
 typedef enum program_sharing {
   SHARE_NOTHING,
   SHARE_DEAR, /* what costs much more to compute than to leave and find */
-  SHARE_MORE, /* also what costs less, and forces of bonds: of few neighbours in space, whose values stay in caches */
-  SHARE_MOST, /* the same, and less is left to be computed from it: in the plane, where a few rows of values are enough */
+  /* Also what costs less, and forces of bonds: of few neighbours in space, whose values stay in
+     caches */
+  SHARE_MORE,
+  /* The same, and less is left to be computed from it: in the plane, where a few rows of values
+     are enough */
+  SHARE_MOST,
   SHARE_PAIRS /* all: a bond is evaluated once and adds to both ends (OVER_PAIRS) */
 } program_sharing;
 
-/* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values stand in pairs among the
-   latter, since only owners write them. */
+/* Values that passes leave to later ones: of particles, and toward each neighbour. Shared values
+   stand in pairs among the latter, since only owners write them. */
 typedef struct program_links {
   int of_particles, of_bonds;
 } program_links;
 
-/* Where shared value `index` of owned bond k, of 0 .. half-1, stands: plane half*upper + k of link `link` of bonds. */
+/* Where shared value `index` of owned bond k, of 0 .. half-1, stands: plane half*upper + k of link
+   `link` of bonds. */
 typedef struct shared_place {
   int link;
   bool upper;
@@ -91,17 +98,20 @@ static inline shared_place program_shared_place(int index) {
   return (shared_place){index / 2, index % 2 != 0};
 }
 
-/* A sum of what is the same for all bonds of a class: it does not change from step to step (pl_family.constant_sum). */
+/* A sum of what is the same for all bonds of a class: it does not change from step to step
+   (pl_family.constant_sum). */
 static inline bool segment_is_constant(const ir *g, const segment_root *r) {
   return r->paired && r->target == TO_SUM && ir_place(g, r->node) <= ON_BODY;
 }
 
-/* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one factor must be what is
-   always finite, since absent bonds add 0 times it: a constant, or where particles are. */
+/* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one
+   factor must be what is always finite, since absent bonds add 0 times it: a constant, or where
+   particles are. */
 bool segment_fuses(const ir *g, const segment_root *r);
 
-/* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first factors, then the second
-   factors of those that fuse (of pairs the finite ones). Returns how many. */
+/* What a segment computes for its roots: nodes[at most 2 root_count]; first their values, or first
+   factors, then the second factors of those that fuse (of pairs the finite ones). Returns how
+   many. */
 int segment_nodes(const ir *g, const segment *a, ir_node *nodes);
 
 #endif
