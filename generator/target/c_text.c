@@ -1,4 +1,4 @@
-#include "generator/emit/c_text.h"
+#include "generator/target/c_text.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -83,12 +83,29 @@ static const char *const taken_by_c[] = {
 static const char *const taken_prefixes[] = {"_",      "pl_",   "PL_",  "INT",      "UINT",
                                              "WCHAR_", "WINT_", "SIG_", "PTRDIFF_", "at_"};
 
+/* Names that loops number: slot_0. */
+static const char *const numbered[] = {"to",         "far",        "value",   "slot",
+                                       "plane",      "before",     "settled", "unsettled",
+                                       "old_filled", "new_filled", "size",    "largest"};
+
+/* A stem alone gives its length, and so does one with its number; other names 0. */
+static size_t stem_of(const char *name) {
+  for (size_t k = 0; k < sizeof numbered / sizeof *numbered; k++) {
+    const size_t n = strlen(numbered[k]);
+    if (strncmp(name, numbered[k], n) != 0) continue;
+    if (!name[n]) return n;
+    if (name[n] == '_' && name[n + 1] && !name[n + 1 + strspn(name + n + 1, "0123456789")])
+      return n;
+  }
+  return 0;
+}
+
 static bool is_taken(const char *name) {
   for (size_t k = 0; k < sizeof taken_by_c / sizeof *taken_by_c; k++)
     if (strcmp(name, taken_by_c[k]) == 0) return true;
   for (size_t k = 0; k < sizeof taken_prefixes / sizeof *taken_prefixes; k++)
     if (strncmp(name, taken_prefixes[k], strlen(taken_prefixes[k])) == 0) return true;
-  return false;
+  return stem_of(name) > 0 && name[stem_of(name)];
 }
 
 /* The table's own copy of `name`, or NULL when it was taken before. */
@@ -121,7 +138,7 @@ const char *c_names_make(c_names *n, const char *wish) {
   snprintf(base, sizeof base, "%.*s", LONGEST_NAME, name);
   const char *made = take(n, name);
   for (unsigned long k = 2; !made; k++) {
-    snprintf(name, sizeof name, "%s_%lu", base, k);
+    snprintf(name, sizeof name, stem_of(base) ? "x_%s_%lu" : "%s_%lu", base, k);
     made = take(n, name);
   }
   return made;
