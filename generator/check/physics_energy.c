@@ -6,7 +6,9 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_parts.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/random_values.h"
+#include "generator/lower/lower_inputs.h"
 
 static const double ENERGY_TOLERANCE = 1e-9; /* of the work of the absolute forces */
 static const double FORCE_TOLERANCE =

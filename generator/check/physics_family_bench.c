@@ -6,8 +6,10 @@
 #include "dsl/base/arena.h"
 #include "generator/check/physics_family_parts.h"
 #include "generator/check/physics_parameters.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/ir/random_values.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/plan/plan_family.h"
+#include "generator/plan/plan_roots.h"
 #include "runtime/analysis/implied.h"
 
 /* --- plans ------------------------------------------------------------------------------------ */

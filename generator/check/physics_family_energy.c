@@ -7,7 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
-#include "generator/lower/lower_parts.h"
+#include "generator/lower/lower_family.h"
 #include "runtime/analysis/implied.h"
 
 static const double REST_TOLERANCE = 1e-9;   /* of the force at a strain of 1e-3 */

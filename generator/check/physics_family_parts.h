@@ -5,7 +5,7 @@
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
 
 #include "generator/check/physics_family.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "runtime/analysis/patch.h"
 
 /* A number that the law computes of a particle, or toward each of its neighbours: where it is observed. */

@@ -7,6 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_parts.h"
 #include "generator/ir/random_values.h"
+#include "generator/lower/lower_inputs.h"
 
 static const double LARGEST_SHORTENING = -0.95; /* a bond has a length */
 static const double EXCHANGE_TOLERANCE = 1e-9;  /* the ends' terms are summed in another order */

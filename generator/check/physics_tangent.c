@@ -6,9 +6,11 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_parts.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/random_values.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
+#include "generator/lower/lower_inputs.h"
 
 static const double REST_TOLERANCE = 1e-12;     /* of the force at a stretch and rotation of 1e-3 */
 static const double STIFFNESS_TOLERANCE = 1e-6; /* stretches of 1e-7 leave nine digits */
@@ -131,7 +133,6 @@ static ir_node slope(bench *b, ir_node force, bench_axis axis) {
 /* What decides at a kink: which side of it a state is on. IR_NONE: no kink. */
 static ir_node side_of(ir *g, ir_node n) {
   ir_op op = ir_operation(g, n);
-  ir_node a = ir_arity(op) > 0 ? ir_operand(g, n, 0) : IR_NONE, zero = ir_constant(g, 0);
   switch (op) {
   case IR_LT:
   case IR_LE:
@@ -139,16 +140,10 @@ static ir_node side_of(ir *g, ir_node n) {
     return n;
   case IR_MIN:
   case IR_MAX:
-    return ir_make(g, IR_LT, a, ir_operand(g, n, 1), IR_NONE);
-  case IR_ABS:
-  case IR_SIGN:
-  case IR_CBRT:
-  case IR_WRAP_ANGLE:
-    return ir_make(g, IR_LT, a, zero, IR_NONE);
-  case IR_ATAN2:
-    return ir_make(g, IR_LT, ir_operand(g, n, 1), zero, IR_NONE);
+    return ir_make(g, IR_LT, ir_operand(g, n, 0), ir_operand(g, n, 1), IR_NONE);
   default:
-    return IR_NONE;
+    if (!operation_has(op, KINKED)) return IR_NONE;
+    return ir_make(g, IR_LT, ir_operand(g, n, ir_arity(op) - 1), ir_constant(g, 0), IR_NONE);
   }
 }
 

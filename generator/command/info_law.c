@@ -9,10 +9,11 @@
 
 #include "dsl/semantics/law_limits.h"
 #include "generator/check/physics.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/settings.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "generator/run/run.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
@@ -548,7 +549,7 @@ static void put_implied(json *j, const facts *f) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     json_put_number(j, "transverse_speed", i->waves.transverse);
     json_put_number(j, "rotation_cutoff",
-               f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
+                    f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
     json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
     json_put_bool(j, "at_surface", i->step.at_surface);
     json_put_text(j, "ruling_mode", i->step.mode);

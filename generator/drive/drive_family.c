@@ -6,7 +6,10 @@
 
 #include "dsl/base/arena.h"
 #include "generator/drive/drive.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/interpreter/interpreted.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/plan/plan_family.h"
+#include "generator/plan/plan_roots.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
 #include "runtime/simulation/simulation.h"

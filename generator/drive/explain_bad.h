@@ -4,7 +4,7 @@
 
 #include <stdio.h>
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "runtime/simulation/simulation.h"
 
 /* Names the first quantity of the law, with its line, that is not finite in the bond state `b`;

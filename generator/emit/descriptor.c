@@ -1,5 +1,7 @@
 #include "generator/emit/descriptor.h"
 
+#include "generator/plan/program_facts.h"
+
 static void write_symbol(c_text *out, const symbol *s) {
   char si[64];
   dim_unit(s->dim, si, sizeof si);

@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_DESCRIPTOR_H
 #define PERILAT_GENERATOR_DESCRIPTOR_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "generator/target/c_text.h"
 
 /* Parameters, fields and outputs, before the functions; the table itself behind them. */

@@ -4,7 +4,7 @@
 #ifndef PERILAT_GENERATOR_EMIT_H
 #define PERILAT_GENERATOR_EMIT_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 /* malloc'ed text; the same plan and key give the same text. `key` goes into the descriptor; it is
    the toolchain_key of the text emitted with the key "". No text of the law reaches C other than

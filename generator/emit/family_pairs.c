@@ -4,6 +4,7 @@
 
 #include "generator/emit/family_loops.h"
 #include "generator/emit/family_segment.h"
+#include "generator/plan/program_facts.h"
 #include "generator/target/choices.h"
 
 /* What the segment computes for its roots (segment_nodes), and which of that the first loop keeps

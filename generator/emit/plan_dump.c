@@ -6,7 +6,7 @@
 #include "dsl/base/arena.h"
 #include "generator/emit/plan_dump_family.h"
 #include "generator/emit/strip.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/plan/plan_roots.h"
 
 /* --- passes --------------------------------------------------------------------------------- */
 

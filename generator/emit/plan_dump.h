@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_PLAN_DUMP_H
 #define PERILAT_GENERATOR_PLAN_DUMP_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 void plan_dump(const kernel_plan *p, FILE *out);    /* --dump=passes */
 void plan_dump_ir(const kernel_plan *p, FILE *out); /* --dump=ir */

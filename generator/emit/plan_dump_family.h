@@ -2,7 +2,7 @@
 #ifndef PERILAT_GENERATOR_PLAN_DUMP_FAMILY_H
 #define PERILAT_GENERATOR_PLAN_DUMP_FAMILY_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 void plan_dump_programs(const kernel_plan *p, FILE *out);
 void plan_dump_programs_ir(const kernel_plan *p, FILE *out);

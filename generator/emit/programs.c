@@ -5,6 +5,7 @@
 #include "generator/emit/family_loops.h"
 #include "generator/emit/family_pairs.h"
 #include "generator/emit/family_unrolled.h"
+#include "generator/plan/program_facts.h"
 
 /* Particles at a time. Long chunks read the planes of large families in long pieces; what a pass
    keeps between its segments should stay in the first cache. */

@@ -2,12 +2,7 @@
 
 #include "dsl/base/elementary.h"
 
-/* Cycles until the result is there, and operations, of eight doubles on processors with 512-bit
-   vectors (Intel's of 2019 and later); only their ratios matter. */
-typedef struct price {
-  int latency, operations, divisions;
-} price;
-
+/* In the cycles of operation_price. */
 enum {
   LOAD_LATENCY = 7,
   DIVIDER_CYCLES = 16,
@@ -17,20 +12,6 @@ enum {
 /* Two operations can begin each cycle, but long vectors are held back where all cores work. */
 #define OPERATION_CYCLES 0.5
 #define STORE_CYCLES     0.3 /* and the load that follows; what a buffer takes of the first cache */
-
-/* clang-format off */
-static const price prices[IR_OP_COUNT] = { /* numbers and inputs: nothing */
-    [IR_ADD] = {4, 1, 0},    [IR_SUB] = {4, 1, 0},    [IR_MUL] = {4, 1, 0},   [IR_DIV] = {24, 3, 1},
-    [IR_FMA] = {4, 1, 0},
-    [IR_NEG] = {1, 1, 0},    [IR_ABS] = {1, 1, 0},    [IR_SQRT] = {32, 3, 2}, [IR_INVERSE_ROOT] = {48, 14, 0},
-    [IR_MIN] = {8, 3, 0},    [IR_MAX] = {8, 3, 0},    [IR_SIGN] = {6, 4, 0},  [IR_EXP] = {75, 25, 0},
-    [IR_LOG] = {100, 25, 1}, [IR_POW] = {230, 90, 1}, [IR_CBRT] = {110, 35, 0}, [IR_SIN] = {75, 35, 0},
-    [IR_COS] = {75, 35, 0},  [IR_TAN] = {110, 60, 1}, [IR_TANH] = {110, 35, 1}, [IR_ATAN2] = {100, 50, 1},
-    [IR_WRAP_ANGLE] = {35, 10, 0},
-    [IR_LT] = {4, 1, 0},     [IR_LE] = {4, 1, 0},     [IR_EQ] = {4, 1, 0},    [IR_AND] = {1, 1, 0},
-    [IR_OR] = {1, 1, 0},     [IR_NOT] = {1, 1, 0},    [IR_SELECT] = {2, 1, 0},
-};
-/* clang-format on */
 
 static int larger(int a, int b) {
   return a > b ? a : b;
@@ -53,7 +34,7 @@ int stage_finish(const stages *s, const emitter *e, const int *finish, ir_node n
                                             : LOAD_LATENCY;
     start = larger(start, ready);
   }
-  return count ? start + prices[ir_operation(e->graph, n)].latency : 0;
+  return count ? start + operations[ir_operation(e->graph, n)].price.latency : 0;
 }
 
 stage_cost stage_cost_of(const stages *s, const emitter *e, int *finish, int stage,
@@ -64,7 +45,7 @@ stage_cost stage_cost_of(const stages *s, const emitter *e, int *finish, int sta
     c.loads += taken[n] || (mask[n] && stages_is_loaded(e, n));
     c.stores += stages_store(s, n, stage);
     if (!mask[n] || expression_is_uniform(e, n)) continue;
-    const price of = prices[ir_operation(e->graph, n)];
+    const operation_price of = operations[ir_operation(e->graph, n)].price;
     c.operations += of.operations;
     c.divisions += of.divisions;
     c.chain = larger(c.chain, stage_finish(s, e, finish, n, stage));

@@ -3,7 +3,7 @@
 #define PERILAT_GENERATOR_GUARD_WATCH_H
 
 #include "generator/lower/law_inputs.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 typedef struct guard_watch guard_watch;
 

@@ -1,6 +1,7 @@
-/* The plan on the interpreter, behind the interface of a compiled kernel (see passes.h). Several
-   threads may call it: each call borrows a worker, made in advance, so that a step allocates
-   nothing. */
+/* Several threads may call a kernel: each call borrows a worker, made in advance, so that a step
+   allocates nothing. */
+#include "generator/interpreter/interpreted.h"
+
 #include <sched.h>
 #include <stdatomic.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 #include "generator/interpreter/interpreted_family.h"
 #include "generator/ir/interpret.h"
 #include "generator/lower/law_inputs.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/program_facts.h"
 
 enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKERS = 64 };
 

@@ -7,6 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/ir/interpret.h"
 #include "generator/lower/kinematics.h"
+#include "generator/plan/program_facts.h"
 
 enum { LANES = FAMILY_CHUNK, MOST_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 _Static_assert(FAMILY_CHUNK == INTERPRET_LANES, "a chunk is what the interpreter takes at a time");
@@ -158,8 +159,8 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
   r->ends[ENDS_TIME_STEP] = &f->time_step;
 }
 
-/* Where the values of neighbour k of the chunk's particles stand, given where those of the run's particles begin: on rows
-   further along the same array, on lists gathered into the next buffer. */
+/* Where the values of neighbour k of the chunk's particles stand, given where those of the run's
+   particles begin: on rows further along the same array, on lists gathered into the next buffer. */
 static const double *at_offset(family_runner *r, const pl_family *f, const double *values,
                                long first, long k, const long *offset) {
   if (!f->neighbour) return values + first + offset[k];
@@ -202,7 +203,8 @@ static double *shared_plane(const pl_family *f, int index, long owned) {
   return f->bond_link[at.link] + (owned + (at.upper ? f->neighbours / 2 : 0)) * f->link_plane;
 }
 
-/* What the owner of the bond has left. At the end of a block another one may be writing zeros over zeros where no site is. */
+/* What the owner of the bond has left. At the end of a block another one may be writing zeros over
+   zeros where no site is. */
 static void point_at_shared(family_runner *r, const pl_family *f, long first, long k) {
   const long half = f->neighbours / 2;
   for (int n = 0; n < 2 * r->plan->links.of_bonds; n++) {

@@ -1,12 +1,14 @@
-/* Programs of families on the interpreter: the segments of a plan, run as the emitted C runs them, to the bit. */
+/* Programs of families on the interpreter: the segments of a plan, run as the emitted C runs them,
+   to the bit. */
 #ifndef PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 #define PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 typedef struct family_runner family_runner;
 
-/* Working space for one caller at a time. inputs[k] is the input node that stands for uniform k. The plan must outlive it. */
+/* Working space for one caller at a time. inputs[k] is the input node that stands for uniform k.
+   The plan must outlive it. */
 family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs);
 void family_runner_free(family_runner *r);
 

@@ -1,4 +1,5 @@
-/* The range of every value of a law, case by case, and what may not be defined within them. */
+#include "generator/intervals/interval_check.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -9,6 +10,7 @@
 #include "generator/intervals/interval_parts.h"
 #include "generator/intervals/interval_sums.h"
 #include "generator/ir/interval.h"
+#include "generator/lower/lower_inputs.h"
 
 enum {
   MOST_CONTEXTS = 600,

@@ -1,4 +1,4 @@
-#include "generator/ir/ir.h"
+#include "generator/ir/derive.h"
 
 #include <stdlib.h>
 
@@ -163,9 +163,19 @@ static ir_node of_operation(ir *g, const term *t) {
     return of_family_extreme(g, t);
   case IR_NEIGHBOUR:
     return t->da == IR_NONE ? IR_NONE : unary(g, IR_NEIGHBOUR, t->da);
-  default:
-    return IR_NONE; /* constants, other inputs, sign, truth values: flat where they are smooth */
+  case IR_CONSTANT:
+  case IR_INPUT: /* others than x */
+  case IR_SIGN:
+  case IR_LT:
+  case IR_LE:
+  case IR_EQ:
+  case IR_AND:
+  case IR_OR:
+  case IR_NOT:
+  case IR_OP_COUNT:
+    return IR_NONE; /* flat where they are smooth */
   }
+  return IR_NONE;
 }
 
 static ir_node of_node(ir *g, ir_node n, const ir_node *slope) {

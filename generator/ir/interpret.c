@@ -11,7 +11,7 @@
 typedef void (*lane_function)(int count, const double *a, const double *b, const double *c,
                               double *out);
 
-#define X(code, value)                                                                             \
+#define X(code, name, operands, traits, image, counted, weight, price, value)                      \
   static void lanes_##code(int count, const double *pa, const double *pb, const double *pc,        \
                            double *restrict out) {                                                 \
     for (int k = 0; k < count; k++) {                                                              \
@@ -20,12 +20,12 @@ typedef void (*lane_function)(int count, const double *a, const double *b, const
       out[k] = value;                                                                              \
     }                                                                                              \
   }
-OPERATION_VALUES(X)
+OPERATIONS_OF_NUMBERS(X)
 #undef X
 
 static const lane_function lane_functions[IR_OP_COUNT] = {
-#define X(code, value) [IR_##code] = lanes_##code,
-    OPERATION_VALUES(X)
+#define X(code, ...) [IR_##code] = lanes_##code,
+    OPERATIONS_OF_NUMBERS(X)
 #undef X
 };
 

@@ -4,8 +4,6 @@
 
 #include "dsl/base/elementary.h"
 
-static const double PI = 3.14159265358979323846;
-
 range range_between(double low, double high, bool low_open, bool high_open) {
   return (range){low, high, low_open || isinf(low), high_open || isinf(high)};
 }
@@ -124,11 +122,18 @@ static range absolute(range a) {
   return from_ends((end){0, !range_holds(a, 0)}, upper(high_of(a), high_of(m)));
 }
 
-/* A rising function; `limit_low`, `limit_high`: what it tends to and does not reach. */
-static range rising(range a, double (*f)(double), double limit_low, double limit_high) {
-  double low = isinf(a.low) ? limit_low : f(a.low), high = isinf(a.high) ? limit_high : f(a.high);
-  return range_between(low, high, a.low_open || low == limit_low,
-                       a.high_open || high == limit_high);
+/* What a function can be of any numbers. */
+static range image_of(ir_op op) {
+  const operation_image *i = &operations[op].image;
+  return range_between(i->low, i->high, i->open, i->open);
+}
+
+/* Of a rising function: it tends to the ends of its image and does not reach them. */
+static range rising(ir_op op, range a) {
+  const operation_image *i = &operations[op].image;
+  double low = isinf(a.low) ? i->low : operation_value(op, a.low, 0, 0),
+         high = isinf(a.high) ? i->high : operation_value(op, a.high, 0, 0);
+  return range_between(low, high, a.low_open || low == i->low, a.high_open || high == i->high);
 }
 
 static range root_of(range a) {
@@ -181,37 +186,16 @@ range range_apply(ir_op op, range a, range b) {
     return absolute(a);
   case IR_SQRT:
     return root_of(a);
-  case IR_INVERSE_ROOT:
-    return range_between(0, INFINITY, true, true);
   case IR_LOG:
     return logarithm_of(a);
   case IR_POW:
     return power_of(a, b);
-  case IR_EXP:
-    return rising(a, pl_exp, 0, INFINITY);
-  case IR_CBRT:
-    return rising(a, pl_cbrt, -INFINITY, INFINITY);
-  case IR_TANH:
-    return rising(a, pl_tanh, -1, 1);
   case IR_MIN:
   case IR_MAX:
     return extreme(a, b, op == IR_MAX);
   case IR_SIGN:
     return sign_of(a);
-  case IR_SIN:
-  case IR_COS:
-    return range_between(-1, 1, false, false);
-  case IR_ATAN2:
-  case IR_WRAP_ANGLE:
-    return range_between(-PI, PI, false, false);
-  case IR_LT:
-  case IR_LE:
-  case IR_EQ:
-  case IR_AND:
-  case IR_OR:
-  case IR_NOT:
-    return range_between(0, 1, false, false);
   default:
-    return range_all();
+    return operation_has(op, RISING) ? rising(op, a) : image_of(op);
   }
 }

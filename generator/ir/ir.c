@@ -32,18 +32,6 @@ struct ir {
   const source_set *sources;
 };
 
-typedef struct operation {
-  const char *name;
-  int arity;
-  bool logical;
-} operation;
-
-static const operation operations[IR_OP_COUNT] = {
-#define X(code, name, arity, logical) [IR_##code] = {name, arity, logical},
-    IR_OPERATIONS(X)
-#undef X
-};
-
 int ir_arity(ir_op op) {
   return operations[op].arity;
 }
@@ -189,22 +177,6 @@ bool ir_is_expected(const ir *g, ir_node n) {
   return at(g, n)->expected;
 }
 
-bool ir_makes_nan(ir_op op) {
-  switch (op) {
-  case IR_DIV:
-  case IR_SQRT:
-  case IR_INVERSE_ROOT:
-  case IR_LOG:
-  case IR_POW:
-  case IR_SIN:
-  case IR_COS:
-  case IR_TAN:
-    return true;
-  default:
-    return false;
-  }
-}
-
 bool ir_may_be_nan(const ir *g, ir_node n) {
   return at(g, n)->may_be_nan;
 }
@@ -213,7 +185,7 @@ bool ir_is_expected_choice(const ir *g, ir_node n) {
   return ir_operation(g, n) == IR_SELECT && ir_is_expected(g, ir_operand(g, n, 0));
 }
 bool ir_is_logical(const ir *g, ir_node n) {
-  return operations[at(g, n)->op].logical;
+  return operation_has(at(g, n)->op, LOGICAL);
 }
 const char *ir_name(const ir *g, ir_node n) {
   return at(g, n)->name;
@@ -233,8 +205,7 @@ static bool is_constant(const ir *g, ir_node n) {
   return at(g, n)->op == IR_CONSTANT;
 }
 
-/* The number `value`; of zero either sign. */
-static bool is_number(const ir *g, ir_node n, double value) {
+bool ir_is_number(const ir *g, ir_node n, double value) {
   return is_constant(g, n) && at(g, n)->value == value;
 }
 
@@ -246,7 +217,8 @@ static bool is_op(const ir *g, ir_node n, ir_op op) {
 
 static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
   node n = blank(op);
-  const ir_node operand[3] = {a, b, c};
+  const bool swapped = operation_has(op, COMMUTES) && b < a; /* the earlier node stands first */
+  const ir_node operand[3] = {swapped ? b : a, swapped ? a : b, c};
   for (int k = 0; k < ir_arity(op); k++) {
     n.operand[k] = operand[k];
     if (at(g, operand[k])->place > n.place) n.place = at(g, operand[k])->place;
@@ -255,28 +227,23 @@ static ir_node make_node(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
     n.of_class = n.of_class || at(g, operand[k])->of_class;
   if (ir_is_reduction(op)) n.place = ON_PARTICLE;
   if (op == IR_NEIGHBOUR) n.place = ON_NEIGHBOUR;
-  n.may_be_nan = ir_makes_nan(op) && n.place > ON_BODY;
+  n.may_be_nan = operation_has(op, MAKES_NAN) && n.place > ON_BODY;
   for (int k = 0; k < ir_arity(op); k++)
     n.may_be_nan = n.may_be_nan || at(g, operand[k])->may_be_nan;
   return intern(g, &n);
 }
 
-/* Addition and multiplication commute to the bit: the earlier node stands first. */
-static ir_node make_commuting(ir *g, ir_op op, ir_node a, ir_node b) {
-  return a < b ? make_node(g, op, a, b, IR_NONE) : make_node(g, op, b, a, IR_NONE);
-}
-
 static ir_node simplify_add(ir *g, ir_node a, ir_node b) {
-  if (is_number(g, a, 0.0)) return b;
-  if (is_number(g, b, 0.0)) return a;
+  if (ir_is_number(g, a, 0.0)) return b;
+  if (ir_is_number(g, b, 0.0)) return a;
   if (is_op(g, b, IR_NEG)) return ir_sub(g, a, ir_operand(g, b, 0));
   if (is_op(g, a, IR_NEG)) return ir_sub(g, b, ir_operand(g, a, 0));
-  return make_commuting(g, IR_ADD, a, b);
+  return make_node(g, IR_ADD, a, b, IR_NONE);
 }
 
 static ir_node simplify_sub(ir *g, ir_node a, ir_node b) {
-  if (is_number(g, b, 0.0)) return a;
-  if (is_number(g, a, 0.0)) return ir_neg(g, b);
+  if (ir_is_number(g, b, 0.0)) return a;
+  if (ir_is_number(g, a, 0.0)) return ir_neg(g, b);
   if (is_op(g, b, IR_NEG)) return ir_add(g, a, ir_operand(g, b, 0));
   return make_node(g, IR_SUB, a, b, IR_NONE);
 }
@@ -287,13 +254,13 @@ static ir_node simplify_mul(ir *g, ir_node a, ir_node b) {
     a = b;
     b = swapped;
   }
-  if (is_number(g, b, 1.0)) return a;
-  if (is_number(g, b, -1.0)) return ir_neg(g, a);
+  if (ir_is_number(g, b, 1.0)) return a;
+  if (ir_is_number(g, b, -1.0)) return ir_neg(g, a);
   if (is_op(g, a, IR_NEG) && is_constant(g, b))
     return ir_mul(g, ir_operand(g, a, 0), ir_constant(g, -ir_value(g, b)));
   if (is_op(g, a, IR_NEG)) return ir_neg(g, ir_mul(g, ir_operand(g, a, 0), b));
   if (is_op(g, b, IR_NEG)) return ir_neg(g, ir_mul(g, a, ir_operand(g, b, 0)));
-  return make_commuting(g, IR_MUL, a, b);
+  return make_node(g, IR_MUL, a, b, IR_NONE);
 }
 
 /* Whether 1/value is exact: a power of two well inside the normal range. */
@@ -317,8 +284,8 @@ static ir_node simplify_neg(ir *g, ir_node a) {
 
 static ir_node simplify_abs(ir *g, ir_node a) {
   if (is_op(g, a, IR_NEG)) a = ir_operand(g, a, 0);
-  const bool positive = is_op(g, a, IR_ABS) || is_op(g, a, IR_SQRT) || is_op(g, a, IR_EXP);
-  return positive ? a : make_node(g, IR_ABS, a, IR_NONE, IR_NONE);
+  const bool never_negative = operations[at(g, a)->op].image.low >= 0;
+  return never_negative ? a : make_node(g, IR_ABS, a, IR_NONE, IR_NONE);
 }
 
 /* Any number as a truth value: other than 0. */
@@ -336,9 +303,9 @@ static ir_node simplify_not(ir *g, ir_node a) {
 /* a and b, a or b: `neutral` leaves the other as it is, its opposite decides. */
 static ir_node simplify_junction(ir *g, ir_op op, ir_node a, ir_node b) {
   const double neutral = op == IR_AND ? 1.0 : 0.0;
-  if (a == b || is_number(g, b, neutral) || is_number(g, a, 1.0 - neutral)) return a;
-  if (is_number(g, a, neutral) || is_number(g, b, 1.0 - neutral)) return b;
-  return make_commuting(g, op, a, b);
+  if (a == b || ir_is_number(g, b, neutral) || ir_is_number(g, a, 1.0 - neutral)) return a;
+  if (ir_is_number(g, a, neutral) || ir_is_number(g, b, 1.0 - neutral)) return b;
+  return make_node(g, op, a, b, IR_NONE);
 }
 
 static ir_node simplify_select(ir *g, ir_node condition, ir_node yes, ir_node no) {
@@ -354,7 +321,7 @@ static ir_node simplify_select(ir *g, ir_node condition, ir_node yes, ir_node no
 }
 
 bool ir_is_reduction(ir_op op) {
-  return op == IR_FAMILY_SUM || op == IR_FAMILY_MAX || op == IR_FAMILY_MIN;
+  return operation_has(op, OVER_FAMILY);
 }
 
 /* True, and the result in *value, when all operands are constants. */
@@ -406,10 +373,6 @@ ir_node ir_make(ir *g, ir_op op, ir_node a, ir_node b, ir_node c) {
     return a == b ? a : make_node(g, op, a, b, c);
   case IR_LT:
     return a == b ? ir_constant(g, 0.0) : make_node(g, op, a, b, c);
-  case IR_EQ:
-    return make_commuting(g, op, a, b);
-  case IR_FMA:
-    return a < b ? make_node(g, op, a, b, c) : make_node(g, op, b, a, c);
   default:
     return make_node(g, op, a, b, c);
   }
@@ -582,44 +545,12 @@ ir_node ir_substitution_apply(ir_substitution *s, ir_node root) {
 }
 
 static void count_operation(ir_op op, ir_cost *cost) {
-  switch (op) {
-  case IR_ADD:
-  case IR_SUB:
-    cost->additions++;
-    return;
-  case IR_MUL:
-    cost->multiplications++;
-    return;
-  case IR_FMA:
-    cost->additions++;
-    cost->multiplications++;
-    return;
-  case IR_DIV:
-  case IR_SQRT:
-    cost->divisions++;
-    return;
-  case IR_EXP:
-  case IR_LOG:
-  case IR_POW:
-  case IR_CBRT:
-  case IR_INVERSE_ROOT:
-  case IR_SIN:
-  case IR_COS:
-  case IR_TAN:
-  case IR_TANH:
-  case IR_ATAN2:
-  case IR_WRAP_ANGLE:
-    cost->functions++;
-    return;
-  case IR_SELECT:
-  case IR_MIN:
-  case IR_MAX:
-  case IR_SIGN:
-    cost->selects++;
-    return;
-  default:
-    return; /* signs and comparisons are part of what uses them */
-  }
+  const operation_count as = operations[op].count;
+  cost->additions += as == COUNT_ADDITION || as == COUNT_FUSED;
+  cost->multiplications += as == COUNT_MULTIPLICATION || as == COUNT_FUSED;
+  cost->divisions += as == COUNT_DIVISION;
+  cost->functions += as == COUNT_FUNCTION;
+  cost->selects += as == COUNT_SELECT;
 }
 
 ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least) {

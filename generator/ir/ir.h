@@ -1,9 +1,9 @@
-/* Dataflow graph of scalar operations. Nodes are hash-consed and simplified as they are made, so equal
-   subexpressions are one node and a graph built twice is the same graph. Nodes only refer to earlier
-   nodes: the node numbers are an evaluation order. Logical nodes hold 0 or 1.
-   Rewrites never change a value: x*1, x+0, signs moved outward, constants folded with the very functions of
-   elementary.h, division by a power of two as multiplication; not x-x, 0*x or reassociation, so that NaN and rounding
-   stay as written. The one thing they do not keep is the sign of a zero. */
+/* Dataflow graph of scalar operations. Nodes are hash-consed and simplified as they are made, so
+   equal subexpressions are one node and a graph built twice is the same graph. Nodes only refer to
+   earlier nodes: the node numbers are an evaluation order. Logical nodes hold 0 or 1. Rewrites
+   never change a value: x*1, x+0, signs moved outward, constants folded with the very functions of
+   elementary.h, division by a power of two as multiplication; not x-x, 0*x or reassociation, so
+   that NaN and rounding stay as written. The one thing they do not keep is the sign of a zero. */
 #ifndef PERILAT_GENERATOR_IR_H
 #define PERILAT_GENERATOR_IR_H
 
@@ -26,11 +26,12 @@ typedef enum ir_source {
   IR_FROM_BOND_PARAMETER, /* index: of the parameters that differ from bond to bond (kernel_plan) */
   IR_FROM_ENDS, /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
   /* in programs of families (program.h) */
-  IR_FROM_SHAPE,           /* index: entry of the particle's inverse shape matrix */
-  IR_FROM_NEIGHBOUR_FIELD, /* index: law->fields; of the neighbour, toward me where it is directed */
-  IR_FROM_LINK,            /* index: value of the particle that an earlier pass left */
-  IR_FROM_NEIGHBOUR_LINK,  /* the same of the neighbour */
-  IR_FROM_BOND_LINK,       /* index: value toward each neighbour that an earlier pass left */
+  IR_FROM_SHAPE, /* index: entry of the particle's inverse shape matrix */
+  /* Index: law->fields; of the neighbour, toward me where it is directed */
+  IR_FROM_NEIGHBOUR_FIELD,
+  IR_FROM_LINK,                /* index: value of the particle that an earlier pass left */
+  IR_FROM_NEIGHBOUR_LINK,      /* the same of the neighbour */
+  IR_FROM_BOND_LINK,           /* index: value toward each neighbour that an earlier pass left */
   IR_FROM_NEIGHBOUR_BOND_LINK, /* the same of the neighbour toward me */
   IR_FROM_SHARED,              /* index: value that the owner of the bond has left for both ends */
   IR_FROM_SHARED_ODD,          /* the same of a value that has the opposite sign at the other end */
@@ -48,7 +49,8 @@ void ir_free(ir *g);
 void ir_set_sources(ir *g, const source_set *sources);
 
 ir_node ir_constant(ir *g, double value);
-/* `name` is kept for printing; place says how often it varies (ON_BODY: uniform over the lattice). */
+/* `name` is kept for printing; place says how often it varies (ON_BODY: uniform over the
+   lattice). */
 ir_node ir_input(ir *g, ir_source source, int index, const char *name, placement place);
 /* Unused operands: IR_NONE. A number where a truth value is wanted means "other than 0". */
 ir_node ir_make(ir *g, ir_op op, ir_node a, ir_node b, ir_node c);
@@ -60,12 +62,12 @@ ir_node ir_mul(ir *g, ir_node a, ir_node b);
 ir_node ir_div(ir *g, ir_node a, ir_node b);
 ir_node ir_neg(ir *g, ir_node a);
 ir_node ir_select(ir *g, ir_node condition, ir_node yes, ir_node no);
-/* a ** n by repeated squaring for whole |n| <= 16, with a square root for halves, cbrt for 1/3, one division where n is
-   negative; pow otherwise. */
+/* a ** n by repeated squaring for whole |n| <= 16, with a square root for halves, cbrt for 1/3, one
+   division where n is negative; pow otherwise. */
 ir_node ir_power(ir *g, ir_node base, ir_node exponent);
 
-/* Gives a node the model's name and place in the source, unless it has one already. Constants stay nameless: one
-   number may stand for many things. Names are copied. */
+/* Gives a node the model's name and place in the source, unless it has one already. Constants stay
+   nameless: one number may stand for many things. Names are copied. */
 void ir_set_name(ir *g, ir_node n, const char *name, span where);
 
 int ir_count(const ir *g);
@@ -73,32 +75,35 @@ ir_op ir_operation(const ir *g, ir_node n);
 int ir_arity(ir_op op);
 const char *ir_op_name(ir_op op);
 ir_node ir_operand(const ir *g, ir_node n, int k);
-double ir_value(const ir *g, ir_node n);          /* CONSTANT */
+double ir_value(const ir *g, ir_node n); /* CONSTANT */
+/* A constant of this value; of zero either sign. */
+bool ir_is_number(const ir *g, ir_node n, double value);
 ir_source ir_input_source(const ir *g, ir_node n); /* INPUT */
 int ir_input_index(const ir *g, ir_node n);        /* INPUT */
 placement ir_place(const ir *g, ir_node n);        /* the most local of its operands */
-/* Says that an input, placed ON_BODY, differs from neighbour to neighbour but not along a row of a lattice (its bond's
-   length, say); so does what is made of it, except sums over the family. Returns the input. */
+/* Says that an input, placed ON_BODY, differs from neighbour to neighbour but not along a row of a
+   lattice (its bond's length, say); so does what is made of it, except sums over the family.
+   Returns the input. */
 ir_node ir_mark_class(ir *g, ir_node input);
 bool ir_is_of_class(const ir *g, ir_node n);
-/* Says that a condition holds nearly always, so that what is chosen where it does not need not be fast. Returns it. Of laws of
-   bonds: that a size, at least 0, is below a positive limit (stages_expectation), two such conditions at most. */
+/* Says that a condition holds nearly always, so that what is chosen where it does not need not be
+   fast. Returns it. Of laws of bonds: that a size, at least 0, is below a positive limit
+   (stages_expectation), two such conditions at most. */
 ir_node ir_expect(ir *g, ir_node condition);
 bool ir_is_expected(const ir *g, ir_node n);
 /* Chooses by such a condition. */
 bool ir_is_expected_choice(const ir *g, ir_node n);
 bool ir_is_logical(const ir *g, ir_node n);
-/* Whether an operation makes NaN of finite numbers: a root, logarithm, power, division or
-   trigonometric function. And whether finite inputs could make a node NaN: one of these, of
-   something that varies over the lattice, stands at or below it. Overflow is left aside. */
-bool ir_makes_nan(ir_op op);
+/* Whether finite inputs could make a node NaN: what MAKES_NAN, of something that varies over the
+   lattice, stands at or below it. Overflow is left aside. */
 bool ir_may_be_nan(const ir *g, ir_node n);
 bool ir_is_reduction(ir_op op); /* over the family: its operand has a value for each neighbour */
-const char *ir_name(const ir *g, ir_node n);       /* NULL without a name */
-span ir_where(const ir *g, ir_node n);             /* of the named source line; end == 0 without */
+const char *ir_name(const ir *g, ir_node n); /* NULL without a name */
+span ir_where(const ir *g, ir_node n);       /* of the named source line; end == 0 without */
 
-/* Rebuilds `roots` with each node from[k] replaced by to[k], all at once: what stands in to[k] is left alone. Results in
-   out[root_count]. A root may be IR_NONE here and in the walks below: it needs nothing. */
+/* Rebuilds `roots` with each node from[k] replaced by to[k], all at once: what stands in to[k] is
+   left alone. Results in out[root_count]. A root may be IR_NONE here and in the walks below: it
+   needs nothing. */
 void ir_substitute(ir *g, const ir_node *roots, int root_count, const ir_node *from,
                    const ir_node *to, int pair_count, ir_node *out);
 /* The same root by root: what one root has rebuilt stands for the next ones. Pairs may be added
@@ -111,19 +116,15 @@ void ir_substitution_free(ir_substitution *s);
 /* Marks (1 byte a node, ir_count long, zeroed by the caller) all nodes that the roots need. */
 void ir_mark(const ir *g, const ir_node *roots, int root_count, unsigned char *marks);
 
-/* Symbolic derivative of f by the node x (an input, or any node taken as independent), in time linear in the graph.
-   Kinks: sign(0) = 0 for abs; min and max take the derivative of the side they choose, the second where both are equal;
-   a case keeps its guards; sqrt(u) at 0 takes 0 where u does not change. Every operation has one. */
-ir_node ir_derivative(ir *g, ir_node f, ir_node x);
-
-/* Counts of operations that the roots cost: additions, multiplications, divisions and square roots, other functions,
-   selects (with min, max, sign); those of nodes placed `at_least` so locally. */
+/* Counts of operations that the roots cost: additions, multiplications, divisions and square roots,
+   other functions, selects (with min, max, sign); those of nodes placed `at_least` so locally. */
 typedef struct ir_cost {
   int additions, multiplications, divisions, functions, selects;
 } ir_cost;
 ir_cost ir_count_cost(const ir *g, const ir_node *roots, int root_count, placement at_least);
 
 /* One line a node that the roots need: "%7 = mul %3 %5 : bond  ; omega (line 12)". */
-void ir_dump(const ir *g, const ir_node *roots, const char *const *root_names, int root_count, FILE *out);
+void ir_dump(const ir *g, const ir_node *roots, const char *const *root_names, int root_count,
+             FILE *out);
 
 #endif

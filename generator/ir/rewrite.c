@@ -17,8 +17,9 @@ struct rebuilding {
   rebuild_rule rule;
   const ir_node *inputs; /* rewrite_zero */
   int input_count;
-  const unsigned char *
-      shared; /* rewrite_reciprocals: denominators of several divisions; others: nodes that are used several times */
+  /* rewrite_reciprocals: denominators of several divisions; others: nodes that are used several
+     times. */
+  const unsigned char *shared;
   const unsigned char *needs;   /* rewrite_fused: what nodes need: NEEDS_NEIGHBOUR, NEEDS_FAMILY */
   const unsigned char *lasting; /* rewrite_reciprocals: nodes that are the same in all steps */
 };
@@ -111,8 +112,8 @@ static bool is_of_particle(const ir *g, ir_node n) {
   return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
 }
 
-/* a/b by 1/b, with what rounding left put right: the bits of the division (Markstein 1990), so that x/x is 1 and n of n
-   broken bonds are all of them. */
+/* a/b by 1/b, with what rounding left put right: the bits of the division (Markstein 1990), so that
+   x/x is 1 and n of n broken bonds are all of them. */
 static ir_node quotient_by_reciprocal(ir *g, ir_node above, ir_node below) {
   const ir_node reciprocal = ir_div(g, ir_constant(g, 1), below);
   const ir_node rough = ir_mul(g, above, reciprocal);
@@ -183,7 +184,8 @@ static bool is_own_quotient(const rebuilding *r, ir_node old, ir_node n) {
   return ir_operation(r->graph, n) == IR_DIV && !is_uniform(r->graph, n) && !r->shared[old];
 }
 
-/* Of two conditions of one kind that share an operand, the one that asks about the chosen operand. */
+/* Of two conditions of one kind that share an operand, the one that asks about the chosen
+   operand. */
 static ir_node chosen_condition(ir *g, ir_node chooses, ir_node a, ir_node b) {
   const ir_op op = ir_operation(g, a);
   for (int k = 0; k < 2 && op == ir_operation(g, b) && (op == IR_LT || op == IR_LE); k++) {
@@ -220,10 +222,10 @@ static ir_node choice_rule(const rebuilding *r, ir_node old, const ir_node *oper
                    chosen_quotient(g, operand[0], ir_operand(g, yes, 2), ir_operand(g, no, 2)));
 }
 
-/* --- factors that are the same for all bonds --------------------------------------------------- */
+/* --- factors that are the same for all bonds -------------------------------------------------- */
 
-/* Takes node n apart: n = factor * rest, to the order of multiplication. IR_NONE where no factor is uniform, or where n is
-   done once for many of the values `of` that need it. */
+/* Takes node n apart: n = factor * rest, to the order of multiplication. IR_NONE where no factor is
+   uniform, or where n is done once for many of the values `of` that need it. */
 typedef struct factored {
   ir_node factor, rest;
 } factored;
@@ -240,7 +242,8 @@ static ir_node join_factors(ir *g, ir_node a, ir_node b) {
   return a == IR_NONE ? b : b == IR_NONE ? a : ir_mul(g, a, b);
 }
 
-/* Both factors move out of a product where that costs nothing: one operand is uniform, or nothing else needs it as it was. */
+/* Both factors move out of a product where that costs nothing: one operand is uniform, or nothing
+   else needs it as it was. */
 static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
   factored part[2];
@@ -267,11 +270,11 @@ static ir_node factored_quotient(const rebuilding *r, ir_node old, const ir_node
 /* A factor of which the graph shows that it is not below 0. */
 static bool is_size(const ir *g, ir_node n) {
   const ir_op op = ir_operation(g, n);
-  return op == IR_ABS || op == IR_SQRT || op == IR_EXP ||
-         (op == IR_CONSTANT && ir_value(g, n) >= 0);
+  return operations[op].image.low >= 0 || (op == IR_CONSTANT && ir_value(g, n) >= 0);
 }
 
-/* The larger or smaller of two is one operation of the processor, if one is NaN wherever the other is. */
+/* The larger or smaller of two is one operation of the processor, if one is NaN wherever the other
+   is. */
 static ir_node quick_extreme(ir *g, ir_op op, ir_node a, ir_node b) {
   if (!rewrite_nan_follows(g, a, b)) {
     if (!rewrite_nan_follows(g, b, a)) return ir_make(g, op, a, b, IR_NONE);
@@ -336,16 +339,17 @@ void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out) 
 
 /* --- fused sums of products ------------------------------------------------------------------- */
 
-/* What has a name stays a value of its own: bodies at rest count on a length that is rounded before its reference is taken
-   from it. */
+/* What has a name stays a value of its own: bodies at rest count on a length that is rounded before
+   its reference is taken from it. */
 static bool is_local_product(const ir *g, ir_node n) {
   return ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && !ir_name(g, n);
 }
 
 enum { NEEDS_NEIGHBOUR = 1, NEEDS_FAMILY = 2 };
 
-/* Of two products the one that nothing else needs, else the second. None where the neighbour may have the one that the
-   particle has not, both going over a family or neither: both ends of a bond would round another one. */
+/* Of two products the one that nothing else needs, else the second. None where the neighbour may
+   have the one that the particle has not, both going over a family or neither: both ends of a bond
+   would round another one. */
 static int product_to_fuse(const rebuilding *r, ir_node old, const ir_node *operand) {
   const bool first = is_local_product(r->graph, operand[0]),
              second = is_local_product(r->graph, operand[1]);
@@ -426,8 +430,7 @@ static double degree_of_power(const ir *g, ir_node n, double base, double expone
    zero. */
 static double degree_of_function(ir_op op, double a) {
   if (!is_zero_degree(a)) return a == 0 ? 0 : NAN;
-  bool vanishes = op == IR_SIN || op == IR_TAN || op == IR_TANH || op == IR_WRAP_ANGLE;
-  return vanishes ? REWRITE_ZERO : 0;
+  return operation_has(op, VANISHES) ? REWRITE_ZERO : 0;
 }
 
 static double degree_of_product(ir_op op, double a, double b) {
@@ -543,16 +546,11 @@ static void walk_end(walk *w) {
   free(w->list);
 }
 
-static bool is_arithmetic(ir_op op) {
-  return op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_DIV || op == IR_FMA ||
-         op == IR_NEG || op == IR_ABS || op == IR_MIN || op == IR_MAX;
-}
-
 /* What, being NaN, surely makes n NaN: n itself, and what arithmetic alone leads from. */
 static walk walk_of_nan(const ir *g, ir_node n) {
   walk w = walk_from(g, n);
   for (int k = 0; k < w.count; k++)
-    if (is_arithmetic(ir_operation(g, w.list[k])) && !walk_on(&w, w.list[k])) break;
+    if (operation_has(ir_operation(g, w.list[k]), ARITHMETIC) && !walk_on(&w, w.list[k])) break;
   return w;
 }
 
@@ -563,7 +561,7 @@ bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
     const ir_node n = open.list[k];
     if (reaching.met[n] || ir_place(g, n) <= ON_BODY) continue;
     const ir_op op = ir_operation(g, n);
-    follows = op != IR_INPUT && !ir_makes_nan(op) && walk_on(&open, n);
+    follows = op != IR_INPUT && !operation_has(op, MAKES_NAN) && walk_on(&open, n);
   }
   walk_end(&reaching);
   walk_end(&open);

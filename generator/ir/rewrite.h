@@ -12,21 +12,25 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
                   int input_count, ir_node *out);
 
 /* x/u with u the same for all bonds becomes x*(1/u), so that 1/u is hoisted; several divisions by
-   one denominator share its reciprocal, and so do divisions toward each neighbour by a value of the particle; so does
-   what changes where it is divided by what lasts (the number of a particle's bonds, say), whose reciprocal needs not wait. A quotient is off by 1.5 units in the last place at most
-   instead of 0.5. Assumes that 1/u does not overflow. */
+   one denominator share its reciprocal, and so do divisions toward each neighbour by a value of the
+   particle; so does what changes where it is divided by what lasts (the number of a particle's
+   bonds, say), whose reciprocal needs not wait. A quotient is off by 1.5 units in the last place at
+   most instead of 0.5. Assumes that 1/u does not overflow. */
 void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
-/* A choice between two quotients, each of which nothing else needs, divides what it has chosen: the same bits. */
+/* A choice between two quotients, each of which nothing else needs, divides what it has chosen: the
+   same bits. */
 void rewrite_choices(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
-/* Factors that are the same for all bonds become one, which is hoisted: u*(v*x) = (u*v)*x; to that end they move out of
-   products that nothing else needs, out of sizes, and out of the larger or smaller of two, which becomes a choice where a
-   choice keeps its NaN. Assumes that products of such factors neither overflow nor underflow. */
+/* Factors that are the same for all bonds become one, which is hoisted: u*(v*x) = (u*v)*x; to that
+   end they move out of products that nothing else needs, out of sizes, and out of the larger or
+   smaller of two, which becomes a choice where a choice keeps its NaN. Assumes that products of
+   such factors neither overflow nor underflow. */
 void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
-/* a*b + c, where it differs from bond to bond and a*b has no name, becomes one operation that rounds once: faster, and
-   closer to the exact sum. What is a difference of equal products in the roots need not be exactly 0 afterwards. */
+/* a*b + c, where it differs from bond to bond and a*b has no name, becomes one operation that
+   rounds once: faster, and closer to the exact sum. What is a difference of equal products in the
+   roots need not be exactly 0 afterwards. */
 void rewrite_fused(ir *g, const ir_node *roots, int root_count, ir_node *out);
 
 /* True when any root needs any of the nodes. */

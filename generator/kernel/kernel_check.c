@@ -6,6 +6,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/interpreter/guard_watch.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/ir/random_values.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/kernel_check_families.h"

@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 #include "generator/interpreter/comparison.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 typedef struct kernel_check {
   long states,

@@ -9,7 +9,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/ir/random_values.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 enum {
   SITES = 1024,

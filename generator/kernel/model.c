@@ -10,6 +10,7 @@
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/emit/emit.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
 #include "runtime/base/clock.h"

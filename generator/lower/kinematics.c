@@ -74,13 +74,13 @@ static ir_node arc_sine_near_zero(ir *g, ir_node x) {
 /* How a bond's chord moves. */
 typedef struct chord_motion {
   vector chord, d, now; /* reference chord, relative displacement, their sum */
-  ir_node
-      near; /* expected: |d| < s/16, so that |L/s - 1| and the sine of the chord's rotation are below 1/16 */
+  /* Expected: |d| < s/16, so that |L/s - 1| and the sine of the chord's rotation are below 1/16. */
+  ir_node near;
   ir_node growth; /* L^2 - s^2 */
 } chord_motion;
 
-/* The angle of which C x d/(s L) is the sine; d: relative displacement. C x d equals C x c, but does not cancel when d is
-   small. */
+/* The angle of which C x d/(s L) is the sine; d: relative displacement. C x d equals C x c, but
+   does not cancel when d is small. */
 static ir_node chord_rotation(ir *g, const bond_kinematics *k, const chord_motion *m) {
   const ir_node per_s = ir_div(g, ir_constant(g, 1), k->s);
   const vector reference = {ir_mul(g, m->chord.x, per_s), ir_mul(g, m->chord.y, per_s)};
@@ -99,8 +99,9 @@ static ir_node end_rotation(ir *g, const chord_motion *m, ir_node small, ir_node
   return named(g, ir_select(g, m->near, near, wrapped), name);
 }
 
-/* Up to half a turn wrapping changes nothing. The chord of a bond that is near turns by little, so that one question about
-   both ends is left; loops over strips ask for sizes of 2 or more of many bonds at once. */
+/* Up to half a turn wrapping changes nothing. The chord of a bond that is near turns by little, so
+   that one question about both ends is left; loops over strips ask for sizes of 2 or more of many
+   bonds at once. */
 static void end_rotations(ir *g, bond_kinematics *k, const chord_motion *m) {
   const ir_node of_chord = chord_rotation(g, k, m);
   const ir_node i = kinematics_input(g, ENDS_PHI_I), j = kinematics_input(g, ENDS_PHI_J);
@@ -119,8 +120,9 @@ static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
   k->theta_rate_j = ir_sub(g, kinematics_input(g, ENDS_OMEGA_J), chord_rate);
 }
 
-/* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s). With L - s, which is
-   as good as L, for the small e on the right the left one is as good as the displacements are, and needs no division. */
+/* The stretch e/s with e = L - s: from L^2 - s^2 = 2 s e + e^2 follows e = (L^2 - s^2 - e^2)/(2 s).
+   With L - s, which is as good as L, for the small e on the right the left one is as good as the
+   displacements are, and needs no division. */
 static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
   const ir_node rough = ir_sub(g, length, s), square = ir_mul(g, rough, rough);
   const ir_node half_per_square = ir_div(g, ir_constant(g, 0.5), ir_mul(g, s, s));
@@ -143,8 +145,8 @@ static chord_motion motion_of_chord(ir *g, ir_node s) {
   return m;
 }
 
-/* 1/L near s: (1 + h)^(-1/2) with h = growth/s^2 through Chebyshev's points of |d| < s/16 (off by 2^-16.8 at most), and a
-   step of fourth order in e = 1 - (L guess)^2. */
+/* 1/L near s: (1 + h)^(-1/2) with h = growth/s^2 through Chebyshev's points of |d| < s/16 (off by
+   2^-16.8 at most), and a step of fourth order in e = 1 - (L guess)^2. */
 static ir_node inverse_length_near(ir *g, ir_node s, ir_node growth, ir_node square) {
   static const double fit[] = {0x1.fffeea82e2b64p-1, -0x1.000362b9619cdp-1, 0x1.845e31a3a4243p-2,
                                -0x1.3f8feaf7101d7p-2};
@@ -161,7 +163,8 @@ static ir_node inverse_length_near(ir *g, ir_node s, ir_node growth, ir_node squ
   return ir_add(g, guess, ir_mul(g, ir_mul(g, guess, e), series));
 }
 
-/* Bonds of central laws may stretch as they like; of those with rotations nearly all stay near their reference. */
+/* Bonds of central laws may stretch as they like; of those with rotations nearly all stay near
+   their reference. */
 static void find_length(ir *g, bond_kinematics *k, const chord_motion *m, bool near) {
   ir_node square = dot(g, m->now, m->now);
   if (near) square = ir_select(g, m->near, ir_add(g, ir_mul(g, k->s, k->s), m->growth), square);
@@ -233,8 +236,8 @@ static ir_node shortening_near(ir *g, ir_node h) {
   return ir_mul(g, h, series);
 }
 
-/* The same, for as few operations as can be, where nearly all bonds are nearly as long as at first: with growth
-   h = (L/s)^2 - 1 and 1/L = (1 - r)/s the stretch is h - r (1 + h). */
+/* The same, for as few operations as can be, where nearly all bonds are nearly as long as at first:
+   with growth h = (L/s)^2 - 1 and 1/L = (1 - r)/s the stretch is h - r (1 + h). */
 static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_node s,
                               const ir_node *d) {
   const ir_node one = ir_constant(g, 1), per_s = ir_div(g, one, s);

@@ -7,13 +7,13 @@
 #include "generator/ir/ir.h"
 
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
-   rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists of
-   families);
-   CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS: of the particles
-   (lists of families). PROTECTED: 1 where the damage of the bond stays as it is, else 0 (a number; the
-   graph asks 0 < protected). HELD: the same for particle i or j, in families; what belongs to particle
-   i is ON_PARTICLE there. Rotations and third directions share component 2: no topology has both.
-   TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know it. */
+   rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists
+   of families); CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS:
+   of the particles (lists of families). PROTECTED: 1 where the damage of the bond stays as it is,
+   else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families;
+   what belongs to particle i is ON_PARTICLE there. Rotations and third directions share component
+   2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
+   it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
   X(U_IX, "u_ix", FROM_DISPLACEMENT, OF_I, 0)                                                      \
@@ -78,8 +78,8 @@ typedef struct ends_origin {
 } ends_origin;
 extern const ends_origin ends_origins[ENDS_COUNT];
 
-/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I and MASS_I on the
-   particle; all others on the bond. */
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I
+   and MASS_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
 typedef struct bond_kinematics {
@@ -90,15 +90,16 @@ typedef struct bond_kinematics {
   ir_node theta_rate_i, theta_rate_j; /* rad/s */
 } bond_kinematics;
 
-/* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without rotations
-   the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for small displacements. The end
-   rotations are those of the particles less the chord's, phi = atan2(C x c, C . c), wrapped to
-   (-pi, pi]; with rotations it is expected (ir_expect) that chords move by less than a sixteenth of their length, and that
-   angles stay below half a turn. */
+/* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without
+   rotations the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for
+   small displacements. The end rotations are those of the particles less the chord's, phi = atan2(C
+   x c, C . c), wrapped to (-pi, pi]; with rotations it is expected (ir_expect) that chords move by
+   less than a sixteenth of their length, and that angles stay below half a turn. */
 bond_kinematics kinematics_bond(ir *g, bool rotations);
 
-/* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row. With `near` it is
-   expected that bonds are nearly as long as at first (stretched by less than 1/256). */
+/* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row.
+   With `near` it is expected that bonds are nearly as long as at first (stretched by less than
+   1/256). */
 typedef struct family_kinematics {
   ir_node stretch, stretch_rate, length;
   ir_node per_length;   /* 1/length, 1/m */

@@ -15,6 +15,12 @@ int law_motion_place(builtin_quantity q) {
   return -1;
 }
 
+/* Motion, class, and what a law of families has in other ways: TWIST, RESOLVED, DIRECTION. */
+#define X(code, value) +1
+_Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 3 == QUANTITY_COUNT,
+               "each quantity has a place where a law finds it");
+#undef X
+
 void law_class_values(const pl_bond_class *bonds, double values[QUANTITY_COUNT]) {
 #define X(code, value) values[QUANTITY_##code] = value;
   CLASS_QUANTITIES(X)

@@ -1,17 +1,21 @@
-/* Rules and results of a law (see lower.h). */
-#include "generator/lower/lower_parts.h"
+#include "generator/lower/lower.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_family.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_value.h"
 
 /* --- rules ------------------------------------------------------------------------------------ */
 
-/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with either of its
-   particles. */
+/* Where a damage stays as it is; IR_NONE where nothing is held. In families a bond is held with
+   either of its particles. */
 static ir_node held_where(lowering *c, placement on) {
   ir *g = c->graph;
   ir_node zero = ir_constant(g, 0);
@@ -43,14 +47,11 @@ static ir_node overstress_of(lowering *c, const expr *when) {
 }
 
 static void note_flow(lowering *c, const stmt *rule, ir_node when) {
-  if (c->mode != LOWER_STEP) return;
-  lowered_text *t = &c->text;
-  t->flows = lower_one_more(t->flows, t->flow_count, sizeof *t->flows);
-  t->flows[t->flow_count++] =
-      (lowered_flow){rule, rule->symbol->index, when, overstress_of(c, rule->when)};
+  if (c->mode == LOWER_STEP) lower_note_flow(c, rule, when, overstress_of(c, rule->when));
 }
 
-/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how many. */
+/* What neighbours have, each behind an input of its own, so that it stays as it is. Returns how
+   many. */
 static int freeze_neighbours(lowering *c, ir_node *n, ir_node **what, ir_node **stand_in) {
   ir *g = c->graph;
   const int nodes = ir_count(g), fields = c->law->fields.count;
@@ -85,9 +86,10 @@ static bool moves_a_sum(const ir *g, ir_node over, ir_node lambda) {
   return found;
 }
 
-/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what neighbours have being
-   frozen. Newton's method from lambda = 0 in a fixed number of steps: the returns of the usual convex yield functions
-   have converged to rounding long before; the `flow` check of a law says so where one has not. */
+/* `flow x along direction returned when f >= 0`: x = old + lambda direction with f(x) = 0, what
+   neighbours have being frozen. Newton's method from lambda = 0 in a fixed number of steps: the
+   returns of the usual convex yield functions have converged to rounding long before; the `flow`
+   check of a law says so where one has not. */
 static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node direction) {
   enum { NEWTON_STEPS = 8 };
   ir *g = c->graph;
@@ -224,7 +226,7 @@ static void lower_force_state(lowering *c, lowered_law *out) {
   else if (out->F == IR_NONE)
     out->F = lower_force_state_of_energy(c, out->W);
   else if (lower_is_per_volumes(given->symbol->dim))
-    out->F = lower_force_of_density(c, out->F);
+    out->F = lower_force_of_density(c->graph, c->law, out->F);
   lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
 }
 

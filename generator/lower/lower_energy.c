@@ -1,9 +1,12 @@
-/* What a law of bonds stores and what its rate terms take (see lower.h). */
-#include "generator/lower/lower_parts.h"
+#include "generator/lower/lower_energy.h"
 
+#include <string.h>
+
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
+#include "generator/lower/lower_inputs.h"
 
-/* --- energy ----------------------------------------------------------------------------------- */
+/* --- of a bond -------------------------------------------------------------------------------- */
 
 enum { ENERGY_PAIRS = 3 }; /* N with the stretch, M_i with theta_i, M_j with theta_j */
 
@@ -99,8 +102,7 @@ static ir_node path_energy(ir *g, const energy_parts *p) {
   return sum;
 }
 
-ir_node lower_stored_energy(const law *l, ir *g, const lowered_law *frozen) {
-  (void)l;
+ir_node lower_stored_energy(ir *g, const lowered_law *frozen) {
   if (frozen->W != IR_NONE) {
     ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE), W;
     rewrite_zero(g, &frozen->W, 1, &rate, 1, &W);
@@ -119,9 +121,8 @@ ir_node lower_stored_energy(const law *l, ir *g, const lowered_law *frozen) {
   return central ? axial : ir_add(g, axial, half_work(g, &p, 1));
 }
 
-ir_node lower_rate_power(const law *l, ir *g, const lowered_law *frozen, ir_node theta_rate_i,
+ir_node lower_rate_power(ir *g, const lowered_law *frozen, ir_node theta_rate_i,
                          ir_node theta_rate_j) {
-  (void)l;
   energy_parts p = parts_at_zero_rate(g, frozen);
   ir_node whole[ENERGY_PAIRS] = {frozen->N, frozen->M_i, frozen->M_j};
   ir_node length_rate = ir_mul(g, lower_quantity(g, QUANTITY_STRETCH_RATE), p.s);
@@ -133,4 +134,49 @@ ir_node lower_rate_power(const law *l, ir *g, const lowered_law *frozen, ir_node
     power = add_some(g, power, ir_mul(g, part, rate[k]));
   }
   return power;
+}
+
+/* --- of a family ------------------------------------------------------------------------------ */
+
+/* By the stretch of the bond to j; its length is s (1 + stretch). */
+static ir_node by_stretch(ir *g, ir_node n) {
+  ir_node slope = ir_derivative(g, n, lower_quantity(g, QUANTITY_STRETCH));
+  ir_node by_length = ir_derivative(g, n, lower_quantity(g, QUANTITY_LENGTH));
+  if (ir_is_number(g, by_length, 0)) return slope;
+  return ir_add(g, slope, ir_mul(g, lower_quantity(g, QUANTITY_S), by_length));
+}
+
+/* Sums over the family that W is made of, each as if it were an independent variable: dW/dstretch
+   toward j is the sum over them of dW/dsum times the derivative of what stands in it at j. A bond
+   belongs to two particles, so that the force state is twice what W alone gives. */
+ir_node lower_force_state_of_energy(lowering *c, ir_node W) {
+  ir *g = c->graph;
+  ir_node slope = ir_constant(g, 0);
+  unsigned char *marks = arena_alloc(c->memory, (size_t)ir_count(g) + 1);
+  int count = ir_count(g);
+  memset(marks, 0, (size_t)count + 1);
+  ir_mark(g, &W, 1, marks);
+  for (ir_node n = 0; n < count; n++) {
+    ir_op op = ir_operation(g, n);
+    if (!marks[n] ||
+        (op != IR_FAMILY_SUM && op != IR_FAMILY_MAX && op != IR_FAMILY_MIN && op != IR_NEIGHBOUR))
+      continue;
+    ir_node inside = ir_operand(g, n, 0), by = by_stretch(g, inside);
+    if (ir_is_number(g, by, 0)) continue;
+    if (op != IR_FAMILY_SUM)
+      return lower_fail(c, c->law->tree->name_where,
+                        "a force state can be derived from an energy that is made of sums over "
+                        "the family only");
+    unsigned char *below = arena_alloc(c->memory, (size_t)count + 1);
+    memset(below, 0, (size_t)count + 1);
+    ir_mark(g, &inside, 1, below);
+    for (ir_node k = 0; k < n; k++)
+      if (below[k] && ir_operation(g, k) == IR_FAMILY_SUM &&
+          !ir_is_number(g, by_stretch(g, ir_operand(g, k, 0)), 0))
+        return lower_fail(c, c->law->tree->name_where,
+                          "a force state cannot be derived from sums inside sums over the family");
+    slope = ir_add(g, slope, ir_mul(g, ir_derivative(g, W, n), by));
+  }
+  ir_node per_length = ir_div(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_S));
+  return ir_mul(g, per_length, slope);
 }

@@ -1,132 +1,24 @@
-/* Expressions to IR (see lower_parts.h). */
-#include "generator/lower/lower_parts.h"
+#include "generator/lower/lower_value.h"
 
-#include <stdlib.h>
 #include <string.h>
 
-#include "dsl/base/hash.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
-#include "generator/lower/kinematics.h"
-#include "generator/lower/law_inputs.h"
-
-ir_node lower_fail(lowering *c, span where, const char *what) {
-  if (!c->failed) diag_report(c->said, DIAG_NOT_SUPPORTED, where, "%s", what);
-  c->failed = true;
-  return ir_constant(c->graph, 0);
-}
-
-components lower_failed_value(lowering *c, span where, const char *what) {
-  return scalar(lower_fail(c, where, what));
-}
-
-bool lower_is_state_law(const lowering *c) {
-  return c->law->tree->law == LAW_STATE;
-}
-
-/* --- what became of the text ------------------------------------------------------------------ */
-
-/* Room for one more of `count` items. */
-void *lower_one_more(void *items, int count, size_t size) {
-  bool full = count == 0 || (count >= 16 && (count & (count - 1)) == 0);
-  return full ? must_realloc(items, (size_t)(count ? 2 * count : 16) * size) : items;
-}
-
-static void note_place(lowering *c, ir_node n, const expr *e) {
-  if (c->mode != LOWER_STEP || c->failed || n == IR_NONE) return;
-  ir_op op = ir_operation(c->graph, n);
-  if (op != IR_DIV && op != IR_SQRT && op != IR_LOG && op != IR_POW) return;
-  lowered_text *t = &c->text;
-  for (int k = 0; k < t->place_count; k++)
-    if (t->places[k].node == n) return;
-  t->places = lower_one_more(t->places, t->place_count, sizeof *t->places);
-  t->places[t->place_count++] = (lowered_place){n, e->where};
-}
-
-static void note_line(lowering *c, const expr *cases, int line, ir_node guard) {
-  if (c->mode != LOWER_STEP) return;
-  lowered_text *t = &c->text;
-  t->lines = lower_one_more(t->lines, t->line_count, sizeof *t->lines);
-  t->lines[t->line_count++] = (lowered_line){cases, line, c->group_count, guard};
-}
-
-/* --- inputs ----------------------------------------------------------------------------------- */
-
-ir_node lower_quantity(ir *g, builtin_quantity q) {
-  /* Of the number of bonds, too, a kernel knows the value of its bond class only (a full family).
-   */
-  placement on = law_motion_place(q) >= 0 ? ON_BOND : ON_BODY;
-  ir_node n = ir_input(g, IR_FROM_QUANTITY, (int)q, builtin_quantities[q].name, on);
-  return builtin_quantities[q].place == ON_BOND ? ir_mark_class(g, n) : n;
-}
-
-ir_node lower_parameter(ir *g, const law *l, int k) {
-  return ir_input(g, IR_FROM_PARAMETER, k, l->parameters.items[k]->name, ON_BODY);
-}
-
-ir_node lower_field(ir *g, const law *l, int k) {
-  return ir_input(g, IR_FROM_FIELD, k, l->fields.items[k]->name, l->fields.items[k]->place);
-}
-
-ir_node lower_volume(lowering *c) {
-  return c->law->irregular ? kinematics_input(c->graph, ENDS_VOLUME_I)
-                           : lower_quantity(c->graph, QUANTITY_V);
-}
-
-static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
-  if (q == QUANTITY_V) return scalar(lower_volume(c));
-  if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c));
-  if (q == QUANTITY_TWIST) return scalar(ir_constant(c->graph, 0)); /* no bond twists in a plane */
-  if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
-  if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c);
-  if (builtin_quantities[q].shape == SHAPE_VECTOR)
-    return lower_failed_value(c, e->where, "vectors cannot be compiled in laws of bonds yet");
-  return scalar(lower_quantity(c->graph, q));
-}
+#include "generator/lower/lower_family.h"
+#include "generator/lower/lower_inputs.h"
+#include "generator/lower/lower_tensor.h"
 
 /* --- names ------------------------------------------------------------------------------------ */
 
-/* Where the symbol is bound, or would be. */
-static binding *place_of(const lowering *c, const symbol *s) {
-  size_t k = (size_t)hash_more(HASH_START, &s, sizeof s) & (c->bound_room - 1);
-  while (c->bound[k].symbol && c->bound[k].symbol != s)
-    k = (k + 1) & (c->bound_room - 1);
-  return &c->bound[k];
-}
-
-components *lower_binding_of(lowering *c, const symbol *s) {
-  binding *found = c->bound_room ? place_of(c, s) : NULL;
-  return found && found->symbol ? &found->value : NULL;
-}
-
-static void grow_bindings(lowering *c) {
-  binding *before = c->bound;
-  const size_t room = c->bound_room;
-  c->bound_room = room ? 2 * room : 64;
-  c->bound = must_calloc(c->bound_room, sizeof *c->bound);
-  for (size_t k = 0; k < room; k++)
-    if (before[k].symbol) *place_of(c, before[k].symbol) = before[k];
-  free(before);
-}
-
-void lower_bind(lowering *c, const symbol *s, components value) {
-  if (2 * (c->bound_count + 1) > c->bound_room) grow_bindings(c);
-  binding *bound = place_of(c, s);
-  c->bound_count += bound->symbol == NULL;
-  *bound = (binding){s, value};
-}
-
-void lower_name_node(ir *g, ir_node n, const char *name, span where) {
-  if (n != IR_NONE && ir_arity(ir_operation(g, n)) > 0) ir_set_name(g, n, name, where);
-}
-
-void lower_name_value(lowering *c, components value, const char *name, span where) {
-  static const char *const parts[] = {"xx", "yy", "zz", "xy", "yz", "xz"};
-  static const char *const axes[] = {"x", "y", "z"};
-  for (int k = 0; k < value.count; k++) {
-    const char *part = value.count == 3 ? axes[k] : parts[k];
-    const char *full = value.count == 1 ? name : arena_printf(c->memory, "%s_%s", name, part);
-    lower_name_node(c->graph, value.of[k], full, where);
-  }
+static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
+  if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
+  if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
+  if (q == QUANTITY_TWIST) return scalar(ir_constant(c->graph, 0)); /* no bond twists in a plane */
+  if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
+  if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c->graph, c->law);
+  if (builtin_quantities[q].shape == SHAPE_VECTOR)
+    return lower_failed_value(c, e->where, "vectors cannot be compiled in laws of bonds yet");
+  return scalar(lower_quantity(c->graph, q));
 }
 
 static components lower_defined_name(lowering *c, const expr *e) {
@@ -181,7 +73,7 @@ static components lower_own_name(lowering *c, const expr *e) {
 /* x[j] of a particle's x and x'[j] are the neighbour's. */
 static components of_whom(lowering *c, const expr *name, components mine) {
   const bool of_neighbour = name->primed || (name->indexed && name->symbol->place == ON_PARTICLE);
-  return of_neighbour ? lower_neighbour(c, mine) : mine;
+  return of_neighbour ? lower_neighbour(c->graph, mine) : mine;
 }
 
 static components lower_name(lowering *c, const expr *e) {
@@ -264,7 +156,7 @@ static ir_node lower_scalar_binary(ir *g, binary_op op, ir_node a, ir_node b) {
 static components lower_binary(lowering *c, const expr *e) {
   if (is_option(e->left) || is_option(e->right)) return scalar(lower_option_test(c, e));
   components a = lower_value(c, e->left), b = lower_value(c, e->right);
-  if (a.count > 1 || b.count > 1) return lower_tensor_binary(c, e, a, b);
+  if (a.count > 1 || b.count > 1) return tensor_binary(c, e, a, b);
   return scalar(lower_scalar_binary(c->graph, e->binary, a.of[0], b.of[0]));
 }
 
@@ -276,8 +168,8 @@ static components lower_unary(lowering *c, const expr *e) {
   return a;
 }
 
-/* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an operand of a guard could
-   be NaN, the cases give that NaN instead. */
+/* A comparison with NaN is false, so that a NaN would fall through to `otherwise` unseen: where an
+   operand of a guard could be NaN, the cases give that NaN instead. */
 static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   ir *g = c->graph;
   if (ir_is_logical(g, guard) && ir_operation(g, guard) != IR_LT &&
@@ -315,7 +207,7 @@ static components lower_cases(lowering *c, const expr *e) {
     ir_node guard = lower_expr(c, e->cases[k].guard);
     for (int q = 0; q < value.count; q++)
       value.of[q] = keep_nan(c, guard, value.of[q]);
-    note_line(c, e, k, guard);
+    lower_note_line(c, e, k, guard);
   }
   c->group_count++;
   return value;
@@ -395,49 +287,43 @@ static ir_node lower_diff(lowering *c, const expr *e) {
   return ir_derivative(c->graph, f, x);
 }
 
-static ir_node lower_extreme(lowering *c, const expr *e, ir_op op) {
-  ir_node n = lower_expr(c, e->arguments[0].value);
-  for (int k = 1; k < e->argument_count; k++)
-    n = binary(c->graph, op, n, lower_expr(c, e->arguments[k].value));
-  return n;
-}
-
 static ir_node soft_sign(ir *g, ir_node x) {
   return ir_div(g, x, ir_add(g, ir_constant(g, 1), unary(g, IR_ABS, x)));
 }
 
-/* A function of one argument that is one operation bears its name. A bending quantity has one component
-   in a plane: its norm is the absolute value. */
-static ir_op simple_operation(builtin_function f) {
-  if (f == FUNCTION_NORM) return IR_ABS;
-  ir_op op = 0;
-  while (op < IR_OP_COUNT &&
-         (ir_arity(op) != 1 || strcmp(ir_op_name(op), builtin_functions[f].name) != 0))
-    op++;
-  return op;
-}
-
+/* What has the name of an operation is that operation, of more than two arguments the first with
+   each of the others. */
 static ir_node lower_builtin_call(lowering *c, const expr *e) {
   ir *g = c->graph;
   builtin_function f = (builtin_function)e->builtin;
   if (f == FUNCTION_PREVIOUS) return lower_previous(c, e);
   if (f == FUNCTION_DIFF) return lower_diff(c, e);
-  if (f == FUNCTION_MIN || f == FUNCTION_MAX)
-    return lower_extreme(c, e, f == FUNCTION_MIN ? IR_MIN : IR_MAX);
-  ir_op op = simple_operation(f);
-  if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY && f != FUNCTION_ATAN2)
+  ir_op op = operation_named(builtin_functions[f].name);
+  if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY)
     return lower_fail(c, e->where, "this function cannot be compiled here");
   ir_node a = lower_expr(c, e->arguments[0].value);
   if (f == FUNCTION_SOFT_SIGN) return soft_sign(g, a);
   if (f == FUNCTION_MACAULAY) return binary(g, IR_MAX, a, ir_constant(g, 0));
-  if (f == FUNCTION_ATAN2) return binary(g, IR_ATAN2, a, lower_expr(c, e->arguments[1].value));
-  return unary(g, op, a);
+  if (e->argument_count == 1 && ir_arity(op) == 1) return unary(g, op, a);
+  for (int k = 1; k < e->argument_count; k++)
+    a = binary(g, op, a, lower_expr(c, e->arguments[k].value));
+  return a;
+}
+
+/* Arguments come first: what goes over a family knows no text. Which principal value is asked for
+   is no value. */
+static components lower_of_family(lowering *c, const expr *e) {
+  enum { MOST_ARGUMENTS = 3 };
+  components a[MOST_ARGUMENTS] = {lower_value(c, e->arguments[0].value)};
+  const int count = e->builtin == FUNCTION_PRINCIPAL ? 1 : e->argument_count;
+  for (int k = 1; k < count && !c->failed; k++)
+    a[k] = scalar(lower_expr(c, e->arguments[k].value));
+  return c->failed ? a[0] : lower_family_call(c, e, a);
 }
 
 static components lower_call(lowering *c, const expr *e) {
-  components v;
   if (e->builtin < 0) return lower_user_call(c, e);
-  return lower_family_call(c, e, &v) ? v : scalar(lower_builtin_call(c, e));
+  return lower_is_family_call(e) ? lower_of_family(c, e) : scalar(lower_builtin_call(c, e));
 }
 
 static components lower_kind(lowering *c, const expr *e) {
@@ -464,7 +350,7 @@ components lower_value(lowering *c, const expr *e) {
                               "with its functions expanded the law is too large to compile");
   components v = lower_kind(c, e);
   if (e->kind == EXPR_BINARY || (e->kind == EXPR_CALL && e->builtin >= 0))
-    note_place(c, v.of[0], e);
+    lower_note_place(c, v.of[0], e);
   return v;
 }
 

@@ -158,7 +158,8 @@ static ir_node take_common(ir *g, products *all) {
   return common;
 }
 
-/* A name keeps the particle's part whole: a product that was fused with the neighbour's would be another one there. */
+/* A name keeps the particle's part whole: a product that was fused with the neighbour's would be
+   another one there. */
 static ir_node both(ir *g, ir_node n) {
   if (ir_operation(g, n) != IR_CONSTANT) ir_set_name(g, n, "part", (span){0, 0, 0});
   return ir_add(g, n, ir_make(g, IR_NEIGHBOUR, n, IR_NONE, IR_NONE));

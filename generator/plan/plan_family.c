@@ -1,12 +1,14 @@
-/* Programs of a law of families (program.h): what is wanted of a particle, in the terms of the law. */
+#include "generator/plan/plan_family.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/kinematics.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/particle_parts.h"
-#include "generator/plan/plan_parts.h"
 #include "generator/plan/plan_roots.h"
 
 typedef struct family_planner {
@@ -15,8 +17,9 @@ typedef struct family_planner {
   lowered_law step, frozen;
 } family_planner;
 
-/* Stand for the motion until it is known: components of the present direction; 1/length and chord, of which it is the
-   product (where forces act along reference directions: of the reference bond). */
+/* Stand for the motion until it is known: components of the present direction; 1/length and chord,
+   of which it is the product (where forces act along reference directions: of the reference
+   bond). */
 enum { DIRECTION, PER_LENGTH = 3, CHORD };
 
 static ir_node present(ir *g, int which) {
@@ -29,7 +32,8 @@ static ir_node family_sum(ir *g, ir_node n) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
-/* The mean of the forces of both sides, by what either particle gives. Fields on bonds are the same seen from both ends. */
+/* The mean of the forces of both sides, by what either particle gives. Fields on bonds are the same
+   seen from both ends. */
 static ir_node in_parts(const kernel_plan *plan, const lowered_law *of) {
   const law *l = plan->law;
   ir_node *same = must_alloc(((size_t)l->fields.count + 1) * sizeof *same);
@@ -42,7 +46,8 @@ static ir_node in_parts(const kernel_plan *plan, const lowered_law *of) {
   return sum;
 }
 
-/* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the same on both. */
+/* Force on the particle along the bond: the mean of what both sides say. A law of bonds says the
+   same on both. */
 static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir *g = plan->graph;
   ir_node f = of->N;
@@ -67,15 +72,15 @@ void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *r
         .index = d};
 }
 
-/* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch of forces that are
-   homogeneous of degree one, else IR_NONE. */
+/* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch
+   of forces that are homogeneous of degree one, else IR_NONE. */
 static ir_node stored_energy(family_planner *p) {
   const law *l = p->plan->law;
   ir *g = p->g;
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
   if (l->tree->law != LAW_STATE)
-    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(l, g, &p->frozen)));
+    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(g, &p->frozen)));
   ir_node F, W = p->frozen.W;
   if (W != IR_NONE) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);
@@ -258,7 +263,8 @@ static void look_for_shape(void *context, const ir_node *roots, int root_count) 
   free(needed);
 }
 
-/* Operations of all segments of a step that are done for each neighbour; what is done once for both ends counts half. */
+/* Operations of all segments of a step that are done for each neighbour; what is done once for both
+   ends counts half. */
 static void count_cost(kernel_plan *plan) {
   for (int k = 0; k < plan->step.pass_count; k++)
     for (int s = 0; s < plan->step.passes[k].segment_count; s++) {
@@ -275,9 +281,11 @@ static void count_cost(kernel_plan *plan) {
     }
 }
 
-/* Whether ends of bonds share what is the same for both: on lattices, where reading what the other end has left is cheap.
-   Laws that keep fields on bonds in space have families of a long horizon (lps: 122): what their bonds share would fill
-   no cache, and where nothing is known of the lattice they compute it on either side (a sixth faster; with 18 neighbours sharing is 1.4 times as fast). */
+/* Whether ends of bonds share what is the same for both: on lattices, where reading what the other
+   end has left is cheap. Laws that keep fields on bonds in space have families of a long horizon
+   (lps: 122): what their bonds share would fill no cache, and where nothing is known of the lattice
+   they compute it on either side (a sixth faster; with 18 neighbours sharing is 1.4 times as
+   fast). */
 static program_sharing sharing(const family_planner *p) {
   const law *l = p->plan->law;
   bool on_bonds = false;

@@ -4,6 +4,7 @@
 
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower.h"
+#include "generator/lower/lower_inputs.h"
 
 static void visit_program(const family_program *q, plan_visitor visit, void *context) {
   for (int k = 0; k < q->pass_count; k++)
@@ -38,4 +39,52 @@ bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
     if (results[k] != IR_NONE && rewrite_depends(plan->graph, &results[k], 1, &rate, 1))
       return true;
   return rewrite_depends(plan->graph, step->fields, plan->law->fields.count, &rate, 1);
+}
+
+/* --- what is hoisted -------------------------------------------------------------------------- */
+
+static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
+  if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
+}
+
+typedef struct hoisting {
+  const ir *graph;
+  unsigned char *hoisted;
+} hoisting;
+
+static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_count) {
+  const hoisting *h = context;
+  const ir *g = h->graph;
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  ir_mark(g, roots, root_count, needed);
+  for (int k = 0; k < root_count; k++)
+    mark_hoisted(g, roots[k], h->hoisted);
+  for (ir_node n = 0; n < ir_count(g); n++) {
+    if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
+    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
+      mark_hoisted(g, ir_operand(g, n, k), h->hoisted);
+  }
+  free(needed);
+}
+
+void plan_hoist(kernel_plan *p) {
+  int count = ir_count(p->graph);
+  unsigned char *hoisted = must_calloc((size_t)count + 1, 1);
+  plan_visit(p, mark_hoisted_of_roots, &(hoisting){p->graph, hoisted});
+  for (ir_node n = 0; n < count; n++)
+    p->uniform_count += hoisted[n];
+  p->uniforms = arena_alloc(p->memory, ((size_t)p->uniform_count + 1) * sizeof *p->uniforms);
+  int at = 0;
+  for (ir_node n = 0; n < count; n++)
+    if (hoisted[n]) p->uniforms[at++] = n;
+  free(hoisted);
+}
+
+ir_cost plan_cost(const kernel_plan *p, const pass *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, ON_PARTICLE);
+  free(nodes);
+  return cost;
 }

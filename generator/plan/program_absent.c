@@ -1,9 +1,6 @@
-/* What absent bonds add to sums. Where all that a loop over the neighbours adds up is a product with a value that the
-   owner of the bond has left, it is enough that owners leave 0 where the bond is absent: then neither end asks in later
-   passes whether it is there. The other factors must be finite there, too: what follows without divisions and functions
-   from constants, motion and such sums, and links that follow so. Where no run comes, these are what a run left elsewhere, or
-   0: no other program may write them (program_build). */
-#include "generator/plan/program_parts.h"
+#include "generator/plan/program_absent.h"
+
+#include "generator/plan/node_map.h"
 
 typedef struct absent_search {
   const ir *g;
@@ -16,7 +13,8 @@ static bool is_shared(const ir *g, ir_node n) {
          (ir_input_source(g, n) == IR_FROM_SHARED || ir_input_source(g, n) == IR_FROM_SHARED_ODD);
 }
 
-/* The root that writes to `target`, number `index`, and its pass: the last one before *pass; NULL: none. */
+/* The root that writes to `target`, number `index`, and its pass: the last one before *pass; NULL:
+   none. */
 static segment_root *writer_of(const absent_search *s, segment_target target, int index,
                                int *pass) {
   while (--*pass >= 0) {
@@ -64,15 +62,14 @@ static bool is_finite_input(absent_search *s, int pass, ir_node n) {
 }
 
 static bool keeps_finite(ir_op op) {
-  return op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_FMA || op == IR_NEG ||
-         op == IR_ABS || op == IR_MIN || op == IR_MAX || op == IR_SELECT;
+  return op == IR_SELECT || (operation_has(op, ARITHMETIC) && !operation_has(op, PARTIAL));
 }
 
 static bool is_finite(absent_search *s, int pass, ir_node n) {
   const ir_op op = ir_operation(s->g, n);
   const int known = map_get(&s->finite[pass], n);
   if (known >= 0) return known != 0;
-  bool finite = is_uniform(s->g, n);
+  bool finite = ir_place(s->g, n) <= ON_BODY;
   if (!finite && op == IR_INPUT)
     finite = is_finite_input(s, pass, n);
   else if (!finite && keeps_finite(op)) {
@@ -129,15 +126,6 @@ static void look_at_segment(absent_search *s, int pass, segment *a) {
     a->roots[k].vanishes = true;
     leave_zeros(s, pass, a->roots[k].node);
   }
-}
-
-uint64_t program_shared_by(const family_pass *p) {
-  uint64_t shared = 0;
-  for (int k = 0; k < p->segment_count; k++)
-    for (int r = 0; r < p->segments[k].root_count; r++)
-      if (p->segments[k].roots[r].target == TO_SHARED)
-        shared |= UINT64_C(1) << p->segments[k].roots[r].index;
-  return shared;
 }
 
 void program_find_vanishing(const ir *g, family_program *p) {

@@ -27,19 +27,11 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
   return changed ? program_made_again(b->g, n, operand) : n;
 }
 
-int program_cost(const ir *g, ir_node n) {
-  ir_op op = ir_operation(g, n);
-  bool cheap = op == IR_ADD || op == IR_SUB || op == IR_MUL || op == IR_NEG || op == IR_ABS ||
-               op == IR_FMA || op == IR_MIN || op == IR_MAX || op == IR_SELECT ||
-               ir_is_logical(g, n);
-  return cheap ? 1 : op == IR_INVERSE_ROOT ? 20 : 10;
-}
-
 /* What a value toward a neighbour costs when it is computed again, in additions. */
 int program_cost_again(const ir *g, ir_node n, int most) {
   if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
   ir_op op = ir_operation(g, n);
-  int cost = program_cost(g, n);
+  int cost = operations[op].weight;
   for (int k = 0; k < ir_arity(op) && cost < most; k++)
     cost += program_cost_again(g, ir_operand(g, n, k), most - cost);
   return cost;
@@ -132,8 +124,8 @@ static ir_node mirror_quantity(builder *b, ir_node n) {
   return ir_input(b->g, IR_FROM_QUANTITY, (int)other, builtin_quantities[other].name, ON_BODY);
 }
 
-/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can be told from values
-   toward a neighbour. */
+/* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can
+   be told from values toward a neighbour. */
 static ir_node mirror_input(builder *b, ir_node n) {
   ir *g = b->g;
   int index = ir_input_index(g, n);
@@ -181,7 +173,8 @@ ir_node program_mirror(builder *b, ir_node n) {
   return image;
 }
 
-/* Whether the neighbour may have another value than the particle: not for what follows from the bond's own motion. */
+/* Whether the neighbour may have another value than the particle: not for what follows from the
+   bond's own motion. */
 static bool has_sides(builder *b, ir_node n) {
   int known = map_get(&b->sided, n);
   if (known >= 0) return known != 0;
@@ -193,8 +186,9 @@ static bool has_sides(builder *b, ir_node n) {
   return sided;
 }
 
-/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two loads for each
-   neighbour. The motion of the bond, which both sides need anyway, does not count. */
+/* A value toward a neighbour that costs more to compute on both sides than to keep: a store and two
+   loads for each neighbour. The motion of the bond, which both sides need anyway, does not
+   count. */
 static bool is_dear(builder *b, ir_node n) {
   enum { DEAR = 30 };
   return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && has_sides(b, n) &&
@@ -213,4 +207,27 @@ ir_node program_resolve(builder *b, ir_node n) {
     image = with_images(b, n, program_resolve);
   map_set(&b->resolved, n, image);
   return image;
+}
+
+/* --- substitution ----------------------------------------------------------------------------- */
+
+void program_substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
+                        const ir_node *to, int pair_count) {
+  int count = root_count + b->link_count;
+  ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
+  for (int k = 0; k < root_count; k++)
+    all[k] = roots[k].node;
+  for (int k = 0; k < b->link_count; k++)
+    all[root_count + k] = b->link[k];
+  ir_substitute(b->g, all, count, from, to, pair_count, all);
+  map_clear(&b->linked);
+  map_clear(&b->mirrored);
+  map_clear(&b->reduced);
+  for (int k = 0; k < root_count; k++)
+    roots[k].node = all[k];
+  for (int k = 0; k < b->link_count; k++) {
+    b->link[k] = all[root_count + k];
+    map_set(&b->linked, b->link[k], k);
+  }
+  free(all);
 }

@@ -1,8 +1,12 @@
-/* What both ends of a bond share: values whose mirror image is the value itself, or its opposite. */
-#include "generator/plan/program_mirror.h"
-#include "generator/plan/program_parts.h"
+#include "generator/plan/program_share.h"
 
-/* Whether a value follows from motion and fields alone, without what goes over a family or was left by a pass. */
+#include <stdlib.h>
+
+#include "generator/plan/program_mirror.h"
+#include "generator/plan/program_parity.h"
+
+/* Whether a value follows from motion and fields alone, without what goes over a family or was left
+   by a pass. */
 static bool is_plain(builder *b, ir_node n) {
   int known = map_get(&b->plain, n);
   if (known >= 0) return known != 0;
@@ -19,174 +23,6 @@ static bool is_plain(builder *b, ir_node n) {
   return plain;
 }
 
-/* The terms of a sum, or the factors of a product. */
-enum { MOST_TERMS = 24 };
-typedef struct term_list {
-  ir_node term[MOST_TERMS];
-  int sign[MOST_TERMS]; /* of a term; of a factor: -1 below the line */
-  int count;
-} term_list;
-
-static bool add_term(term_list *t, ir_node n, int sign) {
-  if (t->count == MOST_TERMS) return false;
-  t->term[t->count] = n;
-  t->sign[t->count++] = sign;
-  return true;
-}
-
-/* What the other end knows as a whole only: an input, or what a link tells. */
-static bool is_whole(builder *b, ir_node n) {
-  return is_leaf(b->g, n) || (b->sharing == SHARE_PAIRS && map_get(&b->linked, n) >= 0);
-}
-
-static bool add_terms(builder *b, ir_node n, bool of_sum, int sign, term_list *t) {
-  const ir *g = b->g;
-  const ir_op op = ir_operation(g, n);
-  const ir_op join = of_sum ? IR_ADD : IR_MUL, part = of_sum ? IR_SUB : IR_DIV;
-  if (is_whole(b, n)) return add_term(t, n, sign);
-  if (op == join || op == part)
-    return add_terms(b, ir_operand(g, n, 0), of_sum, sign, t) &&
-           add_terms(b, ir_operand(g, n, 1), of_sum, op == join ? sign : -sign, t);
-  if (of_sum && op == IR_NEG) return add_terms(b, ir_operand(g, n, 0), of_sum, -sign, t);
-  return add_term(t, n, sign);
-}
-
-static int image_sign(builder *b, ir_node x, ir_node y, int *left);
-
-/* The same for results of one operation, operand by operand; with `crossed` the first of one is the second of the other. */
-static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int *left) {
-  const ir_op op = ir_operation(b->g, x);
-  int sign[3] = {1, 1, 1};
-  for (int k = 0; k < ir_arity(op); k++) {
-    sign[k] = image_sign(b, ir_operand(b->g, x, k),
-                         ir_operand(b->g, y, crossed && k < 2 ? 1 - k : k), left);
-    if (sign[k] == 0) return 0;
-  }
-  if (op == IR_ADD || op == IR_SUB) return sign[0] == sign[1] ? sign[0] : 0;
-  if (op == IR_FMA) return sign[0] * sign[1] == sign[2] ? sign[2] : 0;
-  if (op == IR_MUL || op == IR_DIV || op == IR_NEG) return sign[0] * sign[1];
-  if (op == IR_ABS) return 1;
-  return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
-}
-
-/* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be looked at. */
-static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
-  const ir_op op = ir_operation(b->g, x);
-  const ir_node image = program_mirror(b, x);
-  if (image == y) return 1;
-  if (b->sharing != SHARE_PAIRS) return 0;
-  if (x == y) return program_parity(b, x);
-  if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
-  if (op != ir_operation(b->g, y) || --*left < 0) return 0;
-  const int sign = image_of_operands(b, x, y, false, left);
-  const bool commutes =
-      op == IR_ADD || op == IR_MUL || op == IR_FMA; /* the graph orders operands by number */
-  return sign != 0 || !commutes ? sign : image_of_operands(b, x, y, true, left);
-}
-
-/* Takes the mirror image of term k, with that sign, out of the list; in products no sign may change. */
-static bool take_partner(builder *b, term_list *t, int k, int sign, bool of_sum) {
-  enum { MOST_LOOKS = 1000 };
-  for (int other = k + 1; other < t->count; other++) {
-    int left = MOST_LOOKS;
-    const int image = image_sign(b, t->term[k], t->term[other], &left);
-    if (image == 0 || (!of_sum && image < 0) || t->sign[other] * image != sign) continue;
-    t->term[other] = t->term[--t->count];
-    t->sign[other] = t->sign[t->count];
-    return true;
-  }
-  return false;
-}
-
-/* A sum has the parity of its terms, or its terms come in pairs that the ends exchange. */
-static int parity_of_sum(builder *b, ir_node n) {
-  for (int wanted = 1; wanted >= -1; wanted -= 2) {
-    term_list t = {.count = 0};
-    if (!add_terms(b, n, true, 1, &t)) return 0;
-    bool all = true;
-    for (int k = 0; k < t.count && all; k++)
-      all = program_parity(b, t.term[k]) == wanted ||
-            take_partner(b, &t, k, wanted * t.sign[k], true);
-    if (all) return wanted;
-  }
-  return 0;
-}
-
-static int parity_of_product(builder *b, ir_node n) {
-  term_list t = {.count = 0};
-  int all = 1;
-  if (!add_terms(b, n, false, 1, &t)) return 0;
-  for (int k = 0; k < t.count && all; k++) {
-    const int one = program_parity(b, t.term[k]);
-    if (one)
-      all *= one;
-    else
-      all = take_partner(b, &t, k, t.sign[k], false) ? all : 0;
-  }
-  return all;
-}
-
-static int parity_of_leaf(builder *b, ir_node n) {
-  if (ir_operation(b->g, n) == IR_CONSTANT) return 1;
-  const ir_node image = program_mirror(b, n);
-  return image == n ? 1 : image == ir_neg(b->g, n) ? -1 : 0;
-}
-
-/* Of any other operation: even when its operands are, or when the ends exchange them. */
-static int parity_of_others(builder *b, ir_node n) {
-  const ir_op op = ir_operation(b->g, n);
-  int operand[3] = {1, 1, 1};
-  for (int k = 0; k < ir_arity(op); k++)
-    operand[k] = program_parity(b, ir_operand(b->g, n, k));
-  if (op == IR_NEG) return operand[0];
-  if (op == IR_FMA && operand[0] * operand[1] != 0)
-    return operand[0] * operand[1] == operand[2] ? operand[2] : 0;
-  if (op == IR_ABS && operand[0]) return 1;
-  if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
-  if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
-  return program_mirror(b, n) == n ? 1 : 0;
-}
-
-/* Rounding is left aside, since only one end will compute the value. */
-int program_parity(builder *b, ir_node n) {
-  int known = map_get(&b->parity, n);
-  if (known >= 0) return known - 1;
-  const ir_op op = ir_operation(b->g, n);
-  int p;
-  if (is_whole(b, n))
-    p = parity_of_leaf(b, n);
-  else if (ir_is_reduction(op))
-    p = 0; /* the other end has another family */
-  else if (op == IR_ADD || op == IR_SUB)
-    p = parity_of_sum(b, n);
-  else if (op == IR_MUL || op == IR_DIV)
-    p = parity_of_product(b, n);
-  else
-    p = parity_of_others(b, n);
-  map_set(&b->parity, n, p + 1);
-  return p;
-}
-
-/* Whether links tell the other end all that it cannot compute. */
-static bool is_told(builder *b, ir_node n, node_map *seen) {
-  if (map_get(seen, n) >= 0 || map_get(&b->linked, n) >= 0) return true;
-  map_set(seen, n, 1);
-  const ir_op op = ir_operation(b->g, n);
-  if (ir_is_reduction(op)) return false;
-  if (op == IR_INPUT && ir_input_source(b->g, n) == IR_FROM_SHAPE) return false;
-  bool told = true;
-  for (int k = 0; k < ir_arity(op) && told; k++)
-    told = is_told(b, ir_operand(b->g, n, k), seen);
-  return told;
-}
-
-int program_parity_of_root(builder *b, ir_node n) {
-  node_map seen = {0};
-  const bool told = is_told(b, n, &seen);
-  map_clear(&seen);
-  return told ? program_parity(b, n) : 0;
-}
-
 /* Operations that have not been counted since `round` began. */
 static int cost_in_round(builder *b, ir_node n, int most) {
   if (map_get(&b->counted, n) == b->round) return 0;
@@ -194,7 +30,7 @@ static int cost_in_round(builder *b, ir_node n, int most) {
   for (int k = 0; k < b->shared_count; k++)
     if (b->shared[k] == n) return 0;
   if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
-  int cost = program_cost(b->g, n);
+  int cost = operations[ir_operation(b->g, n)].weight;
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
     cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
   return cost;
@@ -206,7 +42,8 @@ static int cost_beyond(builder *b, ir_node n, int most) {
   return cost_in_round(b, n, most);
 }
 
-/* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not stay in a cache, more. */
+/* What a value must cost to be shared: a store and two loads for each bond, or, where planes do not
+   stay in a cache, more. */
 static int dear(const builder *b) {
   return b->sharing >= SHARE_MORE ? 12 : 25;
 }
@@ -269,7 +106,9 @@ static void count_users(builder *b, ir_node n) {
     count_users(b, ir_operand(b->g, n, k));
 }
 
-void program_choose_shared(builder *b, const segment_root *roots, int root_count) {
+/* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands
+   first, what is still dear given those before. */
+static void choose_shared(builder *b, const segment_root *roots, int root_count) {
   node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
   node_map seen = {0};
   for (int k = 0; k < root_count; k++)
@@ -292,13 +131,13 @@ void program_choose_shared(builder *b, const segment_root *roots, int root_count
   free(found.items);
 }
 
-/* --- the force of a bond ------------------------------------------------------------------------ */
+/* --- the force of a bond ---------------------------------------------------------------------- */
 
 /* The factors of what a force adds up over the neighbours; false where it is no such sum. */
 static bool factors_of_force(builder *b, const segment_root *r, term_list *t) {
   t->count = 0;
   if (ir_operation(b->g, r->node) != IR_FAMILY_SUM) return false;
-  if (!add_terms(b, ir_operand(b->g, r->node, 0), false, 1, t)) return false;
+  if (!program_terms(b, ir_operand(b->g, r->node, 0), false, 1, t)) return false;
   for (int k = 0; k < t->count; k++) {
     if (t->sign[k] < 0) return false;
     for (int n = 0; n < k; n++) /* of terms it is asked whether they are there, not how often */
@@ -339,7 +178,9 @@ static bool find_common(builder *b, const segment_root *roots, int root_count, t
   return any && common->count > 0;
 }
 
-ir_node program_common_factor(builder *b, const segment_root *roots, int root_count) {
+/* What all components of the force have as a factor, the same from either end, that no earlier pass
+   can know: the force of a bond over its length. IR_NONE: nothing that is worth it. */
+static ir_node common_factor(builder *b, const segment_root *roots, int root_count) {
   enum { DEAR = 4 }; /* a store and two loads, of fewer values than it is computed from */
   term_list common = {.count = 0};
   if (!find_common(b, roots, root_count, &common)) return IR_NONE;
@@ -348,14 +189,47 @@ ir_node program_common_factor(builder *b, const segment_root *roots, int root_co
   return late && program_parity(b, product) == 1 ? product : IR_NONE;
 }
 
-void program_put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
-                        ir_node input) {
+/* Puts `input` in its place. */
+static void put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
+                       ir_node input) {
   term_list of_factor = {.count = 0}, now;
-  if (!add_terms(b, factor, false, 1, &of_factor)) return;
+  if (!program_terms(b, factor, false, 1, &of_factor)) return;
   for (int k = 0; k < root_count; k++) {
     if (roots[k].target != TO_PARTICLE_FORCE || !factors_of_force(b, &roots[k], &now)) continue;
     const ir_node rest = product_of(b, &now, &of_factor, false);
     roots[k].node = ir_make(b->g, IR_FAMILY_SUM,
                             rest == IR_NONE ? input : ir_mul(b->g, rest, input), IR_NONE, IR_NONE);
   }
+}
+
+/* --- sharing ---------------------------------------------------------------------------------- */
+
+static ir_node shared_input(builder *b, int k) {
+  const char *name = ir_name(b->g, b->shared[k]);
+  const ir_source from = program_parity(b, b->shared[k]) < 0 ? IR_FROM_SHARED_ODD : IR_FROM_SHARED;
+  return ir_input(b->g, from, b->first_shared + k,
+                  name ? name : arena_printf(b->memory, "shared_%d", k), ON_BOND);
+}
+
+/* What follows from links and is the same from either end, too: its owner computes it in a pass of
+   its own. In the plane that pass costs more than the few bonds spare. */
+static void share_factor(builder *b, segment_root *roots, int root_count) {
+  if (b->first_shared + b->shared_count >= MOST_SHARED) return;
+  const ir_node factor = common_factor(b, roots, root_count);
+  if (factor == IR_NONE) return;
+  b->shared[b->shared_count++] = factor;
+  put_factor(b, roots, root_count, factor, shared_input(b, b->shared_count - 1));
+}
+
+/* Values that the ends of bonds share become inputs. */
+void program_share(builder *b, segment_root *roots, int root_count) {
+  choose_shared(b, roots, root_count);
+  b->first_shared = 2 * b->links.of_bonds;
+  ir_node *inputs = must_alloc(((size_t)b->shared_count + 1) * sizeof *inputs);
+  for (int k = 0; k < b->shared_count; k++)
+    inputs[k] = shared_input(b, k);
+  program_substitute(b, roots, root_count, b->shared, inputs, b->shared_count);
+  free(inputs);
+  if (b->sharing == SHARE_MORE) share_factor(b, roots, root_count);
+  b->links.of_bonds += (b->shared_count + 1) / 2;
 }

@@ -13,7 +13,7 @@
 #ifndef PERILAT_GENERATOR_EXPRESSION_H
 #define PERILAT_GENERATOR_EXPRESSION_H
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "generator/target/c_text.h"
 #include "generator/target/kernel_parts.h"
 #include "generator/target/words.h"

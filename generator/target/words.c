@@ -5,7 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 
 static const char *const c_words[] = {
 #define X(name, text) [SAY_##name] = text,

@@ -9,7 +9,8 @@
 
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
-#include "generator/plan/passes.h"
+#include "generator/interpreter/interpreted.h"
+#include "generator/plan/plan.h"
 
 typedef struct tested_law {
   arena *memory;

@@ -8,8 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "generator/interpreter/interpreted.h"
 #include "generator/kernel/model.h"
-#include "generator/plan/passes.h"
+#include "generator/plan/plan.h"
 #include "generator/run/run.h"
 #include "runtime/interaction/pairwise.h"
 #include "runtime/lattice/lattice.h"

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "generator/interpreter/interpreted.h"
 #include "generator/ir/interpret.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/verification/case.h"

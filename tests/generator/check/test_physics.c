@@ -17,8 +17,9 @@
 #include "dsl/semantics/law_limits.h"
 #include "dsl/syntax/parse.h"
 #include "generator/check/physics_parts.h"
-#include "generator/ir/interval.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/kernel/model.h"
+#include "generator/lower/lower_inputs.h"
 #include "runtime/deck/deck.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/check/physics/"

@@ -10,6 +10,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "generator/ir/derive.h"
 #include "generator/ir/interpret.h"
 #include "generator/ir/ir.h"
 

@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/interpret.h"
 #include "generator/ir/ir.h"
 

@@ -1,11 +1,11 @@
 /* The functions of a kernel, as roots in one graph: what each reads, writes and costs. The emitter
    writes them as C, the interpreter evaluates them; both walk the same nodes. */
-#ifndef PERILAT_GENERATOR_PASSES_H
-#define PERILAT_GENERATOR_PASSES_H
+#ifndef PERILAT_GENERATOR_PLAN_H
+#define PERILAT_GENERATOR_PLAN_H
 
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower.h"
-#include "generator/plan/program.h"
+#include "generator/plan/segment.h"
 #include "runtime/kernel.h"
 
 /* What is done over strips of bonds. */
@@ -21,7 +21,7 @@ typedef enum pass_kind {
 #define X(pass, member, task) pass,
   STRIP_PASSES(X)
 #undef X
-  PASS_STATES,
+      PASS_STATES,
   PASS_TANGENT,
   PASS_BOUNDS,
   PASS_COUNT
@@ -37,7 +37,7 @@ typedef enum pass_target {
   TO_OBSERVED,         /* observed[index] = present ? node : 0 */
   TO_OUT,              /* out[index] = node */
   TO_LOWER,
-  TO_UPPER             /* lower[index], upper[index] = node; infinite where there is no bound */
+  TO_UPPER /* lower[index], upper[index] = node; infinite where there is no bound */
 } pass_target;
 
 /* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
@@ -70,9 +70,10 @@ typedef enum loop_cutting {
 
 /* How the passes of a law of families go over the neighbours. */
 typedef enum family_form {
-  FAMILY_LOOPS,       /* by loops, of any number of neighbours */
-  FAMILY_WRITTEN_OUT, /* one loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
-  FAMILY_PAIRS        /* by loops over bonds that add to both ends (SHARE_PAIRS) */
+  FAMILY_LOOPS, /* by loops, of any number of neighbours */
+  /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
+  FAMILY_WRITTEN_OUT,
+  FAMILY_PAIRS /* by loops over bonds that add to both ends (SHARE_PAIRS) */
 } family_form;
 
 typedef struct kernel_plan {
@@ -88,29 +89,28 @@ typedef struct kernel_plan {
                         of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
                         and nothing before it */
   int uniform_count;
-  double flops_per_bond, divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
+  double flops_per_bond,
+      divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
   family_form form; /* of `step`, and of how chords and forces are written */
   family_program step, observe;
   program_links links;
-  bool reads_shape; /* inverse shape matrices */
+  bool reads_shape;         /* inverse shape matrices */
   bool stores, reads_rates; /* pl_law */
   arena *memory;
 } kernel_plan;
 
-/* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families. NULL with diagnostics
-   when it cannot be compiled. */
+/* An empty plan. */
+kernel_plan *plan_begin(const law *l);
+/* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families.
+   NULL with diagnostics when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
 /* A variant for parameters (indices into law->parameters) that differ from bond to bond. */
 kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
                                  diagnostics *d);
-/* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond evaluate it. */
+/* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond
+   evaluate it. */
 kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
 void plan_free(kernel_plan *p);
-
-/* The plan on the interpreter, behind the same interface as a compiled kernel, for any number of
-   threads. The plan must outlive it. */
-pl_law *plan_interpreted(const kernel_plan *p, const char *key);
-void plan_interpreted_free(pl_law *law);
 
 #endif

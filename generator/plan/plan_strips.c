@@ -1,13 +1,15 @@
-#include "generator/plan/passes.h"
+#include "generator/plan/plan_strips.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/law_inputs.h"
-#include "generator/plan/plan_parts.h"
+#include "generator/lower/lower_energy.h"
+#include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_roots.h"
 
 static const char *const pass_names[PASS_COUNT] = {
@@ -104,8 +106,9 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_no
   return pairs;
 }
 
-/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all passes compute a value
-   in the same way, and energies with old and new fields differ in no bit where the fields do not differ. */
+/* Everything at once, and before new fields take the place of those at hand (with_new_fields): all
+   passes compute a value in the same way, and energies with old and new fields differ in no bit
+   where the fields do not differ. */
 static void fuse(planner *p, seen_law *t) {
   const law *l = p->plan->law;
   const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
@@ -144,10 +147,10 @@ static seen_law see_law(planner *p) {
   substitute_law(g, l, &t.step, from, to, pairs);
   t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
 
-  t.stored = lower_stored_energy(l, g, &p->frozen);
+  t.stored = lower_stored_energy(g, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(l, g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
+  t.rate_power = lower_rate_power(g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
@@ -274,54 +277,6 @@ bool plan_bounds(kernel_plan *p, diagnostics *d) {
   return true;
 }
 
-/* --- what is hoisted -------------------------------------------------------------------------- */
-
-static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
-  if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
-}
-
-typedef struct hoisting {
-  const ir *graph;
-  unsigned char *hoisted;
-} hoisting;
-
-static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_count) {
-  const hoisting *h = context;
-  const ir *g = h->graph;
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  ir_mark(g, roots, root_count, needed);
-  for (int k = 0; k < root_count; k++)
-    mark_hoisted(g, roots[k], h->hoisted);
-  for (ir_node n = 0; n < ir_count(g); n++) {
-    if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
-    for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
-      mark_hoisted(g, ir_operand(g, n, k), h->hoisted);
-  }
-  free(needed);
-}
-
-void plan_hoist(kernel_plan *p) {
-  int count = ir_count(p->graph);
-  unsigned char *hoisted = must_calloc((size_t)count + 1, 1);
-  plan_visit(p, mark_hoisted_of_roots, &(hoisting){p->graph, hoisted});
-  for (ir_node n = 0; n < count; n++)
-    p->uniform_count += hoisted[n];
-  p->uniforms = arena_alloc(p->memory, ((size_t)p->uniform_count + 1) * sizeof *p->uniforms);
-  int at = 0;
-  for (ir_node n = 0; n < count; n++)
-    if (hoisted[n]) p->uniforms[at++] = n;
-  free(hoisted);
-}
-
-ir_cost plan_cost(const kernel_plan *p, const pass *a) {
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, ON_PARTICLE);
-  free(nodes);
-  return cost;
-}
-
 /* --- the plan --------------------------------------------------------------------------------- */
 
 static bool lower_both(planner *p, diagnostics *d) {
@@ -333,16 +288,7 @@ static bool lower_both(planner *p, diagnostics *d) {
   return true;
 }
 
-kernel_plan *plan_begin(const law *l) {
-  kernel_plan *plan = must_calloc(1, sizeof *plan);
-  plan->law = l;
-  plan->graph = ir_new();
-  ir_set_sources(plan->graph, l->sources);
-  plan->memory = arena_new();
-  return plan;
-}
-
-static bool plan_strips(kernel_plan *plan, diagnostics *d) {
+bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
   if (!lower_both(&p, d)) return false;
   static void (*const plan_strip[])(planner *, const seen_law *, pass_kind) = {
@@ -357,78 +303,4 @@ static bool plan_strips(kernel_plan *plan, diagnostics *d) {
   plan_states(&p, &bare);
   plan_tangent(&p, &bare);
   return true;
-}
-
-static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
-  if (!good || !plan_bounds(plan, d)) {
-    plan_free(plan);
-    return NULL;
-  }
-  plan_hoist(plan);
-  return plan;
-}
-
-kernel_plan *plan_kernel(const law *l, diagnostics *d) {
-  return plan_kernel_varying(l, NULL, 0, d);
-}
-
-static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d) {
-  kernel_plan *plan = plan_begin(l);
-  plan->kind = PL_STATE;
-  plan->form = form;
-  return finish(plan, plan_programs(plan, d), d);
-}
-
-/* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them only where they change. */
-static bool is_for_pairs(const law *l) {
-  enum { WRITTEN_OUT_FASTER = 12 };
-  bool on_bonds = false;
-  for (int k = 0; k < l->fields.count; k++)
-    on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
-  return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
-}
-
-kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
-  enum { MOST_WRITTEN_OUT = 18 };
-  if (l->irregular || l->neighbours == 0) return plan_families(l, FAMILY_LOOPS, d);
-  if (is_for_pairs(l)) {
-    kernel_plan *plan = plan_families(l, FAMILY_PAIRS, d);
-    if (!plan || program_sum_count(&plan->step) > 0) return plan;
-    plan_free(plan); /* nothing is the same or opposite at both ends */
-  }
-  return plan_families(l, l->neighbours <= MOST_WRITTEN_OUT ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
-}
-
-kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
-                                 diagnostics *d) {
-  if (l->tree->law == LAW_STATE && varying_count == 0) return plan_kernel_of_families(l, d);
-  if (l->tree->law == LAW_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
-                "parameters of a law of families cannot differ from bond to bond yet");
-    return NULL;
-  }
-  kernel_plan *plan = plan_begin(l);
-  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
-  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
-  for (int k = 0; k < varying_count; k++)
-    kept[k] = varying[k];
-  plan->varying = kept;
-  plan->varying_count = varying_count;
-  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
-  plan->dimensions = 2;
-  plan->dof = micropolar ? 3 : 2;
-  plan->force_planes = micropolar ? 4 : 2;
-  plan = finish(plan, plan_strips(plan, d), d);
-  if (!plan) return NULL;
-  ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
-  plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
-  plan->divisions_per_bond = cost.divisions;
-  return plan;
-}
-
-void plan_free(kernel_plan *p) {
-  if (!p) return;
-  ir_free(p->graph);
-  arena_free(p->memory);
-  free(p);
 }

@@ -1,9 +1,9 @@
-/* Inside of the lowering, shared by its parts: lower.c does rules and results, lower_value.c
-   expressions, lower_family.c what goes over a family and what is a tensor. */
-#ifndef PERILAT_GENERATOR_LOWER_PARTS_H
-#define PERILAT_GENERATOR_LOWER_PARTS_H
+/* A law on its way to the graph: the values of its names so far, the first reason why it cannot be
+   compiled, and what became of its text. */
+#ifndef PERILAT_GENERATOR_LOWERING_H
+#define PERILAT_GENERATOR_LOWERING_H
 
-#include "generator/lower/lower.h"
+#include "generator/lower/lowered.h"
 
 /* Expanding functions can grow a law without bound; these limits are far beyond any real one. */
 enum { MOST_NODES = 50000, MOST_VISITS = 2000000, MOST_CALLS_DEEP = 64, CALL_BUCKETS = 256 };
@@ -72,40 +72,16 @@ static inline components scalar(ir_node n) {
   return (components){1, {n}};
 }
 
-/* --- lower_value.c --- */
-
-/* Room for one more of `count` items. */
-void *lower_one_more(void *items, int count, size_t size);
-
-components lower_value(lowering *c, const expr *e);
-/* The same where one number is expected. */
-ir_node lower_expr(lowering *c, const expr *e);
-components *lower_binding_of(lowering *c, const symbol *s);
+components *lower_binding_of(const lowering *c, const symbol *s);
 void lower_bind(lowering *c, const symbol *s, components value);
 /* Constants and inputs keep their own names. */
 void lower_name_node(ir *g, ir_node n, const char *name, span where);
 void lower_name_value(lowering *c, components value, const char *name, span where);
 
-/* --- lower_family.c --- */
-
-/* The values that the neighbour has, toward me where it has one for each of its own neighbours. */
-components lower_neighbour(lowering *c, components value);
-/* Number of bonds of the particle. */
-ir_node lower_family_size(ir *g);
-/* Whether a force state is in N/m^6, and what it is in N: the bond force, the mean of both sides' forces in N, is the sum
-   of both sides' densities times both volumes. */
-bool lower_is_per_volumes(dimension d);
-ir_node lower_force_of_density(lowering *c, ir_node density);
-/* Unit vector along the reference bond, from i to j. */
-components lower_direction(lowering *c);
-/* Of the particle at hand, m^3. */
-ir_node lower_volume(lowering *c);
-/* 1 where the bonds of the particle resolve all strains, else 0. */
-ir_node lower_resolved(lowering *c);
-/* Functions of families and tensors. False: it is neither. */
-bool lower_family_call(lowering *c, const expr *e, components *out);
-components lower_tensor_binary(lowering *c, const expr *e, components a, components b);
-/* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the other side. */
-ir_node lower_force_state_of_energy(lowering *c, ir_node W);
+/* What stands in the text, for checks of it: noted by LOWER_STEP. */
+void lower_note_place(lowering *c, ir_node n, const expr *e);
+void lower_note_line(lowering *c, const expr *cases, int line, ir_node guard);
+/* Of LOWER_STEP alone. */
+void lower_note_flow(lowering *c, const stmt *rule, ir_node when, ir_node overstress);
 
 #endif

@@ -1,0 +1,40 @@
+#include "generator/lower/lower_inputs.h"
+
+#include "generator/lower/kinematics.h"
+#include "generator/lower/law_inputs.h"
+#include "runtime/kernel.h"
+
+ir_node lower_quantity(ir *g, builtin_quantity q) {
+  /* Of the number of bonds, too, a kernel knows the value of its bond class only (a full family).
+   */
+  placement on = law_motion_place(q) >= 0 ? ON_BOND : ON_BODY;
+  ir_node n = ir_input(g, IR_FROM_QUANTITY, (int)q, builtin_quantities[q].name, on);
+  return builtin_quantities[q].place == ON_BOND ? ir_mark_class(g, n) : n;
+}
+
+ir_node lower_parameter(ir *g, const law *l, int k) {
+  return ir_input(g, IR_FROM_PARAMETER, k, l->parameters.items[k]->name, ON_BODY);
+}
+
+ir_node lower_field(ir *g, const law *l, int k) {
+  return ir_input(g, IR_FROM_FIELD, k, l->fields.items[k]->name, l->fields.items[k]->place);
+}
+
+ir_node lower_volume(ir *g, const law *l) {
+  return l->irregular ? kinematics_input(g, ENDS_VOLUME_I) : lower_quantity(g, QUANTITY_V);
+}
+
+ir_node lower_inverse_shape(ir *g, const law *l, int row, int column) {
+  static const char *const names[] = {
+      "shape_0",  "shape_1",  "shape_2",  "shape_3",  "shape_4",  "shape_5",  "shape_6",
+      "shape_7",  "shape_8",  "shape_9",  "shape_10", "shape_11", "shape_12", "shape_13",
+      "shape_14", "shape_15", "shape_16", "shape_17", "shape_18", "shape_19", "shape_20"};
+  int size = lower_dimensions(l) == 2 ? 3 : 6; /* strains */
+  int r = row < column ? row : column, q = row < column ? column : row;
+  int at = r * size - r * (r - 1) / 2 + (q - r);
+  return ir_input(g, IR_FROM_SHAPE, at, names[at], ON_PARTICLE);
+}
+
+ir_node lower_resolved(ir *g, const law *l) {
+  return ir_input(g, IR_FROM_SHAPE, PL_SHAPE_VALUES(lower_dimensions(l)), "resolved", ON_PARTICLE);
+}

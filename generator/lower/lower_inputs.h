@@ -1,0 +1,27 @@
+/* Inputs of a law's graph: quantities, parameters, fields. */
+#ifndef PERILAT_GENERATOR_LOWER_INPUTS_H
+#define PERILAT_GENERATOR_LOWER_INPUTS_H
+
+#include "dsl/semantics/law.h"
+#include "generator/ir/ir.h"
+
+/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j and
+   length vary from bond to bond; the others are those of a bond class. */
+ir_node lower_quantity(ir *g, builtin_quantity q);
+/* The input node of parameter or field k. */
+ir_node lower_parameter(ir *g, const law *l, int k);
+ir_node lower_field(ir *g, const law *l, int k);
+/* 2 in a plane, 3 in space. */
+static inline int lower_dimensions(const law *l) {
+  return l->setting == SETTING_SPACE ? 3 : 2;
+}
+
+/* Volume of the particle, m^3: one for all on a lattice, each its own in irregular bodies. */
+ir_node lower_volume(ir *g, const law *l);
+/* Of families: 1 where the bonds of the particle resolve all strains, else 0. */
+ir_node lower_resolved(ir *g, const law *l);
+/* Entry (row, column) of the particle's inverse shape matrix, which the runtime keeps as an upper
+   triangle. */
+ir_node lower_inverse_shape(ir *g, const law *l, int row, int column);
+
+#endif

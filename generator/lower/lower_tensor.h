@@ -1,0 +1,20 @@
+/* Symmetric tensors and vectors, component by component. */
+#ifndef PERILAT_GENERATOR_LOWER_TENSOR_H
+#define PERILAT_GENERATOR_LOWER_TENSOR_H
+
+#include "generator/lower/lowering.h"
+
+/* a : b, of vectors a . b. */
+ir_node tensor_contract(ir *g, components a, components b);
+ir_node tensor_trace(ir *g, components a);
+components tensor_deviator(ir *g, components a);
+/* Half of the deviator's square. */
+ir_node tensor_J2(ir *g, components a);
+/* Principal value `which` of 1, 2, 3; the largest is the first. */
+ir_node tensor_principal(ir *g, components a, int which);
+/* Stress of a strain. */
+components tensor_hooke(ir *g, law_setting setting, components eps, ir_node E, ir_node nu);
+/* `a op b`, one of which may be a number. */
+components tensor_binary(lowering *c, const expr *e, components a, components b);
+
+#endif

@@ -1,0 +1,49 @@
+/* What lowering leaves of a law: its results as nodes of a graph, and what became of its text. */
+#ifndef PERILAT_GENERATOR_LOWERED_H
+#define PERILAT_GENERATOR_LOWERED_H
+
+#include "dsl/semantics/law.h"
+#include "generator/ir/ir.h"
+
+typedef enum lower_mode {
+  LOWER_STEP,        /* fields read below their rule have their new value */
+  LOWER_PROTECTABLE, /* the same, but a damage stays old where the input ENDS_PROTECTED is not 0 */
+  LOWER_HELD,        /* the same in families: where ENDS_HELD_I is, of bonds also ENDS_HELD_J */
+  LOWER_FROZEN /* fields keep the value at hand everywhere: the elastic law of a given state */
+} lower_mode;
+
+/* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
+typedef struct lowered_line { /* a case line with a guard */
+  const expr *cases;
+  int line, group; /* lines of one list in one call of a function share a group */
+  ir_node guard;
+} lowered_line;
+typedef struct lowered_place { /* an operation that is not defined everywhere */
+  ir_node node;
+  span where;
+} lowered_place;
+typedef struct lowered_flow {
+  const stmt *rule;
+  int field;
+  ir_node when;       /* IR_NONE: always */
+  ir_node overstress; /* a - b of a guard a >= b; IR_NONE for other guards */
+} lowered_flow;
+typedef struct lowered_text {
+  ir_node *rules; /* [law->fields.count] a damage's rule before it is kept in [0, 1] */
+  lowered_line *lines;
+  lowered_place *places;
+  lowered_flow *flows;
+  int line_count, place_count, flow_count;
+} lowered_text;
+
+typedef struct lowered_law {
+  ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
+  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  bool along_reference; /* it acts along the reference bond */
+  ir_node W;            /* the law's own `energy`, or IR_NONE */
+  ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
+  ir_node *outputs;     /* [law->outputs.count] */
+  lowered_text text;
+} lowered_law;
+
+#endif

@@ -1,0 +1,93 @@
+#include "generator/plan/plan.h"
+
+#include <stdlib.h>
+
+#include "dsl/base/arena.h"
+#include "generator/plan/plan_family.h"
+#include "generator/plan/plan_roots.h"
+#include "generator/plan/plan_strips.h"
+#include "generator/plan/program_facts.h"
+
+kernel_plan *plan_begin(const law *l) {
+  kernel_plan *plan = must_calloc(1, sizeof *plan);
+  plan->law = l;
+  plan->graph = ir_new();
+  ir_set_sources(plan->graph, l->sources);
+  plan->memory = arena_new();
+  return plan;
+}
+
+static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
+  if (!good || !plan_bounds(plan, d)) {
+    plan_free(plan);
+    return NULL;
+  }
+  plan_hoist(plan);
+  return plan;
+}
+
+kernel_plan *plan_kernel(const law *l, diagnostics *d) {
+  return plan_kernel_varying(l, NULL, 0, d);
+}
+
+static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d) {
+  kernel_plan *plan = plan_begin(l);
+  plan->kind = PL_STATE;
+  plan->form = form;
+  return finish(plan, plan_programs(plan, d), d);
+}
+
+/* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them
+   only where they change. */
+static bool is_for_pairs(const law *l) {
+  enum { WRITTEN_OUT_FASTER = 12 };
+  bool on_bonds = false;
+  for (int k = 0; k < l->fields.count; k++)
+    on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
+  return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
+}
+
+kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+  enum { MOST_WRITTEN_OUT = 18 };
+  if (l->irregular || l->neighbours == 0) return plan_families(l, FAMILY_LOOPS, d);
+  if (is_for_pairs(l)) {
+    kernel_plan *plan = plan_families(l, FAMILY_PAIRS, d);
+    if (!plan || program_sum_count(&plan->step) > 0) return plan;
+    plan_free(plan); /* nothing is the same or opposite at both ends */
+  }
+  return plan_families(l, l->neighbours <= MOST_WRITTEN_OUT ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
+}
+
+kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
+                                 diagnostics *d) {
+  if (l->tree->law == LAW_STATE && varying_count == 0) return plan_kernel_of_families(l, d);
+  if (l->tree->law == LAW_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
+                "parameters of a law of families cannot differ from bond to bond yet");
+    return NULL;
+  }
+  kernel_plan *plan = plan_begin(l);
+  bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
+  for (int k = 0; k < varying_count; k++)
+    kept[k] = varying[k];
+  plan->varying = kept;
+  plan->varying_count = varying_count;
+  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
+  plan->dimensions = 2;
+  plan->dof = micropolar ? 3 : 2;
+  plan->force_planes = micropolar ? 4 : 2;
+  plan = finish(plan, plan_strips(plan, d), d);
+  if (!plan) return NULL;
+  ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
+  plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
+  plan->divisions_per_bond = cost.divisions;
+  return plan;
+}
+
+void plan_free(kernel_plan *p) {
+  if (!p) return;
+  ir_free(p->graph);
+  arena_free(p->memory);
+  free(p);
+}

@@ -1,0 +1,16 @@
+/* The programs of a law of families: what is wanted of a particle, in the terms of the law. */
+#ifndef PERILAT_GENERATOR_PLAN_FAMILY_H
+#define PERILAT_GENERATOR_PLAN_FAMILY_H
+
+#include "generator/plan/plan.h"
+#include "generator/plan/program.h"
+
+/* Fills in a plan of families. False after a diagnostic. */
+bool plan_programs(kernel_plan *p, diagnostics *d);
+
+/* For programs of families: the components of the force on a particle (roots[dimensions]), and what
+   takes the place of stretch, rate, length and direction. */
+void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
+program_motion plan_motion(const kernel_plan *plan, bool along_reference);
+
+#endif

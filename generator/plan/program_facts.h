@@ -1,0 +1,30 @@
+/* What the runtime and the writers of a program ask of it once it is made. */
+#ifndef PERILAT_GENERATOR_PROGRAM_FACTS_H
+#define PERILAT_GENERATOR_PROGRAM_FACTS_H
+
+#include "generator/plan/segment.h"
+
+/* pl_program.at_hand */
+unsigned program_at_hand(const ir *g, const family_program *p);
+/* pl_program.upward, spared */
+unsigned program_upward(const ir *g, const family_program *p);
+int program_reaches_spared(const ir *g, const family_program *p);
+/* pl_program.shared of a pass */
+uint64_t program_shared_by(const family_pass *p);
+
+/* Whether bonds of the pass add to both ends. */
+bool program_is_paired(const family_pass *p);
+/* Whether the program writes the field, which stands toward neighbours, bond by bond at both
+   ends. */
+bool program_pairs_field(const family_program *p, int field);
+/* How many sums of what is the same for all bonds of a class (segment_is_constant) the program has,
+   or has before that segment's. */
+int program_constant_sums(const ir *g, const family_program *p, const segment *before);
+/* Which segment of pairs finds out where bonds are as is expected (ir_expect), for all that come
+   later; NULL: none. Later segments may expect only what it has asked of the motion. */
+const segment *program_asks(const ir *g, const family_program *p);
+bool program_is_told(const ir *g, const family_program *p, const segment *a);
+/* Sums that one pass adds to far ends, the most. */
+int program_sum_count(const family_program *p);
+
+#endif

@@ -1,0 +1,243 @@
+#include "generator/plan/program_schedule.h"
+
+#include <string.h>
+
+#include "generator/ir/rewrite.h"
+#include "generator/plan/program_mirror.h"
+
+typedef struct scheduler {
+  ir *g;
+  arena *memory;
+  family_pass *pass;
+  node_map phase, slot, plane;
+  const node_map *parity; /* of sums, as pass_view has it */
+  bool pairs;
+  int loop_count;
+} scheduler;
+
+/* Loops over the neighbours that must be done before the value can be had (of a particle), or
+   before the loop in which it can be had (toward a neighbour). */
+static int phase_of(scheduler *s, ir_node n) {
+  int known = map_get(&s->phase, n);
+  if (known >= 0) return known;
+  int phase = 0;
+  ir_op op = ir_operation(s->g, n);
+  for (int k = 0; k < ir_arity(op); k++) {
+    int below = phase_of(s, ir_operand(s->g, n, k));
+    phase = below > phase ? below : phase;
+  }
+  if (ir_is_reduction(op)) phase++;
+  map_set(&s->phase, n, phase);
+  return phase;
+}
+
+/* Segments stand in the order particles 0, neighbours 0, particles 1, ... */
+static segment *particles_after(scheduler *s, int loops) {
+  return &s->pass->segments[2 * loops];
+}
+
+static segment *neighbours_in(scheduler *s, int loop) {
+  return &s->pass->segments[2 * loop + 1];
+}
+
+static void add_root(scheduler *s, segment *to, segment_root root) {
+  if (to->root_count == to->root_capacity) {
+    int capacity = to->root_capacity ? 2 * to->root_capacity : 8;
+    segment_root *roots = arena_alloc(s->memory, (size_t)capacity * sizeof *roots);
+    if (to->root_count) memcpy(roots, to->roots, (size_t)to->root_count * sizeof *roots);
+    to->roots = roots;
+    to->root_capacity = capacity;
+  }
+  to->roots[to->root_count++] = root;
+}
+
+static segment_target target_of_reduction(ir_op op) {
+  return op == IR_FAMILY_SUM ? TO_SUM : op == IR_FAMILY_MAX ? TO_LARGEST : TO_SMALLEST;
+}
+
+static const char *name_of(scheduler *s, ir_node n, const char *kind, int index) {
+  const char *name = ir_name(s->g, n);
+  return name ? name : arena_printf(s->memory, "%s_%d", kind, index);
+}
+
+/* The particle's value n as an input of later segments; asks the segment that has it. */
+static ir_node slot_of(scheduler *s, ir_node n) {
+  int slot = map_get(&s->slot, n);
+  if (slot < 0) {
+    slot = s->pass->slot_count++;
+    map_set(&s->slot, n, slot);
+    ir_op op = ir_operation(s->g, n);
+    if (ir_is_reduction(op))
+      add_root(
+          s, neighbours_in(s, phase_of(s, n) - 1),
+          (segment_root){.node = ir_operand(s->g, n, 0),
+                         .target = target_of_reduction(op),
+                         .index = slot,
+                         .parity = map_get(s->parity, n) >= 0 ? map_get(s->parity, n) - 1 : 0});
+    else
+      add_root(s, particles_after(s, phase_of(s, n)),
+               (segment_root){.node = n, .target = TO_SLOT, .index = slot});
+  }
+  return ir_input(s->g, IR_FROM_SLOT, slot, name_of(s, n, "slot", slot), ON_PARTICLE);
+}
+
+static ir_node plane_of(scheduler *s, ir_node n) {
+  int plane = map_get(&s->plane, n);
+  if (plane < 0) {
+    plane = s->pass->plane_count++;
+    map_set(&s->plane, n, plane);
+    add_root(s, neighbours_in(s, phase_of(s, n)),
+             (segment_root){.node = n, .target = TO_PLANE, .index = plane});
+  }
+  return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
+}
+
+/* A value as a segment sees it: `loop` of the neighbours, or after `loop` loops for the
+   particle. */
+typedef struct segment_view {
+  scheduler *s;
+  segment_kind kind;
+  int loop;
+  node_map seen;
+} segment_view;
+
+static ir_node seen_in_segment(segment_view *v, ir_node n);
+
+static ir_node computed_here(segment_view *v, ir_node n) {
+  ir_node operand[3] = {IR_NONE, IR_NONE, IR_NONE};
+  for (int k = 0; k < ir_arity(ir_operation(v->s->g, n)); k++)
+    operand[k] = seen_in_segment(v, ir_operand(v->s->g, n, k));
+  return program_made_again(v->s->g, n, operand);
+}
+
+/* Values toward a neighbour that an earlier loop had: a plane costs a store and a load, and room on
+   the stack (64 KiB). */
+static bool is_worth_a_plane(scheduler *s, ir_node n, int loop) {
+  enum { DEAR = 4, MOST_PLANES = 16 };
+  if (phase_of(s, n) >= loop || program_cost_again(s->g, n, DEAR) < DEAR) return false;
+  return map_get(&s->plane, n) >= 0 || s->pass->plane_count < MOST_PLANES;
+}
+
+/* Of pairs, so that what is held can be told to be 0 where nothing is. */
+static bool is_worth_a_slot(const scheduler *s, ir_node n) {
+  if (!s->pairs || !ir_is_logical(s->g, n)) return true;
+  bool deep = false;
+  for (int k = 0; k < ir_arity(ir_operation(s->g, n)); k++)
+    deep = deep || !is_leaf(s->g, ir_operand(s->g, n, k));
+  return deep;
+}
+
+static ir_node seen_in_segment(segment_view *v, ir_node n) {
+  scheduler *s = v->s;
+  const ir *g = s->g;
+  int known = map_get(&v->seen, n);
+  if (known >= 0) return known;
+  ir_node image;
+  if (is_leaf(g, n) || is_uniform(g, n))
+    image = n;
+  else if (ir_is_reduction(ir_operation(g, n)))
+    image = slot_of(s, n);
+  else if (is_of_particle(g, n))
+    image = (v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop) && is_worth_a_slot(s, n)
+                ? slot_of(s, n)
+                : computed_here(v, n);
+  else
+    image = is_worth_a_plane(s, n, v->loop) ? plane_of(s, n) : computed_here(v, n);
+  map_set(&v->seen, n, image);
+  return image;
+}
+
+/* Roots in terms of what the segment can read. A root that is itself kept in a slot or a plane is
+   computed here. */
+static void view_segment(scheduler *s, segment *a, int loop) {
+  segment_view v = {.s = s, .kind = a->kind, .loop = loop};
+  for (int k = 0; k < a->root_count; k++) { /* more may be added to earlier segments only */
+    ir_node n = a->roots[k].node;
+    bool here = !is_leaf(s->g, n) && !is_uniform(s->g, n) &&
+                !ir_is_reduction(ir_operation(s->g, n)) &&
+                (a->kind == OVER_PARTICLES) == is_of_particle(s->g, n) && phase_of(s, n) == loop;
+    a->roots[k].node = here ? computed_here(&v, n) : seen_in_segment(&v, n);
+  }
+  map_clear(&v.seen);
+}
+
+static bool is_over_neighbours(segment_target target) {
+  return target >= TO_SUM && target != TO_SHARED;
+}
+
+static void drop_empty_segments(family_pass *p) {
+  int kept = 0;
+  for (int k = 0; k < p->segment_count; k++)
+    if (p->segments[k].root_count) p->segments[kept++] = p->segments[k];
+  p->segment_count = kept;
+}
+
+/* --- bonds that add to both ends -------------------------------------------------------------- */
+
+/* Where one end computes a value, products and sums may round once. */
+static void fuse_segment(ir *g, segment *a) {
+  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
+  for (int k = 0; k < a->root_count; k++)
+    nodes[k] = a->roots[k].node;
+  rewrite_fused(g, nodes, a->root_count, nodes);
+  for (int k = 0; k < a->root_count; k++)
+    a->roots[k].node = nodes[k];
+  free(nodes);
+}
+
+/* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond:
+   what the far end gets is complete when its turn comes. */
+static void pair_ends(ir *g, family_pass *p) {
+  segment *loop = NULL;
+  int sums = 0;
+  for (int k = 0; k < p->segment_count; k++) {
+    if (p->segments[k].kind == OVER_PARTICLES) continue;
+    if (loop || p->segments[k].kind == OVER_BONDS) return;
+    loop = &p->segments[k];
+  }
+  for (int k = 0; loop && k < loop->root_count; k++) {
+    const segment_root *r = &loop->roots[k];
+    if (!(r->target == TO_SUM && r->parity) && !(r->target == TO_NEIGHBOUR_FIELD && r->parity == 1))
+      return;
+  }
+  if (!loop) return;
+  loop->kind = OVER_PAIRS;
+  for (int k = 0; k < loop->root_count; k++) {
+    loop->roots[k].paired = true;
+    if (loop->roots[k].target == TO_SUM) loop->roots[k].sum = sums++;
+  }
+  fuse_segment(g, loop);
+}
+
+/* --- the pass --------------------------------------------------------------------------------- */
+
+void program_schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
+                      int root_count, const node_map *parity, bool pairs) {
+  scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};
+  for (int k = 0; k < root_count; k++) {
+    int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
+    s.loop_count = loops > s.loop_count ? loops : s.loop_count;
+  }
+  pass->segment_count = 2 * s.loop_count + 2; /* behind them that of the bonds */
+  pass->segments = arena_alloc(memory, (size_t)pass->segment_count * sizeof *pass->segments);
+  memset(pass->segments, 0, (size_t)pass->segment_count * sizeof *pass->segments);
+  for (int k = 0; k < pass->segment_count; k++)
+    pass->segments[k].kind = k % 2 ? OVER_NEIGHBOURS : OVER_PARTICLES;
+  segment *bonds = &pass->segments[pass->segment_count - 1];
+  bonds->kind = OVER_BONDS;
+  for (int k = 0; k < root_count; k++) {
+    int phase = phase_of(&s, roots[k].node);
+    segment *in = roots[k].target == TO_SHARED          ? bonds
+                  : is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
+                                                        : particles_after(&s, phase);
+    add_root(&s, in, roots[k]);
+  }
+  view_segment(&s, bonds, 0);
+  for (int k = pass->segment_count - 2; k >= 0; k--)
+    view_segment(&s, &pass->segments[k], k / 2);
+  drop_empty_segments(pass);
+  map_clear(&s.phase);
+  map_clear(&s.slot);
+  map_clear(&s.plane);
+  if (pairs) pair_ends(g, pass);
+}
