@@ -10,6 +10,7 @@
 #include "generator/drive/drive.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
 
@@ -160,7 +161,7 @@ static bool suits_law(driving *r) {
 static int open_law(driving *r) {
   char error[ERROR_LENGTH];
   const char *note;
-  bool good = run_open_material(&r->in->material, NULL, r->options->path, &r->model, &r->said);
+  bool good = material_law_open(&r->in->material, NULL, r->options->path, &r->model, &r->said);
   r->opened = r->model.memory != NULL;
   if (r->opened) tell(r, &r->model.said);
   if (!good) return INPUT_WRONG;
@@ -218,7 +219,7 @@ static bool set_values(driving *r) {
   r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
   for (int f = 0; f < kernel->field_count; f++)
     r->initial[f] = kernel->fields[f].initial;
-  bool good = material_parameters(&r->in->material, kernel, r->parameters, &r->said);
+  bool good = material_parameters(&r->model.values, kernel, r->parameters, &r->said);
   for (int k = 0; k < r->in->initial.assignment_count; k++)
     good = set_field(r, &r->in->initial.assignments[k]) && good;
   return good;

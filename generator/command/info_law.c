@@ -9,7 +9,7 @@
 
 #include "generator/check/physics.h"
 #include "generator/kernel/document.h"
-#include "generator/kernel/model.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
@@ -107,7 +107,8 @@ static law_setting meant_setting(const model *m, int dimensions) {
   return SETTING_PLANE_STRESS;
 }
 
-static bool choose_lattice(facts *f, const info_law_options *o, const model *m) {
+static bool choose_lattice(facts *f, const info_law_options *o) {
+  const model *m = &f->model;
   deck_lattice *d = &f->lattice;
   const bool space = m->law->setting == SETTING_SPACE;
   double spacing = 10e-3, thickness = 100e-3;
@@ -134,27 +135,26 @@ static bool choose_lattice(facts *f, const info_law_options *o, const model *m) 
 
 /* --- the law ---------------------------------------------------------------------------------- */
 
-/* Looks at the law for the lattice that it is meant for. */
-static bool open_lattice(facts *f, const info_law_options *o, const char *path) {
-  model m;
-  const bool opened = model_open(&m, path, NULL, 0);
-  if (!opened) tell(f, &m.said);
-  const bool good = opened && choose_lattice(f, o, &m);
-  model_close(&m);
-  return good;
+/* What is nowhere has the message of decks. */
+static bool find_law(facts *f, const char *name, char **path) {
+  *path = model_find(name, NULL);
+  f->material.model = *path ? *path : name;
+  f->material.item.where = (span){0, 0, UINT16_MAX};
+  return *path || access(name, F_OK) == 0 ||
+         material_law_open(&f->material, NULL, NULL, &f->model, &f->said);
 }
 
+/* The law, for the lattice that it is meant for or that is asked for. */
 static bool open_law(facts *f, const info_law_options *o) {
-  char *path = model_find(o->law, NULL);
-  f->material.model = path ? path : o->law;
-  f->material.item.where = (span){0, 0, UINT16_MAX};
-  const bool there =
-      path || access(o->law, F_OK) == 0; /* what is nowhere has a message of its own */
-  bool good = (!there || open_lattice(f, o, f->material.model)) &&
-              settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material,
-                            &f->said) &&
-              run_open_material(&f->material, &f->lattice, NULL, &f->model, &f->said);
-  if (f->model.memory) tell(f, &f->model.said);
+  char *path;
+  const bool opened =
+      find_law(f, o->law, &path) && model_open(&f->model, f->material.model, NULL, 0);
+  const bool asked =
+      opened && choose_lattice(f, o) &&
+      settings_read(f->memory, &f->sources, o->settings, o->setting_count, &f->material, &f->said);
+  const bool good = asked && material_law_take_options(&f->material, &f->model, &f->said) &&
+                    material_law_plan(&f->material, &f->lattice, &f->model, &f->said);
+  if (f->model.memory && (asked || !opened)) tell(f, &f->model.said);
   free(path);
   return good;
 }
@@ -177,7 +177,7 @@ static bool take_values(facts *f) {
     if (!f->given[k] && !f->missing) f->missing = p->items[k]->name;
   }
   if (f->missing) return true;
-  return material_parameters(&f->material, f->law, f->values, &f->said);
+  return material_parameters(&f->model.values, f->law, f->values, &f->said);
 }
 
 /* What single bonds tell; laws of families have none. */
@@ -547,7 +547,7 @@ static void put_implied(json *j, const facts *f) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     json_put_number(j, "transverse_speed", i->waves.transverse);
     json_put_number(j, "rotation_cutoff",
-               f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
+                    f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
     json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
     json_put_bool(j, "at_surface", i->step.at_surface);
     json_put_text(j, "ruling_mode", i->step.mode);

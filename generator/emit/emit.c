@@ -675,16 +675,17 @@ static void write_table(emitter *e, const char *member, const char *array, int c
              count ? array : "0");
 }
 
-static void write_descriptor(emitter *e, const char *key) {
+/* A line of its own, which nothing that a law says can be: its texts are literals and comments. */
+#define KEY_LINE(key) "\n    .key = \"" key "\",\n"
+
+static void write_descriptor(emitter *e) {
   const kernel_plan *p = e->plan;
   c_text_add(e->out,
              "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .kind = %d,\n"
              "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
              p->kind, p->dimensions, p->dof, p->force_planes);
   c_text_string(e->out, p->law->tree->name);
-  c_text_add(e->out, ",\n    .key = ");
-  c_text_string(e->out, key);
-  c_text_add(e->out, ",\n");
+  c_text_add(e->out, "," KEY_LINE(""));
   write_table(e, "parameter", "law_parameters", p->law->parameters.count);
   if (p->varying_count)
     c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
@@ -700,9 +701,9 @@ static void write_descriptor(emitter *e, const char *key) {
   c_text_add(e->out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
 }
 
-static void write_entry(emitter *e, const char *key) {
+static void write_entry(emitter *e) {
   c_text_add(e->out, "#if PL_IN_PART(0)\n");
-  write_descriptor(e, key);
+  write_descriptor(e);
   if (e->plan->kind == PL_STATE) {
     emit_program_members(e);
   } else {
@@ -766,7 +767,15 @@ void emit_find_uniforms(emitter *e) {
     e->uniform_of[e->plan->uniforms[k]] = k;
 }
 
-char *emit_kernel(const kernel_plan *p, const char *key) {
+char *emit_keyed(const char *unkeyed, const char *key) {
+  const char *line = strstr(unkeyed, KEY_LINE(""));
+  const char *rest = line + strlen(KEY_LINE(""));
+  c_text out = {0};
+  c_text_add(&out, "%.*s" KEY_LINE("%s") "%s", (int)(line - unkeyed), unkeyed, key, rest);
+  return out.text;
+}
+
+char *emit_kernel(const kernel_plan *p) {
   c_text out = {0};
   emitter e = {.plan = p, .graph = p->graph, .out = &out, .node_count = ir_count(p->graph)};
   emit_find_uniforms(&e);
@@ -779,7 +788,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
   write_bounds(&e);
   if (p->kind == PL_STATE) {
     emit_programs(&e);
-    write_entry(&e, key);
+    write_entry(&e);
     free(e.uniform_of);
     return out.text;
   }
@@ -788,7 +797,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
 #undef X
   write_states_pass(&e, &p->passes[PASS_STATES], "states", PL_STATE_RESULTS + p->law->fields.count);
   write_states_pass(&e, &p->passes[PASS_TANGENT], "tangent", PL_TANGENTS);
-  write_entry(&e, key);
+  write_entry(&e);
   free(e.uniform_of);
   return out.text;
 }

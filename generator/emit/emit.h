@@ -5,10 +5,11 @@
 
 #include "generator/plan/passes.h"
 
-/* malloc'ed text; the same plan and key give the same text. `key` goes into the descriptor; it is the toolchain_key of the
-   text emitted with the key "". No text of the law reaches C other than checked identifiers
-   and numbers; descriptions are written as escaped string literals. */
-char *emit_kernel(const kernel_plan *p, const char *key);
+/* malloc'ed text; the same plan gives the same text. The key in its descriptor is empty. No text of the law reaches C other
+   than checked identifiers and numbers; descriptions are written as escaped string literals. */
+char *emit_kernel(const kernel_plan *p);
+/* Such a text with a key in its descriptor, the toolchain_key of that text; malloc'ed. */
+char *emit_keyed(const char *unkeyed, const char *key);
 
 /* How the loop of a pass over strips is cut into stages (stages.h), and what that is estimated to cost: for
    --dump=passes. Nothing for other passes. */

@@ -6,6 +6,7 @@
 #include "dsl/base/c_linkage.h"
 #include "dsl/semantics/law.h"
 #include "generator/kernel/toolchain.h"
+#include "runtime/deck/deck.h"
 
 C_LINKAGE_BEGIN
 
@@ -17,10 +18,10 @@ typedef struct model {
   diagnostics said; /* all diagnostics so far; the caller prints them */
   char *path;       /* of the model file; NULL when it was not found */
   struct tree *tree;
-  struct law *law;
+  const struct law *law;
+  deck_material values; /* of a material's law: what it sets beside options (material_law.h) */
   kernel_plan *plan;
-  char *c_text; /* emitted C */
-  char *key;
+  char *c_text, *key;                   /* of model_c_text, model_key, once they were asked for */
   pl_law *interpreted;                  /* the plan on the interpreter */
   loaded_kernel loaded;                 /* the compiled kernel, when there is one */
   double seconds_front, seconds_kernel; /* text to plan; plan to loaded kernel */
@@ -55,14 +56,14 @@ char *model_find(const char *name, const char *beside);
 /* Reads, parses, checks. False on errors; they are in m->said. The model must be closed in any case. */
 bool model_open(model *m, const char *path, const law_choice *choices, int choice_count);
 /* The same of a text at hand, which is named `path` in messages and found there by what it includes. */
-bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices,
-                     int choice_count);
+bool model_open_text(model *m, const char *path, const char *text, size_t length,
+                     const law_choice *choices, int choice_count);
 /* True when the law is meant for a setting of the lattice, `plane_stress` say: its line `for` names it or is missing.
    Otherwise `meant` says what it is meant for: "plane_strain, space". */
 bool model_suits(const model *m, const char *setting, char *meant, size_t size);
 /* True when the law's line `for` names particles that stand on no lattice. */
 bool model_suits_irregular(const model *m);
-/* Plans the kernel and emits its C (m->said on errors). */
+/* Plans the kernel (m->said on errors). */
 bool model_plan(model *m);
 /* The same for a kernel in which these parameters (indices into law->parameters) differ from bond to bond. */
 bool model_plan_varying(model *m, const int *varying, int varying_count);
@@ -71,6 +72,9 @@ bool model_plan_of_families(model *m);
 /* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or
    that the cache is another one than was to be. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);
+/* The C of the planned kernel, emitted at the first call, and its toolchain_key. */
+const char *model_c_text(model *m);
+const char *model_key(model *m);
 void model_close(model *m);
 
 /* Whole text of a file (malloc'ed, NUL-terminated), of `-` the standard input, or NULL with a sentence in error. Refuses

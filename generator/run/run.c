@@ -126,7 +126,7 @@ static int set_up(run *r) {
   if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
   if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
-  fingerprint(r);
+  if (!r->options->check_only) fingerprint(r);
   return 0;
 }
 

@@ -54,15 +54,6 @@ typedef struct run_options {
    is has been written then, whole. */
 int run_deck(const run_options *o);
 
-/* Opens the law in the file `path` with the options that the material chooses, which are taken out of its assignments. */
-bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said);
-/* Opens and plans the law of a material with the options that the deck chooses (these are taken out of its assignments); the
-   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The law takes the setting of
-   the lattice (NULL: a bond is of a lattice in plane stress), and is planned for it. The model must be closed when
-   out->memory is set. */
-bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
-                       diagnostics *said);
-
 /* Does the law obey mechanics with these parameters on this lattice, a perfect one? What is wrong goes to `of_law`. That it does
    not with all that its bounds allow is a warning at `where` of `of_values`. */
 bool run_law_obeys(model *opened, const deck_lattice *lattice, const double *parameters, span where,

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/kernel_check.h"
 #include "generator/kernel/model.h"
@@ -38,9 +39,8 @@ static const pl_law *open_kernel_for(model *m, const char *path, const law_choic
   char error[2000] = "";
   const char *note;
   bool good = model_open(m, path, choice, choice ? 1 : 0);
-  if (good && setting) m->law->setting = *setting;
-  if (good) m->law->irregular = irregular;
-  if (good) m->law->neighbours = neighbours;
+  if (good)
+    m->law = law_on_lattice(m->law, setting ? *setting : m->law->setting, irregular, neighbours);
   if (!good || !model_plan(m)) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
@@ -88,12 +88,12 @@ static kernel_check check(const model *m, const pl_law *kernel, long states) {
 
 /* Compiles the kernel again with more flags; what the compiler says (malloc'ed), or NULL without
  * such a compiler. */
-static char *compiler_says(const model *m, const char *compiler, const char *more) {
+static char *compiler_says(model *m, const char *compiler, const char *more) {
   char command[2000];
   snprintf(command, sizeof command, "%s --version >/dev/null 2>&1", compiler);
   if (system(command) != 0) return NULL;
   snprintf(command, sizeof command, "%s %s %s -o /dev/null -x c - 2>&1 <'%s/%s.c'", compiler,
-           toolchain_flags(), more, toolchain_cache(), m->key);
+           toolchain_flags(), more, toolchain_cache(), model_key(m));
   FILE *in = popen(command, "r");
   const size_t room = 1 << 20;
   char *said = must_calloc(room, 1);
@@ -103,8 +103,8 @@ static char *compiler_says(const model *m, const char *compiler, const char *mor
   return said;
 }
 
-static void assert_vectorised(const model *m, const char *gcc, const char *function) {
-  const char *text = m->c_text, *at = strstr(text, function),
+static void assert_vectorised(model *m, const char *gcc, const char *function) {
+  const char *text = model_c_text(m), *at = strstr(text, function),
              *end = at ? strstr(at, "\n}\n") : NULL;
   /* All loops of the function: */
   while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) {
@@ -119,9 +119,9 @@ static void assert_vectorised(const model *m, const char *gcc, const char *funct
   }
 }
 
-static void assert_clean_and_vectorised(const model *m) {
+static void assert_clean_and_vectorised(model *m) {
   char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
-  assert_non_null(strstr(m->c_text, "PL_PASS void rows(const pl_law *law"));
+  assert_non_null(strstr(model_c_text(m), "PL_PASS void rows(const pl_law *law"));
   assert_vectorised(m, gcc, "PL_PASS void rows(const pl_law *law");
   /* Where something is expected: */
   assert_vectorised(m, gcc, "PL_PASS void rows_unusual(const pl_law *law");
@@ -144,7 +144,7 @@ static void assert_same_bits(const model *m, const pl_law *kernel, long states) 
   assert_int_equal(c.guards_both, c.guards);
 }
 
-static void check_kernel(const model *m, const pl_law *kernel, long states) {
+static void check_kernel(model *m, const pl_law *kernel, long states) {
   assert_clean_and_vectorised(m);
   assert_same_bits(m, kernel, states);
 }
@@ -197,7 +197,7 @@ static void assert_same_families(const kernel_plan *p, const pl_law *kernel, lon
   }
 }
 
-static void assert_text_is_clean(const model *m) {
+static void assert_text_is_clean(model *m) {
   free(compiler_says(m, "gcc", "-Wall -Wextra -Werror"));
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }
@@ -223,8 +223,7 @@ static void check_large_family(const char *path, law_setting setting, long state
   char error[2000];
   const char *note;
   assert_true(model_open(&m, path, NULL, 0));
-  m.law->setting = setting;
-  m.law->neighbours = LARGE;
+  m.law = law_on_lattice(m.law, setting, false, LARGE);
   assert_true(model_plan(&m));
   const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
   if (!kernel) fail_msg("%s", error);
@@ -318,15 +317,12 @@ static void laws_of_bonds_match_as_laws_of_families(void **state) {
       model m;
       char error[2000];
       assert_true(model_open(&m, names[k], NULL, 0));
-      m.law->setting = space ? SETTING_SPACE : SETTING_PLANE_STRESS;
-      m.plan = plan_kernel_of_families(m.law, &m.said);
-      assert_non_null(m.plan);
-      char *unkeyed = emit_kernel(m.plan, "");
-      m.key = toolchain_key(unkeyed);
-      free(unkeyed);
-      m.c_text = emit_kernel(m.plan, m.key);
-      if (!toolchain_load(m.c_text, m.key, &m.loaded, error, sizeof error)) fail_msg("%s", error);
-      assert_same_families(m.plan, m.loaded.law, 60000);
+      const char *note;
+      m.law = law_on_lattice(m.law, space ? SETTING_SPACE : SETTING_PLANE_STRESS, false, 0);
+      assert_true(model_plan_of_families(&m));
+      const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
+      if (!kernel) fail_msg("%s", error);
+      assert_same_families(m.plan, kernel, 60000);
       model_close(&m);
     }
 }
@@ -336,8 +332,8 @@ static char *check_cut(model *m, loop_cutting cutting) {
   char error[2000];
   loaded_kernel loaded = {0};
   m->plan->cutting = cutting;
-  char *unkeyed = emit_kernel(m->plan, ""), *key = toolchain_key(unkeyed);
-  char *text = emit_kernel(m->plan, key);
+  char *unkeyed = emit_kernel(m->plan), *key = toolchain_key(unkeyed);
+  char *text = emit_keyed(unkeyed, key);
   if (!toolchain_load(text, key, &loaded, error, sizeof error)) fail_msg("%s", error);
   assert_same_bits(m, loaded.law, 120000);
   toolchain_unload(&loaded);
