@@ -1,11 +1,12 @@
 /* Work of the rate-free forces with states and damages held. */
+#include "generator/check/physics_energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parts.h"
 #include "generator/ir/random_values.h"
 
 static const double ENERGY_TOLERANCE = 1e-9; /* of the work of the absolute forces */

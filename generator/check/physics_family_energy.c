@@ -1,11 +1,12 @@
 /* Work of the forces of a law of families with states and damages held. */
+#include "generator/check/physics_family_energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_parts.h"
 #include "runtime/analysis/implied.h"

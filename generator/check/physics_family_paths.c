@@ -1,11 +1,12 @@
 /* Histories of a body made of a law of families: ranges, jumps, flow, closed cycles. */
+#include "generator/check/physics_family_paths.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
 
 static const double DAMAGE_TOLERANCE = 1e-9;

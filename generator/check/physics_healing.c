@@ -1,4 +1,6 @@
 /* A plain state that takes force from the bond as a damage does, and gives it back. */
+#include "generator/check/physics_healing.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +8,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
-#include "generator/check/physics_parts.h"
+#include "generator/check/physics_paths.h"
+#include "generator/check/physics_states.h"
 #include "generator/ir/random_values.h"
 
 static const double FACTOR_TOLERANCE = 1e-6; /* of a factor of the force, at two sizes of motion */

@@ -8,7 +8,7 @@
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive.h"
-#include "generator/ir/interval.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"

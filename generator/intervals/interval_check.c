@@ -6,8 +6,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "generator/check/physics_bench.h"
-#include "generator/intervals/interval_parts.h"
 #include "generator/intervals/interval_sums.h"
+#include "generator/intervals/interval_witness.h"
 #include "generator/ir/interval.h"
 
 enum {

@@ -1,11 +1,8 @@
-/* What values can be within the declared bounds: ranges with open and closed ends, and a check of a
-   law that warns of divisions by zero and of roots and logarithms of negative numbers. Inside a
-   case line its guard holds, and those above it do not; parameters keep the bounds that relate
-   them. */
+/* Sets of numbers from one end to the other, with open and closed ends, and what operations make of them: what values can be
+   within the declared bounds of a law. */
 #ifndef PERILAT_GENERATOR_INTERVAL_H
 #define PERILAT_GENERATOR_INTERVAL_H
 
-#include "dsl/semantics/law.h"
 #include "generator/ir/ir.h"
 
 /* All numbers from low to high; an open end is not reached, an infinite one never. */
@@ -33,10 +30,5 @@ bool range_is_nonnegative(range a); /* all >= 0 */
 /* Result of an operation other than those above on the ranges of its operands, as far as it is
  * defined. */
 range range_apply(ir_op op, range a, range b);
-
-/* Warns of operations of a pairwise law that the declared bounds do not keep defined
-   (division-by-zero, domain) and of damages that they do not keep from 0 to 1 (damage-range). Each
-   warning shows a state; what is suspected but not found by drawing states is not said. */
-void interval_check(const law *l, diagnostics *d);
 
 #endif

@@ -12,7 +12,7 @@
 #include "dsl/syntax/parse.h"
 #include "generator/check/physics.h"
 #include "generator/emit/emit.h"
-#include "generator/ir/interval.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/plan/passes.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/fuzz/fuzz.h"

@@ -14,8 +14,10 @@
 #include <time.h>
 
 #include "dsl/syntax/parse.h"
-#include "generator/check/physics_parts.h"
-#include "generator/ir/interval.h"
+#include "generator/check/physics_energy.h"
+#include "generator/check/physics_states.h"
+#include "generator/check/physics_tangent.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck.h"
 

@@ -12,6 +12,7 @@
 
 #include "dsl/syntax/parse.h"
 #include "generator/ir/interpret.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/ir/interval.h"
 #include "generator/ir/random_values.h"
 

@@ -1,10 +1,10 @@
-/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c
-   drives the law, physics_family_energy.c judges work with states held, physics_family_paths.c
-   histories, physics_family_healing.c states that go back. */
-#ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
-#define PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
+/* A law of families on a free body of a few particles, driven on the interpreter: parameters, deformations, forces, what is
+   observed, and how its checks say what they find. What holds by construction is not checked: bond forces are means of both
+   sides, opposite to the bit, and stretches know no rotation. */
+#ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
+#define PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 
-#include "generator/check/physics_family.h"
+#include "generator/check/physics.h"
 #include "generator/plan/passes.h"
 #include "runtime/analysis/patch.h"
 
@@ -79,19 +79,5 @@ void family_bench_say(family_bench *b, diag_code code, span where, double size, 
 span family_bench_force(const family_bench *b);
 
 double family_work(const double *force, const double *way, long count, double *size);
-
-void family_check_rest(family_bench *b);
-void family_check_stiffness(family_bench *b);
-void family_check_elasticity(family_bench *b);
-/* Work with the fields held: stored energy, closed ways, what damage does; whole bodies and damaged ones. */
-void family_check_energy(family_bench *b, bool damaged);
-void family_check_energy_and_force(family_bench *b);
-
-/* Random histories: finite forces, bonds whose particles agree, ranges of damages, continuity, flow. */
-void family_check_histories(family_bench *b, int legs);
-void family_check_dissipation(family_bench *b, int cycles);
-
-/* A state that scales the forces may not go back toward its initial value (warning). */
-void family_check_healing(family_bench *b);
 
 #endif

@@ -1,6 +1,6 @@
 /* States that show what interval_check suspects. */
-#ifndef PERILAT_GENERATOR_INTERVAL_PARTS_H
-#define PERILAT_GENERATOR_INTERVAL_PARTS_H
+#ifndef PERILAT_GENERATOR_INTERVAL_WITNESS_H
+#define PERILAT_GENERATOR_INTERVAL_WITNESS_H
 
 #include "generator/check/physics_bench.h"
 #include "generator/ir/interval.h"
