@@ -6,7 +6,7 @@
 
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/emit/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"

@@ -1,4 +1,6 @@
 /* perilat drive: one bond, or one particle of a law of families, along a path. */
+#include "generator/command/command_drive.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,7 +9,13 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_bond.h"
+#include "generator/drive/drive_expect.h"
+#include "generator/drive/drive_family.h"
+#include "generator/drive/drive_grammar.h"
+#include "generator/drive/drive_path.h"
+#include "generator/drive/drive_table.h"
+#include "generator/drive/drive_write.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"

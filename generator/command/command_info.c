@@ -8,7 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
 #include "generator/command/info_law.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"

@@ -6,8 +6,9 @@
 
 #include "dsl/base/terminal.h"
 #include "generator/check/physics.h"
+#include "generator/command/command_drive.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"

@@ -11,7 +11,7 @@
 #include "dsl/print/explain.h"
 #include "dsl/print/format.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"

@@ -1,4 +1,6 @@
 /* What a path expects: which number of the table is meant, what it should be, and whether it is. */
+#include "generator/drive/drive_expect.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +9,10 @@
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_bond.h"
+#include "generator/drive/drive_family.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "runtime/deck/deck_value.h"
 
 #define CLOSED_FORM "closed_form_of_expectation_"

@@ -1,4 +1,6 @@
 /* What a drive leaves: table, CSV, HDF5, picture. */
+#include "generator/drive/drive_write.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -7,7 +9,8 @@
 #include <string.h>
 
 #include "dsl/base/terminal.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "generator/kernel/version.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/plot/plot.h"
