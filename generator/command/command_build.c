@@ -11,6 +11,7 @@
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "generator/run/run.h"
 
 #define ERROR_LENGTH 8192

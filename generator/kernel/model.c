@@ -11,6 +11,8 @@
 #include "generator/emit/emit.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/ordinary_file.h"
 

@@ -9,6 +9,7 @@
 #include "dsl/base/hash.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/version.h"
 #include "generator/run/run_parts.h"
 #include "runtime/base/whole_file.h"

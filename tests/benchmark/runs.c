@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/trial.h"
 

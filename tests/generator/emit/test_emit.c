@@ -18,6 +18,7 @@
 #include "generator/emit/emit.h"
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_compiler.h"
 
 #define ERROR_SIZE 2000
 

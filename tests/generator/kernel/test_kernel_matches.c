@@ -21,6 +21,8 @@
 #include "generator/emit/emit.h"
 #include "generator/kernel/kernel_check.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
 
 enum { PARAMETER_SETS = 4 };
 static const pl_bond_class bonds = {.s = 6.35e-3,

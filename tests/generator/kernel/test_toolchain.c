@@ -22,6 +22,8 @@
 #include "dsl/base/sha256.h"
 #include "generator/emit/prelude.h"
 #include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
 
 #define ERROR_SIZE 2000
 

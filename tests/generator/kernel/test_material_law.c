@@ -13,11 +13,12 @@
 #include <dlfcn.h>
 #include <fcntl.h>
 
-#include "command_tools.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/material_law.h"
+#include "generator/kernel/toolchain.h"
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
+#include "tests/generator/command_tools.h"
 
 /* Counts how often a law's file is opened. */
 static int laws_opened;
