@@ -1,4 +1,6 @@
 /* perilat run, perilat check: the options, then run.h or the front end. */
+#include "generator/command/command_run.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -15,7 +17,6 @@
 #include "generator/kernel/model.h"
 #include "generator/kernel/settings.h"
 #include "generator/plan/passes.h"
-#include "generator/run/run.h"
 #include "runtime/simulation/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */

@@ -12,7 +12,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/plan/passes.h"
-#include "generator/run/run.h"
+#include "generator/run/law_verdict.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/deck_value.h"

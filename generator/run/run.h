@@ -54,16 +54,6 @@ typedef struct run_options {
    is has been written then, whole. */
 int run_deck(const run_options *o);
 
-/* Does the law obey mechanics with these parameters on this lattice, a perfect one? What is wrong goes to `of_law`. That it does
-   not with all that its bounds allow is a warning at `where` of `of_values`. */
-bool run_law_obeys(model *opened, const deck_lattice *lattice, const double *parameters, span where,
-                   diagnostics *of_law, diagnostics *of_values);
-
-/* main() of a stand-alone solver. */
-int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count, const built_in_file *files,
-                        int file_count);
-
 C_LINKAGE_END
 
 #endif

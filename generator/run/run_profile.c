@@ -1,11 +1,11 @@
-/* --profile: where the time of a run went. */
+#include "generator/run/run_profile.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/run/run_parts.h"
 #include "runtime/base/clock.h"
 
 /* --- the machine ------------------------------------------------------------------------------ */

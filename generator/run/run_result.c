@@ -1,4 +1,5 @@
-/* What a run writes: paths, result, frames, checkpoints. */
+#include "generator/run/run_result.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -11,7 +12,7 @@
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/version.h"
-#include "generator/run/run_parts.h"
+#include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/lattice/shape_matrix.h"
 

@@ -17,7 +17,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/toolchain.h"
 #include "generator/plan/passes.h"
-#include "generator/run/run.h"
+#include "generator/run/law_verdict.h"
 #include "tests/generator/command_tools.h"
 
 /* Counts how often a law's file is opened. */
