@@ -1,5 +1,5 @@
-/* A model file on its way to a kernel: found, read, parsed, checked, planned, compiled (or interpreted). The only place
-   where the front end meets the file system. */
+/* A model file on its way to a kernel: found, read, parsed, checked, planned, compiled (or interpreted). The room: from a
+   law's file and a deck's material to a loaded kernel; the only place where the language meets the file system. */
 #ifndef PERILAT_GENERATOR_MODEL_H
 #define PERILAT_GENERATOR_MODEL_H
 
