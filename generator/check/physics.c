@@ -17,7 +17,7 @@
 #include "generator/check/physics_tangent.h"
 #include "runtime/base/clock.h"
 
-/* --- the checks --------------------------------------------------------------------------------- */
+/* --- the checks ------------------------------------------------------------------------------- */
 
 static int times(const physics_options *o, int usual) {
   return (int)(usual * (o->effort > 0 ? o->effort : 1));
@@ -55,14 +55,14 @@ static void family_dissipation(family_bench *b) {
   family_check_dissipation(b, times(b->options, 5));
 }
 
-/* A check: what it may say, for which laws it is, and what a law has failed already when it is left out, because it would
-   say the same again. Codes stand up to the first 0, which is none of mechanics. */
+/* A check: what it may say, for which laws it is, and what a law has failed already when it is
+   left out, because it would say the same again. Codes stand up to the first 0, which is none of
+   mechanics. */
 typedef struct physics_row {
   diag_code says[6];
   void (*of_bonds)(physics *p);         /* NULL: not for laws of bonds */
   void (*of_families)(family_bench *b); /* NULL: not for laws of families */
-  double
-      share; /* of the time that laws of bonds have; 0: it goes on with what is left of the one before */
+  double share; /* of the time that laws of bonds have; 0: what the one before has left */
   diag_code hushed_by[9];
 } physics_row;
 

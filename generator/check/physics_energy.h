@@ -1,4 +1,5 @@
-/* Work of the forces of a bond: is it stored, is it lost by damage, is it what the law gives as its energy? */
+/* Work of the forces of a bond: is it stored, is it lost by damage, is it what the law gives as
+   its energy? */
 #ifndef PERILAT_GENERATOR_PHYSICS_ENERGY_H
 #define PERILAT_GENERATOR_PHYSICS_ENERGY_H
 

@@ -324,8 +324,8 @@ static double energy_beside(family_bench *b, const double *u, const double *v, d
   return family_bench_energy(b);
 }
 
-/* Slope of the energy along v, against the work of the forces. Damaged bodies only where the law claims an energy for
-   them. */
+/* Slope of the energy along v, against the work of the forces. Damaged bodies only where the law
+   claims an energy for them. */
 void family_check_energy_and_force(family_bench *b) {
   enum { ROUNDS = 4 };
   const double share = 1e-4;

@@ -1,4 +1,5 @@
-/* Work of the forces of a body of families with its states held: rest, stiffness, elastic constants, stored energy. */
+/* Work of the forces of a body of families with its states held: rest, stiffness, elastic
+   constants, stored energy. */
 #ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_ENERGY_H
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_ENERGY_H
 
@@ -7,7 +8,8 @@
 void family_check_rest(family_bench *b);
 void family_check_stiffness(family_bench *b);
 void family_check_elasticity(family_bench *b);
-/* Work with the fields held: stored energy, closed ways, what damage does; whole bodies and damaged ones. */
+/* Work with the fields held: stored energy, closed ways, what damage does; whole bodies and
+   damaged ones. */
 void family_check_energy(family_bench *b, bool damaged);
 void family_check_energy_and_force(family_bench *b);
 

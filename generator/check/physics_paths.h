@@ -1,4 +1,5 @@
-/* Work of the forces of a bond around closed paths, without and with the states that change on the way. */
+/* Work of the forces of a bond around closed paths, without and with the states that change on
+   the way. */
 #ifndef PERILAT_GENERATOR_PHYSICS_PATHS_H
 #define PERILAT_GENERATOR_PHYSICS_PATHS_H
 
@@ -6,8 +7,9 @@
 
 void physics_check_closed_path(physics *p);
 void physics_check_dissipation(physics *p);
-/* "0.001, 0, -0.002" or, of stretch and end rotations, "(0.001, 0, 0), ...": the corners after the
- * first; of a law that reads the rate "0.001 at 10 1/s" when `rates` has those of the legs (NULL: no). */
+/* "0.001, 0, -0.002" or, of stretch and end rotations, "(0.001, 0, 0), ...": the corners after
+   the first; of a law that reads the rate "0.001 at 10 1/s" when `rates` has those of the legs
+   (NULL: no). */
 void physics_describe_way(const physics *p, const motion *corners, const double *rates, int count,
                           char *text, size_t size);
 

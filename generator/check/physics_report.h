@@ -1,5 +1,5 @@
-/* What the checks of one law of bonds know of it, and how they say what they find: each breach once, with the state that
-   shows it. */
+/* What the checks of one law of bonds know of it, and how they say what they find: each breach
+   once, with the state that shows it. */
 #ifndef PERILAT_GENERATOR_PHYSICS_REPORT_H
 #define PERILAT_GENERATOR_PHYSICS_REPORT_H
 

@@ -1,5 +1,5 @@
-/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime with deck, law and kernel
-   built in. Running a solver needs no compiler. */
+/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime
+   with deck, law and kernel built in. Running a solver needs no compiler. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -275,8 +275,8 @@ static void describe(const driving *r) {
   drive_print(r->in, t, stdout);
 }
 
-/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0 where
-   it does not fall by more than a coarse path explains. */
+/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0
+   where it does not fall by more than a coarse path explains. */
 static long largest_fall(const drive_table *t) {
   const drive_column *energy = &t->columns[t->column_count - DRIVE_ENERGY_COUNT];
   const double *lost = energy[DRIVE_ENERGY_DISSIPATED_DAMAGE].values;

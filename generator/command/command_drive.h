@@ -4,7 +4,8 @@
 
 #include "dsl/base/diagnostics_json.h"
 
-/* `perilat check path.nml`: everything of a drive but the driving. `report` as in run_options. Exit status. */
+/* `perilat check path.nml`: everything of a drive but the driving. `report` as in run_options.
+   Exit status. */
 int drive_check(const char *path, const char *const *settings, int count, diag_json *report);
 
 #endif

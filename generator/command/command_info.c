@@ -1,4 +1,5 @@
-/* perilat info: what a law implies, what a deck or a result holds, and the names that laws may use. */
+/* perilat info: what a law implies, what a deck or a result holds, and the names that laws may
+   use. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

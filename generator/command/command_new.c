@@ -1,4 +1,5 @@
-/* perilat new: a law to start from, the path that one bond of it is driven along, and the deck of a small specimen. */
+/* perilat new: a law to start from, the path that one bond of it is driven along, and the deck
+   of a small specimen. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -149,7 +149,8 @@ typedef struct checking {
   physics_report physics;
 } checking;
 
-/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none. False after messages. */
+/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none.
+   False after messages. */
 static bool take_values(checking *c, double **values) {
   const symbol_list *list = &c->model.law->parameters;
   *values = NULL;

@@ -21,7 +21,8 @@ enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
 
 /* --- format ----------------------------------------------------------------------------------- */
 
-/* Beside the file, then in its place: a reader sees the old text or the new one, whatever happens. */
+/* Beside the file, then in its place: a reader sees the old text or the new one, whatever
+   happens. */
 static bool write_in_place(const char *given, const char *text, char *error, size_t size) {
   struct stat about;
   char *path = realpath(given, NULL); /* a link stays a link */

@@ -17,9 +17,10 @@ int law_facts_passes(const kernel_plan *p) {
   return p->kind == PL_STATE ? p->step.pass_count : 1;
 }
 
-/* --- bytes ------------------------------------------------------------------------------------- */
+/* --- bytes ------------------------------------------------------------------------------------ */
 
-/* Arrays that a segment over neighbours or bonds reads and writes, without what a pass keeps for itself. */
+/* Arrays that a segment over neighbours or bonds reads and writes, without what a pass keeps for
+   itself. */
 static long arrays_of_segment(const ir *g, const segment *a) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   long count = 1; /* the bits of the bonds */

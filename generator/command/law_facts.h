@@ -41,7 +41,8 @@ const char *law_kind_text(const law *l);
 bool law_facts_of_families(const law_facts *f);
 /* Passes over the bonds in a step. */
 int law_facts_passes(const kernel_plan *p);
-/* Bytes that one bond reads and writes in a step, most of them from a cache: neighbouring bonds share their ends. */
+/* Bytes that one bond reads and writes in a step, most of them from a cache: neighbouring bonds
+   share their ends. */
 long law_facts_bytes(const kernel_plan *p);
 
 #endif

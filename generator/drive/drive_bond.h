@@ -1,4 +1,5 @@
-/* One bond along x between two particles, driven by the passes that a beam runs, compiled or on the interpreter. */
+/* One bond along x between two particles, driven by the passes that a beam runs, compiled or on
+   the interpreter. */
 #ifndef PERILAT_GENERATOR_DRIVE_BOND_H
 #define PERILAT_GENERATOR_DRIVE_BOND_H
 

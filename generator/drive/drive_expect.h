@@ -15,9 +15,10 @@ typedef struct drive_verdict {
   double beside[2]; /* times of the rows before and after it */
 } drive_verdict;
 
-/* What every &expect asks for, before anything is driven: names, units and times are checked against `columns` (of
-   drive_columns, which must stay), closed forms are compiled as further outputs of `m`, the law as it will be driven.
-   NULL, with messages, when one cannot be understood. */
+/* What every &expect asks for, before anything is driven: names, units and times are checked
+   against `columns` (of drive_columns, which must stay), closed forms are compiled as further
+   outputs of `m`, the law as it will be driven. NULL, with messages, when one cannot be
+   understood. */
 typedef struct drive_expectations drive_expectations;
 drive_expectations *drive_expectations_read(const drive_input *in, const model *m,
                                             const drive_table *columns, diagnostics *d);

@@ -1,5 +1,5 @@
-/* One particle of a law of families, driven along a path of strain: a lattice in which all particles are alike, so that
-   one of them, periodic, stands for all. */
+/* One particle of a law of families, driven along a path of strain: a lattice in which all
+   particles are alike, so that one of them, periodic, stands for all. */
 #include "generator/drive/drive_family.h"
 
 #include <math.h>
@@ -32,8 +32,8 @@ static int part(int dimensions, int k) {
   return dimensions == 2 ? plane_parts[k] : space_parts[k];
 }
 
-/* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of the step that begins with
-   the fields at hand. NULL when the law cannot be lowered. */
+/* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of
+   the step that begins with the fields at hand. NULL when the law cannot be lowered. */
 static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   kernel_plan *p = plan_begin(l);
   lowered_law step;
@@ -70,7 +70,7 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   return p;
 }
 
-/* --- the particle ---------------------------------------------------------------------------------- */
+/* --- the particle ----------------------------------------------------------------------------- */
 
 typedef struct driven_particle {
   const pl_law *kernel;

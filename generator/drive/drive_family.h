@@ -7,10 +7,11 @@
 #include "generator/drive/drive_table.h"
 #include "runtime/kernel.h"
 
-/* As drive_run, drive_columns, drive_observe: one particle under the path's strains (small, as tensor components), its
-   neighbours always in the same state. Columns: time; strain_xx, ...; strain_rate_xx, ...; stress_xx, ... (by virtual
-   work of the bond forces); F_1, ... (force state toward each neighbour, in the order of the lattice); the law's fields
-   and outputs (toward neighbours: name_1, ...); energies of the particle: stored, dissipated, external. */
+/* As drive_run, drive_columns, drive_observe: one particle under the path's strains (small, as
+   tensor components), its neighbours always in the same state. Columns: time; strain_xx, ...;
+   strain_rate_xx, ...; stress_xx, ... (by virtual work of the bond forces); F_1, ... (force
+   state toward each neighbour, in the order of the lattice); the law's fields and outputs
+   (toward neighbours: name_1, ...); energies of the particle: stored, dissipated, external. */
 bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
                       const double *parameters, const double *initial, drive_table *out,
                       diagnostics *d);

@@ -1,4 +1,5 @@
-/* The groups of a path for `perilat drive`, with their keys: a namelist file, read and described as decks are. */
+/* The groups of a path for `perilat drive`, with their keys: a namelist file, read and described
+   as decks are. */
 #ifndef PERILAT_GENERATOR_DRIVE_GRAMMAR_H
 #define PERILAT_GENERATOR_DRIVE_GRAMMAR_H
 
@@ -32,8 +33,8 @@ const deck_group_info *drive_group(const char *name);
 /* True when `file` has a group that only paths have; that only decks have. */
 bool drive_is_path(const char *file);
 bool drive_is_deck(const char *file);
-/* True, after a sentence on the standard error stream, when `file` is a path for `perilat drive` and
-   not the deck that `perilat COMMAND` needs. */
+/* True, after a sentence on the standard error stream, when `file` is a path for `perilat drive`
+   and not the deck that `perilat COMMAND` needs. */
 bool drive_refuse_path(const char *command, const char *file);
 
 #endif

@@ -8,7 +8,8 @@
 double drive_at(const drive_input *in, drive_quantity q, double time);
 double drive_slope(const drive_input *in, drive_quantity q, double time);
 bool drive_prescribes(const drive_input *in, drive_quantity q);
-/* Times within the path at which one of its pieces begins, ends or has a corner, ascending; malloc'ed. */
+/* Times within the path at which one of its pieces begins, ends or has a corner, ascending;
+   malloc'ed. */
 double *drive_corners(const drive_input *in, long *count);
 /* Times from 0 to the end at which the bond is evaluated, ascending: even steps, the corners of the
    path and the times that expectations name; malloc'ed. */

@@ -1,5 +1,6 @@
-/* What is driven, and how: the groups of a path as they were read. The room: one bond, or one particle of a law of families,
-   driven along a path without a lattice, what it answers row by row, with its energies, and what it is expected to answer. */
+/* What is driven, and how: the groups of a path as they were read. The room: one bond, or one
+   particle of a law of families, driven along a path without a lattice, what it answers row by
+   row, with its energies, and what it is expected to answer. */
 #ifndef PERILAT_GENERATOR_DRIVE_PATH_H
 #define PERILAT_GENERATOR_DRIVE_PATH_H
 
@@ -94,8 +95,8 @@ typedef struct drive_input {
   int expect_count;
 } drive_input;
 
-/* Reads sources->items[file], changed by overrides "group.key=value" as those of a deck; a table in a &path is
-   read from its file beside it. NULL on errors. */
+/* Reads sources->items[file], changed by overrides "group.key=value" as those of a deck; a table
+   in a &path is read from its file beside it. NULL on errors. */
 drive_input *drive_read(arena *a, source_set *sources, int file, const deck_override *overrides,
                         int override_count, diagnostics *d);
 

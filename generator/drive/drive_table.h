@@ -1,4 +1,5 @@
-/* The table of a drive: a column for each quantity, state, output and energy, a row for each time. */
+/* The table of a drive: a column for each quantity, state, output and energy, a row for each
+   time. */
 #ifndef PERILAT_GENERATOR_DRIVE_TABLE_H
 #define PERILAT_GENERATOR_DRIVE_TABLE_H
 
@@ -41,8 +42,8 @@ typedef struct drive_column {
 
 typedef struct drive_table {
   bool of_families;
-  int way,
-      force; /* columns of what is prescribed and what answers: stretch and N, first strain and stress */
+  /* Columns of what is prescribed and what answers: stretch and N, first strain and stress. */
+  int way, force;
   int law_column; /* those of the law's fields, then its outputs, begin here */
   drive_column *columns;
   int column_count;

@@ -134,7 +134,7 @@ static void print_table(const drive_table *t, const bool *shown, FILE *out) {
   free(columns);
 }
 
-/* --- rows that are printed --------------------------------------------------------------------- */
+/* --- rows that are printed -------------------------------------------------------------------- */
 
 static long row_of_largest_force(const drive_table *t) {
   const double *N = t->columns[t->force].values;

@@ -1,5 +1,6 @@
-/* The room: what a law does for all values between its bounds, not only for those that were tried. Inside a case line its
-   guard holds, and those above it do not; parameters keep the bounds that relate them. */
+/* The room: what a law does for all values between its bounds, not only for those that were
+   tried. Inside a case line its guard holds, and those above it do not; parameters keep the
+   bounds that relate them. */
 #ifndef PERILAT_GENERATOR_INTERVAL_CHECK_H
 #define PERILAT_GENERATOR_INTERVAL_CHECK_H
 

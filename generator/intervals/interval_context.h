@@ -1,4 +1,5 @@
-/* What is known in a branch of a law: relations that its guards give, as sums that are not negative, positive or not zero.
+/* What is known in a branch of a law: relations that its guards give, as sums that are not
+   negative, positive or not zero.
 
      w = | 0          if r <= r_0         in the second line r - r_0 > 0 is known, so that
          | 1 - r_0/r  otherwise           r is not 0 where r_0 >= 0, and r_0/r < 1 */
@@ -51,7 +52,8 @@ void context_add_relation(const ir *g, context *c, relation_kind kind, const sum
 
 /* The sums with either operand in place of max, min or |x| in term k; false where it holds none. */
 bool sum_unbend(const ir *g, const sum *s, int k, sum *with_first, sum *with_second);
-/* True when the sum is at most both of those that sum_unbend gives: c - |x| is at most c - x and c + x. */
+/* True when the sum is at most both of those that sum_unbend gives: c - |x| is at most c - x and
+   c + x. */
 bool sum_term_is_least(const ir *g, const sum_term *t);
 
 #endif

@@ -1,4 +1,5 @@
-/* The range of every value of a law, case by case; warns of operations that are not defined within them. */
+/* The range of every value of a law, case by case; warns of operations that are not defined
+   within them. */
 #ifndef PERILAT_GENERATOR_INTERVAL_RANGES_H
 #define PERILAT_GENERATOR_INTERVAL_RANGES_H
 

@@ -1,4 +1,5 @@
-/* What is said of an operation that may not be defined: where it stands, and a state that shows it. */
+/* What is said of an operation that may not be defined: where it stands, and a state that shows
+   it. */
 #ifndef PERILAT_GENERATOR_INTERVAL_WARNING_H
 #define PERILAT_GENERATOR_INTERVAL_WARNING_H
 

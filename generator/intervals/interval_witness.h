@@ -17,8 +17,8 @@ typedef struct interval_condition {
   bool truth;
 } interval_condition;
 
-/* Text (malloc'ed) of a state within the declared bounds and the ranges of its fields at which the conditions hold and `operand`
-   is as wished; NULL when none is found. */
+/* Text (malloc'ed) of a state within the declared bounds and the ranges of its fields at which
+   the conditions hold and `operand` is as wished; NULL when none is found. */
 char *interval_witness(bench *b, const range *fields, ir_node operand, interval_wish wish,
                        const interval_condition *conditions, int count);
 

@@ -37,7 +37,8 @@ static const char *find_choice(const symbol *option, const deck_assignment *a, d
   return NULL;
 }
 
-/* A material's assignment that names an option of the law is a choice, all others are values of parameters. */
+/* A material's assignment that names an option of the law is a choice, all others are values of
+   parameters. */
 bool material_law_take_options(const deck_material *m, model *out, diagnostics *said) {
   const size_t most = (size_t)m->assignment_count + 1;
   deck_assignment *values = arena_alloc(out->memory, most * sizeof *values);
@@ -59,7 +60,7 @@ bool material_law_take_options(const deck_material *m, model *out, diagnostics *
   return good;
 }
 
-/* --- reading --------------------------------------------------------------------------------- */
+/* --- reading ---------------------------------------------------------------------------------- */
 
 /* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
  * of laws are shown. */
@@ -149,7 +150,7 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   return false;
 }
 
-/* --- the plan ---------------------------------------------------------------------------------- */
+/* --- the plan --------------------------------------------------------------------------------- */
 
 /* The parameter of a &field in the law, or -1 after a message. */
 static int find_varying(const deck_material *m, int field, const law *l, diagnostics *said) {
@@ -174,7 +175,8 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
   return found;
 }
 
-/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's does. */
+/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's
+   does. */
 static bool plan_material(const deck_material *m, model *out, diagnostics *said) {
   int *varying = must_calloc((size_t)m->varying_count + 1, sizeof *varying), count = 0;
   bool good = true;
@@ -191,8 +193,8 @@ static bool plan_material(const deck_material *m, model *out, diagnostics *said)
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a central law runs as one of
-   families. */
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a
+   central law runs as one of families. */
 static bool needs_families(const deck_lattice *l, const law *of) {
   return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
 }

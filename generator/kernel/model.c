@@ -63,7 +63,8 @@ static bool ends_in(const char *text, const char *tail) {
   return n > m && strcmp(text + n - m, tail) == 0;
 }
 
-/* A deck's first group begins with `&`, before it are blanks and comments; anything else is taken for a law. */
+/* A deck's first group begins with `&`, before it are blanks and comments; anything else is
+   taken for a law. */
 static file_kind kind_of_text(const char *text) {
   for (; *text; text += strcspn(text, "\n")) {
     text += strspn(text, " \t\r\n");

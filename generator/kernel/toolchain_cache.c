@@ -117,7 +117,8 @@ bool cache_put(const char *path, const char *text) {
   return false;
 }
 
-/* A file that a compilation makes beside KEY.so or KEY.c and takes away at its end: KEY.so.XXXXXX.tmp and the like. */
+/* A file that a compilation makes beside KEY.so or KEY.c and takes away at its end:
+   KEY.so.XXXXXX.tmp and the like. */
 static bool is_passing(const char *name) {
   const size_t key = strspn(name, "0123456789abcdef");
   return key == 2 * SHA256_SIZE && name[key] == '.' && strchr(name + key + 1, '.');
@@ -139,7 +140,7 @@ void cache_clear_remains(const char *folder) {
   if (all) closedir(all);
 }
 
-/* --- the seal ---------------------------------------------------------------------------------- */
+/* --- the seal --------------------------------------------------------------------------------- */
 
 static const char seal_mark[8] = "PERILAT";
 #define SEAL_SIZE (sizeof seal_mark + SHA256_SIZE)

@@ -1,5 +1,5 @@
-/* The folder of compiled kernels, and the files in it: each stands whole or not at all, an object with a seal, a digest
-   behind its end, where the loader does not look. */
+/* The folder of compiled kernels, and the files in it: each stands whole or not at all, an
+   object with a seal, a digest behind its end, where the loader does not look. */
 #ifndef PERILAT_GENERATOR_TOOLCHAIN_CACHE_H
 #define PERILAT_GENERATOR_TOOLCHAIN_CACHE_H
 

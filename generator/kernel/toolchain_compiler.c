@@ -108,9 +108,10 @@ bool toolchain_runs_here(char *error, size_t size) {
 }
 
 /* Speculation of divisions and square roots needs -fno-trapping-math and -fno-math-errno; the
-   interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by name and then orders
-   instructions for none in particular; told to order them for an older one of the same build it gains 5 %. Combining more than two instructions takes gcc a third
-   of its time on these loops and gains nothing. */
+   interpreter's bits need -ffp-contract=off. gcc does not know newer processors of Intel's by
+   name and then orders instructions for none in particular; told to order them for an older one
+   of the same build it gains 5 %. Combining more than two instructions takes gcc a third of its
+   time on these loops and gains nothing. */
 #define COMMON_FLAGS                                                                               \
   "-std=gnu11 -O3 -march=%s -fno-math-errno -fno-trapping-math -ffp-contract=off "                 \
   "--param max-combine-insns=2 -fPIC -shared"

@@ -462,7 +462,7 @@ static void compare_frames(comparison_run *c) {
   free(x.bonds);
 }
 
-/* --- both -------------------------------------------------------------------------------------- */
+/* --- both ------------------------------------------------------------------------------------- */
 
 static int conclude(const comparison_run *c) {
   const double tolerance = c->request->tolerance;

@@ -1,6 +1,6 @@
-/* Where two results differ most, history by history and field by field. A difference is relative to the largest absolute value
-   that the quantity has in either result; energies are relative to the largest energy of all, since the smaller terms are
-   differences of larger ones. */
+/* Where two results differ most, history by history and field by field. A difference is relative
+   to the largest absolute value that the quantity has in either result; energies are relative to
+   the largest energy of all, since the smaller terms are differences of larger ones. */
 #ifndef PERILAT_GENERATOR_COMPARE_RESULTS_H
 #define PERILAT_GENERATOR_COMPARE_RESULTS_H
 
@@ -13,8 +13,8 @@ typedef struct results_request {
   int history_count, field_count;
 } results_request;
 
-/* Prints it, and adds each quantity to the list of a document where there is one. Exit status: 0 the same within the
-   tolerance; 2 different; 1 after messages. */
+/* Prints it, and adds each quantity to the list of a document where there is one. Exit status: 0
+   the same within the tolerance; 2 different; 1 after messages. */
 int compare_results(const results_request *q, json *list);
 
 #endif

@@ -1,5 +1,6 @@
-/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told before, during and after.
-   A stand-alone solver made by `perilat build` is this same run with deck and kernels built in. */
+/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told
+   before, during and after. A stand-alone solver made by `perilat build` is this same run with
+   deck and kernels built in. */
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
@@ -50,8 +51,8 @@ typedef struct run_options {
                         how it ended follows them in the document */
 } run_options;
 
-/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
-   is has been written then, whole. */
+/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when
+   it was stopped: what there is has been written then, whole. */
 int run_deck(const run_options *o);
 
 C_LINKAGE_END

@@ -4,7 +4,8 @@
 
 #include "generator/run/run_state.h"
 
-/* --profile: where the time of the march went, what a particle's step costs, and what limits it. Takes half a second. */
+/* --profile: where the time of the march went, what a particle's step costs, and what limits it.
+   Takes half a second. */
 void print_profile(const run *r, double seconds, long steps);
 
 #endif

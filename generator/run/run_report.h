@@ -6,8 +6,8 @@
 
 /* What is about to be done. */
 void announce(const run *r);
-/* "t = 4.1 ms"; in quasi-static runs, whose time is only an order, "increment 170 of 480": the run's
-   state at a time of the deck, s. */
+/* "t = 4.1 ms"; in quasi-static runs, whose time is only an order, "increment 170 of 480": the
+   run's state at a time of the deck, s. */
 enum { MOMENT_TEXT = 80 };
 const char *moment(const run *r, double time, char text[MOMENT_TEXT]);
 /* "t = 25 ms, load 3100 N (peak 11020), cmod 0.12 mm": the first monitors at the last sample. */

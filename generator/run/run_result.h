@@ -5,10 +5,12 @@
 #include "generator/run/run_state.h"
 
 void choose_paths(run *r);
-/* Errors at the deck's line: a result that cannot be written, or that would replace the deck or a law. */
+/* Errors at the deck's line: a result that cannot be written, or that would replace the deck or
+   a law. */
 bool result_can_be_written(run *r);
 bool result_spares_inputs(run *r);
-/* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line each. */
+/* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line
+   each. */
 void fingerprint(run *r);
 /* Takes the result for this run alone; nothing is changed yet. */
 bool open_result(run *r);

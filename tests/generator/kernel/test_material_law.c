@@ -1,4 +1,5 @@
-/* The law of a material: opened once for options and lattice, its C written where it is wanted, nothing changed on the way. */
+/* The law of a material: opened once for options and lattice, its C written where it is wanted,
+   nothing changed on the way. */
 #define _GNU_SOURCE /* nftw, RTLD_NEXT */
 #include <setjmp.h>
 #include <stdarg.h>
@@ -95,7 +96,8 @@ static void a_choice_that_the_law_has_not_is_told(void **state) {
   close_law(&o);
 }
 
-/* Irregular particles are judged on a lattice, and all that the bounds allow in the law's first setting. */
+/* Irregular particles are judged on a lattice, and all that the bounds allow in the law's first
+   setting. */
 static void a_law_that_is_judged_stays_as_it_was_opened(void **state) {
   (void)state;
   const deck_lattice sites = {
