@@ -7,12 +7,12 @@
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_grammar.h"
-#include "generator/emit/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/run/run.h"
+#include "generator/target/c_text.h"
 
 #define ERROR_LENGTH 8192
 

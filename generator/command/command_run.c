@@ -11,6 +11,7 @@
 #include "generator/command/command_drive.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_grammar.h"
+#include "generator/emit/plan_dump.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"

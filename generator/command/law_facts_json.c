@@ -2,6 +2,8 @@
 
 #include <math.h>
 
+#include "dsl/semantics/law_limits.h"
+
 static void put_pair(json *j, const char *name, const double pair[2]) {
   json_put_array(j, name);
   json_number(j, pair[0]);

@@ -4,6 +4,8 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/semantics/law_limits.h"
+
 static void print_parameter(const law_facts *f, int p) {
   const law *l = f->model.law;
   const symbol *s = l->parameters.items[p];

@@ -7,7 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
+#include "generator/emit/descriptor.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
@@ -298,7 +300,7 @@ static void emit_once(model *m) {
   const double begun = monotonic_seconds();
   char *unkeyed = emit_kernel(m->plan);
   m->key = toolchain_key(unkeyed);
-  m->c_text = emit_keyed(unkeyed, m->key);
+  m->c_text = descriptor_keyed(unkeyed, m->key);
   free(unkeyed);
   m->seconds_front += monotonic_seconds() - begun;
 }

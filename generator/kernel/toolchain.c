@@ -12,10 +12,10 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/sha256.h"
-#include "generator/emit/kernel_parts.h"
 #include "generator/kernel/toolchain_cache.h"
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/toolchain_process.h"
+#include "generator/target/kernel_parts.h"
 
 #define LONGEST_PATH PATH_MAX
 

@@ -14,7 +14,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "generator/emit/c_text.h"
+#include "generator/emit/descriptor.h"
+#include "generator/target/c_text.h"
 #include "generator/emit/emit.h"
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"
@@ -180,7 +181,7 @@ static loaded_kernel load(const hand_made *h, char **text) {
   char error[ERROR_SIZE] = "";
   loaded_kernel k;
   char *unkeyed = emit_kernel(&h->plan), *key = toolchain_key(unkeyed);
-  *text = emit_keyed(unkeyed, key);
+  *text = descriptor_keyed(unkeyed, key);
   if (!toolchain_load(*text, key, &k, error, sizeof error)) fail_msg("%s", error);
   assert_string_equal(k.law->key, key);
   free(unkeyed);

@@ -1,313 +1,20 @@
-/* Every law in models/ and beside this test: its compiled kernel against the interpreter, bit for
- * bit, and its text through both compilers. PERILAT_DEEP=1 takes ten times as many states. */
+/* Kernels of other forms than their laws': laws of bonds as laws of families, loops cut in all ways, more fields than any
+   law has needed; and faulty kernels, which are caught. */
+#define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
-#include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
 #include <cmocka.h>
 
 #include <float.h>
-#include <glob.h>
-#include <math.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include "dsl/base/arena.h"
 #include "dsl/semantics/law_variant.h"
+#include "generator/emit/descriptor.h"
 #include "generator/emit/emit.h"
-#include "generator/kernel/kernel_check.h"
-#include "generator/kernel/model.h"
-#include "generator/kernel/toolchain_cache.h"
-#include "generator/kernel/toolchain_compiler.h"
-
-enum { PARAMETER_SETS = 4 };
-static const pl_bond_class bonds = {.s = 6.35e-3,
-                                    .spacing = 6.35e-3,
-                                    .t = 0.1524,
-                                    .V = 5.32e-6,
-                                    .mass_i = 0.0124,
-                                    .mass_j = 0.0124,
-                                    .area = 1e-4,
-                                    .shell = 1,
-                                    .n = 6,
-                                    .chord = {6.35e-3 * 0.5, 6.35e-3 * 0.8660254037844386, 0}};
-
-static const pl_law *open_kernel_for(model *m, const char *path, const law_choice *choice,
-                                     const law_setting *setting, bool irregular, int neighbours) {
-  char error[2000] = "";
-  const char *note;
-  bool good = model_open(m, path, choice, choice ? 1 : 0);
-  if (good)
-    m->law = law_on_lattice(m->law, setting ? *setting : m->law->setting, irregular, neighbours);
-  if (!good || !model_plan(m)) {
-    diag_print(&m->said, stderr);
-    fail_msg("%s cannot be compiled", path);
-  }
-  const pl_law *kernel = model_kernel(m, false, &note, error, sizeof error);
-  if (!kernel) fail_msg("%s", error);
-  assert_null(note);
-  return kernel;
-}
-
-static const pl_law *open_kernel(model *m, const char *path, const law_choice *choice) {
-  return open_kernel_for(m, path, choice, NULL, false, 0);
-}
-
-/* --- parameters ------------------------------------------------------------------------------- */
-
-/* Set 0 are the defaults; the others vary each by a factor of up to 2 where its bounds let them. */
-static double **parameter_sets(const pl_law *k) {
-  const int count = k->parameter_count;
-  double **sets = planes_new(PARAMETER_SETS, count), **bound = planes_new(2, count);
-  unsigned char *open = must_calloc(2 * (size_t)count + 1, 1);
-  for (int set = 0; set < PARAMETER_SETS; set++)
-    for (int p = 0; p < count; p++)
-      sets[set][p] = k->parameters[p].has_default ? k->parameters[p].initial : 1;
-  for (int set = 1; set < PARAMETER_SETS; set++)
-    for (int p = 0; p < count; p++) {
-      k->bounds(k, sets[set], bound[0], bound[1], open, open + count);
-      double wanted = sets[set][p] * exp2(sin(7 * set + p));
-      if (wanted > bound[0][p] && wanted < bound[1][p]) sets[set][p] = wanted;
-    }
-  planes_free(bound, 2);
-  free(open);
-  return sets;
-}
-
-static kernel_check check(const model *m, const pl_law *kernel, long states) {
-  double **sets = parameter_sets(kernel);
-  kernel_check c = kernel_check_run(m->plan, kernel, (const double *const *)sets, PARAMETER_SETS,
-                                    &bonds, 1, states, 20);
-  planes_free(sets, PARAMETER_SETS);
-  return c;
-}
-
-/* --- the text --------------------------------------------------------------------------------- */
-
-/* Compiles the kernel again with more flags; what the compiler says (malloc'ed), or NULL without
- * such a compiler. */
-static char *compiler_says(model *m, const char *compiler, const char *more) {
-  char command[2000];
-  snprintf(command, sizeof command, "%s --version >/dev/null 2>&1", compiler);
-  if (system(command) != 0) return NULL;
-  snprintf(command, sizeof command, "%s %s %s -o /dev/null -x c - 2>&1 <'%s/%s.c'", compiler,
-           toolchain_flags(), more, toolchain_cache(), model_key(m));
-  FILE *in = popen(command, "r");
-  const size_t room = 1 << 20;
-  char *said = must_calloc(room, 1);
-  assert_true(fread(said, 1, room - 1, in) < room - 1);
-  int status = pclose(in);
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) fail_msg("%s: %s", command, said);
-  return said;
-}
-
-static void assert_vectorised(model *m, const char *gcc, const char *function) {
-  const char *text = model_c_text(m), *at = strstr(text, function),
-             *end = at ? strstr(at, "\n}\n") : NULL;
-  /* All loops of the function: */
-  while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) {
-    char expected[64];
-    int line = 2;
-    for (const char *c = text; c < at; c++)
-      line += *c == '\n';
-    snprintf(expected, sizeof expected, ":%d:3: optimized: loop vectorized", line);
-    if (gcc && !strstr(gcc, expected))
-      fail_msg("line %d of the kernel of %s does not vectorise: %s", line, m->path, gcc);
-    at++;
-  }
-}
-
-static void assert_clean_and_vectorised(model *m) {
-  char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
-  assert_non_null(strstr(model_c_text(m), "PL_PASS void rows(const pl_law *law"));
-  assert_vectorised(m, gcc, "PL_PASS void rows(const pl_law *law");
-  /* Where something is expected: */
-  assert_vectorised(m, gcc, "PL_PASS void rows_unusual(const pl_law *law");
-  free(gcc);
-  free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
-}
-
-/* --- all models ------------------------------------------------------------------------------- */
-
-static void assert_same_bits(const model *m, const pl_law *kernel, long states) {
-  kernel_check c = check(m, kernel, states);
-  for (int k = 0; k < m->law->options.count; k++)
-    printf("%s = %s: ", m->law->options.items[k]->name, m->law->chosen[k]);
-  kernel_check_report(&c, kernel->name);
-  fflush(stdout);
-  assert_int_equal(c.outputs.unwritten, 0);
-  assert_int_equal(c.outputs.misplaced, 0);
-  assert_true(c.outputs.largest_ulps == 0);
-  assert_true(kernel_check_agrees(&c));
-  assert_int_equal(c.guards_both, c.guards);
-}
-
-static void check_kernel(model *m, const pl_law *kernel, long states) {
-  assert_clean_and_vectorised(m);
-  assert_same_bits(m, kernel, states);
-}
-
-/* --- families --------------------------------------------------------------------------------- */
-
-/* Bonds of many lengths in all directions, in opposite pairs. */
-static void family_of(pl_bond_class *family, int dimensions, int neighbours) {
-  const int half = neighbours / 2;
-  for (int k = 0; k < half; k++) {
-    const double turn = 2.399963 * k, up = dimensions == 3 ? (k + 0.5) / half : 0;
-    const double s = bonds.s * (1 + 0.5 * (k % 4)), flat = s * sqrt(1 - up * up);
-    family[k] = bonds;
-    family[k].s = s;
-    family[k].shell = 1 + k % 4;
-    family[k].n = neighbours;
-    family[k].chord[0] = flat * cos(turn);
-    family[k].chord[1] = flat * sin(turn);
-    family[k].chord[2] = s * up;
-    family[k + half] = family[k];
-    for (int d = 0; d < 3; d++)
-      family[k + half].chord[d] = -family[k].chord[d];
-  }
-}
-
-static kernel_check check_family(const kernel_plan *p, const pl_law *kernel, int neighbours,
-                                 long states) {
-  pl_bond_class family[2 * PL_MAX_DIRECTIONS];
-  double **sets = parameter_sets(kernel);
-  family_of(family, kernel->dimensions, neighbours);
-  kernel_check c = kernel_check_run(p, kernel, (const double *const *)sets, PARAMETER_SETS, family,
-                                    neighbours, states, 20);
-  planes_free(sets, PARAMETER_SETS);
-  return c;
-}
-
-static void assert_same_families(const kernel_plan *p, const pl_law *kernel, long states) {
-  static const int any[] = {6, 18, 122};
-  const int *neighbours = kernel->neighbours ? &kernel->neighbours : any;
-  const int rows = kernel->neighbours ? 1 : 3;
-  const int sizes = kernel->topology == PL_LIST ? 2 : rows; /* a list has no other code for more */
-  for (int k = 0; k < sizes; k++) {
-    kernel_check c = check_family(p, kernel, neighbours[k], states);
-    printf("%d dimensions, %d neighbours: ", kernel->dimensions, neighbours[k]);
-    kernel_check_report(&c, kernel->name);
-    fflush(stdout);
-    assert_int_equal(c.passes, kernel->step.pass_count + kernel->observe.pass_count);
-    assert_true(c.bonds > 0);
-    assert_true(kernel_check_agrees(&c));
-  }
-}
-
-static void assert_text_is_clean(model *m) {
-  free(compiler_says(m, "gcc", "-Wall -Wextra -Werror"));
-  free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
-}
-
-/* `neighbours`: what the law is planned for; 0: any. */
-static void check_family_law_in(const char *path, const law_choice *choice, law_setting setting,
-                                bool irregular, int neighbours, long states) {
-  model m;
-  const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, irregular, neighbours);
-  assert_int_equal(kernel->neighbours, m.plan->form == FAMILY_WRITTEN_OUT ? neighbours : 0);
-  assert_int_equal(kernel->topology, irregular ? PL_LIST : PL_ROWS);
-  if (choice) printf("%s = %s, ", choice->option, choice->choice);
-  if (irregular) printf("irregular, ");
-  if (!choice) assert_text_is_clean(&m);
-  assert_same_families(m.plan, kernel, states);
-  model_close(&m);
-}
-
-/* Planned for a large family: bonds add to both ends where these would compute the same. */
-static void check_large_family(const char *path, law_setting setting, long states) {
-  enum { LARGE = 122 };
-  model m;
-  char error[2000];
-  const char *note;
-  assert_true(model_open(&m, path, NULL, 0));
-  m.law = law_on_lattice(m.law, setting, false, LARGE);
-  assert_true(model_plan(&m));
-  const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
-  if (!kernel) fail_msg("%s", error);
-  assert_text_is_clean(&m);
-  kernel_check c = check_family(m.plan, kernel, LARGE, states);
-  printf("%d dimensions, %d neighbours, %d sums: ", kernel->dimensions, LARGE, kernel->sum_count);
-  kernel_check_report(&c, kernel->name);
-  assert_true(kernel_check_agrees(&c));
-  model_close(&m);
-}
-
-/* In every setting that the law names, on rows and on lists (whether it names these or not); the text goes through both
-   compilers with the first choices. */
-static void check_family_law(const char *path, const law_choice *choice, long states) {
-  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++) {
-    model m;
-    assert_true(model_open(&m, path, choice, choice ? 1 : 0));
-    char meant[96];
-    const bool allowed = model_suits(&m, law_setting_name((law_setting)k), meant, sizeof meant);
-    const bool on_lists = !choice || model_suits_irregular(&m);
-    model_close(&m);
-    if (!allowed) continue;
-    check_family_law_in(path, choice, (law_setting)k, false, 0, states);
-    check_family_law_in(path, choice, (law_setting)k, false, k == SETTING_SPACE ? 12 : 6,
-                        states / 4);
-    if (!choice) check_large_family(path, (law_setting)k, states / 3);
-    if (on_lists) check_family_law_in(path, choice, (law_setting)k, true, 0, states / 3);
-  }
-}
-
-static void check_law(const char *path, const law_choice *choice) {
-  const long states = getenv("PERILAT_DEEP") ? 1000000 : 120000;
-  model m;
-  bool good = model_open(&m, path, choice, choice ? 1 : 0);
-  const bool of_families = good && m.law->tree->law == LAW_STATE;
-  model_close(&m);
-  if (of_families) {
-    check_family_law(path, choice, states);
-    return;
-  }
-  check_kernel(&m, open_kernel(&m, path, choice), states);
-  model_close(&m);
-}
-
-/* Each choice of each option once, the other options at their first. */
-static void check_model(const char *path) {
-  model m;
-  check_law(path, NULL);
-  assert_true(model_open(&m, path, NULL, 0));
-  for (int k = 0; k < m.law->options.count; k++) {
-    const symbol *option = m.law->options.items[k];
-    for (int w = 1; w < option->declared->word_count; w++)
-      check_law(path, &(law_choice){option->name, option->declared->words[w]});
-  }
-  model_close(&m);
-}
-
-static void check_folder(const char *pattern) {
-  glob_t models;
-  assert_int_equal(glob(pattern, 0, NULL, &models), 0);
-  assert_true(models.gl_pathc > 0);
-  for (size_t k = 0; k < models.gl_pathc; k++)
-    check_model(models.gl_pathv[k]);
-  globfree(&models);
-}
-
-static void kernels_of_the_models_match(void **state) {
-  (void)state;
-  check_folder(SOURCE_DIR "/models/*.plm");
-}
-
-/* Central bonds, plastic states, outputs, energies, shear and all functions. */
-static void kernels_of_the_test_laws_match(void **state) {
-  (void)state;
-  check_folder(SOURCE_DIR "/tests/generator/laws/*.plm");
-}
-
-/* Damage, slip, energies and values of neighbours of neighbours, in the plane and in space. */
-static void kernels_of_the_family_laws_match(void **state) {
-  (void)state;
-  check_folder(SOURCE_DIR "/tests/generator/families/*.plm");
-}
+#include "tests/generator/kernel/compiled_family.h"
 
 /* A law of bonds compiled for lattices that are no hexagon. */
 static void laws_of_bonds_match_as_laws_of_families(void **state) {
@@ -335,7 +42,7 @@ static char *check_cut(model *m, loop_cutting cutting) {
   loaded_kernel loaded = {0};
   m->plan->cutting = cutting;
   char *unkeyed = emit_kernel(m->plan), *key = toolchain_key(unkeyed);
-  char *text = emit_keyed(unkeyed, key);
+  char *text = descriptor_keyed(unkeyed, key);
   if (!toolchain_load(text, key, &loaded, error, sizeof error)) fail_msg("%s", error);
   assert_same_bits(m, loaded.law, 120000);
   toolchain_unload(&loaded);
@@ -517,10 +224,7 @@ static void ulps_are_counted(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(kernels_of_the_models_match),
-                                     cmocka_unit_test(kernels_of_the_test_laws_match),
-                                     cmocka_unit_test(kernels_of_the_family_laws_match),
-                                     cmocka_unit_test(laws_of_bonds_match_as_laws_of_families),
+  const struct CMUnitTest tests[] = {cmocka_unit_test(laws_of_bonds_match_as_laws_of_families),
                                      cmocka_unit_test(kernels_match_however_loops_are_cut),
                                      cmocka_unit_test(many_fields_match),
                                      cmocka_unit_test(faults_are_caught),
