@@ -1,50 +1,170 @@
 #include "generator/check/physics.h"
 
+#include <assert.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/check/physics_family.h"
-#include "generator/check/physics_parts.h"
+#include "generator/check/physics_energy.h"
+#include "generator/check/physics_family_energy.h"
+#include "generator/check/physics_family_healing.h"
+#include "generator/check/physics_family_paths.h"
+#include "generator/check/physics_healing.h"
+#include "generator/check/physics_hold.h"
+#include "generator/check/physics_paths.h"
+#include "generator/check/physics_states.h"
+#include "generator/check/physics_tangent.h"
 #include "runtime/base/clock.h"
 
-/* What a more telling check has found already is not said again as net work out of a cycle. */
-static bool energy_is_wrong(const physics *p) {
-  return p->failed[DIAG_STORED_ENERGY] || p->failed[DIAG_CLOSED_PATH] ||
-         p->failed[DIAG_DAMAGE_FORCE] || p->failed[DIAG_STIFFNESS] || p->failed[DIAG_REST_FORCE] ||
-         p->failed[DIAG_FLOW] || p->failed[DIAG_EXCHANGE] || p->failed[DIAG_MIRROR];
+/* --- the checks ------------------------------------------------------------------------------- */
+
+static int times(const physics_options *o, int usual) {
+  return (int)(usual * (o->effort > 0 ? o->effort : 1));
 }
 
-static void run_checks(physics *p) {
-  const double effort = p->b.options->effort > 0 ? p->b.options->effort : 1;
-  const int rays = (int)(48 * effort), legs = (int)(12 * effort);
-  bench *b = &p->b;
-  bench_allow(b, 0.05);
-  physics_check_rest(p);
-  if (!p->failed[DIAG_REST_FORCE]) physics_check_stiffness(p);
-  bench_allow(b, 0.15);
-  physics_scan(p, rays, true);
-  bench_allow(b, 0.1);
-  physics_histories(p, legs);
-  bench_allow(b, 0.1);
-  physics_scan(p, rays, false);
-  bench_allow(b, 0.1);
-  physics_histories(p, legs);
-  bench_allow(b, 0.1);
-  physics_check_energy_and_force(p);
-  physics_check_tangent(p, 0);
-  bench_allow(b, 0.1);
-  if (!p->failed[DIAG_STIFFNESS]) physics_check_stored_energy(p);
-  if (!p->failed[DIAG_STIFFNESS] && !p->failed[DIAG_STORED_ENERGY]) physics_check_damage_force(p);
-  bench_allow(b, 0.1);
-  if (!p->failed[DIAG_FLOW]) physics_check_hold(p);
-  bench_allow(b, 2); /* some hundred states of usual laws */
-  physics_check_healing(p);
-  bench_allow(b, 0.15);
-  physics_check_closed_path(p);
-  bench_allow(b, 0.25);
-  if (!energy_is_wrong(p)) physics_check_dissipation(p);
+static void scan_from_rest(physics *p) {
+  physics_scan(p, times(p->b.options, 48), true);
 }
+
+static void scan_from_pool(physics *p) {
+  physics_scan(p, times(p->b.options, 48), false);
+}
+
+static void histories(physics *p) {
+  physics_histories(p, times(p->b.options, 12));
+}
+
+static void tangent(physics *p) {
+  physics_check_tangent(p, 0);
+}
+
+static void family_histories(family_bench *b) {
+  family_check_histories(b, times(b->options, 24));
+}
+
+static void family_whole(family_bench *b) {
+  family_check_energy(b, false);
+}
+
+static void family_damaged(family_bench *b) {
+  if (!b->law->nonconservative) family_check_energy(b, true);
+}
+
+static void family_dissipation(family_bench *b) {
+  family_check_dissipation(b, times(b->options, 5));
+}
+
+/* A check: what it may say, for which laws it is, and what a law has failed already when it is
+   left out, because it would say the same again. Codes stand up to the first 0, which is none of
+   mechanics. */
+typedef struct physics_row {
+  diag_code says[6];
+  void (*of_bonds)(physics *p);         /* NULL: not for laws of bonds */
+  void (*of_families)(family_bench *b); /* NULL: not for laws of families */
+  double share; /* of the time that laws of bonds have; 0: what the one before has left */
+  diag_code hushed_by[9];
+} physics_row;
+
+/* In their order: a scan and histories leave states to the checks that follow. */
+static const physics_row checks[] = {
+    {.says = {DIAG_REST_FORCE},
+     .of_bonds = physics_check_rest,
+     .of_families = family_check_rest,
+     .share = 0.05},
+    {.says = {DIAG_STIFFNESS},
+     .of_bonds = physics_check_stiffness,
+     .of_families = family_check_stiffness,
+     .hushed_by = {DIAG_REST_FORCE}},
+    {.says = {DIAG_PATCH}, .of_families = family_check_elasticity, .hushed_by = {DIAG_STIFFNESS}},
+    {.says = {DIAG_CONTINUITY, DIAG_FLOW}, .of_bonds = scan_from_rest, .share = 0.15},
+    {.says = {DIAG_NOT_FINITE, DIAG_DAMAGE_RANGE, DIAG_EXCHANGE, DIAG_MIRROR},
+     .of_bonds = histories,
+     .share = 0.1},
+    {.says = {DIAG_CONTINUITY, DIAG_FLOW}, .of_bonds = scan_from_pool, .share = 0.1},
+    {.says = {DIAG_NOT_FINITE, DIAG_DAMAGE_RANGE, DIAG_EXCHANGE, DIAG_MIRROR},
+     .of_bonds = histories,
+     .share = 0.1},
+    {.says = {DIAG_NOT_FINITE, DIAG_DAMAGE_RANGE, DIAG_EXCHANGE, DIAG_CONTINUITY, DIAG_FLOW},
+     .of_families = family_histories},
+    {.says = {DIAG_ENERGY_FORCE},
+     .of_bonds = physics_check_energy_and_force,
+     .of_families = family_check_energy_and_force,
+     .share = 0.1},
+    {.says = {DIAG_TANGENT}, .of_bonds = tangent},
+    {.says = {DIAG_STORED_ENERGY},
+     .of_bonds = physics_check_stored_energy,
+     .share = 0.1,
+     .hushed_by = {DIAG_STIFFNESS}},
+    {.says = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH},
+     .of_families = family_whole,
+     .hushed_by = {DIAG_STIFFNESS}},
+    {.says = {DIAG_DAMAGE_FORCE},
+     .of_bonds = physics_check_damage_force,
+     .hushed_by = {DIAG_STIFFNESS, DIAG_STORED_ENERGY}},
+    {.says = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH_DAMAGED, DIAG_DAMAGE_FORCE},
+     .of_families = family_damaged,
+     .hushed_by = {DIAG_STIFFNESS, DIAG_CLOSED_PATH}},
+    {.says = {DIAG_FLOW}, .of_bonds = physics_check_hold, .share = 0.1, .hushed_by = {DIAG_FLOW}},
+    {.says = {DIAG_HEALING},
+     .of_bonds = physics_check_healing,
+     .of_families = family_check_healing,
+     .share = 2}, /* some hundred states of usual laws */
+    {.says = {DIAG_CLOSED_PATH, DIAG_CLOSED_PATH_DAMAGED},
+     .of_bonds = physics_check_closed_path,
+     .share = 0.15},
+    {.says = {DIAG_DISSIPATION},
+     .of_bonds = physics_check_dissipation,
+     .share = 0.25,
+     .hushed_by = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH, DIAG_DAMAGE_FORCE, DIAG_STIFFNESS,
+                   DIAG_REST_FORCE, DIAG_FLOW, DIAG_EXCHANGE, DIAG_MIRROR}},
+    {.says = {DIAG_DISSIPATION},
+     .of_families = family_dissipation,
+     .hushed_by = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH, DIAG_DAMAGE_FORCE, DIAG_STIFFNESS,
+                   DIAG_REST_FORCE, DIAG_FLOW}},
+};
+enum { CHECK_COUNT = sizeof checks / sizeof *checks };
+
+static bool is_hushed(const physics_row *c, const bool failed[DIAG_COUNT]) {
+  for (int k = 0; c->hushed_by[k]; k++)
+    if (failed[c->hushed_by[k]]) return true;
+  return false;
+}
+
+/* Whether a check has said only what its row says. */
+static bool keeps_to_its_row(const physics_row *c, const bool before[DIAG_COUNT],
+                             const bool after[DIAG_COUNT]) {
+  bool may[DIAG_COUNT] = {false};
+  for (int k = 0; c->says[k]; k++)
+    may[c->says[k]] = true;
+  for (int code = 0; code < DIAG_COUNT; code++)
+    if (after[code] && !before[code] && !may[code]) return false;
+  return true;
+}
+
+static void check_bonds(physics *p) {
+  bool before[DIAG_COUNT];
+  for (const physics_row *c = checks; c < checks + CHECK_COUNT; c++) {
+    if (!c->of_bonds) continue;
+    if (c->share > 0) bench_allow(&p->b, c->share);
+    if (is_hushed(c, p->failed)) continue;
+    memcpy(before, p->failed, sizeof before);
+    c->of_bonds(p);
+    assert(keeps_to_its_row(c, before, p->failed));
+  }
+}
+
+static void check_families(family_bench *b) {
+  bool before[DIAG_COUNT];
+  for (const physics_row *c = checks; c < checks + CHECK_COUNT; c++) {
+    if (!c->of_families || is_hushed(c, b->failed)) continue;
+    memcpy(before, b->failed, sizeof before);
+    c->of_families(b);
+    assert(keeps_to_its_row(c, before, b->failed));
+  }
+}
+
+/* --- guards of the law that were seen both ways ----------------------------------------------- */
 
 /* A guard of the law's text, and how it was seen. */
 typedef struct seen_guard {
@@ -81,25 +201,45 @@ static void count_guards(const bench *b, physics_report *report) {
   }
 }
 
-bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report) {
-  static const physics_options usual = {0};
-  double begun = monotonic_seconds();
-  int errors = d->errors;
-  physics_report unwanted;
-  report = report ? report : &unwanted;
-  *report = (physics_report){0};
-  if (l->tree->law == LAW_STATE) return physics_check_family(l, o ? o : &usual, d, report);
+/* --- a law ------------------------------------------------------------------------------------ */
+
+static void check_law_of_bonds(const law *l, const physics_options *o, diagnostics *d,
+                               physics_report *report) {
   physics *p = must_calloc(1, sizeof *p);
   p->said = d;
-  if (bench_open(&p->b, l, o ? o : &usual, d)) {
+  if (bench_open(&p->b, l, o, d)) {
     p->pool = must_alloc((size_t)POOL_MOST * (size_t)p->b.width * sizeof *p->pool);
-    run_checks(p);
+    check_bonds(p);
     count_guards(&p->b, report);
     report->states = p->b.evaluated;
     free(p->pool);
     bench_close(&p->b);
   }
   free(p);
+}
+
+static void check_law_of_families(const law *l, const physics_options *o, diagnostics *d,
+                                  physics_report *report) {
+  family_bench *b = family_bench_new(l, o, d);
+  if (!b) return;
+  check_families(b);
+  for (int k = 0; k < b->step.text.line_count + b->step.text.flow_count; k++) {
+    report->guards += b->varies[k];
+    report->guards_reached += b->varies[k] && b->seen[k] == 3;
+  }
+  report->states = b->evaluated;
+  family_bench_free(b);
+}
+
+bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report) {
+  static const physics_options usual = {0};
+  const double begun = monotonic_seconds();
+  const int errors = d->errors;
+  physics_report unwanted;
+  report = report ? report : &unwanted;
+  *report = (physics_report){0};
+  (l->tree->law == LAW_STATE ? check_law_of_families : check_law_of_bonds)(l, o ? o : &usual, d,
+                                                                           report);
   report->seconds = monotonic_seconds() - begun;
   return d->errors == errors;
 }

@@ -1,5 +1,6 @@
-/* Does a law obey mechanics? Drives a law on the interpreter through many states, seeded,
-   and reports each breach with the state that shows it. */
+/* Does a law obey mechanics? The room: a law is driven on the interpreter through many states,
+   seeded, and each breach is reported with the state that shows it. To add a check: a code, its
+   page, a function, a row of the table in physics.c. */
 #ifndef PERILAT_GENERATOR_PHYSICS_H
 #define PERILAT_GENERATOR_PHYSICS_H
 

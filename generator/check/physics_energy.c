@@ -1,11 +1,12 @@
 /* Work of the rate-free forces with states and damages held. */
+#include "generator/check/physics_energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parts.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_inputs.h"
@@ -246,8 +247,8 @@ void physics_check_stored_energy(physics *p) {
 
 /* --- damage force ----------------------------------------------------------------------------- */
 
-/* What a plain state stores nobody can tell (a slider beside a spring): they are as in a virgin bond,
-   so that the energy is the work from rest. */
+/* What a plain state stores nobody can tell (a slider beside a spring): they are as in a virgin
+   bond, so that the energy is the work from rest. */
 static void forget_states(const bench *b, double *const *states, int count) {
   for (int k = 0; k < b->field_count; k++)
     for (int lane = 0; lane < count && b->law->fields.items[k]->kind == SYMBOL_STATE; lane++)
@@ -318,8 +319,8 @@ static bool energy_gains(bench *b, double *const *pair, double *gain, double *st
 
 bool physics_flow_gains(physics *p, double *const *states, int lane, double *gain, double *stored) {
   bench *b = &p->b;
-  /* Without an energy nobody can tell what a state stores: a back-force of hardening, say. Then only the cycles of
-     the dissipation check judge. */
+  /* Without an energy nobody can tell what a state stores: a back-force of hardening, say. Then
+     only the cycles of the dissipation check judge. */
   if (b->law_frozen.W == IR_NONE) return false;
   double **pair = bench_states(b), *column = must_alloc((size_t)b->width * sizeof *column);
   bench_get(b, states, lane, column);

@@ -1,10 +1,11 @@
+#include "generator/check/physics_family_bench.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/check/physics_parameters.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/ir/random_values.h"

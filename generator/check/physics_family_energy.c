@@ -1,11 +1,12 @@
 /* Work of the forces of a law of families with states and damages held. */
+#include "generator/check/physics_family_energy.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_family.h"
 #include "runtime/analysis/implied.h"
@@ -323,8 +324,8 @@ static double energy_beside(family_bench *b, const double *u, const double *v, d
   return family_bench_energy(b);
 }
 
-/* Slope of the energy along v, against the work of the forces. Damaged bodies only where the law claims an energy for
-   them. */
+/* Slope of the energy along v, against the work of the forces. Damaged bodies only where the law
+   claims an energy for them. */
 void family_check_energy_and_force(family_bench *b) {
   enum { ROUNDS = 4 };
   const double share = 1e-4;

@@ -1,11 +1,12 @@
 /* A plain state that takes force from a body of families as a damage does, and gives it back. */
+#include "generator/check/physics_family_healing.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
 
 static const double FACTOR_TOLERANCE = 1e-6; /* of a factor of the forces, at two sizes of motion */

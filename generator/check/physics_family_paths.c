@@ -1,11 +1,12 @@
 /* Histories of a body made of a law of families: ranges, jumps, flow, closed cycles. */
+#include "generator/check/physics_family_paths.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_family_parts.h"
 #include "generator/ir/random_values.h"
 
 static const double DAMAGE_TOLERANCE = 1e-9;
@@ -157,7 +158,8 @@ static long first_truth(const family_bench *b, int k) {
   return at;
 }
 
-/* Line of the group from `first` in force at a place; guards of a group may live on particles or toward neighbours. */
+/* Line of the group from `first` in force at a place; guards of a group may live on particles or
+   toward neighbours. */
 static int line_in_force(const family_bench *b, const unsigned char *truth, int first, int where,
                          bool wide) {
   const lowered_text *t = &b->step.text;
@@ -200,8 +202,8 @@ static const case_line *parting_line(const family_bench *b, const leg *l, bool *
   return parting;
 }
 
-/* Narrows the way between two states whose guards differ until it is nothing. Afterwards truth[0] and truth[1] are those
-   of its ends. */
+/* Narrows the way between two states whose guards differ until it is nothing. Afterwards
+   truth[0] and truth[1] are those of its ends. */
 static void find_crossing(family_bench *b, leg *l, double *before, double *after) {
   enum { HALVINGS = 30 };
   unsigned char *middle = must_alloc((size_t)l->truths + 1);
@@ -276,8 +278,8 @@ static double *values_of(const family_bench *b, watched w) {
   return v;
 }
 
-/* A flow that runs away does so once; one that goes nowhere, or backward, does so always: there are states that no flow
-   can lead out of. */
+/* A flow that runs away does so once; one that goes nowhere, or backward, does so always: there
+   are states that no flow can lead out of. */
 static void tally_share(family_bench *b, leg *l, int k, double share) {
   flow_tally *t = &l->tally[k];
   const stmt *rule = b->step.text.flows[k].rule;
@@ -319,8 +321,9 @@ static bool is_whole(const family_bench *b) {
   return true;
 }
 
-/* Where the overstress is largest: what flows around it does not carry it away. Only among families as whole as there are
-   any: stresses of a few bonds at an edge may have no way back. -1 where nothing yields. */
+/* Where the overstress is largest: what flows around it does not carry it away. Only among
+   families as whole as there are any: stresses of a few bonds at an edge may have no way back.
+   -1 where nothing yields. */
 static int worst_place(const family_bench *b, watched over, const double *overstress,
                        const double *yields) {
   int worst = -1, most = 0;
@@ -363,8 +366,8 @@ static void check_one_flow(family_bench *b, leg *l, int k) {
   free(after);
 }
 
-/* Flows that begin in the whole body between both truths: where it flows elsewhere, a step may have left too much. From
-   just beyond the limit to a little further. */
+/* Flows that begin in the whole body between both truths: where it flows elsewhere, a step may
+   have left too much. From just beyond the limit to a little further. */
 static void check_flows(family_bench *b, leg *l, double after) {
   static const double beyond[] = {1e-6, 1e-4, 1e-2};
   const int lines = b->step.text.line_count;

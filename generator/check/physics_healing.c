@@ -1,4 +1,6 @@
 /* A plain state that takes force from the bond as a damage does, and gives it back. */
+#include "generator/check/physics_healing.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,7 +8,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
-#include "generator/check/physics_parts.h"
+#include "generator/check/physics_paths.h"
+#include "generator/check/physics_states.h"
 #include "generator/ir/random_values.h"
 
 static const double FACTOR_TOLERANCE = 1e-6; /* of a factor of the force, at two sizes of motion */
@@ -17,7 +20,8 @@ static const double LEAST_RETURN = 1e-9;     /* of a state and of the force that
 
 enum { LEVELS = 12, LOOKS = 16 };
 
-/* How far a state is from its initial value: 0, then over nine decades, for it may count openings or shares. */
+/* How far a state is from its initial value: 0, then over nine decades, for it may count
+   openings or shares. */
 static double level_at(int k) {
   return k == 0 ? 0 : k == LEVELS - 1 ? 1 : k == LEVELS - 2 ? 0.5 : power_of(10, k - 10);
 }
@@ -40,7 +44,8 @@ static motion scaled(motion m, double factor) {
 
 typedef enum answer { NOTHING, WEAKENS, NO_FACTOR } answer;
 
-/* Whether the levels multiply a force by ever smaller factors, the same at motion m and half of it. */
+/* Whether the levels multiply a force by ever smaller factors, the same at motion m and half of
+   it. */
 static answer factors_of(physics *p, double *const *states, motion m) {
   level_forces full, half, rest;
   forces_at_levels(p, states, m, full);
@@ -68,7 +73,8 @@ static motion without_rate(motion m) {
   return m;
 }
 
-/* 1 or -1: the way from its initial value in which a field weakens the bond; 0: it does not scale the forces. */
+/* 1 or -1: the way from its initial value in which a field weakens the bond; 0: it does not
+   scale the forces. */
 static int weakening_way(physics *p, int field, double *const *states) {
   bench *b = &p->b;
   const double initial = b->law->fields.items[field]->initial;
@@ -123,7 +129,8 @@ static motion on_tour(const tour *t, int leg, int step) {
   return m;
 }
 
-/* True when the bond of lane `lane` is stronger with `field` at `now`, drawn out or pushed together. */
+/* True when the bond of lane `lane` is stronger with `field` at `now`, drawn out or pushed
+   together. */
 static bool is_stronger(physics *p, double *const *states, int lane, int field, double now,
                         double **few) {
   enum { BEFORE, AFTER, BEFORE_BACK, AFTER_BACK, LANES };

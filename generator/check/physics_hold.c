@@ -1,10 +1,11 @@
 /* What a bond does when its ends are held: states settle, or at least stay finite. */
+#include "generator/check/physics_hold.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/check/physics_parts.h"
 
 enum { STEPS = 240 };
 static const double RUNAWAY =

@@ -7,8 +7,8 @@
 #include "dsl/semantics/law.h"
 #include "runtime/deck/deck.h"
 
-/* values[parameters]: a log-uniform factor of 0.5 to 2 on every default, kept within the bounds; without a seed the defaults
-   (something usual where there is none). */
+/* values[parameters]: a log-uniform factor of 0.5 to 2 on every default, kept within the bounds;
+   without a seed the defaults (something usual where there is none). */
 void physics_draw_parameters(const law *l, uint64_t *seed, double *values);
 
 /* Behind what was found with parameters that were drawn. */

@@ -1,11 +1,13 @@
 /* Closed ways: nothing may come out of a loop. */
+#include "generator/check/physics_paths.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parts.h"
+#include "generator/check/physics_states.h"
 #include "generator/ir/random_values.h"
 
 static const double GAIN_TOLERANCE = 1e-6; /* of the path's peak energy */

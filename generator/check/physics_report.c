@@ -1,3 +1,5 @@
+#include "generator/check/physics_report.h"
+
 #include <math.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -5,7 +7,6 @@
 
 #include "dsl/base/arena.h"
 #include "generator/check/physics_parameters.h"
-#include "generator/check/physics_parts.h"
 #include "generator/lower/law_inputs.h"
 
 const char *const physics_force_names[FORCE_COUNT] = {"N", "M_i", "M_j"};

@@ -1,11 +1,13 @@
 /* Rays and histories: the states in which a law is looked at. */
+#include "generator/check/physics_states.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parts.h"
+#include "generator/check/physics_energy.h"
 #include "generator/ir/random_values.h"
 #include "generator/lower/lower_inputs.h"
 

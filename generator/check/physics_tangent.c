@@ -1,11 +1,12 @@
 /* The law at rest, its stiffness there, and its tangent anywhere. */
+#include "generator/check/physics_tangent.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/check/physics_parts.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/random_values.h"
 #include "generator/ir/rewrite.h"

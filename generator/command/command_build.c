@@ -1,16 +1,18 @@
-/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime with deck, law and kernel
-   built in. Running a solver needs no compiler. */
+/* perilat build: a law to a shared kernel; a deck to a stand-alone solver, which is the runtime
+   with deck, law and kernel built in. Running a solver needs no compiler. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
-#include "generator/target/c_text.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "generator/run/run.h"
+#include "generator/target/c_text.h"
 
 #define ERROR_LENGTH 8192
 
@@ -34,11 +36,11 @@ static int build_law(const char *path, const char *output, bool no_physics) {
     output = output ? output : chosen;
   }
   int status = good && spares_input(output, path) ? 0 : INPUT_WRONG;
-  if (!status && !toolchain_build(m.c_text, output, error, sizeof error)) {
+  if (!status && !toolchain_build(model_c_text(&m), output, error, sizeof error)) {
     say_error("%s", error);
     status = BUILD_FAILED;
   }
-  if (!status) printf("written %s (key %s)\n", output, m.key);
+  if (!status) printf("written %s (key %s)\n", output, model_key(&m));
   model_close(&m);
   return status;
 }
@@ -72,7 +74,7 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   out->deck = k;
   bool good =
-      k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
+      k && material_law_open(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
   if (good) {
     out->name = k->materials[0].model;
@@ -129,15 +131,15 @@ static void put_files(c_text *out, const deck_law *l) {
 }
 
 /* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
-static char *solver_text(const deck_law *l, const char *deck_name, const char *deck_text) {
+static char *solver_text(deck_law *l, const char *deck_name, const char *deck_text) {
   c_text out = {NULL, 0, 0};
   char compiler[512];
-  c_text_add(&out, "%s\n/* --- the solver --- */\n\n", l->model.c_text);
+  c_text_add(&out, "%s\n/* --- the solver --- */\n\n", model_c_text(&l->model));
   put_string(&out, "solver_deck_name", deck_name);
   put_string(&out, "solver_deck", deck_text);
   put_string(&out, "solver_model", l->name);
   put_string(&out, "solver_law_text", l->model.sources.items[0].text);
-  put_string(&out, "solver_kernel_text", l->model.c_text);
+  put_string(&out, "solver_kernel_text", model_c_text(&l->model));
   put_string(&out, "solver_choices", l->choices.text);
   put_files(&out, l);
   toolchain_version(compiler, sizeof compiler);

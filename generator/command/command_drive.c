@@ -1,4 +1,6 @@
 /* perilat drive: one bond, or one particle of a law of families, along a path. */
+#include "generator/command/command_drive.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -7,9 +9,16 @@
 
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_bond.h"
+#include "generator/drive/drive_expect.h"
+#include "generator/drive/drive_family.h"
+#include "generator/drive/drive_grammar.h"
+#include "generator/drive/drive_path.h"
+#include "generator/drive/drive_table.h"
+#include "generator/drive/drive_write.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
 
@@ -160,7 +169,7 @@ static bool suits_law(driving *r) {
 static int open_law(driving *r) {
   char error[ERROR_LENGTH];
   const char *note;
-  bool good = run_open_material(&r->in->material, NULL, r->options->path, &r->model, &r->said);
+  bool good = material_law_open(&r->in->material, NULL, r->options->path, &r->model, &r->said);
   r->opened = r->model.memory != NULL;
   if (r->opened) tell(r, &r->model.said);
   if (!good) return INPUT_WRONG;
@@ -218,7 +227,7 @@ static bool set_values(driving *r) {
   r->initial = arena_alloc(r->memory, ((size_t)kernel->field_count + 1) * sizeof(double));
   for (int f = 0; f < kernel->field_count; f++)
     r->initial[f] = kernel->fields[f].initial;
-  bool good = material_parameters(&r->in->material, kernel, r->parameters, &r->said);
+  bool good = material_parameters(&r->model.values, kernel, r->parameters, &r->said);
   for (int k = 0; k < r->in->initial.assignment_count; k++)
     good = set_field(r, &r->in->initial.assignments[k]) && good;
   return good;
@@ -266,8 +275,8 @@ static void describe(const driving *r) {
   drive_print(r->in, t, stdout);
 }
 
-/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0 where
-   it does not fall by more than a coarse path explains. */
+/* Row with the largest fall of what states have dissipated, counted from the rows before it; 0
+   where it does not fall by more than a coarse path explains. */
 static long largest_fall(const drive_table *t) {
   const drive_column *energy = &t->columns[t->column_count - DRIVE_ENERGY_COUNT];
   const double *lost = energy[DRIVE_ENERGY_DISSIPATED_DAMAGE].values;

@@ -1,4 +1,5 @@
-/* perilat info: what a law implies, what a deck or a result holds, and the names that laws may use. */
+/* perilat info: what a law implies, what a deck or a result holds, and the names that laws may
+   use. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,7 +9,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
 #include "generator/command/info_law.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"

@@ -1,4 +1,5 @@
-/* perilat new: a law to start from, the path that one bond of it is driven along, and the deck of a small specimen. */
+/* perilat new: a law to start from, the path that one bond of it is driven along, and the deck
+   of a small specimen. */
 #include <errno.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -53,7 +54,7 @@ static bool is_name(const char *name) {
 /* The language has words that no law can be named after; its own front end knows them. */
 static bool is_law(const new_file *f, const char *name) {
   model m;
-  bool good = model_open_text(&m, f->path, f->text, NULL, 0);
+  bool good = model_open_text(&m, f->path, f->text, strlen(f->text), NULL, 0);
   if (!good)
     say_error("`%s` cannot be the name of a law: %s\n  take another name, e.g. my_%s", name,
               m.said.count ? m.said.items[0].message : "its template is not a law", name);

@@ -295,7 +295,8 @@ static bool spares_inputs(const plot_request *q) {
   return good;
 }
 
-/* "beam_load.png", in the working folder: after the first result and what is drawn, so that pictures of other results stay. */
+/* "beam_load.png", in the working folder: after the first result and what is drawn, so that
+   pictures of other results stay. */
 static void name_output(plot_request *q, char *name, size_t size) {
   const char *drawn = q->is_map ? q->map.field : q->ys[0];
   const char *slash = strrchr(q->results[0], '/');

@@ -1,4 +1,6 @@
 /* perilat run, perilat check: the options, then run.h or the front end. */
+#include "generator/command/command_run.h"
+
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -6,12 +8,14 @@
 
 #include "dsl/base/terminal.h"
 #include "generator/check/physics.h"
+#include "generator/command/command_drive.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/emit/plan_dump.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/kernel/document.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/settings.h"
 #include "generator/plan/plan.h"
@@ -123,7 +127,7 @@ static int dump_stage(model *m, const char *stage) {
   if (!strcmp(stage, "passes"))
     plan_dump(m->plan, stdout);
   else if (!strcmp(stage, "c"))
-    fputs(m->c_text, stdout);
+    fputs(model_c_text(m), stdout);
   else
     plan_dump_ir(m->plan, stdout);
   return 0;
@@ -148,14 +152,15 @@ typedef struct checking {
   physics_report physics;
 } checking;
 
-/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none. False after messages. */
+/* The parameters that the law is checked at; NULL, around its defaults, where --set gives none.
+   False after messages. */
 static bool take_values(checking *c, double **values) {
   const symbol_list *list = &c->model.law->parameters;
   *values = NULL;
-  if (c->material.assignment_count == 0) return true;
+  if (c->model.values.assignment_count == 0) return true;
   *values = arena_alloc(c->memory, ((size_t)list->count + 1) * sizeof **values);
   pl_law *kernel = plan_interpreted(c->model.plan, "");
-  bool good = material_parameters(&c->material, kernel, *values, &c->said);
+  bool good = material_parameters(&c->model.values, kernel, *values, &c->said);
   plan_interpreted_free(kernel);
   return good;
 }
@@ -175,7 +180,8 @@ static int check_as_law(checking *c, const run_options *o, const char *path, con
   for (int k = 0; k < o->override_count; k++)
     settings[k] = o->overrides[k].text;
   if (!settings_read(c->memory, &c->sources, settings, o->override_count, &c->material, &c->said) ||
-      !run_open_law(&c->material, path, &c->model, &c->said))
+      !model_open(&c->model, path, NULL, 0) ||
+      !material_law_take_options(&c->material, &c->model, &c->said))
     return 1;
   if (dump) return dump_stage(&c->model, dump);
   double *values;
@@ -232,7 +238,7 @@ static int dump_deck(const run_options *o, const char *stage) {
   const int file = source_add(&c.sources, o->deck_path, text, length);
   deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
   const bool good =
-      k && run_open_material(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
+      k && material_law_open(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
   diag_print(&c.said, stderr);
   if (c.model.memory) diag_print(&c.model.said, stderr);
   const int status = good ? dump_stage(&c.model, stage) : 1;

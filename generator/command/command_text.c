@@ -11,7 +11,7 @@
 #include "dsl/print/explain.h"
 #include "dsl/print/format.h"
 #include "generator/command/commands.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"
@@ -21,7 +21,8 @@ enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
 
 /* --- format ----------------------------------------------------------------------------------- */
 
-/* Beside the file, then in its place: a reader sees the old text or the new one, whatever happens. */
+/* Beside the file, then in its place: a reader sees the old text or the new one, whatever
+   happens. */
 static bool write_in_place(const char *given, const char *text, char *error, size_t size) {
   struct stat about;
   char *path = realpath(given, NULL); /* a link stays a link */

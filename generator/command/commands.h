@@ -13,7 +13,8 @@
 #define DRIVE_STATUS                                                                               \
   "0 all expectations hold, 1 the input is wrong, 2 an expectation fails or the law gives no "     \
   "number"
-/* X(name, files, endings, what it does, exit status): `endings` are those of the files that shells offer, blanks between. */
+/* X(name, files, endings, what it does, exit status): `endings` are those of the files that
+   shells offer, blanks between. */
 #define COMMANDS(X)                                                                                \
   X(new, "NAME", "",                                                                               \
     "a commented law to start from, its drive path and the deck of a small specimen",              \
@@ -43,8 +44,9 @@
     "what a message's code, a word of the language, a deck group or a command means",              \
     COMMAND_STATUS)
 
-/* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells offer files, a|b|c for one
-   of these words, else what it stands for. Texts of --help, suggestions, manual and completion. */
+/* Every option: X(command, option, value, meaning). A value is "" for none, FILE where shells
+   offer files, a|b|c for one of these words, else what it stands for. Texts of --help,
+   suggestions, manual and completion. */
 #define OPTIONS_OF_SOLVERS(X, command)                                                             \
   X(command, "--threads", "N", "number of threads; the results are the same for any number")       \
   X(command, "--resume", "", "go on from the checkpoint that a stopped run left")                  \
@@ -150,13 +152,15 @@ extern const int command_count, option_count;
 COMMANDS(X)
 #undef X
 
-/* Reads the options of one command. Each call looks at argv[*at]; a match consumes it (and its value) and advances *at.
-   `--name value` and `--name=value` are the same. A missing value is reported; *bad is set. */
+/* Reads the options of one command. Each call looks at argv[*at]; a match consumes it (and its
+   value) and advances *at. `--name value` and `--name=value` are the same. A missing value is
+   reported; *bad is set. */
 int option_flag(char **argv, int *at, const char *name);
 const char *option_value(int argc, char **argv, int *at, const char *name, int *bad);
 /* Begins like an option; `-` is none, but the standard input, which some commands read. */
 bool is_option_like(const char *given);
-/* Says that `given` is no option of `program`, which knows those of `command`, with the nearest of them. Returns 1. */
+/* Says that `given` is no option of `program`, which knows those of `command`, with the nearest
+   of them. Returns 1. */
 int option_unknown_in(const char *program, const char *command, const char *given);
 /* The same of `perilat command`. */
 int option_unknown(const char *command, const char *given);

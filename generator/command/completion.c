@@ -1,11 +1,12 @@
 /* Completion for bash, zsh and fish. A value is FILE, a list of words with | between, or free. */
+#include "generator/command/completion.h"
+
 #include <errno.h>
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "generator/command/commands.h"
-#include "generator/command/manual.h"
 #include "generator/kernel/document.h"
 
 enum { WRITE_FAILED = 2 };
@@ -14,7 +15,8 @@ static bool is_file_value(const char *value) {
   return strcmp(value, "FILE") == 0;
 }
 
-/* What stands for something else is in capitals (N, TEXT) or an assignment; words to choose from are in small letters. */
+/* What stands for something else is in capitals (N, TEXT) or an assignment; words to choose from
+   are in small letters. */
 static bool is_choice(const char *value) {
   return *value >= 'a' && *value <= 'z' && !strchr(value, '=');
 }

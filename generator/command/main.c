@@ -6,6 +6,7 @@
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/terminal.h"
 #include "generator/command/commands.h"
+#include "generator/command/completion.h"
 #include "generator/command/manual.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/version.h"

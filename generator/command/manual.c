@@ -22,7 +22,8 @@ enum { WRITE_FAILED = 2 };
   X("PERILAT_CACHE",                                                                               \
     "the folder of compiled kernels; otherwise perilat in XDG_CACHE_HOME or in ~/.cache")
 
-/* Text as it is meant to be read: no character of it is taken for a request or a typographer's dash or quote. */
+/* Text as it is meant to be read: no character of it is taken for a request or a typographer's
+   dash or quote. */
 static void put_text(FILE *out, const char *text) {
   if (*text == '.' || *text == '\'') fputs("\\&", out);
   for (; *text; text++) {

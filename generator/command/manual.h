@@ -1,10 +1,8 @@
-/* Man pages and shell completion, made of the tables in commands.h when perilat is built. */
+/* Man pages, made of the tables in commands.h when perilat is built. */
 #ifndef PERILAT_GENERATOR_MANUAL_H
 #define PERILAT_GENERATOR_MANUAL_H
 
 /* Writes perilat.1 and perilat-COMMAND.1 into the folder. An exit status, after a message. */
 int manual_write(const char *folder);
-/* Writes perilat.bash, _perilat (zsh) and perilat.fish into the folder. An exit status, after a message. */
-int completion_write(const char *folder);
 
 #endif

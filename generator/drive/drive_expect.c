@@ -1,12 +1,18 @@
 /* What a path expects: which number of the table is meant, what it should be, and whether it is. */
+#include "generator/drive/drive_expect.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_bond.h"
+#include "generator/drive/drive_family.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "runtime/deck/deck_value.h"
 
 #define CLOSED_FORM "closed_form_of_expectation_"
@@ -202,8 +208,9 @@ static bool open_forms(const judge *j, closed_forms *f) {
   for (int k = 0; k < l->options.count; k++)
     choices[k] = (law_choice){l->options.items[k]->name, l->chosen[k]};
   f->opened = true;
-  bool good = model_open_text(&f->model, j->model->path, f->text, choices, l->options.count);
-  if (good) f->model.law->setting = l->setting;
+  bool good = model_open_text(&f->model, j->model->path, f->text, strlen(f->text), choices,
+                              l->options.count);
+  if (good) f->model.law = law_on_lattice(f->model.law, l->setting, false, 0);
   good = good && model_plan(&f->model);
   int errors = 0;
   for (int k = 0; k < f->model.said.count && !good; k++)

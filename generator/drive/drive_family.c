@@ -1,15 +1,18 @@
-/* One particle of a law of families, driven along a path of strain: a lattice in which all particles are alike, so that
-   one of them, periodic, stands for all. */
+/* One particle of a law of families, driven along a path of strain: a lattice in which all
+   particles are alike, so that one of them, periodic, stands for all. */
+#include "generator/drive/drive_family.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/drive/drive.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
 #include "runtime/simulation/simulation.h"
@@ -32,8 +35,8 @@ static int part(int dimensions, int k) {
   return dimensions == 2 ? plane_parts[k] : space_parts[k];
 }
 
-/* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of the step that begins with
-   the fields at hand. NULL when the law cannot be lowered. */
+/* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of
+   the step that begins with the fields at hand. NULL when the law cannot be lowered. */
 static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   kernel_plan *p = plan_begin(l);
   lowered_law step;
@@ -70,9 +73,9 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   return p;
 }
 
-/* --- the rig ---------------------------------------------------------------------------------- */
+/* --- the particle ----------------------------------------------------------------------------- */
 
-typedef struct rig {
+typedef struct driven_particle {
   const pl_law *kernel;
   kernel_plan *stress_plan;
   pl_law *stress_kernel;
@@ -80,7 +83,7 @@ typedef struct rig {
   patch *law, *stress; /* the same particle */
   long site;
   int dimensions, parts, neighbours;
-} rig;
+} driven_particle;
 
 deck_lattice drive_lattice(const drive_input *in, const law *l) {
   const bool space = l->setting == SETTING_SPACE;
@@ -105,7 +108,7 @@ static bool refuse(const drive_input *in, diagnostics *d, const char *what) {
   return false;
 }
 
-static void rig_close(rig *r) {
+static void particle_close(driven_particle *r) {
   patch_free(r->law);
   patch_free(r->stress);
   if (r->lattice) rows_free(r->lattice);
@@ -113,11 +116,11 @@ static void rig_close(rig *r) {
   plan_free(r->stress_plan);
 }
 
-static bool rig_open(rig *r, const drive_input *in, const law *l, const pl_law *kernel,
-                     const double *parameters, diagnostics *d) {
+static bool particle_open(driven_particle *r, const drive_input *in, const law *l,
+                          const pl_law *kernel, const double *parameters, diagnostics *d) {
   static const long one[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
   const deck_lattice like = drive_lattice(in, l);
-  *r = (rig){.kernel = kernel, .dimensions = kernel->dimensions};
+  *r = (driven_particle){.kernel = kernel, .dimensions = kernel->dimensions};
   if (bravais_dimensions(like.kind) != kernel->dimensions)
     return refuse(in, d, "this lattice does not suit the setting of the law");
   r->lattice = implied_lattice_like(&like, material_density(kernel, parameters));
@@ -141,13 +144,13 @@ static void set_plane(patch *p, int field, long plane, double value) {
   patch_repeat(p, v);
 }
 
-static void share_fields(rig *r) {
+static void share_fields(driven_particle *r) {
   for (int f = 0; f < r->kernel->field_count; f++)
     for (long k = 0; k < patch_planes(r->law, &r->kernel->fields[f]); k++)
       set_plane(r->stress, f, k, r->law->field[f][k * r->law->size + r->site]);
 }
 
-static void rig_move(rig *r, const double *strain, const double *rate) {
+static void particle_move(driven_particle *r, const double *strain, const double *rate) {
   double gradient[2][3][3] = {{{0}}};
   patch *both[] = {r->law, r->stress};
   for (int k = 0; k < r->parts; k++) {
@@ -244,7 +247,7 @@ static state state_at(const drive_input *in, int dimensions, double time, double
 }
 
 /* J on the particle's volume; shear counts on either side of the diagonal. */
-static double work_between(const rig *r, const state *a, const state *b) {
+static double work_between(const driven_particle *r, const state *a, const state *b) {
   double sum = 0;
   for (int k = 0; k < r->parts; k++) {
     const int which = part(r->dimensions, k);
@@ -254,13 +257,13 @@ static double work_between(const rig *r, const state *a, const state *b) {
   return sum * r->lattice->volume;
 }
 
-static void put_values(const rig *r, drive_table *t, int *c, const pl_field *f,
+static void put_values(const driven_particle *r, drive_table *t, int *c, const pl_field *f,
                        const double *values) {
   for (int k = 0; k < value_count(f, r->neighbours); k++)
     t->columns[(*c)++].values[t->rows] = values[k * r->law->size + r->site];
 }
 
-static void put_row(const rig *r, drive_table *t, double time, const state *s,
+static void put_row(const driven_particle *r, drive_table *t, double time, const state *s,
                     const double *energy) {
   const pl_law *kernel = r->kernel;
   const double *of_state[] = {s->strain, s->rate, s->stress};
@@ -284,8 +287,8 @@ static void put_row(const rig *r, drive_table *t, double time, const state *s,
 }
 
 /* The law's step at a state; fields go on. */
-static void take_step(rig *r, state *s) {
-  rig_move(r, s->strain, s->rate);
+static void take_step(driven_particle *r, state *s) {
+  particle_move(r, s->strain, s->rate);
   share_fields(r);
   patch_observe(r->stress);
   for (int k = 0; k < r->parts; k++)
@@ -295,7 +298,7 @@ static void take_step(rig *r, state *s) {
   patch_observe(r->law);
 }
 
-static void set_fields(rig *r, const double *initial) {
+static void set_fields(driven_particle *r, const double *initial) {
   for (int f = 0; f < r->kernel->field_count; f++)
     for (long k = 0; k < patch_planes(r->law, &r->kernel->fields[f]); k++)
       set_plane(r->law, f, k, initial[f]);
@@ -306,11 +309,11 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
                       diagnostics *d) {
   const double beside = 1e-6; /* of a step: rates are those of the step that ends */
   long count;
-  rig r;
+  driven_particle r;
   state before = {.strain = {0}};
   double energy[ENERGIES] = {0};
-  if (!rig_open(&r, in, l, kernel, parameters, d)) {
-    rig_close(&r);
+  if (!particle_open(&r, in, l, kernel, parameters, d)) {
+    particle_close(&r);
     return false;
   }
   double *t = drive_times(in, &count);
@@ -328,23 +331,23 @@ bool drive_family_run(const drive_input *in, const law *l, const pl_law *kernel,
     before = now;
   }
   free(t);
-  rig_close(&r);
+  particle_close(&r);
   return true;
 }
 
 void drive_family_observe(const drive_input *in, const law *l, const pl_law *kernel,
                           const double *parameters, const drive_table *t, long row,
                           double *outputs) {
-  rig r;
+  driven_particle r;
   state s = {.strain = {0}};
   diagnostics unheard;
   source_set sources = {NULL, 0};
   diag_begin(&unheard, &sources);
-  if (rig_open(&r, in, l, kernel, parameters, &unheard)) {
+  if (particle_open(&r, in, l, kernel, parameters, &unheard)) {
     int c = t->law_column;
     for (int k = 0; k < r.parts; k++)
       s.strain[k] = t->columns[1 + k].values[row];
-    rig_move(&r, s.strain, s.rate);
+    particle_move(&r, s.strain, s.rate);
     for (int f = 0; f < kernel->field_count; f++)
       for (long k = 0; k < patch_planes(r.law, &kernel->fields[f]); k++)
         set_plane(r.law, f, k, t->columns[c++].values[row]);
@@ -352,6 +355,6 @@ void drive_family_observe(const drive_input *in, const law *l, const pl_law *ker
     for (int k = 0; k < kernel->output_count; k++)
       outputs[k] = r.law->observed[1 + k][r.site];
   }
-  rig_close(&r);
+  particle_close(&r);
   diag_clear(&unheard);
 }

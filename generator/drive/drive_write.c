@@ -1,4 +1,6 @@
 /* What a drive leaves: table, CSV, HDF5, picture. */
+#include "generator/drive/drive_write.h"
+
 #include <ctype.h>
 #include <errno.h>
 #include <math.h>
@@ -7,7 +9,8 @@
 #include <string.h>
 
 #include "dsl/base/terminal.h"
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "generator/kernel/version.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/plot/plot.h"
@@ -131,7 +134,7 @@ static void print_table(const drive_table *t, const bool *shown, FILE *out) {
   free(columns);
 }
 
-/* --- rows that are printed --------------------------------------------------------------------- */
+/* --- rows that are printed -------------------------------------------------------------------- */
 
 static long row_of_largest_force(const drive_table *t) {
   const double *N = t->columns[t->force].values;

@@ -7,8 +7,8 @@
 #include "generator/interpreter/comparison.h"
 #include "generator/lower/law_inputs.h"
 
-/* Named values that the law's states need, in the order of evaluation. An unnamed one may be infinite and yet not matter:
-   it may stand in a case that is not taken. */
+/* Named values that the law's states need, in the order of evaluation. An unnamed one may be
+   infinite and yet not matter: it may stand in a case that is not taken. */
 static ir_node *named_values(const kernel_plan *p, int *count) {
   const pass *states = &p->passes[PASS_STATES];
   const ir *g = p->graph;

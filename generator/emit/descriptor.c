@@ -1,6 +1,7 @@
 #include "generator/emit/descriptor.h"
 
 #include "generator/plan/program_facts.h"
+#include <string.h>
 
 static void write_symbol(c_text *out, const symbol *s) {
   char si[64];
@@ -59,15 +60,16 @@ static void write_table(c_text *out, const char *member, const char *array, int 
              count ? array : "0");
 }
 
-static void write_law(c_text *out, const kernel_plan *p, const char *key) {
+/* A line of its own, which nothing that a law says can be: its texts are literals and comments. */
+#define KEY_LINE(key) "\n    .key = \"" key "\",\n"
+
+static void write_law(c_text *out, const kernel_plan *p) {
   c_text_add(out,
              "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .kind = %d,\n"
              "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
              p->kind, p->dimensions, p->dof, p->force_planes);
   c_text_string(out, p->law->tree->name);
-  c_text_add(out, ",\n    .key = ");
-  c_text_string(out, key);
-  c_text_add(out, ",\n");
+  c_text_add(out, "," KEY_LINE(""));
   write_table(out, "parameter", "law_parameters", p->law->parameters.count);
   if (p->varying_count)
     c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
@@ -103,9 +105,9 @@ static void write_programs(c_text *out, const kernel_plan *p) {
   write_program(out, p, &p->observe);
 }
 
-void descriptor_entry(const kernel_plan *p, const char *key, c_text *out) {
+void descriptor_entry(const kernel_plan *p, c_text *out) {
   c_text_add(out, "#if PL_IN_PART(0)\n");
-  write_law(out, p, key);
+  write_law(out, p);
   if (p->kind == PL_STATE) {
     write_programs(out, p);
   } else {
@@ -116,6 +118,14 @@ void descriptor_entry(const kernel_plan *p, const char *key, c_text *out) {
   }
   c_text_add(out, "};\n\nconst pl_law *perilat_kernel(void);\n"
                   "const pl_law *perilat_kernel(void) { return &the_law; }\n#endif\n");
+}
+
+char *descriptor_keyed(const char *unkeyed, const char *key) {
+  const char *line = strstr(unkeyed, KEY_LINE(""));
+  const char *rest = line + strlen(KEY_LINE(""));
+  c_text out = {0};
+  c_text_add(&out, "%.*s" KEY_LINE("%s") "%s", (int)(line - unkeyed), unkeyed, key, rest);
+  return out.text;
 }
 
 void descriptor_lists(const kernel_plan *p, c_text *out) {

@@ -8,6 +8,9 @@
 
 /* Parameters, fields and outputs, before the functions; the table itself behind them. */
 void descriptor_lists(const kernel_plan *p, c_text *out);
-void descriptor_entry(const kernel_plan *p, const char *key, c_text *out);
+void descriptor_entry(const kernel_plan *p, c_text *out);
+/* The text of a kernel, whose key is empty, with its key, the toolchain_key of that text;
+   malloc'ed. */
+char *descriptor_keyed(const char *unkeyed, const char *key);
 
 #endif

@@ -12,7 +12,7 @@ static void write_prelude(emitter *e) {
   say(e, SAY_PRELUDE_END);
 }
 
-char *emit_kernel(const kernel_plan *p, const char *key) {
+char *emit_kernel(const kernel_plan *p) {
   c_text out = {0};
   emitter e;
   emitter_begin(&e, p, &out);
@@ -27,7 +27,7 @@ char *emit_kernel(const kernel_plan *p, const char *key) {
 #undef X
     law_functions_of_states(&e);
   }
-  descriptor_entry(p, key, &out);
+  descriptor_entry(p, &out);
   emitter_end(&e);
   return out.text;
 }

@@ -6,9 +6,9 @@
 
 #include "generator/plan/plan.h"
 
-/* malloc'ed text; the same plan and key give the same text. `key` goes into the descriptor; it is
-   the toolchain_key of the text emitted with the key "". No text of the law reaches C other than
-   checked identifiers and numbers; descriptions are written as escaped string literals. */
-char *emit_kernel(const kernel_plan *p, const char *key);
+/* malloc'ed text; the same plan gives the same text. The key in its descriptor is empty
+   (descriptor_keyed). No text of the law reaches C other than checked identifiers and numbers;
+   descriptions are written as escaped string literals. */
+char *emit_kernel(const kernel_plan *p);
 
 #endif

@@ -1,5 +1,5 @@
-/* What values can be within the declared bounds: a check of a law that warns of divisions by zero and of roots and
-   logarithms of negative numbers. Inside a case line its guard holds, and those above it do not; parameters keep the
+/* The room: what a law does for all values between its bounds, not only for those that were
+   tried. Inside a case line its guard holds, and those above it do not; parameters keep the
    bounds that relate them. */
 #ifndef PERILAT_GENERATOR_INTERVAL_CHECK_H
 #define PERILAT_GENERATOR_INTERVAL_CHECK_H

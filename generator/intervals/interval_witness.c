@@ -5,8 +5,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/law_limits.h"
-#include "generator/check/physics_parts.h"
-#include "generator/intervals/interval_parts.h"
+#include "generator/check/physics_report.h"
+#include "generator/intervals/interval_witness.h"
 #include "generator/ir/random_values.h"
 
 enum { BATCHES = 24, BISECTIONS = 60 };

@@ -18,11 +18,12 @@ typedef struct kernel_check {
   int guards, guards_both; /* conditions of the law, and those seen both true and false */
 } kernel_check;
 
-/* Checks `kernel` with each of `sets` parameter sets. Laws of bonds: with bonds of one class, `states`
-   states in all and a quarter as many bonds. Laws of families: with a family of the `classes`
-   neighbours that `bonds` describes, opposite to number k that numbered k + classes/2, and a quarter
-   as many bonds as `states`. Stretches and rotations are log-uniform in size from 1e-9 up, rates
-   from 1e-3 to 1e6 1/s, damage is often 0 or 1. The same seed gives the same states. */
+/* Checks `kernel` with each of `sets` parameter sets. Laws of bonds: with bonds of one class,
+   `states` states in all and a quarter as many bonds. Laws of families: with a family of the
+   `classes` neighbours that `bonds` describes, opposite to number k that numbered k + classes/2,
+   and a quarter as many bonds as `states`. Stretches and rotations are log-uniform in size from
+   1e-9 up, rates from 1e-3 to 1e6 1/s, damage is often 0 or 1. The same seed gives the same
+   states. */
 kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
                               const double *const *parameters, int sets, const pl_bond_class *bonds,
                               int classes, long states, uint64_t seed);

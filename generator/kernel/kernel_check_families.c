@@ -8,14 +8,16 @@
 #include "dsl/base/arena.h"
 #include "generator/ir/random_values.h"
 
-/* Sites lie in one array; neighbours are up to REACH away, and so are those of the sites from which bonds reach them. */
+/* Sites lie in one array; neighbours are up to REACH away, and so are those of the sites from
+   which bonds reach them. */
 enum { SITES = 200, CUT = 128, REACH = 96, MARGIN = 2 * REACH, SIZE = MARGIN + SITES + MARGIN };
 
 /* --- arrays ----------------------------------------------------------------------------------- */
 
 enum { OLD_FILLED, NEW_FILLED, SETTLED, MARKS };
 
-/* What the passes read, and twice, for either reader, what they write. Planes toward neighbours stand in one piece. */
+/* What the passes read, and twice, for either reader, what they write. Planes toward neighbours
+   stand in one piece. */
 typedef struct body {
   const pl_law *law;
   int neighbours;
@@ -123,7 +125,8 @@ static void body_free(body *b) {
 
 /* --- a random body ---------------------------------------------------------------------------- */
 
-/* Displacements are of one order in a body, so that a family is nearly at rest or torn as a whole. */
+/* Displacements are of one order in a body, so that a family is nearly at rest or torn as a
+   whole. */
 static void draw_motion(body *b, double s, uint64_t *seed) {
   const double order = draw_uniform(seed, -9, 0);
   for (int d = 0; d < b->law->dimensions; d++)
@@ -231,7 +234,8 @@ static void clear_pieces(const body *b, uint64_t *seed) {
   }
 }
 
-/* Owners that no run comes to have left 0 for both ends of bonds that are absent (pl_program.shared). */
+/* Owners that no run comes to have left 0 for both ends of bonds that are absent
+   (pl_program.shared). */
 static void clear_shared(const body *b) {
   const pl_program *p = &b->law->step;
   const long half = b->neighbours / 2;
@@ -395,8 +399,8 @@ static void clear_sums(const body *b, int side) {
     memset(b->sum[side][s], 0, SIZE * sizeof(double));
 }
 
-/* Bonds of the sites before reach the others: their fields are written as another thread would, then their sums are found
-   as by the thread at hand. */
+/* Bonds of the sites before reach the others: their fields are written as another thread would,
+   then their sums are found as by the thread at hand. */
 static void run_before(const law_readers *l, const body *b, int side, pl_family_function pass) {
   run_part(l, b, side, pass, -REACH, REACH, false);
   clear_sums(b, side);

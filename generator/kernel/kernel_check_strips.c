@@ -63,12 +63,12 @@ static void arrays_free(strip_arrays *a) {
 
 /* --- random bonds ----------------------------------------------------------------------------- */
 
-/* What loops that rely on what is expected find in a part: anything; bonds that turn little, but may stretch; that do
-   neither, but some of whose ends spin; that are all as expected. */
+/* What loops that rely on what is expected find in a part: anything; bonds that turn little, but
+   may stretch; that do neither, but some of whose ends spin; that are all as expected. */
 enum { ANY, TURN_LITTLE, SOME_SPIN, AS_EXPECTED, KINDS };
 
-/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small or large amount, as far as
-   its run is of the kind. */
+/* Bond q turned as a whole by up to 14 rad, then deformed and rotated at its ends by any small
+   or large amount, as far as its run is of the kind. */
 static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed) {
   for (int q = 0; q < SITES; q++) {
     const int kind = q / RUN % KINDS;
@@ -94,8 +94,8 @@ static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed)
   }
 }
 
-/* An eighth of the bonds is absent; of every second strip an eighth is protected. Bits of other directions mean nothing
- * here. */
+/* An eighth of the bonds is absent; of every second strip an eighth is protected. Bits of other
+   directions mean nothing here. */
 static int64_t draw_flags(bool unheld, uint64_t *seed) {
   const int64_t mine = PL_PRESENT(DIRECTION) | PL_PROTECTED(DIRECTION);
   uint64_t kind = draw_bits(seed) % 8;

@@ -9,10 +9,13 @@
 
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
+#include "generator/emit/descriptor.h"
 #include "generator/emit/emit.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "runtime/base/clock.h"
 #include "runtime/base/ordinary_file.h"
 
@@ -63,7 +66,8 @@ static bool ends_in(const char *text, const char *tail) {
   return n > m && strcmp(text + n - m, tail) == 0;
 }
 
-/* A deck's first group begins with `&`, before it are blanks and comments; anything else is taken for a law. */
+/* A deck's first group begins with `&`, before it are blanks and comments; anything else is
+   taken for a law. */
 static file_kind kind_of_text(const char *text) {
   for (; *text; text += strcspn(text, "\n")) {
     text += strspn(text, " \t\r\n");
@@ -231,10 +235,10 @@ static bool check_text(model *m, const char *text, size_t length, const law_choi
   return m->law && !m->said.errors;
 }
 
-bool model_open_text(model *m, const char *path, const char *text, const law_choice *choices,
-                     int choice_count) {
+bool model_open_text(model *m, const char *path, const char *text, size_t length,
+                     const law_choice *choices, int choice_count) {
   begin_model(m, path);
-  return check_text(m, text, strlen(text), choices, choice_count);
+  return check_text(m, text, length, choices, choice_count);
 }
 
 bool model_open(model *m, const char *path, const law_choice *choices, int choice_count) {
@@ -276,26 +280,40 @@ bool model_plan(model *m) {
   return model_plan_varying(m, NULL, 0);
 }
 
-static bool emit_plan(model *m, double begun) {
-  if (!m->plan) return false;
-  char *unkeyed = emit_kernel(m->plan, "");
-  m->key = toolchain_key(unkeyed);
-  free(unkeyed);
-  m->c_text = emit_kernel(m->plan, m->key);
+static bool keep_plan(model *m, kernel_plan *plan, double begun) {
+  m->plan = plan;
   m->seconds_front += monotonic_seconds() - begun;
-  return true;
+  return plan != NULL;
 }
 
 bool model_plan_varying(model *m, const int *varying, int varying_count) {
-  double begun = monotonic_seconds();
-  m->plan = plan_kernel_varying(m->law, varying, varying_count, &m->said);
-  return emit_plan(m, begun);
+  const double begun = monotonic_seconds();
+  return keep_plan(m, plan_kernel_varying(m->law, varying, varying_count, &m->said), begun);
 }
 
 bool model_plan_of_families(model *m) {
-  double begun = monotonic_seconds();
-  m->plan = plan_kernel_of_families(m->law, &m->said);
-  return emit_plan(m, begun);
+  const double begun = monotonic_seconds();
+  return keep_plan(m, plan_kernel_of_families(m->law, &m->said), begun);
+}
+
+static void emit_once(model *m) {
+  if (m->c_text) return;
+  const double begun = monotonic_seconds();
+  char *unkeyed = emit_kernel(m->plan);
+  m->key = toolchain_key(unkeyed);
+  m->c_text = descriptor_keyed(unkeyed, m->key);
+  free(unkeyed);
+  m->seconds_front += monotonic_seconds() - begun;
+}
+
+const char *model_c_text(model *m) {
+  emit_once(m);
+  return m->c_text;
+}
+
+const char *model_key(model *m) {
+  emit_once(m);
+  return m->key;
 }
 
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size) {
@@ -304,11 +322,11 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
     *note = arena_printf(m->memory, "%s: the law runs on the interpreter, many times slower",
                          toolchain_no_compiler());
   if (interpret || *note) {
-    m->interpreted = plan_interpreted(m->plan, m->key);
+    m->interpreted = plan_interpreted(m->plan, "");
     return m->interpreted;
   }
   double begun = monotonic_seconds();
-  if (!toolchain_load(m->c_text, m->key, &m->loaded, error, size)) return NULL;
+  if (!toolchain_load(model_c_text(m), model_key(m), &m->loaded, error, size)) return NULL;
   m->seconds_kernel = monotonic_seconds() - begun;
   const char *trouble = toolchain_cache_trouble();
   if (trouble) *note = arena_printf(m->memory, "%s", trouble);

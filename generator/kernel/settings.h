@@ -6,9 +6,9 @@
 #include "runtime/deck/deck.h"
 #include "runtime/deck/namelist.h"
 
-/* Adds to m->assignments what the texts set, e.g. "E=40 GPa" or "softening=exponential"; what was
-   assigned to such a name before is replaced; "E=" takes it back to the law's default. Each text becomes a source named "--set", so that
-   messages point into it. False on errors. */
+/* Adds to m->assignments what the texts set, e.g. "E=40 GPa" or "softening=exponential"; what
+   was assigned to such a name before is replaced; "E=" takes it back to the law's default. Each
+   text becomes a source named "--set", so that messages point into it. False on errors. */
 bool settings_read(arena *a, source_set *sources, const char *const *texts, int count,
                    deck_material *m, diagnostics *d);
 

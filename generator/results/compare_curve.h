@@ -12,8 +12,9 @@ typedef struct curve_request {
   double tolerance;
 } curve_request;
 
-/* Prints it, and adds it to the list `list` of a document where there is one. Exit status: 0 nowhere
-   farther than the tolerance, times the largest value of the table; 2 farther; 1 after messages. */
+/* Prints it, and adds it to the list `list` of a document where there is one. Exit status: 0
+   nowhere farther than the tolerance, times the largest value of the table; 2 farther; 1 after
+   messages. */
 int compare_curve(const curve_request *q, json *list);
 
 #endif

@@ -12,7 +12,12 @@
 #include "generator/kernel/kernel_check.h"
 #include "generator/kernel/model.h"
 #include "generator/run/progress.h"
-#include "generator/run/run_parts.h"
+#include "generator/run/run_document.h"
+#include "generator/run/run_laws.h"
+#include "generator/run/run_profile.h"
+#include "generator/run/run_report.h"
+#include "generator/run/run_result.h"
+#include "generator/run/run_state.h"
 #include "runtime/base/clock.h"
 #include "runtime/lattice/lattice.h"
 
@@ -46,7 +51,8 @@ static void release_signals(const struct sigaction before[STOPPING_SIGNALS]) {
 
 /* --- diagnostics ------------------------------------------------------------------------------ */
 
-void tell(const run *r, const diagnostics *d) {
+/* Prints diagnostics, or adds them to the report that the caller has asked for. */
+static void tell(const run *r, const diagnostics *d) {
   const run_options *o = r->options;
   if (o->report) diag_json_add(o->report, d);
   if (!o->report || !o->check_only) diag_print(d, stderr);
@@ -126,7 +132,7 @@ static int set_up(run *r) {
   if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
   if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
-  fingerprint(r);
+  if (!r->options->check_only) fingerprint(r);
   return 0;
 }
 

@@ -1,5 +1,6 @@
-/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told before, during and after.
-   A stand-alone solver made by `perilat build` is this same run with deck and kernels built in. */
+/* `perilat run`: a deck and its laws to a result file, with what a person wants to be told
+   before, during and after. A stand-alone solver made by `perilat build` is this same run with
+   deck and kernels built in. */
 #ifndef PERILAT_GENERATOR_RUN_H
 #define PERILAT_GENERATOR_RUN_H
 
@@ -50,28 +51,9 @@ typedef struct run_options {
                         how it ended follows them in the document */
 } run_options;
 
-/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when it was stopped: what there
-   is has been written then, whole. */
+/* Exit status: 0 done, 1 the input is wrong, 2 the run failed, 128 + signal (130 by Ctrl-C) when
+   it was stopped: what there is has been written then, whole. */
 int run_deck(const run_options *o);
-
-/* Opens the law in the file `path` with the options that the material chooses, which are taken out of its assignments. */
-bool run_open_law(deck_material *m, const char *path, model *out, diagnostics *said);
-/* Opens and plans the law of a material with the options that the deck chooses (these are taken out of its assignments); the
-   law's own diagnostics stay in out->said for the caller to print, the deck's go to `said`. The law takes the setting of
-   the lattice (NULL: a bond is of a lattice in plane stress), and is planned for it. The model must be closed when
-   out->memory is set. */
-bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck_path, model *out,
-                       diagnostics *said);
-
-/* Does the law obey mechanics with these parameters on this lattice, a perfect one? What is wrong goes to `of_law`. That it does
-   not with all that its bounds allow is a warning at `where` of `of_values`. */
-bool run_law_obeys(model *opened, const deck_lattice *lattice, const double *parameters, span where,
-                   diagnostics *of_law, diagnostics *of_values);
-
-/* main() of a stand-alone solver. */
-int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count, const built_in_file *files,
-                        int file_count);
 
 C_LINKAGE_END
 

@@ -1,10 +1,10 @@
-/* How a run ended, for other programs: run --json. */
+#include "generator/run/run_document.h"
+
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "generator/run/bad_bond.h"
-#include "generator/run/run_parts.h"
 
 static double last_of(const double *values, long samples) {
   return samples > 0 ? values[samples - 1] + 0.0 : NAN; /* no minus before zeros */

@@ -1,11 +1,11 @@
-/* --profile: where the time of a run went. */
+#include "generator/run/run_profile.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <unistd.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "generator/run/run_parts.h"
 #include "runtime/base/clock.h"
 
 /* --- the machine ------------------------------------------------------------------------------ */
@@ -13,7 +13,8 @@
 #define TRIAD_SECONDS 0.25
 enum { TRIAD_BYTES = 192 << 20 }; /* of three arrays together: more than most caches hold */
 
-/* Bytes a second of a = b + 3 c (McCalpin 1995), the best within a quarter of a second; 24 bytes a place. */
+/* Bytes a second of a = b + 3 c (McCalpin 1995), the best within a quarter of a second; 24 bytes
+   a place. */
 static double triad(int threads) {
   const long count = TRIAD_BYTES / (long)(3 * sizeof(double));
   double *memory = must_alloc(3 * (size_t)count * sizeof *memory);
@@ -35,9 +36,10 @@ static double triad(int threads) {
 
 /* --- a particle's step ------------------------------------------------------------------------ */
 
-/* What a step must move for a particle: displacements, velocities and fields are read and written once, and so is what one
-   pass leaves to another, unless it stays in windows of rows; marks of bonds and what is known of the reference are read.
-   Rows of bonds share marks; where bonds add to both ends, their fields are hardly touched. */
+/* What a step must move for a particle: displacements, velocities and fields are read and
+   written once, and so is what one pass leaves to another, unless it stays in windows of rows;
+   marks of bonds and what is known of the reference are read. Rows of bonds share marks; where
+   bonds add to both ends, their fields are hardly touched. */
 static double bytes_of_step(const run *r) {
   const pl_law *kernel = r->laws[0].law;
   const sweep *w = simulation_state(r->simulation);
@@ -95,7 +97,8 @@ static void print_parts(const run *r, double seconds) {
   print_part("rest", seconds - known, seconds);
 }
 
-/* Whether what the run holds stays in the second caches of its threads, as far as the system tells how large these are. */
+/* Whether what the run holds stays in the second caches of its threads, as far as the system
+   tells how large these are. */
 static bool stays_in_caches(const run *r) {
 #ifdef _SC_LEVEL2_CACHE_SIZE
   const long cache = sysconf(_SC_LEVEL2_CACHE_SIZE);

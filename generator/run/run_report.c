@@ -1,4 +1,5 @@
-/* What a run says: before, during, after. */
+#include "generator/run/run_report.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -7,7 +8,6 @@
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/run/bad_bond.h"
-#include "generator/run/run_parts.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"

@@ -1,4 +1,5 @@
-/* What a run writes: paths, result, frames, checkpoints. */
+#include "generator/run/run_result.h"
+
 #include <errno.h>
 #include <inttypes.h>
 #include <stdlib.h>
@@ -9,8 +10,9 @@
 #include "dsl/base/hash.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "generator/kernel/version.h"
-#include "generator/run/run_parts.h"
+#include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/lattice/shape_matrix.h"
 
@@ -102,11 +104,16 @@ bool result_spares_inputs(run *r) {
   return good;
 }
 
+/* That of the compiled kernel, also where the law is interpreted. */
+static const char *kernel_key(run *r, int lattice) {
+  return r->built_in[lattice] ? r->laws[lattice].law->key : model_key(&r->models[lattice]);
+}
+
 void fingerprint(run *r) {
   char *text = arena_printf(r->memory, "perilat %s\n", perilat_version);
   for (int k = 0; k < r->deck->lattice_count; k++)
     text = arena_printf(r->memory, "%slaw %s, kernel %s\n", text, r->laws[k].law->name,
-                        r->laws[k].law->key);
+                        kernel_key(r, k));
   for (int k = 0; k < r->deck->file_count; k++) { /* a file may have changed */
     const source *s = &r->sources.items[r->deck->files[k].source];
     text = arena_printf(r->memory, "%sfile %s, contents %016" PRIx64 "\n", text,
@@ -125,15 +132,14 @@ void fingerprint(run *r) {
 static result_text *collect_texts(run *r, bool c_text, int *count) {
   *count = r->deck->lattice_count;
   result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
-  int opened = 0;
   for (int k = 0; k < *count; k++) {
     const built_in_law *b = r->built_in[k];
-    const model *m = b ? NULL : &r->models[opened++];
+    model *m = b ? NULL : &r->models[k];
     texts[k].name = r->laws[k].law->name;
     if (b)
       texts[k].text = c_text ? b->c_text : b->law_text;
     else
-      texts[k].text = c_text ? m->c_text : m->sources.items[0].text;
+      texts[k].text = c_text ? model_c_text(m) : m->sources.items[0].text;
   }
   return texts;
 }
@@ -236,7 +242,7 @@ bool open_result(run *r) {
                      .title = r->deck->simulation.title ? r->deck->simulation.title : "",
                      .started = r->started,
                      .version = perilat_version,
-                     .kernel_key = r->laws[0].law->key,
+                     .kernel_key = kernel_key(r, 0),
                      .threads = simulation_threads(r->simulation),
                      .deck_text = r->sources.items[0].text,
                      .overrides = list_overrides(r),

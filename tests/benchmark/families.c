@@ -12,6 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/semantics/law_variant.h"
 #include "generator/kernel/model.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/lattice.h"
@@ -153,9 +154,8 @@ static const pl_law *compile(contest *c, model *m, bool irregular) {
   const char *note;
   snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, c->model);
   bool good = model_open(m, path, NULL, 0);
-  if (good) m->law->setting = c->setting;
-  if (good) m->law->irregular = irregular;
-  if (good) m->law->neighbours = irregular ? 0 : 2 * c->rows->directions;
+  if (good)
+    m->law = law_on_lattice(m->law, c->setting, irregular, irregular ? 0 : 2 * c->rows->directions);
   good = good && model_plan(m);
   diag_print(&m->said, stderr);
   const pl_law *kernel = good ? model_kernel(m, false, &note, error, sizeof error) : NULL;

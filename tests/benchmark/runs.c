@@ -10,6 +10,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_compiler.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/trial.h"
 
@@ -284,7 +286,7 @@ static void measure_sampling(figures *f) {
 /* --- reproducible arithmetic ------------------------------------------------------------------ */
 
 /* The same C, allowed to reorder and to fuse. */
-static const pl_law *compile_fast(const model *m, const char *name, const char *folder,
+static const pl_law *compile_fast(model *m, const char *name, const char *folder,
                                   loaded_kernel *out) {
   char c_path[200], path[200], command[2000], error[2000];
   snprintf(c_path, sizeof c_path, "%s/%s.c", folder, name);
@@ -292,7 +294,7 @@ static const pl_law *compile_fast(const model *m, const char *name, const char *
   snprintf(command, sizeof command, "%s %s -ffast-math -ffp-contract=fast -o %s %s",
            toolchain_compiler(), toolchain_flags(), path, c_path);
   FILE *c = fopen(c_path, "w");
-  if (!c || fputs(m->c_text, c) < 0 || fclose(c) != 0) give_up("%s cannot be written", c_path);
+  if (!c || fputs(model_c_text(m), c) < 0 || fclose(c) != 0) give_up("%s cannot be written", c_path);
   if (system(command) != 0) give_up("failed: %s", command);
   if (!toolchain_open(path, NULL, out, error, sizeof error)) give_up("%s", error);
   return out->law;

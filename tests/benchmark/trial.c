@@ -5,6 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/semantics/law_variant.h"
+#include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
 #include "tests/benchmark/measure.h"
 
@@ -29,7 +31,7 @@ void trial_open_model(model *m, const char *name, int neighbours) {
   else
     snprintf(path, sizeof path, "%s/models/%s.plm", SOURCE_DIR, name);
   bool good = model_open(m, path, NULL, 0);
-  if (good) m->law->neighbours = neighbours;
+  if (good) m->law = law_on_lattice(m->law, m->law->setting, false, neighbours);
   good = good && model_plan(m);
   diag_print(&m->said, stderr);
   if (!good) give_up("%s cannot be used", path);
@@ -51,7 +53,7 @@ void trial_shake(sweep *state) {
 
 double *trial_parameters(trial *t, const pl_law *kernel) {
   double *parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof *parameters);
-  if (!material_parameters(&t->deck->materials[0], kernel, parameters, &t->said)) {
+  if (!material_parameters(&t->model.values, kernel, parameters, &t->said)) {
     diag_print(&t->said, stderr);
     give_up("the parameters do not fit the law");
   }
@@ -68,7 +70,7 @@ trial *trial_open(const char *deck_text) {
   t->deck = deck_read(t->memory, &t->sources, file, NULL, 0, &t->said);
   if (t->deck) {
     const char *beside = SOURCE_DIR "/models/trial.nml"; /* where laws are looked for */
-    if (!run_open_material(&t->deck->materials[0], &t->deck->lattices[0], beside, &t->model,
+    if (!material_law_open(&t->deck->materials[0], &t->deck->lattices[0], beside, &t->model,
                            &t->said)) {
       diag_print(&t->said, stderr);
       give_up("the law of a deck cannot be used");

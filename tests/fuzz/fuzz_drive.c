@@ -2,7 +2,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_path.h"
 #include "tests/fuzz/fuzz.h"
 
 enum { LONGEST = 1 << 14, MOST_STEPS = 20000 };

@@ -84,7 +84,7 @@ static void check_kernel_text(const law *l, diagnostics *d) {
   kernel_plan *plan = plan_kernel(l, d);
   MUST((plan != NULL) == (d->errors == errors));
   if (!plan) return;
-  char *c = emit_kernel(plan, "key");
+  char *c = emit_kernel(plan);
   const char *stray = c_stray(c);
   if (stray) fprintf(stderr, "stray in the emitted C: %.80s\n", stray);
   MUST(!stray);

@@ -73,7 +73,7 @@ while IFS= read -r header; do
   [ -z "$cpp" ] || "$cpp" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C++17"
 done < <(cd "$include" && find . -name '*.h' | sed 's/^..//')
 [ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/kernel/model.h" ] || fail "$headers headers"
-for inner in runtime/interaction/sweep.h runtime/simulation/simulation_parts.h generator/plan/plan.h generator/run/run_parts.h dsl/syntax/parsing.h; do
+for inner in runtime/interaction/sweep.h runtime/simulation/simulation_parts.h generator/plan/plan.h generator/run/run_state.h dsl/syntax/parsing.h; do
   [ ! -e "$include/$inner" ] || fail "$inner is installed"
 done
 
@@ -121,7 +121,7 @@ cat >host.cpp <<'END'
 #include <cstdio>
 #include <cstring>
 
-#include "generator/kernel/model.h"
+#include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck.h"
 #include "runtime/result/result.h"
@@ -147,13 +147,13 @@ int main(int argc, char **argv) {
   deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
   model m = {};
   long steps = 0;
-  if (k && run_open_material(&k->materials[0], &k->lattices[0], nullptr, &m, &said)) {
+  if (k && material_law_open(&k->materials[0], &k->lattices[0], nullptr, &m, &said)) {
     char error[1000];
     const char *note;
     double values[16];
     const pl_law *law = model_kernel(&m, true, &note, error, sizeof error);
     simulation_law laws = {law, values};
-    simulation *s = law && material_parameters(&k->materials[0], law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
+    simulation *s = law && material_parameters(&m.values, law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
     while (s && simulation_advance(s, 100, nullptr) == STEP_OK)
       ;
     steps = s ? simulation_step_done(s) : 0;

@@ -9,6 +9,8 @@
 #include <string.h>
 
 #include "generator/interpreter/interpreted.h"
+#include "dsl/semantics/law_variant.h"
+#include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
@@ -42,7 +44,7 @@ static inline bool law_case_compile(law_case *c) {
   }
   c->compiled = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->compiled) fprintf(stderr, "%s\n", error);
-  c->interpreted = plan_interpreted(c->model.plan, c->model.key);
+  c->interpreted = plan_interpreted(c->model.plan, "");
   c->parameters = calloc((size_t)c->interpreted->parameter_count + 1, sizeof *c->parameters);
   for (int p = 0; p < c->interpreted->parameter_count; p++)
     c->parameters[p] = c->interpreted->parameters[p].initial;
@@ -56,7 +58,7 @@ static inline bool law_case_open(law_case *c, const char *name) {
 /* The same for a lattice in this setting. */
 static inline bool law_case_open_in(law_case *c, const char *name, law_setting setting) {
   if (!law_case_read(c, name)) return false;
-  c->model.law->setting = setting;
+  c->model.law = law_on_lattice(c->model.law, setting, false, 0);
   return law_case_compile(c);
 }
 
@@ -112,12 +114,12 @@ static inline bool deck_case_lattice(deck_case *c, const char *text) {
 static inline bool deck_case_start(deck_case *c, const char *path) {
   const char *note;
   char error[4096];
-  deck_material *m = &c->deck->materials[0];
-  if (!run_open_material(m, &c->deck->lattices[0], path, &c->model, &c->said)) return false;
+  if (!material_law_open(&c->deck->materials[0], &c->deck->lattices[0], path, &c->model, &c->said))
+    return false;
   c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->law.law) return false;
   c->law.parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof(double));
-  if (material_parameters(m, c->law.law, c->law.parameters, &c->said))
+  if (material_parameters(&c->model.values, c->law.law, c->law.parameters, &c->said))
     c->simulation = simulation_new(c->deck, &c->law, &c->said);
   if (c->said.errors) diag_print(&c->said, stderr);
   return c->simulation != NULL;

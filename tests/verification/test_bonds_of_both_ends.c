@@ -49,7 +49,7 @@ static void open_threads(deck_case *c, int body, const char *threads, bool inter
   assert_true(c->law.law->sum_count > 0);
   if (!interpreted) return;
   simulation_free(c->simulation);
-  c->law.law = plan_interpreted(c->model.plan, c->model.key);
+  c->law.law = plan_interpreted(c->model.plan, "");
   c->simulation = simulation_new(c->deck, &c->law, &c->said);
   assert_non_null(c->simulation);
 }

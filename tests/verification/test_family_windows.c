@@ -8,6 +8,7 @@
 
 #include <cmocka.h>
 
+#include "dsl/semantics/law_variant.h"
 #include "runtime/interaction/family_parts.h"
 #include "tests/verification/case.h"
 
@@ -74,8 +75,7 @@ static void windows_of_round_bodies_give_the_same_bits(void **state) {
     deck_case k;
     assert_true(deck_case_lattice(&k, bodies[n].deck));
     assert_true(law_case_read(&c, bodies[n].model));
-    c.model.law->setting = bodies[n].setting;
-    c.model.law->neighbours = 2 * k.lattice->directions;
+    c.model.law = law_on_lattice(c.model.law, bodies[n].setting, false, 2 * k.lattice->directions);
     assert_true(law_case_compile(&c));
     k.lattice->mass = *law_case_value(&c, "rho") * k.lattice->volume;
     sweep *whole = moving_body(&c, k.lattice, k.lattice->row_count / 2, false);

@@ -14,8 +14,10 @@
 #include <glob.h>
 #include <strings.h>
 
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
+#include "generator/kernel/model.h"
 #include "runtime/deck/deck_table.h"
+#include "runtime/deck/namelist.h"
 #include "tests/generator/command_tools.h"
 
 enum { MOST_DECKS = 200, MOST_OWN = 100, MOST_VALUES = 100 };

@@ -15,6 +15,7 @@
 #include <sys/syscall.h>
 
 #include "generator/command/commands.h"
+#include "generator/command/completion.h"
 #include "generator/command/manual.h"
 #include "tests/generator/command_tools.h"
 

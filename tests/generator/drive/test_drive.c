@@ -14,7 +14,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_grammar.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_path.h"
+#include "generator/drive/drive_table.h"
+#include "generator/kernel/model.h"
 #include "runtime/result/result.h"
 
 enum { TEXT = 65536 };

@@ -14,10 +14,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "generator/emit/descriptor.h"
 #include "generator/target/c_text.h"
 #include "generator/emit/emit.h"
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_compiler.h"
 
 #define ERROR_SIZE 2000
 
@@ -178,8 +180,8 @@ static ir_node named(ir *g, ir_node n, const char *name) {
 static loaded_kernel load(const hand_made *h, char **text) {
   char error[ERROR_SIZE] = "";
   loaded_kernel k;
-  char *unkeyed = emit_kernel(&h->plan, ""), *key = toolchain_key(unkeyed);
-  *text = emit_kernel(&h->plan, key);
+  char *unkeyed = emit_kernel(&h->plan), *key = toolchain_key(unkeyed);
+  *text = descriptor_keyed(unkeyed, key);
   if (!toolchain_load(*text, key, &k, error, sizeof error)) fail_msg("%s", error);
   assert_string_equal(k.law->key, key);
   free(unkeyed);
@@ -392,7 +394,7 @@ static char *compiler_says(const char *text, const char *compiler, const char *m
 }
 
 static char *text_of(const hand_made *h) {
-  return emit_kernel(&h->plan, "key");
+  return emit_kernel(&h->plan);
 }
 
 /* Number of the line on which `at` stands in `text`. */
@@ -410,7 +412,8 @@ static void the_loops_vectorise(void **state) {
   int loops = 0;
   char *gcc = compiler_says(text, "gcc", "-fopt-info-vec-optimized -o /dev/null");
   char *clang = compiler_says(text, "clang", "-Rpass=loop-vectorize -o /dev/null");
-  const char *at = strstr(text, "PL_PASS void rows(const pl_law *law"), *end = at ? strstr(at, "\n}\n") : NULL;
+  const char *at = strstr(text, "PL_PASS void rows(const pl_law *law"),
+             *end = at ? strstr(at, "\n}\n") : NULL;
   assert_non_null(end);
   while ((at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) { /* all loops of the function */
     at += strlen("  PL_INDEPENDENT\n");

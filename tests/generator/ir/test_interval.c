@@ -14,6 +14,7 @@
 #include "dsl/syntax/parse.h"
 #include "generator/intervals/interval_check.h"
 #include "generator/ir/interpret.h"
+#include "generator/intervals/interval_check.h"
 #include "generator/ir/interval.h"
 #include "generator/ir/random_values.h"
 

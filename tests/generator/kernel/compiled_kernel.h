@@ -12,8 +12,11 @@
 #include <sys/wait.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/kernel/kernel_check.h"
 #include "generator/kernel/model.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
 
 enum { PARAMETER_SETS = 4 };
 static const pl_bond_class bonds = {.s = 6.35e-3,
@@ -33,9 +36,8 @@ static inline const pl_law *open_kernel_for(model *m, const char *path, const la
   char error[2000] = "";
   const char *note;
   bool good = model_open(m, path, choice, choice ? 1 : 0);
-  if (good && setting) m->law->setting = *setting;
-  if (good) m->law->irregular = irregular;
-  if (good) m->law->neighbours = neighbours;
+  if (good)
+    m->law = law_on_lattice(m->law, setting ? *setting : m->law->setting, irregular, neighbours);
   if (!good || !model_plan(m)) {
     diag_print(&m->said, stderr);
     fail_msg("%s cannot be compiled", path);
@@ -83,12 +85,12 @@ static inline kernel_check check(const model *m, const pl_law *kernel, long stat
 
 /* Compiles the kernel again with more flags; what the compiler says (malloc'ed), or NULL without
  * such a compiler. */
-static inline char *compiler_says(const model *m, const char *compiler, const char *more) {
+static inline char *compiler_says(model *m, const char *compiler, const char *more) {
   char command[2000];
   snprintf(command, sizeof command, "%s --version >/dev/null 2>&1", compiler);
   if (system(command) != 0) return NULL;
   snprintf(command, sizeof command, "%s %s %s -o /dev/null -x c - 2>&1 <'%s/%s.c'", compiler,
-           toolchain_flags(), more, toolchain_cache(), m->key);
+           toolchain_flags(), more, toolchain_cache(), model_key(m));
   FILE *in = popen(command, "r");
   const size_t room = 1 << 20;
   char *said = must_calloc(room, 1);
@@ -98,7 +100,7 @@ static inline char *compiler_says(const model *m, const char *compiler, const ch
   return said;
 }
 
-static inline void assert_text_is_clean(const model *m) {
+static inline void assert_text_is_clean(model *m) {
   free(compiler_says(m, "gcc", "-Wall -Wextra -Werror"));
   free(compiler_says(m, "clang", "-Wall -Wextra -Werror -Wno-unused-command-line-argument"));
 }

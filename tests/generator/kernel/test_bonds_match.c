@@ -9,8 +9,8 @@
 
 #include "tests/generator/kernel/compiled_kernel.h"
 
-static void assert_vectorised(const model *m, const char *gcc, const char *function) {
-  const char *text = m->c_text, *at = strstr(text, function),
+static void assert_vectorised(model *m, const char *gcc, const char *function) {
+  const char *text = model_c_text(m), *at = strstr(text, function),
              *end = at ? strstr(at, "\n}\n") : NULL;
   /* All loops of the function: */
   while (end && (at = strstr(at, "  PL_INDEPENDENT\n")) && at < end) {
@@ -25,9 +25,9 @@ static void assert_vectorised(const model *m, const char *gcc, const char *funct
   }
 }
 
-static void assert_clean_and_vectorised(const model *m) {
+static void assert_clean_and_vectorised(model *m) {
   char *gcc = compiler_says(m, "gcc", "-Wall -Wextra -Werror -fopt-info-vec-optimized");
-  assert_non_null(strstr(m->c_text, "PL_PASS void rows(const pl_law *law"));
+  assert_non_null(strstr(model_c_text(m), "PL_PASS void rows(const pl_law *law"));
   assert_vectorised(m, gcc, "PL_PASS void rows(const pl_law *law");
   /* Where something is expected: */
   assert_vectorised(m, gcc, "PL_PASS void rows_unusual(const pl_law *law");

@@ -11,6 +11,8 @@
 #include <float.h>
 #include <unistd.h>
 
+#include "dsl/semantics/law_variant.h"
+#include "generator/emit/descriptor.h"
 #include "generator/emit/emit.h"
 #include "tests/generator/kernel/compiled_family.h"
 
@@ -24,15 +26,12 @@ static void laws_of_bonds_match_as_laws_of_families(void **state) {
       model m;
       char error[2000];
       assert_true(model_open(&m, names[k], NULL, 0));
-      m.law->setting = space ? SETTING_SPACE : SETTING_PLANE_STRESS;
-      m.plan = plan_kernel_of_families(m.law, &m.said);
-      assert_non_null(m.plan);
-      char *unkeyed = emit_kernel(m.plan, "");
-      m.key = toolchain_key(unkeyed);
-      free(unkeyed);
-      m.c_text = emit_kernel(m.plan, m.key);
-      if (!toolchain_load(m.c_text, m.key, &m.loaded, error, sizeof error)) fail_msg("%s", error);
-      assert_same_families(m.plan, m.loaded.law, 60000);
+      const char *note;
+      m.law = law_on_lattice(m.law, space ? SETTING_SPACE : SETTING_PLANE_STRESS, false, 0);
+      assert_true(model_plan_of_families(&m));
+      const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
+      if (!kernel) fail_msg("%s", error);
+      assert_same_families(m.plan, kernel, 60000);
       model_close(&m);
     }
 }
@@ -43,8 +42,8 @@ static char *check_cut(model *m, loop_cutting cutting) {
   char error[2000];
   loaded_kernel loaded = {0};
   m->plan->cutting = cutting;
-  char *unkeyed = emit_kernel(m->plan, ""), *key = toolchain_key(unkeyed);
-  char *text = emit_kernel(m->plan, key);
+  char *unkeyed = emit_kernel(m->plan), *key = toolchain_key(unkeyed);
+  char *text = descriptor_keyed(unkeyed, key);
   if (!toolchain_load(text, key, &loaded, error, sizeof error)) fail_msg("%s", error);
   assert_same_bits(m, loaded.law, 120000);
   toolchain_unload(&loaded);

@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "dsl/semantics/law_variant.h"
 #include "tests/generator/kernel/compiled_family.h"
 
 /* Planned for a large family: bonds add to both ends where these would compute the same. */
@@ -17,8 +18,7 @@ static int large(const char *path, const law_choice *choice, law_setting setting
   char error[2000];
   const char *note;
   assert_true(model_open(&m, path, NULL, 0));
-  m.law->setting = setting;
-  m.law->neighbours = LARGE;
+  m.law = law_on_lattice(m.law, setting, false, LARGE);
   assert_true(model_plan(&m));
   const pl_law *kernel = model_kernel(&m, false, &note, error, sizeof error);
   if (!kernel) fail_msg("%s", error);

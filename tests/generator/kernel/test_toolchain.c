@@ -20,8 +20,10 @@
 #include <unistd.h>
 
 #include "dsl/base/sha256.h"
-#include "generator/target/prelude.h"
 #include "generator/kernel/toolchain.h"
+#include "generator/kernel/toolchain_cache.h"
+#include "generator/kernel/toolchain_compiler.h"
+#include "generator/target/prelude.h"
 
 #define ERROR_SIZE 2000
 

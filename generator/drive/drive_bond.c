@@ -1,10 +1,12 @@
-#include "generator/drive/drive.h"
+#include "generator/drive/drive_bond.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/simulation/simulation.h"
 
@@ -19,14 +21,14 @@ typedef struct motion {
 /* Particle i at the origin, j on the x axis; the chord does not turn, so that the particles'
    rotations are those of the ends. The passes work on PL_LANES bonds at once, of which only the
    first is present. */
-typedef struct rig {
+typedef struct driven_bond {
   const pl_law *kernel;
   double s, *uniforms, **field, **force, **observed;
   double *displacement[2], *velocity[2], *lost_state, *lost_rate; /* of i, j: [dof][LANES] */
   int64_t *flags;
   void *memory; /* of all arrays */
   pl_strip strip;
-} rig;
+} driven_bond;
 
 typedef struct answer {
   double N, M[2], lost_state, power; /* J; W: of the rate terms */
@@ -45,11 +47,11 @@ static void *aligned(void *memory) {
   return (char *)memory + (PL_ALIGNMENT - at % PL_ALIGNMENT) % PL_ALIGNMENT;
 }
 
-static void rig_open(rig *r, const pl_law *kernel, const double *parameters,
-                     const pl_bond_class *bonds) {
+static void bond_open(driven_bond *r, const pl_law *kernel, const double *parameters,
+                      const pl_bond_class *bonds) {
   int count =
       kernel->field_count + kernel->force_planes + 1 + kernel->output_count + 4 * kernel->dof + 2;
-  *r = (rig){.kernel = kernel, .s = bonds->s};
+  *r = (driven_bond){.kernel = kernel, .s = bonds->s};
   r->uniforms = must_calloc((size_t)kernel->uniform_count + 1, sizeof(double));
   r->memory = must_calloc((size_t)(count + 2) * LANES, sizeof(double));
   r->flags = aligned(r->memory);
@@ -82,7 +84,7 @@ static void rig_open(rig *r, const pl_law *kernel, const double *parameters,
   kernel->prepare(kernel, parameters, bonds, r->uniforms);
 }
 
-static void rig_close(rig *r) {
+static void bond_close(driven_bond *r) {
   free(r->uniforms);
   free(r->memory);
   free(r->field);
@@ -90,7 +92,7 @@ static void rig_close(rig *r) {
   free(r->observed);
 }
 
-static void rig_move(rig *r, const motion *m) {
+static void bond_move(driven_bond *r, const motion *m) {
   r->displacement[1][0] = m->stretch * r->s;
   r->velocity[1][0] = m->rate * r->s;
   for (int end = 0; end < 2 && r->kernel->dof > 2; end++) {
@@ -100,8 +102,8 @@ static void rig_move(rig *r, const motion *m) {
 }
 
 /* Forces in a motion; state and damage go on. */
-static answer rig_step(rig *r, const motion *m) {
-  rig_move(r, m);
+static answer bond_step(driven_bond *r, const motion *m) {
+  bond_move(r, m);
   r->lost_state[0] = r->lost_rate[0] = 0;
   r->kernel->rows_ledger(r->kernel, r->uniforms, &r->strip);
   answer a = {.N = r->force[0][0] + 0.0, .lost_state = r->lost_state[0], .power = r->lost_rate[0]};
@@ -111,18 +113,18 @@ static answer rig_step(rig *r, const motion *m) {
 }
 
 /* Stored energy; state and damage stay. Outputs are in r->observed. */
-static double rig_stored(rig *r, const motion *m) {
-  rig_move(r, m);
+static double stored_energy(driven_bond *r, const motion *m) {
+  bond_move(r, m);
   r->kernel->rows_observe(r->kernel, r->uniforms, &r->strip);
   return r->observed[0][0];
 }
 
 /* Forces only: state and damage stay. */
-static answer rig_probe(rig *r, const motion *m) {
+static answer bond_probe(driven_bond *r, const motion *m) {
   double *kept = must_calloc((size_t)r->kernel->field_count + 1, sizeof *kept);
   for (int f = 0; f < r->kernel->field_count; f++)
     kept[f] = r->field[f][0];
-  answer a = rig_step(r, m);
+  answer a = bond_step(r, m);
   for (int f = 0; f < r->kernel->field_count; f++)
     r->field[f][0] = kept[f];
   free(kept);
@@ -178,20 +180,6 @@ static const char *const last_names[] = {
 #undef X
 };
 
-int drive_column_find(const drive_table *t, const char *name) {
-  for (int k = 0; k < t->column_count; k++)
-    if (strcmp(t->columns[k].name, name) == 0) return k;
-  return -1;
-}
-
-void drive_add_column(drive_table *t, const char *name, const char *unit_text, long room) {
-  if (drive_column_find(t, name) >= 0) name = arena_printf(t->memory, "law_%s", name);
-  t->columns[t->column_count++] =
-      (drive_column){arena_text(t->memory, name, strlen(name)),
-                     arena_text(t->memory, unit_text, strlen(unit_text)),
-                     arena_alloc(t->memory, (size_t)room * sizeof(double))};
-}
-
 static void table_open(drive_table *t, const pl_law *kernel, long room) {
   int count = DRIVE_COLUMN_LAW + kernel->field_count + kernel->output_count + DRIVE_ENERGY_COUNT;
   *t = (drive_table){.memory = arena_new(),
@@ -215,16 +203,11 @@ void drive_columns(const pl_law *kernel, drive_table *out) {
   table_open(out, kernel, 0);
 }
 
-void drive_table_free(drive_table *t) {
-  arena_free(t->memory);
-  *t = (drive_table){.memory = NULL};
-}
-
 /* --- the march -------------------------------------------------------------------------------- */
 
 typedef struct marching {
   const drive_input *in;
-  rig rig;
+  driven_bond driven_bond;
   drive_table *table;
   motion at; /* of the last row */
   answer forces;
@@ -234,7 +217,7 @@ typedef struct marching {
 static void put_row(marching *m, double time) {
   drive_table *t = m->table;
   const long row = t->rows++;
-  const pl_law *kernel = m->rig.kernel;
+  const pl_law *kernel = m->driven_bond.kernel;
   const double first[DRIVE_COLUMN_LAW] = {time,           m->at.stretch,  m->at.rate,
                                           m->at.theta[0], m->at.theta[1], m->forces.N,
                                           m->forces.M[0], m->forces.M[1]};
@@ -242,9 +225,9 @@ static void put_row(marching *m, double time) {
   for (; c < DRIVE_COLUMN_LAW; c++)
     t->columns[c].values[row] = first[c];
   for (int f = 0; f < kernel->field_count; f++)
-    t->columns[c++].values[row] = m->rig.field[f][0];
+    t->columns[c++].values[row] = m->driven_bond.field[f][0];
   for (int f = 0; f < kernel->output_count; f++)
-    t->columns[c++].values[row] = m->rig.observed[1 + f][0];
+    t->columns[c++].values[row] = m->driven_bond.observed[1 + f][0];
   double *e = m->energy;
   e[DRIVE_ENERGY_DISSIPATED] =
       e[DRIVE_ENERGY_DISSIPATED_DAMAGE] + e[DRIVE_ENERGY_DISSIPATED_DAMPING];
@@ -259,8 +242,8 @@ static void put_row(marching *m, double time) {
 /* Work is done before the first row, as much as is there. */
 static void first_row(marching *m, const motion *to, double time) {
   m->at = *to;
-  m->forces = rig_step(&m->rig, to);
-  double stored = rig_stored(&m->rig, to);
+  m->forces = bond_step(&m->driven_bond, to);
+  double stored = stored_energy(&m->driven_bond, to);
   m->energy[DRIVE_ENERGY_STORED] = stored;
   m->energy[DRIVE_ENERGY_DISSIPATED_DAMAGE] = m->forces.lost_state;
   m->energy[DRIVE_ENERGY_EXTERNAL] = stored + m->forces.lost_state;
@@ -272,16 +255,17 @@ static void first_row(marching *m, const motion *to, double time) {
    sudden changes between the two. */
 static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
   double *e = m->energy;
-  answer before = same_rates(from, &m->at) ? m->forces : rig_probe(&m->rig, from);
-  answer after = rig_step(&m->rig, to);
-  double lost_before = e[DRIVE_ENERGY_STORED] - rig_stored(&m->rig, from);
+  answer before = same_rates(from, &m->at) ? m->forces : bond_probe(&m->driven_bond, from);
+  answer after = bond_step(&m->driven_bond, to);
+  double lost_before = e[DRIVE_ENERGY_STORED] - stored_energy(&m->driven_bond, from);
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost_before + after.lost_state);
   e[DRIVE_ENERGY_DISSIPATED_DAMPING] += 0.5 * (before.power + after.power) * step;
-  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.N + after.N) * (to->stretch - from->stretch) * m->rig.s;
+  e[DRIVE_ENERGY_EXTERNAL] +=
+      0.5 * (before.N + after.N) * (to->stretch - from->stretch) * m->driven_bond.s;
   for (int end = 0; end < 2; end++)
     e[DRIVE_ENERGY_EXTERNAL] +=
         0.5 * (before.M[end] + after.M[end]) * (to->theta[end] - from->theta[end]);
-  e[DRIVE_ENERGY_STORED] = rig_stored(&m->rig, to);
+  e[DRIVE_ENERGY_STORED] = stored_energy(&m->driven_bond, to);
   m->at = *to;
   m->forces = after;
   put_row(m, time);
@@ -320,9 +304,9 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
   double *t = drive_times(in, &count);
   marching m = {.in = in, .table = out};
   table_open(out, kernel, count);
-  rig_open(&m.rig, kernel, parameters, &bonds);
+  bond_open(&m.driven_bond, kernel, parameters, &bonds);
   for (int f = 0; f < kernel->field_count; f++)
-    m.rig.field[f][0] = initial[f];
+    m.driven_bond.field[f][0] = initial[f];
   bool good = true;
   for (long k = 0; good && k < count && out->bad_row < 0; k++) {
     motion to = motion_ending(in, t, count, k);
@@ -335,7 +319,7 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
     motion from = motion_beginning(in, t, k - 1);
     next_row(&m, &from, &to, t[k], t[k] - t[k - 1]);
   }
-  rig_close(&m.rig);
+  bond_close(&m.driven_bond);
   free(t);
   return good;
 }
@@ -343,17 +327,17 @@ bool drive_run(const drive_input *in, const pl_law *kernel, const double *parame
 void drive_observe(const drive_input *in, const pl_law *kernel, const double *parameters,
                    const drive_table *t, long row, double *outputs) {
   pl_bond_class bonds;
-  rig r;
+  driven_bond r;
   if (!drive_bond_class(in, material_density(kernel, parameters), &bonds)) return;
-  rig_open(&r, kernel, parameters, &bonds);
+  bond_open(&r, kernel, parameters, &bonds);
   for (int f = 0; f < kernel->field_count; f++)
     r.field[f][0] = t->columns[DRIVE_COLUMN_LAW + f].values[row];
   motion m = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
               .rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
               .theta = {t->columns[DRIVE_COLUMN_THETA_I].values[row],
                         t->columns[DRIVE_COLUMN_THETA_J].values[row]}};
-  rig_stored(&r, &m);
+  stored_energy(&r, &m);
   for (int k = 0; k < kernel->output_count; k++)
     outputs[k] = r.observed[1 + k][0];
-  rig_close(&r);
+  bond_close(&r);
 }

@@ -1,21 +1,24 @@
-/* Inside of the physics checks of laws of families, shared by their parts: physics_family_bench.c
-   drives the law, physics_family_energy.c judges work with states held, physics_family_paths.c
-   histories, physics_family_healing.c states that go back. */
-#ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
-#define PERILAT_GENERATOR_PHYSICS_FAMILY_PARTS_H
+/* A law of families on a free body of a few particles, driven on the interpreter: parameters,
+   deformations, forces, what is observed, and how its checks say what they find. What holds by
+   construction is not checked: bond forces are means of both sides, opposite to the bit, and
+   stretches know no rotation. */
+#ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
+#define PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 
-#include "generator/check/physics_family.h"
+#include "generator/check/physics.h"
 #include "generator/plan/plan.h"
 #include "runtime/analysis/patch.h"
 
-/* A number that the law computes of a particle, or toward each of its neighbours: where it is observed. */
+/* A number that the law computes of a particle, or toward each of its neighbours: where it is
+   observed. */
 typedef struct watched {
   int at;    /* in patch.observed */
   bool wide; /* toward neighbours */
 } watched;
 
-/* The law twice on one body without surroundings. `whole`: forces and new fields; it observes `text` with the fields at
-   hand. `frozen`: forces with the fields held, at the same rates; it observes the law's energy. */
+/* The law twice on one body without surroundings. `whole`: forces and new fields; it observes
+   `text` with the fields at hand. `frozen`: forces with the fields held, at the same rates; it
+   observes the law's energy. */
 typedef struct family_bench {
   const law *law;
   const physics_options *options;
@@ -47,8 +50,8 @@ void family_bench_free(family_bench *b);
 
 /* New parameters (the defaults at first), a virgin body at rest. */
 void family_bench_draw(family_bench *b, bool defaults);
-/* One displacement, or velocity, of all particles (m, m/s): [values], component by component. An affine deformation of
-   random kind and random differences, at most `size` as strain. */
+/* One displacement, or velocity, of all particles (m, m/s): [values], component by component. An
+   affine deformation of random kind and random differences, at most `size` as strain. */
 void family_bench_deform(family_bench *b, double size, double *values);
 /* Puts both bodies at u, at the velocity v (NULL: at rest). */
 void family_bench_move(family_bench *b, const double *u, const double *v);
@@ -60,38 +63,26 @@ void family_bench_accept(family_bench *b);
 void family_bench_share_fields(family_bench *b);
 /* What `text` observes of the whole law's body. */
 void family_bench_observe(family_bench *b);
-/* The time there is has been used up (families of many neighbours): a check goes its first round only. */
+/* The time there is has been used up (families of many neighbours): a check goes its first round
+   only. */
 bool family_bench_tired(const family_bench *b);
 /* Sum of the law's energy over the body, J. */
 double family_bench_energy(family_bench *b);
 
-/* Values of a watched number at one place after patch_observe of the whole law: a place is a particle, or a particle and
-   one of its neighbours. */
+/* Values of a watched number at one place after patch_observe of the whole law: a place is a
+   particle, or a particle and one of its neighbours. */
 int family_bench_places(const family_bench *b, watched w);
 bool family_bench_exists(const family_bench *b, watched w, int where);
 double family_bench_value(const family_bench *b, watched w, int where);
 int family_bench_bonds(const family_bench *b, watched w, int where); /* of the particle there */
 
-/* One error or warning of a kind, with the parameters that show it and `size`, the strain of the body there (0: none). */
+/* One error or warning of a kind, with the parameters that show it and `size`, the strain of the
+   body there (0: none). */
 void family_bench_say(family_bench *b, diag_code code, span where, double size, const char *format,
                       ...) __attribute__((format(printf, 5, 6)));
 /* Where the law gives its force state or its energy. */
 span family_bench_force(const family_bench *b);
 
 double family_work(const double *force, const double *way, long count, double *size);
-
-void family_check_rest(family_bench *b);
-void family_check_stiffness(family_bench *b);
-void family_check_elasticity(family_bench *b);
-/* Work with the fields held: stored energy, closed ways, what damage does; whole bodies and damaged ones. */
-void family_check_energy(family_bench *b, bool damaged);
-void family_check_energy_and_force(family_bench *b);
-
-/* Random histories: finite forces, bonds whose particles agree, ranges of damages, continuity, flow. */
-void family_check_histories(family_bench *b, int legs);
-void family_check_dissipation(family_bench *b, int cycles);
-
-/* A state that scales the forces may not go back toward its initial value (warning). */
-void family_check_healing(family_bench *b);
 
 #endif

@@ -1,6 +1,6 @@
 /* States that show what interval_check suspects. */
-#ifndef PERILAT_GENERATOR_INTERVAL_PARTS_H
-#define PERILAT_GENERATOR_INTERVAL_PARTS_H
+#ifndef PERILAT_GENERATOR_INTERVAL_WITNESS_H
+#define PERILAT_GENERATOR_INTERVAL_WITNESS_H
 
 #include "generator/check/physics_bench.h"
 #include "generator/ir/interval.h"
@@ -17,8 +17,8 @@ typedef struct interval_condition {
   bool truth;
 } interval_condition;
 
-/* Text (malloc'ed) of a state within the declared bounds and the ranges of its fields at which the conditions hold and `operand`
-   is as wished; NULL when none is found. */
+/* Text (malloc'ed) of a state within the declared bounds and the ranges of its fields at which
+   the conditions hold and `operand` is as wished; NULL when none is found. */
 char *interval_witness(bench *b, const range *fields, ir_node operand, interval_wish wish,
                        const interval_condition *conditions, int count);
 

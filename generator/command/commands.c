@@ -1,9 +1,10 @@
+#include "generator/command/commands.h"
+
 #include <stdbool.h>
 #include <stdio.h>
 #include <string.h>
 
 #include "dsl/base/diagnostics.h"
-#include "generator/command/commands.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/standard_input.h"
 

@@ -1,0 +1,19 @@
+/* A checked law with other options, or for another lattice: a copy that shares all else with it.
+   Nothing is changed on the law itself, and nothing is checked again, since the check of a law
+   holds for all its options and lattices. */
+#ifndef PERILAT_DSL_LAW_VARIANT_H
+#define PERILAT_DSL_LAW_VARIANT_H
+
+#include "dsl/semantics/law.h"
+
+C_LINKAGE_BEGIN
+
+/* Both live in l->memory. Choices that name no option of the law, or none of its words, say
+   nothing. */
+const law *law_with_options(const law *l, const law_choice *choices, int count);
+/* `neighbours` of a full family, or 0 where they are not known. */
+const law *law_on_lattice(const law *l, law_setting setting, bool irregular, int neighbours);
+
+C_LINKAGE_END
+
+#endif

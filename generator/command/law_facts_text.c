@@ -1,0 +1,174 @@
+#include "generator/command/law_facts_text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "dsl/semantics/law_limits.h"
+
+static void print_parameter(const law_facts *f, int p) {
+  const law *l = f->model.law;
+  const symbol *s = l->parameters.items[p];
+  char unit_text[64], interval[128] = "", value[32] = "(required)";
+  dim_unit(s->dim, unit_text, sizeof unit_text);
+  if (s->declared->in.given) law_parameter_bounds(l, p, f->values, interval, sizeof interval);
+  if (f->given[p]) snprintf(value, sizeof value, "%.6g", f->values[p]);
+  printf("  %-12s %-12s %-10s %-18s %s\n", s->name, value, unit_text, interval,
+         s->doc ? s->doc : "");
+}
+
+/* Further lines of a description stand below its first one. */
+static void print_description(const char *text) {
+  for (; *text; text++) {
+    putchar(*text);
+    if (*text == '\n') printf("%*s", 38, "");
+  }
+  putchar('\n');
+}
+
+static void print_symbols(const char *title, const symbol_list *list) {
+  if (list->count)
+    printf("%s:\n  %-12s %-10s %-12s %s\n", title, "name", "unit", "lives", "meaning");
+  for (int k = 0; k < list->count; k++) {
+    const symbol *s = list->items[k];
+    char unit_text[64];
+    dim_unit(s->dim, unit_text, sizeof unit_text);
+    printf("  %-12s %-10s on %-9s ", s->name, unit_text, placement_name(s->place));
+    print_description(s->doc ? s->doc : "");
+  }
+}
+
+static void print_options(const law *l) {
+  for (int k = 0; k < l->options.count; k++) {
+    const stmt *declared = l->options.items[k]->declared;
+    printf("option %s =", declared->name);
+    for (int w = 0; w < declared->word_count; w++)
+      printf("%s %s", w ? " |" : "", declared->words[w]);
+    printf("   (now: %s)\n", l->chosen[k]);
+  }
+}
+
+static void print_cost(const law_facts *f) {
+  const kernel_plan *p = f->model.plan;
+  const int passes = law_facts_passes(p);
+  printf(
+      "Cost per bond%s and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; %d "
+      "pass%s; %d value%s computed once "
+      "per lattice\n",
+      p->kind == PL_STATE ? " of either side" : "", p->flops_per_bond + p->divisions_per_bond,
+      p->divisions_per_bond, law_facts_bytes(p), passes, passes == 1 ? "" : "es", p->uniform_count,
+      p->uniform_count == 1 ? "" : "s");
+}
+
+static void print_strength(const implied *i) {
+  for (int c = 0; c < 2; c++) {
+    printf("  peak stress along %c   ", "xy"[c]);
+    if (isfinite(i->strength[c]))
+      printf("%.6g MPa at a uniform strain of %.6g, sides held\n", 1e-6 * i->strength[c],
+             i->strain[c]);
+    else
+      printf("none: it only grows\n");
+  }
+}
+
+static void print_bond(const implied *i) {
+  const implied_bond *b = &i->bond;
+  if (isfinite(b->peak_force))
+    printf("  one bond, drawn out   largest force %.6g N at a stretch of %.6g\n", b->peak_force,
+           b->stretch_at_peak);
+  if (!b->separates) {
+    printf("  work of fracture      none: a bond never separates\n");
+    return;
+  }
+  printf("                        costs %.6g J: %.6g N/m on its share of a crack, sqrt(3)/2*s*t\n",
+         b->energy, b->row_energy);
+  printf("  work of fracture      %.6g N/m of a straight crack across the rows (opens along x), "
+         "%.6g N/m along "
+         "them (along y),\n                        by all bonds that it cuts\n",
+         i->crack[0], i->crack[1]);
+}
+
+static void print_waves(const implied *i, bool rotations) {
+  if (!i->stiff) {
+    printf("  wave speeds           none: the virgin lattice has no stiffness\n");
+    return;
+  }
+  printf("  wave speeds           longitudinal %.6g m/s", i->waves.longitudinal[0]);
+  if (fabs(i->waves.longitudinal[1] - i->waves.longitudinal[0]) > 1e-6 * i->waves.longitudinal[0])
+    printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
+  printf(", transverse %.6g m/s", i->waves.transverse);
+  if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
+  putchar('\n');
+}
+
+static void print_dynamics(const implied *i, bool rotations) {
+  if (!i->has_mass) {
+    printf("  waves, stable step    unknown: the law has no `rho`\n");
+    return;
+  }
+  print_waves(i, rotations);
+  if (i->step.least < STABILITY_LEAST) {
+    printf("  stable step           none: the virgin body is unstable at rest\n");
+    return;
+  }
+  printf("  stable step           %.6g us (%s mode%s rules, %.6g rad/s", 1e6 * i->step.limit,
+         i->step.mode, i->step.at_surface ? " at the surface of a small block" : "",
+         i->step.omega_max);
+  if (i->step.damping_ratio > 0) printf(", damping ratio %.3g", i->step.damping_ratio);
+  printf(")\n");
+}
+
+/* "plane stress" of plane_stress. */
+static void print_setting(const char *name) {
+  for (; *name; name++)
+    putchar(*name == '_' ? ' ' : *name);
+}
+
+static void print_lattice(const law_facts *f) {
+  const deck_lattice *d = &f->lattice;
+  printf("On a%s %s lattice", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind);
+  if (f->implied.neighbours != 6 || strcmp(d->kind, "hexagonal") != 0)
+    printf(" of %d neighbours", f->implied.neighbours);
+  printf(", s = %.6g mm, ", 1e3 * d->spacing);
+  if (d->thickness > 0) printf("t = %.6g mm, ", 1e3 * d->thickness);
+  print_setting(d->setting);
+  puts(":");
+}
+
+static void print_implied(const law_facts *f) {
+  const implied *i = &f->implied;
+  print_lattice(f);
+  if (i->stiff)
+    printf("  elastic constants     E = %.6g GPa along x, %.6g GPa along y; nu = %.6g, %.6g; G = "
+           "%.6g GPa\n",
+           1e-9 * i->elastic.E[0], 1e-9 * i->elastic.E[1], i->elastic.nu[0], i->elastic.nu[1],
+           1e-9 * i->elastic.G);
+  else
+    printf("  elastic constants     none: the virgin lattice has no stiffness\n");
+  if (!law_facts_of_families(f)) {
+    print_strength(i);
+    print_bond(i);
+  }
+  print_dynamics(i, f->law->kind == PL_MICROPOLAR);
+}
+
+void law_facts_print(const law_facts *f) {
+  const law *l = f->model.law;
+  printf("%s (law %s)\n", l->tree->name, law_kind_text(l));
+  if (l->tree->doc) printf("%s\n", l->tree->doc);
+  if (l->parameters.count)
+    printf("Parameters:\n  %-12s %-12s %-10s %-18s %s\n", "name", "value", "unit", "bounds",
+           "meaning");
+  for (int p = 0; p < l->parameters.count; p++)
+    print_parameter(f, p);
+  print_options(l);
+  print_symbols("State and damage", &l->fields);
+  print_symbols("Outputs", &l->outputs);
+  print_cost(f);
+  if (l->nonconservative) printf("Not conservative: %s\n", l->nonconservative);
+  if (f->missing)
+    printf("What it implies depends on `%s`, which has no default: give --set %s=...\n", f->missing,
+           f->missing);
+  else
+    print_implied(f);
+}

@@ -1,0 +1,19 @@
+/* The table of a drive as text, file and picture. */
+#ifndef PERILAT_GENERATOR_DRIVE_WRITE_H
+#define PERILAT_GENERATOR_DRIVE_WRITE_H
+
+#include "generator/drive/drive_path.h"
+#include "generator/drive/drive_table.h"
+
+/* About in->output.rows rows: both ends, the largest force, the corners of the path, and others
+   evenly between. What is wider than the terminal goes on below; of more than a dozen neighbours
+   the columns are left out, and said to be. */
+void drive_print(const drive_input *in, const drive_table *t, FILE *out);
+bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t size);
+/* As a result file of two particles: `perilat plot` and `perilat info` read it. */
+bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
+                      size_t size);
+bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
+                size_t size);
+
+#endif

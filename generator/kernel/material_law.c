@@ -1,0 +1,238 @@
+#include "generator/kernel/material_law.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/semantics/law_variant.h"
+#include "dsl/syntax/parse.h"
+#include "runtime/deck/bravais.h"
+
+enum { ERROR_LENGTH = 4096 };
+
+/* --- options of a law ------------------------------------------------------------------------- */
+
+static const symbol *find_option(const law *l, const char *name) {
+  for (int k = 0; k < l->options.count; k++)
+    if (strcasecmp(l->options.items[k]->name, name) == 0) return l->options.items[k];
+  return NULL;
+}
+
+/* The choice as the law writes it, or NULL with a diagnostic at the deck's line. */
+static const char *find_choice(const symbol *option, const deck_assignment *a, diagnostics *said) {
+  const stmt *declared = option->declared;
+  for (int w = 0; a->word && w < declared->word_count; w++)
+    if (strcmp(declared->words[w], a->word) == 0) return declared->words[w];
+  char words[256] = "";
+  for (int w = 0; w < declared->word_count; w++) {
+    size_t used = strlen(words);
+    snprintf(words + used, sizeof words - used, "%s'%s'", w ? ", " : "", declared->words[w]);
+  }
+  if (a->word)
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` has no choice `%s`",
+                option->name, a->word);
+  else
+    diag_report(said, DIAG_OPTION, a->value_where, "the option `%s` takes a word", option->name);
+  diag_hint(said, "the choices are %s", words);
+  return NULL;
+}
+
+/* A material's assignment that names an option of the law is a choice, all others are values of
+   parameters. */
+bool material_law_take_options(const deck_material *m, model *out, diagnostics *said) {
+  const size_t most = (size_t)m->assignment_count + 1;
+  deck_assignment *values = arena_alloc(out->memory, most * sizeof *values);
+  law_choice *choices = arena_alloc(out->memory, most * sizeof *choices);
+  int value_count = 0, choice_count = 0;
+  bool good = true;
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_assignment *a = &m->assignments[k];
+    const symbol *option = find_option(out->law, a->name);
+    const char *choice = option ? find_choice(option, a, said) : NULL;
+    if (!option) values[value_count++] = *a;
+    if (choice) choices[choice_count++] = (law_choice){option->name, choice};
+    good = good && (!option || choice);
+  }
+  out->values = *m;
+  out->values.assignments = values;
+  out->values.assignment_count = value_count;
+  out->law = law_with_options(out->law, choices, choice_count);
+  return good;
+}
+
+/* --- reading ---------------------------------------------------------------------------------- */
+
+/* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
+ * of laws are shown. */
+static char *read_law(const deck_material *m, const char *path, size_t *length, diagnostics *said) {
+  char error[ERROR_LENGTH];
+  char *text = read_text_file(path, MODEL_LIMIT, length, error, sizeof error);
+  const span where = deck_where(&m->item, "model");
+  if (!text) {
+    diag_report(said, DIAG_FILE, where, "%s", error);
+    return NULL;
+  }
+  if (parse_begins_law(text)) return text;
+  diag_report(said, DIAG_FILE, where, "`%s` is not a law", path);
+  diag_hint(said, "the first word of a law is `model`");
+  free(text);
+  return NULL;
+}
+
+bool material_law_read(const deck_material *m, const char *path, model *out, diagnostics *said) {
+  size_t length;
+  char *text = read_law(m, path, &length, said);
+  const bool good = text && model_open_text(out, path, text, length, NULL, 0) &&
+                    material_law_take_options(m, out, said);
+  free(text);
+  return good;
+}
+
+/* --- the lattice ------------------------------------------------------------------------------ */
+
+static law_setting setting_of(const deck_lattice *l) {
+  for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
+    if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
+  return SETTING_PLANE_STRESS;
+}
+
+/* Of a full family; 0 where particles stand on no lattice. */
+static int neighbours_of(const deck_lattice *l) {
+  bravais_neighbour list[PL_MAX_DIRECTIONS];
+  bravais b;
+  if (!l || deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  return 2 * bravais_family(&b, l->horizon, l->shells, list);
+}
+
+/* What a bond knows of the third direction its law must say; `for` is the word that it has. */
+static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
+  if (!l || m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+      m->tree->setting_count > 0)
+    return;
+  diag_report(
+      said, DIAG_DECK_WARNING, deck_where(&l->item, "setting"),
+      "the law of bonds `%s` does not say for which setting it is: its bonds may be those of "
+      "plane stress",
+      m->law->tree->name);
+  diag_hint(said,
+            "where its equations hold in plane strain, write `for plane_strain` into the law; "
+            "else take another one, such as `splm_elastic`");
+}
+
+/* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
+static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
+                         diagnostics *said) {
+  char meant[96];
+  if (!l && out->law->tree->law == LAW_STATE) return true;
+  const bool irregular = l && deck_lattice_is_irregular(l);
+  out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
+  const char *name = law_setting_name(out->law->setting);
+  if (out->law->irregular && !model_suits_irregular(out)) {
+    diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+                "the law `%s` is meant for lattices, but these particles are irregular",
+                out->law->tree->name);
+    diag_hint(said,
+              "take another law such as `splm_elastic`; where the equations hold for families of "
+              "any shape add `irregular` to the law's line `for`");
+    return false;
+  }
+  if (model_suits(out, name, meant, sizeof meant)) {
+    warn_of_plane_strain(l, out, said);
+    return true;
+  }
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` is meant for %s, but this lattice is in %s", out->law->tree->name,
+              meant, name);
+  diag_hint(said,
+            "take another law or setting; where the equations hold in %s, too, add it to the "
+            "law's line `for`",
+            name);
+  return false;
+}
+
+/* --- the plan --------------------------------------------------------------------------------- */
+
+/* The parameter of a &field in the law, or -1 after a message. */
+static int find_varying(const deck_material *m, int field, const law *l, diagnostics *said) {
+  const char *wanted = m->varying[field];
+  const char **names = must_calloc((size_t)l->parameters.count + 1, sizeof *names);
+  int found = -1;
+  for (int p = 0; p < l->parameters.count; p++) {
+    names[p] = l->parameters.items[p]->name;
+    if (strcasecmp(names[p], wanted) == 0) found = p;
+  }
+  if (found < 0) {
+    diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field],
+                "the law `%s` has no parameter `%s`", l->tree->name, wanted);
+    diag_suggest(said, wanted, names, l->parameters.count);
+  } else if (strcmp(names[found], "rho") == 0) {
+    diag_report(
+        said, DIAG_NOT_SUPPORTED, m->varying_where[field],
+        "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
+    found = -1;
+  }
+  free(names);
+  return found;
+}
+
+/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's
+   does. */
+static bool plan_material(const deck_material *m, model *out, diagnostics *said) {
+  int *varying = must_calloc((size_t)m->varying_count + 1, sizeof *varying), count = 0;
+  bool good = true;
+  for (int k = 0; k < m->varying_count; k++) {
+    int found = find_varying(m, k, out->law, said);
+    good = good && found >= 0;
+    int at = count++;
+    for (; at > 0 && varying[at - 1] > found; at--)
+      varying[at] = varying[at - 1];
+    varying[at] = found;
+  }
+  good = good && model_plan_varying(out, varying, count);
+  free(varying);
+  return good;
+}
+
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a
+   central law runs as one of families. */
+static bool needs_families(const deck_lattice *l, const law *of) {
+  return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
+}
+
+/* Families have one value of each parameter. */
+static bool can_vary(const deck_material *m, const law *of, bool families, diagnostics *said) {
+  if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
+  if (families) {
+    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
+                "on this lattice the central law `%s` runs as one of families, whose parameters "
+                "cannot differ from bond to bond",
+                of->tree->name);
+    diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");
+  } else
+    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
+                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
+                of->tree->name);
+  return false;
+}
+
+bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
+                       diagnostics *said) {
+  if (!take_setting(m, l, out, said)) return false;
+  const bool families = l && needs_families(l, out->law);
+  if (!can_vary(m, out->law, families, said)) return false;
+  return families ? model_plan_of_families(out) : plan_material(m, out, said);
+}
+
+bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,
+                       model *out, diagnostics *said) {
+  char *path = model_find(m->model, deck_path);
+  if (!path) {
+    diag_report(said, DIAG_FILE, deck_where(&m->item, "model"), "there is no model `%s`", m->model);
+    diag_hint(said, "give a path ending in .plm, or put the file beside the deck or in a folder "
+                    "`models`; PERILAT_MODELS may name another folder");
+    return false;
+  }
+  const bool good = material_law_read(m, path, out, said) && material_law_plan(m, l, out, said);
+  free(path);
+  return good;
+}

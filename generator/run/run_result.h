@@ -1,0 +1,29 @@
+/* What a run writes: paths, result, frames, checkpoints. */
+#ifndef PERILAT_GENERATOR_RUN_RESULT_H
+#define PERILAT_GENERATOR_RUN_RESULT_H
+
+#include "generator/run/run_state.h"
+
+void choose_paths(run *r);
+/* Errors at the deck's line: a result that cannot be written, or that would replace the deck or
+   a law. */
+bool result_can_be_written(run *r);
+bool result_spares_inputs(run *r);
+/* What a checkpoint belongs to: the program, the kernels and the deck as overridden, a line
+   each. */
+void fingerprint(run *r);
+/* Takes the result for this run alone; nothing is changed yet. */
+bool open_result(run *r);
+/* Either comes next. Anew: the checkpoint of an earlier run goes before the frames that it counts
+   on. */
+bool begin_anew(run *r);
+bool resume(run *r);
+bool write_frame(run *r);
+bool write_checkpoint(run *r);
+bool finish_result(run *r, const run_end *end);
+/* When what has been written is complete: no checkpoint, no frames beside the result. */
+void remove_remains(run *r);
+/* A checkpoint stands, and the frames that it counts on. */
+bool can_go_on(const run *r);
+
+#endif

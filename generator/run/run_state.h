@@ -1,0 +1,47 @@
+/* Everything that one run holds, from its deck to its result. */
+#ifndef PERILAT_GENERATOR_RUN_STATE_H
+#define PERILAT_GENERATOR_RUN_STATE_H
+
+#include "generator/run/run.h"
+#include "runtime/result/result.h"
+#include "runtime/simulation/profile.h"
+#include "runtime/simulation/simulation.h"
+
+enum { INPUT_WRONG = 1, RUN_FAILED = 2, ERROR_LENGTH = 1024 };
+
+/* Everything a run holds, so that one function can let go of it. */
+typedef struct run {
+  const run_options *options;
+  arena *memory;
+  source_set sources;
+  diagnostics said;
+  deck *deck;
+  model *models; /* [material_count] */
+  int open_models;
+  rows *lattice;        /* the simulation's, when there is one; NULL where it is not known */
+  simulation_law *laws; /* [lattice_count] */
+  const built_in_law **built_in; /* [lattice_count], NULL entries otherwise */
+  simulation *simulation;
+  result *result;
+  char *result_path, *checkpoint_path;
+  const char *fingerprint;
+  bool is_kept;     /* a checkpoint of this run stands, */
+  double kept_time; /* s: of this moment */
+  char started[32];
+  double *frame_buffer;
+  profile profile; /* with --profile */
+  /* How it ended: */
+  const char *ending; /* "end", "stopped", "interrupted", "failed" */
+  int signal;         /* that interrupted it, or 0 */
+  double wall;        /* s: of the march */
+  bool is_written;    /* the result */
+} run;
+
+/* What the run has come to, and what it will exit with. */
+typedef struct run_end {
+  step_status status;
+  int exit_status;
+  double seconds;
+} run_end;
+
+#endif
