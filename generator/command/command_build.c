@@ -11,6 +11,7 @@
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 
 #define ERROR_LENGTH 8192
 
@@ -69,10 +70,10 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   out->memory = arena_new();
   diag_begin(&said, &out->sources);
   int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
-  deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
+  const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   out->deck = k;
-  bool good =
-      k && run_open_material(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
+  deck_material m = k ? deck_material_copy(out->memory, &k->materials[0]) : (deck_material){0};
+  bool good = k && run_open_material(&m, &k->lattices[0], deck_path, &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
   if (good) {
     out->name = k->materials[0].model;

@@ -14,6 +14,7 @@
 #include "generator/kernel/settings.h"
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
@@ -228,9 +229,9 @@ static int dump_deck(const run_options *o, const char *stage) {
   checking c = {.memory = arena_new()};
   diag_begin(&c.said, &c.sources);
   const int file = source_add(&c.sources, o->deck_path, text, length);
-  deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
-  const bool good =
-      k && run_open_material(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
+  const deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
+  deck_material m = k ? deck_material_copy(c.memory, &k->materials[0]) : (deck_material){0};
+  const bool good = k && run_open_material(&m, &k->lattices[0], o->deck_path, &c.model, &c.said);
   diag_print(&c.said, stderr);
   if (c.model.memory) diag_print(&c.model.said, stderr);
   const int status = good ? dump_stage(&c.model, stage) : 1;

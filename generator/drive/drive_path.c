@@ -261,7 +261,13 @@ static const deck_group_info groups[GROUP_COUNT] = {
 #undef X
 };
 
-const deck_grammar drive_grammar = {"path", groups, GROUP_COUNT};
+static const deck_group_info *const group_list[GROUP_COUNT] = {
+#define X(group, once, more, text) &groups[GROUP_##group],
+    DRIVE_GROUPS(X)
+#undef X
+};
+
+const deck_grammar drive_grammar = {"path", group_list, GROUP_COUNT};
 
 const deck_group_info *drive_group(const char *name) {
   for (int g = 0; g < GROUP_COUNT; g++)

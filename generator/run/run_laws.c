@@ -248,7 +248,7 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 
 /* --- laws ------------------------------------------------------------------------------------- */
 
-static deck_material *material_of(const run *r, int lattice) {
+static const deck_material *material_of(const run *r, int lattice) {
   const int m = deck_find_material(r->deck, r->deck->lattices[lattice].name);
   return m < 0 ? NULL : &r->deck->materials[m];
 }
@@ -398,20 +398,22 @@ static bool take_parameters(run *r, const deck_material *m, int lattice) {
 }
 
 int load_law(run *r, int lattice) {
-  deck_material *m = material_of(r, lattice);
-  if (!m) return INPUT_WRONG; /* said already */
-  const int status = !r->options->laws              ? take_model(r, m, lattice)
-                     : take_built_in(r, m, lattice) ? 0
-                                                    : INPUT_WRONG;
+  const deck_material *given = material_of(r, lattice);
+  if (!given) return INPUT_WRONG; /* said already */
+  deck_material m = deck_material_copy(r->memory, given);
+  const int status = !r->options->laws               ? take_model(r, &m, lattice)
+                     : take_built_in(r, &m, lattice) ? 0
+                                                     : INPUT_WRONG;
   if (status) return status;
-  return take_parameters(r, m, lattice) ? 0 : INPUT_WRONG;
+  return take_parameters(r, &m, lattice) ? 0 : INPUT_WRONG;
 }
 
-bool check_law_alone(run *r, deck_material *m) {
-  char *path = r->options->laws ? NULL : model_find(m->model, r->options->deck_path);
+bool check_law_alone(run *r, const deck_material *given) {
+  deck_material m = deck_material_copy(r->memory, given);
+  char *path = r->options->laws ? NULL : model_find(m.model, r->options->deck_path);
   if (!path) return false;
   model *opened = &r->models[r->open_models++];
-  const bool good = open_named_law(m, path, opened, &r->said);
+  const bool good = open_named_law(&m, path, opened, &r->said);
   free(path);
   return good;
 }

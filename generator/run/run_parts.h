@@ -16,7 +16,7 @@ typedef struct run {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   model *models; /* [material_count] */
   int open_models;
   rows *lattice; /* the simulation's, when there is one; NULL where it is not known */
@@ -49,7 +49,7 @@ void tell(const run *r, const diagnostics *d);
 int load_law(run *r, int lattice);
 /* Only says what is wrong with the law's file and its options: of a material whose lattice is not
    known. */
-bool check_law_alone(run *r, deck_material *m);
+bool check_law_alone(run *r, const deck_material *m);
 /* The physics checks with the deck's parameters, on its lattice, which must have been built where
    particles stand on none. */
 bool obeys_mechanics(run *r, int lattice);

@@ -7,7 +7,7 @@
 #include <stdbool.h>
 
 #include "dsl/base/c_linkage.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/kernel.h"
 
 C_LINKAGE_BEGIN
@@ -33,10 +33,10 @@ typedef struct bravais_neighbour {
   int shell;      /* 1: the nearest neighbours, ... */
 } bravais_neighbour;
 
-/* Dimensions of a kind of lattice by its name in decks: 2, 3; 0 for no such kind. */
+/* Dimensions of a kind of lattice by its name in decks: 2, 3; 0 for none that has sites. */
 int bravais_dimensions(const char *kind);
 
-/* False for a kind that is not known. */
+/* False for a kind that has no sites, or is not known. */
 bool bravais_of(const deck_lattice *l, bravais *b);
 
 /* 1 when the sites of the row stand half a step further along it, else 0. */

@@ -2,8 +2,7 @@
 #ifndef PERILAT_RUNTIME_DECK_SET_H
 #define PERILAT_RUNTIME_DECK_SET_H
 
-#include "runtime/deck/deck_table.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/deck/deck_schema.h"
 
 /* Keys under a former name get their present one; both in one group are an error. */
 void deck_present_names(namelist *n, const deck_grammar *grammar, diagnostics *d);

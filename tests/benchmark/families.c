@@ -13,6 +13,7 @@
 #include <string.h>
 
 #include "generator/kernel/model.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/scattered.h"
@@ -46,7 +47,7 @@ typedef struct contest {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   rows *rows, *list;
   model opened[KERNELS];
   double *parameters;

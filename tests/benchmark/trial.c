@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
@@ -51,7 +52,7 @@ void trial_shake(sweep *state) {
 
 double *trial_parameters(trial *t, const pl_law *kernel) {
   double *parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof *parameters);
-  if (!material_parameters(&t->deck->materials[0], kernel, parameters, &t->said)) {
+  if (!material_parameters(&t->material, kernel, parameters, &t->said)) {
     diag_print(&t->said, stderr);
     give_up("the parameters do not fit the law");
   }
@@ -68,8 +69,8 @@ trial *trial_open(const char *deck_text) {
   t->deck = deck_read(t->memory, &t->sources, file, NULL, 0, &t->said);
   if (t->deck) {
     const char *beside = SOURCE_DIR "/models/trial.nml"; /* where laws are looked for */
-    if (!run_open_material(&t->deck->materials[0], &t->deck->lattices[0], beside, &t->model,
-                           &t->said)) {
+    t->material = deck_material_copy(t->memory, &t->deck->materials[0]);
+    if (!run_open_material(&t->material, &t->deck->lattices[0], beside, &t->model, &t->said)) {
       diag_print(&t->said, stderr);
       give_up("the law of a deck cannot be used");
     }

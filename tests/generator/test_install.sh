@@ -123,7 +123,7 @@ cat >host.cpp <<'END'
 
 #include "generator/kernel/model.h"
 #include "generator/run/run.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/result/result.h"
 #include "runtime/simulation/simulation.h"
 
@@ -144,16 +144,17 @@ int main(int argc, char **argv) {
   diagnostics said;
   diag_begin(&said, &sources);
   const int file = source_add(&sources, "host", deck_text, std::strlen(deck_text));
-  deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
+  const deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
   model m = {};
   long steps = 0;
-  if (k && run_open_material(&k->materials[0], &k->lattices[0], nullptr, &m, &said)) {
+  deck_material own = k ? deck_material_copy(memory, &k->materials[0]) : deck_material{};
+  if (k && run_open_material(&own, &k->lattices[0], nullptr, &m, &said)) {
     char error[1000];
     const char *note;
     double values[16];
     const pl_law *law = model_kernel(&m, true, &note, error, sizeof error);
     simulation_law laws = {law, values};
-    simulation *s = law && material_parameters(&k->materials[0], law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
+    simulation *s = law && material_parameters(&own, law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
     while (s && simulation_advance(s, 100, nullptr) == STEP_OK)
       ;
     steps = s ? simulation_step_done(s) : 0;

@@ -11,6 +11,7 @@
 #include "generator/kernel/model.h"
 #include "generator/plan/passes.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/pairwise.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/simulation/simulation.h"
@@ -78,7 +79,7 @@ typedef struct deck_case {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   rows *lattice;      /* of deck_case_lattice */
   model model;        /* of deck_case_run */
   simulation_law law; /* of deck_case_run */
@@ -111,7 +112,7 @@ static inline bool deck_case_lattice(deck_case *c, const char *text) {
 static inline bool deck_case_start(deck_case *c, const char *path) {
   const char *note;
   char error[4096];
-  deck_material *m = &c->deck->materials[0];
+  deck_material own = deck_material_copy(c->memory, &c->deck->materials[0]), *m = &own;
   if (!run_open_material(m, &c->deck->lattices[0], path, &c->model, &c->said)) return false;
   c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->law.law) return false;
