@@ -25,6 +25,9 @@ C_LINKAGE_BEGIN
   X(blue_noise, 0, (0, 0, 0), (0, 0))                                                              \
   X(particles, 0, (0, 0, 0), (0, 0))
 
+/* Those that have sites, in a sentence. */
+#define LATTICE_KINDS_OF_SITES "hexagonal, square, cubic or fcc"
+
 typedef struct lattice_kind {
   const char *name;
   int dimensions;   /* 2, 3; 0: particles on no lattice */
