@@ -15,7 +15,7 @@ for file in "$here"/*.patch; do
   head -n 1 "$file" | grep -q '^[^-].*\.$' || fault "$name: its first line does not say what is wrong"
   patch --dry-run -s -f -F0 -p1 -d "$root" <"$file" || fault "$name: does not apply"
   for test in $(sed -n 's/^Tests: //p' "$file"); do
-    [ -f "$root/tests/${test%.*}/test_${test#*.}.c" ] || fault "$name: there is no test $test"
+    [ -f "$root/tests/$(sed 's/[.]\([^.]*\)$/.test_\1/; s/[.]/\//g' <<<"$test").c" ] || fault "$name: there is no test $test"
   done
 done
 [ "$faults" -eq 0 ]

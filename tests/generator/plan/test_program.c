@@ -7,7 +7,7 @@
 
 #include <cmocka.h>
 
-#include "law_text.h"
+#include "tests/generator/law_text.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
 

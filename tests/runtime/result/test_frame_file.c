@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "runtime/result/frame_file.h"
-#include "tests/runtime/file_tools.h"
+#include "tests/runtime/result/file_tools.h"
 
 enum { VALUES = 5, RECORD = VALUES * sizeof(double), FRAMES = 4 };
 static const char result[] = "frames_of.h5", path[] = "frames_of.h5.frames", other[] = "other.txt";

@@ -174,7 +174,7 @@ static bool check_file(const char *path) {
 static void every_law_keeps_its_meaning(void **state) {
   (void)state;
   static const char *const places[] = {"/models/*.plm", "/tests/*/*.plm", "/tests/*/*/*.plm",
-                                       "/examples/*/*.plm"};
+                                       "/tests/*/*/*/*.plm", "/examples/*/*.plm"};
   int checked = 0;
   for (size_t i = 0; i < sizeof places / sizeof places[0]; i++) {
     char pattern[4096];

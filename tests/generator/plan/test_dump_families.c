@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "law_text.h"
+#include "tests/generator/law_text.h"
 #include "tests/dsl/text_files.h"
 
 static char *dumped(void (*dump)(const kernel_plan *, FILE *)) {
@@ -25,7 +25,7 @@ static char *dumped(void (*dump)(const kernel_plan *, FILE *)) {
 static void passes_show_reads_writes_and_costs(void **state) {
   (void)state;
   char *text = dumped(plan_dump);
-  assert_golden(SOURCE_DIR "/tests/generator/golden/stored.passes", text);
+  assert_golden(SOURCE_DIR "/tests/generator/plan/golden/stored.passes", text);
   free(text);
 }
 

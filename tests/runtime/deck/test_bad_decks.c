@@ -88,7 +88,7 @@ static void bad_decks_say_what_is_wrong(void **state) {
   (void)state;
   glob_t found;
   int different = 0;
-  assert_int_equal(glob(SOURCE_DIR "/tests/runtime/bad/*.nml", 0, NULL, &found), 0);
+  assert_int_equal(glob(SOURCE_DIR "/tests/runtime/deck/bad/*.nml", 0, NULL, &found), 0);
   for (size_t i = 0; i < found.gl_pathc; i++) {
     const char *path = found.gl_pathv[i];
     bool refused, warning = strstr(path, "/warning_") != NULL;

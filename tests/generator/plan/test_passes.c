@@ -10,7 +10,7 @@
 
 #include "generator/ir/interpret.h"
 #include "generator/ir/rewrite.h"
-#include "law_text.h"
+#include "tests/generator/law_text.h"
 
 #define MODEL SOURCE_DIR "/models/mplm_bilinear.plm"
 

@@ -1,4 +1,4 @@
-/* The physics checks: every broken law of tests/dsl/physics is caught by the check meant for it and
+/* The physics checks: every broken law of tests/generator/check/physics is caught by the check meant for it and
    by no other, legal and shipped laws pass. Beside each law lie the lines and codes expected, e.g.
    "10 dissipation"; with PERILAT_BLESS=1 they are rewritten: read what changed. */
 #include <setjmp.h>
@@ -19,7 +19,7 @@
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck.h"
 
-#define FOLDER SOURCE_DIR "/tests/dsl/physics/"
+#define FOLDER SOURCE_DIR "/tests/generator/check/physics/"
 #define MODELS SOURCE_DIR "/models/"
 enum { PATH_LONGEST = 4096 };
 

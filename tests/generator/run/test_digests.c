@@ -3,7 +3,7 @@
    digests/digests.txt, run by run and series by series. When the program is meant to compute
    something else,
 
-       PERILAT_BLESS=1 ctest --test-dir build -R generator.digests
+       PERILAT_BLESS=1 ctest --test-dir build -R generator.run.digests
 
    writes them anew. A run that has its digest leaves digest_NAME.h5 in the build folder; one that
    has not is compared with it. */
@@ -21,7 +21,7 @@
 #include "dsl/base/sha256.h"
 #include "runtime/result/result.h"
 
-#define FOLDER SOURCE_DIR "/tests/generator/digests/"
+#define FOLDER SOURCE_DIR "/tests/generator/run/digests/"
 
 enum { DIGITS = 16, MOST_SERIES = 32 };
 

@@ -6,7 +6,7 @@
 
 #include <cmocka.h>
 
-#include "law_text.h"
+#include "tests/generator/law_text.h"
 
 #define CENTRAL(rules)                                                                             \
   "model m\n  law central bond\n"                                                                  \

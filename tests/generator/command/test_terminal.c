@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "dsl/base/characters.h"
-#include "tests/generator/pseudo_terminal.h"
+#include "tests/generator/command/pseudo_terminal.h"
 #include "tests/runtime/small_result.h"
 
 /* --- messages --------------------------------------------------------------------------------- */
