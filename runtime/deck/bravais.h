@@ -15,6 +15,9 @@ C_LINKAGE_BEGIN
 /* Bonds join sites as far apart as the horizon and this part of it more. */
 #define BRAVAIS_REACH_TOLERANCE 1e-3
 
+/* Axes of a lattice. */
+enum { BRAVAIS_COLUMN, BRAVAIS_ROW, BRAVAIS_LAYER };
+
 typedef struct bravais {
   int dimensions;      /* 2 or 3 */
   double spacing;      /* of nearest neighbours */

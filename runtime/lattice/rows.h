@@ -22,7 +22,7 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/deck/bravais.h"
-#include "runtime/deck/deck.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/kernel.h"
 
 C_LINKAGE_BEGIN
@@ -141,21 +141,7 @@ void rows_set_density(rows *w, double rho);
    mean number of bonds, rounded. */
 pl_bond_class rows_bond_class(const rows *w, int direction);
 
-/* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
-   present neighbours whose chord crosses no notch. NULL on errors (a body without sites, a point body with no
-   lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
-rows *rows_build(const deck *k, int lattice, diagnostics *d);
 void rows_free(rows *w);
-
-/* Particles inside or on the shape, ascending; a point gives the nearest within its tolerance. `list` is malloc'ed.
-   Returns the count. */
-long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
-
-/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
-void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
-
-/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the bonds of these. */
-void rows_protect(rows *w, const int32_t *particles, long count, double radius);
 
 /* Bond m of the results: its ends as particles and where its fields stand (direction * size + site). */
 typedef struct rows_bond {
@@ -167,6 +153,18 @@ rows_bond *rows_bonds(const rows *w);
 
 /* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks describe. */
 uint64_t rows_fingerprint(const rows *w);
+
+/* --- for what builds rows: rows_build.h for lattices, scattered.h for particles that stand anywhere --- */
+
+/* `count` zeros of `each` bytes, aligned; NULL without memory. */
+void *rows_array(long count, size_t each);
+/* The arrays over sites of rows whose size and dimensions are set; false without memory. */
+bool rows_new_sites(rows *w);
+/* width, height and depth; bond_count. */
+void rows_find_extent(rows *w);
+void rows_count_bonds(rows *w);
+/* Cuts the bonds that the site owns and that cross the shape. Returns how many do, whether they were cut before or not. */
+long rows_cut(rows *w, long site, const deck_shape *shape);
 
 C_LINKAGE_END
 

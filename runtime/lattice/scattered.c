@@ -9,7 +9,6 @@
 #include "runtime/geometry/hilbert.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/bond_numbers.h"
-#include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/site_marks.h"

@@ -15,6 +15,7 @@
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
+#include "runtime/lattice/rows_select.h"
 
 typedef struct bench {
   deck deck;
