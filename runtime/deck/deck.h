@@ -1,5 +1,6 @@
-/* This room: from a deck's text to what it says. A deck is a structure for each group, every value in SI, every item with
-   its place in the text so that later errors (an empty region, say) can point at the line. */
+/* This room: from a deck's text to what it says. A deck is a structure for each group, every value
+   in SI, every item with its place in the text so that later errors (an empty region, say) can
+   point at the line. */
 #ifndef PERILAT_RUNTIME_DECK_H
 #define PERILAT_RUNTIME_DECK_H
 
@@ -111,8 +112,8 @@ typedef struct deck_region {
   deck_shape shape;
 } deck_region;
 
-/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in space 0 x, 1 y, 2 z.
-   Bits of `fix` are 1 << component. */
+/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in
+   space 0 x, 1 y, 2 z. Bits of `fix` are 1 << component. */
 enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
 
 typedef struct deck_support {
@@ -243,8 +244,9 @@ typedef struct deck_file { /* a table that a load was read from */
   int source;              /* its text among the sources */
 } deck_file;
 
-/* The groups of a deck, in the order in which they are read, so that names are known before they are used: ONE is there once
-   at most, LIST any number of times. Each has its structure above, its keys and its check in a group_*.c. */
+/* The groups of a deck, in the order in which they are read, so that names are known before they
+   are used: ONE is there once at most, LIST any number of times. Each has its structure above, its
+   keys and its check in a group_*.c. */
 #define DECK_GROUPS(ONE, LIST)                                                                     \
   ONE(simulation)                                                                                  \
   ONE(relaxation)                                                                                  \

@@ -1,5 +1,5 @@
-/* What the checks of groups share: names that must exist, directions, places, keys that exclude each other. All report at the
-   deck's line. */
+/* What the checks of groups share: names that must exist, directions, places, keys that exclude
+   each other. All report at the deck's line. */
 #ifndef PERILAT_RUNTIME_DECK_CHECK_H
 #define PERILAT_RUNTIME_DECK_CHECK_H
 
@@ -34,7 +34,8 @@ bool deck_same_name(const char *a, const char *b);
 bool deck_is_one_of(const char *name, const char *const *words, int count);
 
 void deck_refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b);
-/* Places have two or three coordinates, as the lattice has dimensions: all DECK_PLACE of the group. */
+/* Places have two or three coordinates, as the lattice has dimensions: all DECK_PLACE of the
+   group. */
 void deck_check_places(deck_reader *r, const namelist_group *from, const deck_group_info *info,
                        int dimensions);
 /* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
@@ -44,7 +45,8 @@ int deck_dimensions_of_region(const deck_reader *r, const char *region);
 /* Directions as written; their positions are those of DECK_FIXED's bits, too. */
 #define DECK_COMPONENTS "x|y|z|rotation"
 enum { DECK_WRITTEN_Z = 2, DECK_WRITTEN_ROTATION = 3 };
-/* The degree of freedom of a direction as written. -1 after a message: it is none of the region's particles. */
+/* The degree of freedom of a direction as written. -1 after a message: it is none of the region's
+   particles. */
 int deck_component(deck_reader *r, span where, const char *region, int written);
 /* The same for the item's key `component`, in place. False after a message. */
 bool deck_take_component(deck_reader *r, const deck_item *item, const char *region, int *component);

@@ -1,5 +1,5 @@
-/* All groups that a deck may hold, with their keys and checks: the table that drives reading, suggestions,
-   overrides and the reference. */
+/* All groups that a deck may hold, with their keys and checks: the table that drives reading,
+   suggestions, overrides and the reference. */
 #ifndef PERILAT_RUNTIME_DECK_GROUPS_H
 #define PERILAT_RUNTIME_DECK_GROUPS_H
 

@@ -1,5 +1,6 @@
-/* The text of a deck to the deck: groups and their keys read, completed and checked one after the other, then the whole. Reading
-   a deck reads the tables of its loads, touches no other file, and checks what can be checked without lattices or laws. */
+/* The text of a deck to the deck: groups and their keys read, completed and checked one after the
+   other, then the whole. Reading a deck reads the tables of its loads, touches no other file, and
+   checks what can be checked without lattices or laws. */
 #ifndef PERILAT_RUNTIME_DECK_READ_H
 #define PERILAT_RUNTIME_DECK_READ_H
 

@@ -1,5 +1,5 @@
-/* What a group of a deck and its keys are: how a key is written, its unit, its bounds, where its value is kept. The groups
-   themselves stand in group_*.c. */
+/* What a group of a deck and its keys are: how a key is written, its unit, its bounds, where its
+   value is kept. The groups themselves stand in group_*.c. */
 #ifndef PERILAT_RUNTIME_DECK_SCHEMA_H
 #define PERILAT_RUNTIME_DECK_SCHEMA_H
 
@@ -75,8 +75,9 @@ typedef struct deck_group_info {
 #define DECK_COUNT_AT(group, field) .count_offset = (long)offsetof(deck_##group, field)
 #define DECK_NOT_KEPT               .offset = DECK_NO_FIELD
 
-/* The row of a group whose keys are GROUP_keys, as DECK_GROUPS says that there is one or a list of them:
-     DECK_LIST(body, .identity = "lattice", .check = check_body, .doc = "Adds the sites inside a shape."); */
+/* The row of a group whose keys are GROUP_keys, as DECK_GROUPS says that there is one or a list of
+   them:
+     DECK_LIST(body, .identity = "lattice", .check = check_body, .doc = "Adds a shape."); */
 #define DECK_ONE(group, ...)                                                                       \
   DECK_ROW(group, .single = true, .place = offsetof(deck, group), __VA_ARGS__)
 #define DECK_LIST(group, ...)                                                                      \

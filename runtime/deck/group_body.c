@@ -167,7 +167,8 @@ static bool check_points(deck_reader *r, const deck_item *item, deck_shape *shap
   return false;
 }
 
-/* Twice the area of a polygon of straight edges, positive when its corners are counter-clockwise. */
+/* Twice the area of a polygon of straight edges, positive when its corners are
+   counter-clockwise. */
 static double twice_area(const deck_shape *shape, double *extent) {
   const double *p = shape->points;
   const int values = 2 * shape->point_count;
@@ -181,7 +182,8 @@ static double twice_area(const deck_shape *shape, double *extent) {
   return area;
 }
 
-/* Edges with arcs are put in counter-clockwise order: the edge that began at point k then begins at its other end. */
+/* Edges with arcs are put in counter-clockwise order: the edge that began at point k then begins at
+   its other end. */
 static void put_counter_clockwise(deck_reader *r, deck_shape *shape) {
   const int n = shape->point_count;
   double *points = arena_alloc(r->memory, 2 * (size_t)n * sizeof *points);

@@ -1,4 +1,5 @@
-/* The kinds of lattices that a deck can name, in one table, and what follows from the kind: a new kind of lattice is a row. */
+/* The kinds of lattices that a deck can name, in one table, and what follows from the kind: a new
+   kind of lattice is a row. */
 #ifndef PERILAT_RUNTIME_LATTICE_KIND_H
 #define PERILAT_RUNTIME_LATTICE_KIND_H
 
@@ -9,14 +10,15 @@
 
 C_LINKAGE_BEGIN
 
-/* X(name, dimensions, squares of the steps along a row, across rows, across layers in spacings, half steps by which a row and a
-   layer are shifted against the one before). Particles that stand on no lattice have no steps: 0 dimensions, the setting says
-   whether they are in the plane or in space.
+/* X(name, dimensions, squares of the steps along a row, across rows, across layers in spacings,
+   half steps by which a row and a layer are shifted against the one before). Particles that stand
+   on no lattice have no steps: 0 dimensions, the setting says whether they are in the plane or in
+   space.
 
        o   o   o   o         hexagonal: rows are sqrt(3)/2 = sqrt(0.75) apart,
          o   o   o   o       each shifted by one half step
        o   o   o   o
-*/
+ */
 #define LATTICE_KINDS(X)                                                                           \
   X(hexagonal, 2, (1, 0.75, 0), (1, 0))                                                            \
   X(square, 2, (1, 1, 0), (0, 0))                                                                  \
@@ -51,11 +53,12 @@ const lattice_kind *lattice_kind_find(const char *name);
 
 /* True for particles that stand on no lattice. */
 bool deck_lattice_is_irregular(const deck_lattice *l);
-/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown kind. */
+/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
+   kind. */
 int deck_lattice_dimensions(const deck_lattice *l);
 
-/* The lattice that is meant where none is named: hexagonal in the plane, fcc with two shells in space. The thickness is that
-   of both stiffness and mass, and 0 in space. */
+/* The lattice that is meant where none is named: hexagonal in the plane, fcc with two shells in
+   space. The thickness is that of both stiffness and mass, and 0 in space. */
 deck_lattice lattice_default(const char *setting, double spacing, double thickness);
 
 C_LINKAGE_END

@@ -36,8 +36,9 @@ static int ascending(const void *p, const void *q) {
   return (a > b) - (a < b);
 }
 
-/* From where to where coordinates reach, so that boxes of equal size have about as many each: of more than a thousand, the few
-   that lie far from all others are left out. Samples tell where nearly all are; a tenth more at either end loses no one who belongs to them. */
+/* From where to where coordinates reach, so that boxes of equal size have about as many each: of
+   more than a thousand, the few that lie far from all others are left out. Samples tell where
+   nearly all are; a tenth more at either end loses no one who belongs to them. */
 static void find_range(const double *x, long count, double range[2]) {
   enum { SAMPLES = 1024, FAR = SAMPLES / 256 };
   double sample[SAMPLES], low = INFINITY, high = -INFINITY;
@@ -69,8 +70,8 @@ static void boxes_of_size(boxes *b, const double extent[3], long points, double 
     b->count[a] = (int)floor(extent[a] / b->size) + 1;
 }
 
-/* A side with so many points a box of the box around nearly all of them (others are in the boxes at its sides); axes along
-   which the box is thinner than a box do not count. */
+/* A side with so many points a box of the box around nearly all of them (others are in the boxes at
+   its sides); axes along which the box is thinner than a box do not count. */
 static void boxes_of_few(boxes *b, const double extent[3], long points, double few) {
   bool flat[3] = {false, false, false};
   b->size = 0;
@@ -101,7 +102,8 @@ static int64_t box_of_point(const boxes *b, const double *const at[3], long k) {
   return boxes_number(b, box);
 }
 
-/* Counted, then sorted in: while that is done first[n + 1] is where the next point of box n comes. */
+/* Counted, then sorted in: while that is done first[n + 1] is where the next point of box n
+   comes. */
 static void sort_points(bins *b, const double *const at[3], long points) {
   const int64_t all = boxes_all(&b->boxes);
   b->first = must_calloc((size_t)all + 2, sizeof *b->first);

@@ -1,7 +1,8 @@
-/* Equal boxes over nearly all of many points, and points sorted into them, so that those near a place are found without
-   asking all. Lengths in m.
+/* Equal boxes over nearly all of many points, and points sorted into them, so that those near a
+   place are found without asking all. Lengths in m.
 
-   Eight points, numbered as they came, in 3 x 2 boxes; `first` says where each box begins in `point`:
+   Eight points, numbered as they came, in 3 x 2 boxes; `first` says where each box begins in
+   `point`:
 
        +-----+-----+-----+
        | 6   |     | 1 4 |      box     0  1  2    3  4  5
@@ -33,10 +34,11 @@ typedef struct bins {
   int32_t *point; /* numbers of the points, box by box; ascending in each */
 } bins;
 
-/* Boxes of about that size; larger ones where there would be many more boxes than points. at[2] is NULL in the plane.
-   Points are finite; those out of all boxes are in the nearest. */
+/* Boxes of about that size; larger ones where there would be many more boxes than points. at[2] is
+   NULL in the plane. Points are finite; those out of all boxes are in the nearest. */
 void bins_of_size(bins *b, int dimensions, const double *const at[3], long points, double size);
-/* Boxes with about so many points each; a box is as large along axes along which the points reach less far than it. */
+/* Boxes with about so many points each; a box is as large along axes along which the points reach
+   less far than it. */
 void bins_of_few(bins *b, int dimensions, const double *const at[3], long points, double few);
 void bins_end(bins *b);
 

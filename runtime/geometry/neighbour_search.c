@@ -58,7 +58,8 @@ static bool visit_run(const walk *w, int64_t from, int64_t to, point_visit visit
   return false;
 }
 
-/* Boxes from low to high that do not lie among those `seen` (NULL: none does), a row of them at a time. */
+/* Boxes from low to high that do not lie among those `seen` (NULL: none does), a row of them at a
+   time. */
 static bool visit_boxes(const walk *w, const walk *seen, point_visit visit, void *of) {
   int box[3];
   for (box[2] = w->low[2]; box[2] <= w->high[2]; box[2]++)

@@ -70,8 +70,7 @@ static bool lattice_is_sound(builder *b) {
   if (!bravais_of(l, &b->infinite)) {
     diag_report(b->d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "there is no lattice of kind '%s'", l->kind);
-    diag_hint(b->d,
-              "the kinds are 'hexagonal' and 'square' in the plane, 'cubic' and 'fcc' in space");
+    diag_hint(b->d, "the kinds that have sites are " LATTICE_KINDS_OF_SITES);
     return false;
   }
   if (!(l->spacing > 0) || !isfinite(l->spacing)) {
@@ -102,7 +101,8 @@ static double horizon_of(const builder *b) {
   return b->lattice->horizon > 0 ? b->lattice->horizon : sqrt(b->family[b->directions - 1].square);
 }
 
-/* Part of a neighbour's volume that lies within the horizon when its extent of a spacing along the bond counts. */
+/* Part of a neighbour's volume that lies within the horizon when its extent of a spacing along the
+   bond counts. */
 static double weight_of(const builder *b, double length) {
   const double horizon = horizon_of(b);
   if (b->lattice->volume_correction == VOLUME_WHOLE) return 1;
@@ -127,7 +127,8 @@ static void set_directions(rows *w, const builder *b) {
   }
 }
 
-/* Numbers of a row in the infinite lattice. Empty rows before the first layer and behind the last go on with these. */
+/* Numbers of a row in the infinite lattice. Empty rows before the first layer and behind the last
+   go on with these. */
 static void row_numbers(const rows *w, const builder *b, int row, long *number, long *layer) {
   const site_range *left = &b->marks.left;
   const long top = left->last[BRAVAIS_LAYER] - left->first[BRAVAIS_LAYER];
@@ -149,13 +150,15 @@ static long columns_of(const builder *b) {
   return b->marks.left.last[BRAVAIS_COLUMN] - b->marks.left.first[BRAVAIS_COLUMN] + 1;
 }
 
-/* The next row's absent sites serve a row's last columns, too. One column more stays empty: where rows are shifted
-   against each other, an absent site beside one row would else be a neighbour of particles of another. */
+/* The next row's absent sites serve a row's last columns, too. One column more stays empty: where
+   rows are shifted against each other, an absent site beside one row would else be a neighbour of
+   particles of another. */
 static long pitch_with(const builder *b, long before) {
   return pitch_for(before + columns_of(b) + 1);
 }
 
-/* As many as neighbours reach; and whole lanes, so that rows begin with one, unless that makes rows longer. */
+/* As many as neighbours reach; and whole lanes, so that rows begin with one, unless that makes rows
+   longer. */
 static long before_columns(const builder *b) {
   const long reach = b->reach[BRAVAIS_COLUMN], lanes = whole_lanes(reach);
   return pitch_with(b, lanes) > pitch_with(b, reach) ? reach : lanes;

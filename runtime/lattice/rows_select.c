@@ -70,7 +70,8 @@ static int steps_within(double reach, double step, int most) {
   return step > 0 ? (int)pl_fmin(ceil(reach / step), most) : 0;
 }
 
-/* Sites within `reach` of the particles; intervals a row, so that a wide reach costs rows and not sites. */
+/* Sites within `reach` of the particles; intervals a row, so that a wide reach costs rows and not
+   sites. */
 static unsigned char *mark_near(const rows *w, const int32_t *particles, long count, double reach) {
   int32_t *steps = must_calloc((size_t)w->size + 1, sizeof *steps);
   unsigned char *near = must_calloc((size_t)w->size, 1);

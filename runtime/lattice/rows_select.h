@@ -5,14 +5,16 @@
 #include "runtime/deck/deck.h"
 #include "runtime/lattice/rows.h"
 
-/* Particles inside or on the shape, ascending; a point gives the nearest within its tolerance. `list` is malloc'ed.
-   Returns the count. */
+/* Particles inside or on the shape, ascending; a point gives the nearest within its tolerance.
+   `list` is malloc'ed. Returns the count. */
 long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
 
-/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
+/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each
+   particle belongs to. */
 void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
 
-/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the bonds of these. */
+/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the
+   bonds of these. */
 void rows_protect(rows *w, const int32_t *particles, long count, double radius);
 
 #endif

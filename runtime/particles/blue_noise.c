@@ -9,13 +9,15 @@
 #include "runtime/geometry/bins.h"
 #include "runtime/geometry/shape.h"
 
-/* Darts saturate at 0.78 of the hexagonal and 0.80 of the fcc spacing. Those at a larger distance first spare gaps later. */
+/* Darts saturate at 0.78 of the hexagonal and 0.80 of the fcc spacing. Those at a larger distance
+   first spare gaps later. */
 #define FIRST_DISTANCE 0.85 /* spacings */
 #define DISTANCE_FALLS 0.98 /* by this factor after so many misses: */
 enum { MISSES = 50 };
 
-/* The standard deviation of the volumes falls from 0.21 of the mean (in space 0.25) to 0.11 (0.12) in 5 steps, to 0.09 (0.10) in
-   10, to 0.08 (0.08) in 20: further steps cost as much and gain less, and let the particles freeze into grains of a lattice. */
+/* The standard deviation of the volumes falls from 0.21 of the mean (in space 0.25) to 0.11 (0.12)
+   in 5 steps, to 0.09 (0.10) in 10, to 0.08 (0.08) in 20: further steps cost as much and gain less,
+   and let the particles freeze into grains of a lattice. */
 enum { LLOYD_STEPS = 10 };
 static const double lloyd_tolerance[] = {[2] = 1e-3, [3] = 1e-2}; /* of a cell */
 

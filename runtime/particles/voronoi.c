@@ -166,8 +166,9 @@ static void begin_cell(cutter *w, const solid *s, const double at[3], double rea
   cell_set_box(&w->cell, lower, upper);
 }
 
-/* Side of the box that the cell was begun with, 2 c for the lower one along axis c, 2 c + 1 for the upper, on which all
-   these points lie; -1 when there is none. Sides that were drawn in to the bodies' box do not count. */
+/* Side of the box that the cell was begun with, 2 c for the lower one along axis c, 2 c + 1 for the
+   upper, on which all these points lie; -1 when there is none. Sides that were drawn in to the
+   bodies' box do not count. */
 static int side_of(const cell *c, const int *points, int count, double reach) {
   for (int side = 0; side < 2 * c->dimensions; side++) {
     const double sign = side % 2 ? 1 : -1;
