@@ -38,8 +38,10 @@ typedef struct lattice_kind {
 } lattice_kind;
 
 /* "hexagonal|square|..." */
+/* clang-format off */
 #define LATTICE_KIND_CHOICE(name, dimensions, square, shift_by) "|" #name
-#define LATTICE_KIND_CHOICES                                    (&(LATTICE_KINDS(LATTICE_KIND_CHOICE))[1])
+#define LATTICE_KIND_CHOICES (&(LATTICE_KINDS(LATTICE_KIND_CHOICE))[1])
+/* clang-format on */
 
 enum {
 #define X(name, dimensions, square, shift_by) LATTICE_KIND_##name,
