@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_limits.h"
 #include "generator/ir/random_values.h"
 #include "runtime/deck/lattice_kind.h"
 

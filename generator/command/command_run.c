@@ -8,6 +8,7 @@
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive.h"
+#include "generator/emit/plan_dump.h"
 #include "generator/ir/interval.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"

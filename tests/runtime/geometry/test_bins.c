@@ -97,10 +97,21 @@ static void a_stray_point_does_not_count(void **state) {
   bins_end(&b);
 }
 
+static void few_points_all_count(void **state) {
+  (void)state;
+  bins b;
+  scatter(1, 1, 1);
+  x[0] = -2;
+  x[3] = 1e9;
+  bins_of_size(&b, 2, at, 4, 1);
+  assert_true(b.boxes.lower[0] == -2 && b.boxes.count[0] * b.boxes.size > 1e9);
+  bins_end(&b);
+}
+
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_of_a_size),
-                                     cmocka_unit_test(boxes_of_a_few),
-                                     cmocka_unit_test(what_lies_outside_is_in_the_nearest_box),
-                                     cmocka_unit_test(a_stray_point_does_not_count)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(boxes_of_a_size), cmocka_unit_test(boxes_of_a_few),
+      cmocka_unit_test(what_lies_outside_is_in_the_nearest_box),
+      cmocka_unit_test(a_stray_point_does_not_count), cmocka_unit_test(few_points_all_count)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
