@@ -12,6 +12,7 @@
 
 #include "runtime/deck/deck_groups.h"
 #include "runtime/deck/deck_read.h"
+#include "runtime/deck/deck_schema.h"
 #include "runtime/deck/group_body.h"
 #include "runtime/deck/group_lattice.h"
 #include "runtime/deck/group_load.h"
