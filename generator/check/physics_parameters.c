@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/law_limits.h"
 #include "generator/ir/random_values.h"
+#include "runtime/deck/lattice_kind.h"
 
 /* Something in the middle of the bounds for a parameter that has no default. */
 static double middle(const symbol *p, double low, double high) {
@@ -80,13 +81,5 @@ void physics_draw_parameters(const law *l, uint64_t *seed, double *values) {
 }
 
 deck_lattice physics_usual_lattice(const law *l) {
-  const bool space = l->setting == SETTING_SPACE;
-  const double t = space ? 0 : 0.1;
-  return (deck_lattice){.kind = space ? "fcc" : "hexagonal",
-                        .spacing = 0.01,
-                        .shells = space ? 2 : 1,
-                        .thickness = t,
-                        .stiffness_thickness = t,
-                        .mass_thickness = t,
-                        .setting = law_setting_name(l->setting)};
+  return lattice_default(law_setting_name(l->setting), 0.01, 0.1);
 }

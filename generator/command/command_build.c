@@ -13,6 +13,7 @@
 #include "generator/kernel/toolchain_compiler.h"
 #include "generator/run/run.h"
 #include "generator/target/c_text.h"
+#include "runtime/deck/deck_read.h"
 
 #define ERROR_LENGTH 8192
 
@@ -71,7 +72,7 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   out->memory = arena_new();
   diag_begin(&said, &out->sources);
   int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
-  deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
+  const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   out->deck = k;
   bool good =
       k && material_law_open(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);

@@ -20,6 +20,7 @@
 #include "generator/kernel/settings.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 
 /* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
@@ -236,7 +237,7 @@ static int dump_deck(const run_options *o, const char *stage) {
   checking c = {.memory = arena_new()};
   diag_begin(&c.said, &c.sources);
   const int file = source_add(&c.sources, o->deck_path, text, length);
-  deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
+  const deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
   const bool good =
       k && material_law_open(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
   diag_print(&c.said, stderr);

@@ -15,7 +15,7 @@
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/kernel/standard_input.h"
-#include "runtime/deck/deck_table.h"
+#include "runtime/deck/deck_groups.h"
 
 enum { INPUT_WRONG = 1, ERROR_LENGTH = 1024 };
 
@@ -213,7 +213,7 @@ static int show_topic(const char *topic) {
   int group = deck_group_find(name);
   if (group >= 0) {
     if (shown++) putchar('\n');
-    show_group(&deck_groups[group], "decks");
+    show_group(deck_groups[group], "decks");
   }
   const deck_group_info *path = drive_group(name);
   if (path) {

@@ -6,6 +6,8 @@
 #include <stdbool.h>
 #include <stdio.h>
 
+#include "runtime/deck/lattice_kind.h"
+
 #define COMMAND_STATUS "0 done, 1 the input is wrong, 2 the run failed"
 #define RUN_STATUS                                                                                 \
   COMMAND_STATUS ", 130 stopped by Ctrl-C, 143 by SIGTERM, 129 by SIGHUP: with the result so far " \
@@ -123,7 +125,7 @@
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
-  X(info, "--lattice", "KIND", "hexagonal, square, cubic or fcc; by the law if not given")         \
+  X(info, "--lattice", "KIND", LATTICE_KINDS_OF_SITES "; by the law if not given")                 \
   X(info, "--horizon", "H",                                                                        \
     "neighbours up to so many spacings away; the nearest ones if not given")                       \
   X(info, "--shells", "N", "neighbours of so many shells")                                         \

@@ -83,24 +83,20 @@ static law_setting meant_setting(const model *m, int dimensions) {
 static bool choose_lattice(law_facts *f, const info_law_options *o) {
   const model *m = &f->model;
   deck_lattice *d = &f->lattice;
-  const bool space = m->law->setting == SETTING_SPACE;
-  double spacing = 10e-3, thickness = 100e-3;
-  *d = (deck_lattice){.name = "lattice",
-                      .kind = o->lattice ? o->lattice
-                              : space    ? "fcc"
-                                         : "hexagonal"};
-  if (!o->lattice && space) d->shells = 2;
+  double thickness = 100e-3;
+  *d = lattice_default(law_setting_name(m->law->setting), 10e-3, thickness);
+  if (o->lattice) {
+    d->kind = o->lattice;
+    d->shells = 0;
+  }
   const int dimensions = bravais_dimensions(d->kind);
   if (!dimensions) {
-    say_error("there is no lattice `%s`\n  --lattice takes hexagonal, square, cubic or "
-              "fcc",
-              d->kind);
+    say_error("there is no lattice `%s`\n  --lattice takes " LATTICE_KINDS_OF_SITES, d->kind);
     return false;
   }
-  if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &spacing)) ||
+  if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &d->spacing)) ||
       (o->thickness && !read_length(f, "--thickness", o->thickness, &thickness)))
     return false;
-  d->spacing = spacing;
   d->thickness = d->stiffness_thickness = d->mass_thickness = dimensions == 2 ? thickness : 0;
   d->setting = law_setting_name(meant_setting(m, dimensions));
   return true;

@@ -86,20 +86,12 @@ typedef struct driven_particle {
 } driven_particle;
 
 deck_lattice drive_lattice(const drive_input *in, const law *l) {
-  const bool space = l->setting == SETTING_SPACE;
   const drive_particle *p = &in->particle;
-  deck_lattice d = {.name = "lattice",
-                    .kind = p->lattice ? p->lattice
-                            : space    ? "fcc"
-                                       : "hexagonal",
-                    .spacing = p->spacing,
-                    .horizon = p->horizon,
-                    .shells = p->shells              ? p->shells
-                              : !p->lattice && space ? 2
-                                                     : 0,
-                    .rotation = p->rotation,
-                    .setting = law_setting_name(l->setting)};
-  if (!space) d.thickness = d.stiffness_thickness = d.mass_thickness = p->thickness;
+  deck_lattice d = lattice_default(law_setting_name(l->setting), p->spacing, p->thickness);
+  if (p->lattice) d.kind = p->lattice;
+  if (p->lattice || p->shells) d.shells = p->shells;
+  d.horizon = p->horizon;
+  d.rotation = p->rotation;
   return d;
 }
 

@@ -236,7 +236,13 @@ static const deck_group_info groups[DRIVE_GROUP_COUNT] = {
 #undef X
 };
 
-const deck_grammar drive_grammar = {"path", groups, DRIVE_GROUP_COUNT};
+static const deck_group_info *const group_list[DRIVE_GROUP_COUNT] = {
+#define X(group, once, more, text) &groups[DRIVE_GROUP_##group],
+    DRIVE_GROUPS(X)
+#undef X
+};
+
+const deck_grammar drive_grammar = {"path", group_list, DRIVE_GROUP_COUNT};
 
 const deck_group_info *drive_group(const char *name) {
   for (int g = 0; g < DRIVE_GROUP_COUNT; g++)

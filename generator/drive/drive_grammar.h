@@ -3,7 +3,7 @@
 #ifndef PERILAT_GENERATOR_DRIVE_GRAMMAR_H
 #define PERILAT_GENERATOR_DRIVE_GRAMMAR_H
 
-#include "runtime/deck/deck_table.h"
+#include "runtime/deck/deck_schema.h"
 
 /* X(name, single, open, doc) */
 #define DRIVE_GROUPS(X)                                                                            \

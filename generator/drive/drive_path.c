@@ -138,7 +138,7 @@ static bool wants_cycles(const namelist_group *g) {
 
 static void read_path(const reader *r, const namelist_group *g) {
   drive_piece p = {.where = g->where};
-  const deck_group_info *info = &drive_grammar.groups[DRIVE_GROUP_path];
+  const deck_group_info *info = drive_grammar.groups[DRIVE_GROUP_path];
   if (!read_keys(r, g, info, &p)) return;
   int quantity =
       deck_choice_read(r->memory, namelist_find(g, "quantity"), info->keys[0].choices, r->d);
@@ -167,9 +167,9 @@ static bool read_formula(const reader *r, const namelist_key *key, drive_expect 
 
 static void read_expect(const reader *r, const namelist_group *g) {
   drive_expect e = {.at_time = NAN, .at_stretch = NAN};
-  deck_defaults(r->memory, &drive_grammar.groups[DRIVE_GROUP_expect], &e);
+  deck_defaults(r->memory, drive_grammar.groups[DRIVE_GROUP_expect], &e);
   copy_places(r->memory, g, &e.item);
-  if (!read_keys(r, g, &drive_grammar.groups[DRIVE_GROUP_expect], &e)) return;
+  if (!read_keys(r, g, drive_grammar.groups[DRIVE_GROUP_expect], &e)) return;
   const namelist_key *formula = namelist_find(g, "formula");
   e.value = namelist_find(g, "value");
   e.absolute = namelist_find(g, "absolute");
@@ -190,7 +190,7 @@ static void read_expect(const reader *r, const namelist_group *g) {
 /* --- the file --------------------------------------------------------------------------------- */
 
 static void read_material(const reader *r, const namelist_group *g, int kind, deck_material *m) {
-  if (!read_keys(r, g, &drive_grammar.groups[kind], m) || !settings_of_group(r->memory, g, m, r->d))
+  if (!read_keys(r, g, drive_grammar.groups[kind], m) || !settings_of_group(r->memory, g, m, r->d))
     return;
   copy_places(r->memory, g, &m->item);
   const namelist_key *name = kind == DRIVE_GROUP_material ? namelist_find(g, "model") : NULL;
@@ -203,19 +203,19 @@ static void read_group(const reader *r, const namelist_group *g, int kind) {
   switch (kind) {
   case DRIVE_GROUP_simulation:
     copy_places(r->memory, g, &in->simulation.item);
-    read_keys(r, g, &drive_grammar.groups[kind], &in->simulation);
+    read_keys(r, g, drive_grammar.groups[kind], &in->simulation);
     return;
   case DRIVE_GROUP_bond:
     copy_places(r->memory, g, &in->bond.item);
-    read_keys(r, g, &drive_grammar.groups[kind], &in->bond);
+    read_keys(r, g, drive_grammar.groups[kind], &in->bond);
     return;
   case DRIVE_GROUP_particle:
     copy_places(r->memory, g, &in->particle.item);
-    read_keys(r, g, &drive_grammar.groups[kind], &in->particle);
+    read_keys(r, g, drive_grammar.groups[kind], &in->particle);
     return;
   case DRIVE_GROUP_output:
     copy_places(r->memory, g, &in->output.item);
-    read_keys(r, g, &drive_grammar.groups[kind], &in->output);
+    read_keys(r, g, drive_grammar.groups[kind], &in->output);
     return;
   case DRIVE_GROUP_material:
     read_material(r, g, kind, &in->material);
@@ -233,7 +233,7 @@ static void read_group(const reader *r, const namelist_group *g, int kind) {
 
 static int find_group(const char *name) {
   for (int k = 0; k < DRIVE_GROUP_COUNT; k++)
-    if (strcasecmp(drive_grammar.groups[k].name, name) == 0) return k;
+    if (strcasecmp(drive_grammar.groups[k]->name, name) == 0) return k;
   return -1;
 }
 
@@ -241,14 +241,14 @@ static void read_groups(const reader *r, const namelist *n) {
   const namelist_group *seen[DRIVE_GROUP_COUNT] = {NULL};
   const char *names[DRIVE_GROUP_COUNT];
   for (int k = 0; k < DRIVE_GROUP_COUNT; k++)
-    names[k] = drive_grammar.groups[k].name;
+    names[k] = drive_grammar.groups[k]->name;
   for (int k = 0; k < n->group_count && r->d->errors <= MOST_ERRORS; k++) {
     const namelist_group *g = &n->groups[k];
     int kind = find_group(g->name);
     if (kind < 0) {
       diag_report(r->d, DIAG_UNKNOWN_GROUP, g->where, "a path has no group `&%s`", g->name);
       deck_suggest(r->d, g->name, names, DRIVE_GROUP_COUNT, "the groups are");
-    } else if (drive_grammar.groups[kind].single && seen[kind]) {
+    } else if (drive_grammar.groups[kind]->single && seen[kind]) {
       diag_report(r->d, DIAG_DUPLICATE_NAME, g->where, "a path has one `&%s`", g->name);
       diag_note(r->d, seen[kind]->where, "it is given here");
     } else {
@@ -298,10 +298,10 @@ drive_input *drive_read(arena *a, source_set *sources, int file, const deck_over
   in->path = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
   in->pieces = arena_alloc(a, most * sizeof *in->pieces);
   in->expects = arena_alloc(a, most * sizeof *in->expects);
-  deck_defaults(a, &drive_grammar.groups[DRIVE_GROUP_simulation], &in->simulation);
-  deck_defaults(a, &drive_grammar.groups[DRIVE_GROUP_bond], &in->bond);
-  deck_defaults(a, &drive_grammar.groups[DRIVE_GROUP_particle], &in->particle);
-  deck_defaults(a, &drive_grammar.groups[DRIVE_GROUP_output], &in->output);
+  deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_simulation], &in->simulation);
+  deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_bond], &in->bond);
+  deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_particle], &in->particle);
+  deck_defaults(a, drive_grammar.groups[DRIVE_GROUP_output], &in->output);
   in->simulation.end_time = in->bond.mass_i = in->bond.mass_j = -1;
   in->material.item.where = in->initial.item.where = (span){0, 0, (uint16_t)file};
   read_groups(&r, n);

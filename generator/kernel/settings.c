@@ -4,15 +4,11 @@
 #include <string.h>
 #include <strings.h>
 
-#include "runtime/deck/deck_check.h"
+#include "runtime/deck/group_lattice.h"
 
 bool settings_of_group(arena *a, const namelist_group *g, deck_material *m, diagnostics *d) {
-  deck none = {.name = ""};
-  deck_reader r = {.memory = a, .d = d, .k = &none}; /* there is no lattice that it could name */
-  int errors = d->errors;
   m->item.where = g->where;
-  deck_check_material(&r, g, m);
-  return d->errors == errors;
+  return deck_assignments_read(a, g, m, d);
 }
 
 /* The rest of the text, without quotes and trimmed: `40 GPa`, `exponential`. */

@@ -19,6 +19,7 @@
 #include "generator/run/run_result.h"
 #include "generator/run/run_state.h"
 #include "runtime/base/clock.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 
 enum { EARLY_CHECKPOINT = 30 }; /* s: the first one, so that a long run is never lost whole */
@@ -84,6 +85,15 @@ static bool load_deck(run *r) {
   return true;
 }
 
+/* The deck is as it was read, but for the threads that the command line asks for. */
+static void take_threads(run *r) {
+  if (r->options->threads < 1) return;
+  deck *k = arena_alloc(r->memory, sizeof *k);
+  *k = *r->deck;
+  k->simulation.threads = r->options->threads;
+  r->deck = k;
+}
+
 /* A solver's law was checked when it was built. A law that breaks mechanics has no step. */
 static int check_physics(run *r, int lattice) {
   simulation_law *l = &r->laws[lattice];
@@ -127,7 +137,7 @@ static int set_up(run *r) {
   if (!r->options->check_only) result_can_be_written(r);
   build_lattice(r);
   const int status = load_laws(r);
-  if (r->options->threads > 0) r->deck->simulation.threads = r->options->threads;
+  take_threads(r);
   result_spares_inputs(r);
   if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
   if (status) return status;

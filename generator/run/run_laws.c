@@ -73,10 +73,10 @@ static double nearest_distance(const rows *w) {
 static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
   deck_lattice like = *d;
   if (!deck_lattice_is_irregular(d)) return like;
-  const bool space = deck_lattice_dimensions(d) == 3;
-  like.kind = space ? "fcc" : "hexagonal";
+  const deck_lattice usual = lattice_default(d->setting, 0, 0);
+  like.kind = usual.kind;
   like.spacing = nearest_distance(w);
-  like.shells = d->horizon > 0 || !space ? 0 : 2;
+  like.shells = d->horizon > 0 ? 0 : usual.shells;
   like.neighbours = 0;
   return like;
 }

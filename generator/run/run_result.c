@@ -14,6 +14,7 @@
 #include "generator/kernel/version.h"
 #include "generator/run/run_report.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */

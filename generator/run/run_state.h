@@ -15,7 +15,7 @@ typedef struct run {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   model *models; /* [material_count] */
   int open_models;
   rows *lattice;        /* the simulation's, when there is one; NULL where it is not known */

@@ -237,13 +237,8 @@ rows *implied_lattice_like(const deck_lattice *l, double rho) {
 }
 
 rows *implied_lattice(double spacing, double thickness, double rho) {
-  return implied_lattice_like(&(deck_lattice){.kind = "hexagonal",
-                                              .spacing = spacing,
-                                              .thickness = thickness,
-                                              .stiffness_thickness = thickness,
-                                              .mass_thickness = thickness,
-                                              .setting = "plane_stress"},
-                              rho);
+  const deck_lattice hexagonal = lattice_default("plane_stress", spacing, thickness);
+  return implied_lattice_like(&hexagonal, rho);
 }
 
 enum { CURVE_POINTS = 24000, PEAK_POINTS = 400, PEAK_ROUNDS = 3 };

@@ -9,26 +9,8 @@
 
 enum { FARTHEST_NEIGHBOUR = 8 }; /* spacings: beyond, a family has more than it may */
 
-static const struct kind {
-  const char *name;
-  int dimensions;
-  double square[3]; /* of the steps, in spacings */
-  int shift_by[2];
-} kinds[] = {
-    {"hexagonal", 2, {1, 0.75, 0}, {1, 0}},
-    {"square", 2, {1, 1, 0}, {0, 0}},
-    {"cubic", 3, {1, 1, 1}, {0, 0}},
-    {"fcc", 3, {2, 0.5, 0.5}, {1, 1}}, /* cube edges along the axes */
-};
-
-static const struct kind *find_kind(const char *name) {
-  for (size_t k = 0; k < sizeof kinds / sizeof *kinds; k++)
-    if (strcmp(kinds[k].name, name) == 0) return &kinds[k];
-  return NULL;
-}
-
 int bravais_dimensions(const char *kind) {
-  const struct kind *k = find_kind(kind);
+  const lattice_kind *k = lattice_kind_find(kind);
   return k ? k->dimensions : 0;
 }
 
@@ -45,8 +27,8 @@ static void turn_axes(double angle, const double about[3], double axis[3][3]) {
 }
 
 bool bravais_of(const deck_lattice *l, bravais *b) {
-  const struct kind *k = find_kind(l->kind);
-  if (!k) return false;
+  const lattice_kind *k = lattice_kind_find(l->kind);
+  if (!k || k->dimensions == 0) return false;
   *b = (bravais){.dimensions = k->dimensions, .spacing = l->spacing, .site_measure = 1};
   memcpy(b->origin, l->origin, sizeof b->origin);
   memcpy(b->square, k->square, sizeof b->square);

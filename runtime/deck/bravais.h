@@ -7,13 +7,16 @@
 #include <stdbool.h>
 
 #include "dsl/base/c_linkage.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/lattice_kind.h"
 #include "runtime/kernel.h"
 
 C_LINKAGE_BEGIN
 
 /* Bonds join sites as far apart as the horizon and this part of it more. */
 #define BRAVAIS_REACH_TOLERANCE 1e-3
+
+/* Axes of a lattice. */
+enum { BRAVAIS_COLUMN, BRAVAIS_ROW, BRAVAIS_LAYER };
 
 typedef struct bravais {
   int dimensions;      /* 2 or 3 */
@@ -33,10 +36,10 @@ typedef struct bravais_neighbour {
   int shell;      /* 1: the nearest neighbours, ... */
 } bravais_neighbour;
 
-/* Dimensions of a kind of lattice by its name in decks: 2, 3; 0 for no such kind. */
+/* Dimensions of a kind of lattice by its name in decks: 2, 3; 0 for none that has sites. */
 int bravais_dimensions(const char *kind);
 
-/* False for a kind that is not known. */
+/* False for a kind that has no sites, or is not known. */
 bool bravais_of(const deck_lattice *l, bravais *b);
 
 /* 1 when the sites of the row stand half a step further along it, else 0. */

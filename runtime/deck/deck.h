@@ -1,12 +1,10 @@
-/* A deck: Fortran namelist groups read into plain structures, every value in SI, every item with
-   its place in the text so that later errors (an empty region, say) can point at the line. Reading
-   a deck reads the tables of its loads, touches no other file, and checks what can be checked
-   without lattices or laws. */
+/* This room: from a deck's text to what it says. A deck is a structure for each group, every value
+   in SI, every item with its place in the text so that later errors (an empty region, say) can
+   point at the line. */
 #ifndef PERILAT_RUNTIME_DECK_H
 #define PERILAT_RUNTIME_DECK_H
 
 #include <stdbool.h>
-#include <stdio.h>
 
 #include "dsl/base/arena.h"
 #include "dsl/base/c_linkage.h"
@@ -52,11 +50,6 @@ typedef struct deck_lattice {
   double stiffness_thickness, mass_thickness; /* m; default: thickness */
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
-
-/* True for particles that stand on no lattice: kinds "blue_noise" and "particles". */
-bool deck_lattice_is_irregular(const deck_lattice *l);
-/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown kind. */
-int deck_lattice_dimensions(const deck_lattice *l);
 
 typedef struct deck_assignment { /* parameter = value in a &material */
   const char *name;              /* as written */
@@ -119,8 +112,8 @@ typedef struct deck_region {
   deck_shape shape;
 } deck_region;
 
-/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in space 0 x, 1 y, 2 z.
-   Bits of `fix` are 1 << component. */
+/* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in
+   space 0 x, 1 y, 2 z. Bits of `fix` are 1 << component. */
 enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
 
 typedef struct deck_support {
@@ -251,6 +244,38 @@ typedef struct deck_file { /* a table that a load was read from */
   int source;              /* its text among the sources */
 } deck_file;
 
+/* The groups of a deck, in the order in which they are read, so that names are known before they
+   are used: ONE is there once at most, LIST any number of times. Each has its structure above, its
+   keys and its check in a group_*.c. */
+#define DECK_GROUPS(ONE, LIST)                                                                     \
+  ONE(simulation)                                                                                  \
+  ONE(relaxation)                                                                                  \
+  LIST(lattice)                                                                                    \
+  LIST(material)                                                                                   \
+  LIST(field)                                                                                      \
+  LIST(body)                                                                                       \
+  LIST(notch)                                                                                      \
+  LIST(region)                                                                                     \
+  LIST(support)                                                                                    \
+  LIST(drive)                                                                                      \
+  LIST(force)                                                                                      \
+  LIST(end_moment)                                                                                 \
+  LIST(protect)                                                                                    \
+  LIST(damping)                                                                                    \
+  LIST(gravity)                                                                                    \
+  LIST(initial_velocity)                                                                           \
+  LIST(monitor)                                                                                    \
+  LIST(stop)                                                                                       \
+  ONE(output)                                                                                      \
+  ONE(checkpoint)
+
+typedef enum deck_group {
+#define X(group) DECK_GROUP_##group,
+  DECK_GROUPS(X, X)
+#undef X
+      DECK_GROUP_COUNT
+} deck_group;
+
 typedef struct deck_names deck_names;
 
 typedef struct deck {
@@ -261,25 +286,13 @@ typedef struct deck {
   int file_count;
   unsigned lacks;    /* groups of which items were left out: see deck_lacks */
   deck_names *names; /* of what deck_find_... finds; NULL: few, looked at one by one */
-  deck_simulation simulation;
-  deck_relaxation relaxation;
-  deck_output output;
-  deck_checkpoint checkpoint;
-#define DECK_LISTS(X)                                                                              \
-  X(lattice)                                                                                       \
-  X(material)                                                                                      \
-  X(field)                                                                                         \
-  X(body)                                                                                          \
-  X(notch)                                                                                         \
-  X(region)                                                                                        \
-  X(support)                                                                                       \
-  X(drive)                                                                                         \
-  X(force) X(end_moment) X(protect) X(damping) X(gravity) X(initial_velocity) X(stop) X(monitor)
-#define X(group)                                                                                   \
-  deck_##group *group##s;                                                                          \
+#define ONE(group) deck_##group group;
+#define LIST(group)                                                                                \
+  const deck_##group *group##s;                                                                    \
   int group##_count;
-  DECK_LISTS(X)
-#undef X
+  DECK_GROUPS(ONE, LIST)
+#undef ONE
+#undef LIST
 } deck;
 
 /* "group.key=value" as given by --set; a group that occurs several times is named group[k] (from 1)
@@ -288,20 +301,13 @@ typedef struct deck_override {
   const char *text;
 } deck_override;
 
-/* Reads sources->items[file]. NULL on errors (all are reported). Overrides become sources of their
-   own, named "--set", so that errors in them point at their text. Tables of loads become sources,
-   too, and one that is there already, under its path, is not read from the disk. */
-deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
-                int override_count, diagnostics *d);
-/* The same, but never NULL: of a deck with errors what is right, so that more can be said of it.
-   Faulty items are left out, but for materials whose law is known. */
-deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
-                              const deck_override *overrides, int override_count, diagnostics *d);
+/* Position of the group of that name (without regard to case) in DECK_GROUPS, or -1. */
+int deck_group_find(const char *name);
+/* Their names; `names` must hold DECK_GROUP_COUNT. Returns the count. */
+int deck_group_names(const char **names);
+
 /* Some item of that group ("body") may have been left out; NULL: of any group. */
 bool deck_lacks(const deck *k, const char *group);
-
-/* Every group and key with its value, unit, default and meaning, as Markdown. */
-void deck_reference(FILE *out);
 
 /* Index of the named thing, or -1. */
 int deck_find_region(const deck *k, const char *name);
@@ -309,6 +315,10 @@ int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
+/* A copy whose assignments may be taken out, in an arena: the deck stays as it was read. */
+deck_material deck_material_copy(arena *a, const deck_material *m);
+/* For many searches: none of the names is known yet, they are taken up as the lists grow. */
+deck_names *deck_names_new(arena *a);
 
 /* A file that the deck at a path names, beside the deck unless its name begins with `/`;
    malloc'ed. */

@@ -1,10 +1,9 @@
-/* What a group's keys mean together: shapes, loads, names that must exist, conflicts. Called group
-   by group in the order of DECK_GROUPS, so that names are known before they are used. */
+/* What the checks of groups share: names that must exist, directions, places, keys that exclude
+   each other. All report at the deck's line. */
 #ifndef PERILAT_RUNTIME_DECK_CHECK_H
 #define PERILAT_RUNTIME_DECK_CHECK_H
 
-#include "runtime/deck/deck_table.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/deck/deck_schema.h"
 
 /* Where each component of a region is held or driven first; an empty span: nowhere. */
 typedef struct deck_motions {
@@ -21,14 +20,40 @@ typedef struct deck_reader {
   int moved;             /* components of any region, a bit each */
 } deck_reader;
 
-/* Completes one item from its group; its plain keys have been read without error. The item is not
-   yet counted in the deck. */
-#define X(group, identity, single, open, doc)                                                      \
-  void deck_check_##group(deck_reader *r, const namelist_group *from, deck_##group *item);
-DECK_GROUPS(X)
-#undef X
+/* The name that an item's key gives must be that of a lattice, or of a region. */
+bool deck_lattice_known(deck_reader *r, const deck_item *item, const char *name);
+bool deck_region_known(deck_reader *r, span where, const char *name);
+bool deck_item_region_known(deck_reader *r, const deck_item *item, const char *name);
+bool deck_monitor_known(deck_reader *r, span where, const char *name);
+/* A name is new, and fits into the paths of a result. `first`: the item that has it already, or
+   NULL. */
+void deck_check_name(deck_reader *r, const char *kind, const char *name, const deck_item *item,
+                     const deck_item *first);
+/* Names of faulty items may be missing. */
+bool deck_same_name(const char *a, const char *b);
+bool deck_is_one_of(const char *name, const char *const *words, int count);
 
-/* What only the whole deck can tell. */
-void deck_check_whole(deck_reader *r);
+void deck_refuse_both(deck_reader *r, const namelist_group *from, const char *a, const char *b);
+/* Places have two or three coordinates, as the lattice has dimensions: all DECK_PLACE of the
+   group. */
+void deck_check_places(deck_reader *r, const namelist_group *from, const deck_group_info *info,
+                       int dimensions);
+/* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
+int deck_dimensions_of(const deck_reader *r, const char *lattice);
+int deck_dimensions_of_region(const deck_reader *r, const char *region);
+
+/* Directions as written; their positions are those of DECK_FIXED's bits, too. */
+#define DECK_COMPONENTS "x|y|z|rotation"
+enum { DECK_WRITTEN_Z = 2, DECK_WRITTEN_ROTATION = 3 };
+/* The degree of freedom of a direction as written. -1 after a message: it is none of the region's
+   particles. */
+int deck_component(deck_reader *r, span where, const char *region, int written);
+/* The same for the item's key `component`, in place. False after a message. */
+bool deck_take_component(deck_reader *r, const deck_item *item, const char *region, int *component);
+bool deck_is_rotation(const deck_reader *r, const char *region, int component);
+const char *deck_component_of(const deck_reader *r, const char *region, int component);
+
+/* A time that is not before the end of the run is worth a warning. */
+void deck_warn_late(deck_reader *r, const deck_item *item, const char *key, double time);
 
 #endif

@@ -8,7 +8,6 @@
 
 enum { FROM_FILE = TIME_TABLE + 1, WAYS };
 
-static const char *const shape_choices = "constant|ramp|ramp and hold|cosine|table";
 static const char *const way_words[WAYS] = {"a constant load", "a ramp",  "a ramp and hold",
                                             "a cosine",        "a table", "a table from a file"};
 
@@ -26,7 +25,7 @@ static int way_of(arena *a, const namelist_group *g, diagnostics *d) {
   const namelist_key *history = namelist_find(g, "history");
   int way = TIME_CONSTANT;
   if (history)
-    way = deck_choice_read(a, history, shape_choices, d);
+    way = deck_choice_read(a, history, DECK_HISTORIES, d);
   else if (namelist_find(g, "rise"))
     way = TIME_RAMP_HOLD;
   else if (namelist_find(g, "times") || namelist_find(g, "values") || namelist_find(g, "file"))

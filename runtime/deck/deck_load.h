@@ -4,6 +4,43 @@
 
 #include "runtime/deck/deck_value.h"
 
+#define DECK_HISTORIES "constant|ramp|ramp and hold|cosine|table"
+/* The keys themselves, for the table of a group. */
+#define DECK_TIME_KEYS                                                                             \
+  {.name = "history",                                                                              \
+   .type = DECK_LATER,                                                                             \
+   .choices = DECK_HISTORIES,                                                                      \
+   .fallback = "= 'constant', in quasi-static runs a ramp over the run; 'ramp and hold' with a "   \
+               "rise, 'table' with times or a file",                                               \
+   DECK_NOT_KEPT,                                                                                  \
+   .doc = "how the value develops in time"},                                                       \
+      {.name = "start",                                                                            \
+       .type = DECK_LATER,                                                                         \
+       .unit = "s",                                                                                \
+       .fallback = "= 0",                                                                          \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "nothing acts before"},                                                              \
+      {.name = "rise",                                                                             \
+       .type = DECK_LATER,                                                                         \
+       .unit = "s",                                                                                \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "time from `start` until the full value is reached"},                                \
+      {.name = "times",                                                                            \
+       .type = DECK_LATER,                                                                         \
+       .unit = "s",                                                                                \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "table: times after `start`, ascending"},                                            \
+      {.name = "values",                                                                           \
+       .type = DECK_LATER,                                                                         \
+       .unit = "1",                                                                                \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "table: factors on the value at those times, straight lines between"},               \
+  {                                                                                                \
+    .name = "file", .type = DECK_LATER, DECK_NOT_KEPT,                                             \
+    .doc = "table: instead of `times` and `values`, two columns of a text file beside the deck; "  \
+           "factors on the value, or with a unit and without the value the load itself"            \
+  }
+
 /* A way to give a load: the key of its full value, and the unit. Where the key is `implied`, values
    of a table without it are the load itself, in SI. */
 typedef struct deck_load_kind {

@@ -22,10 +22,10 @@ static void present_name(namelist_group *g, const deck_key_info *info, diagnosti
 
 void deck_present_names(namelist *n, const deck_grammar *grammar, diagnostics *d) {
   for (int t = 0; t < grammar->group_count; t++)
-    for (int k = 0; k < grammar->groups[t].key_count; k++) {
-      const deck_key_info *info = &grammar->groups[t].keys[k];
+    for (int k = 0; k < grammar->groups[t]->key_count; k++) {
+      const deck_key_info *info = &grammar->groups[t]->keys[k];
       for (int i = 0; info->former && i < n->group_count; i++)
-        if (strcmp(n->groups[i].name, grammar->groups[t].name) == 0)
+        if (strcmp(n->groups[i].name, grammar->groups[t]->name) == 0)
           present_name(&n->groups[i], info, d);
     }
 }
@@ -97,8 +97,8 @@ static bool find_group_info(setter *s, const char *group) {
   const deck_grammar *g = s->grammar;
   const char **names = arena_alloc(s->memory, (size_t)g->group_count * sizeof *names);
   for (int k = 0; k < g->group_count; k++) {
-    names[k] = g->groups[k].name;
-    if (strcasecmp(names[k], group) == 0) s->group = &g->groups[k];
+    names[k] = g->groups[k]->name;
+    if (strcasecmp(names[k], group) == 0) s->group = g->groups[k];
   }
   if (s->group) return true;
   diag_report(s->d, DIAG_UNKNOWN_GROUP, s->group_where, "there is no group `&%s`",
@@ -202,8 +202,9 @@ static bool takes_several(const setter *s) {
     commas += *p == ',';
   deck_type type = s->group->keys[k].type;
   bool listed = strcmp(s->key, "times") == 0 || strcmp(s->key, "values") == 0;
-  return commas < MOST_PIECES && (type == DECK_NAMES || type == DECK_FIXED || type == DECK_PAIR ||
-                                  type == DECK_PLACE || type == DECK_DIRECTION ||                                  type == DECK_REALS || listed);
+  return commas < MOST_PIECES &&
+         (type == DECK_NAMES || type == DECK_FIXED || type == DECK_PAIR || type == DECK_PLACE ||
+          type == DECK_DIRECTION || type == DECK_REALS || listed);
 }
 
 /* Mixed values such as `4 mm, 0.1` split into texts: a bare number in one is a number again. */

@@ -3,8 +3,7 @@
 #ifndef PERILAT_RUNTIME_DECK_VALUE_H
 #define PERILAT_RUNTIME_DECK_VALUE_H
 
-#include "runtime/deck/deck_table.h"
-#include "runtime/deck/namelist.h"
+#include "runtime/deck/deck_schema.h"
 
 typedef struct deck_quantity {
   double value;  /* SI; finite */

@@ -67,8 +67,9 @@ void namelist_remove_key(namelist_group *g, namelist_key *key);
 /* Adds an empty group. `name` is not copied. */
 namelist_group *namelist_add_group(arena *a, namelist *n, const char *name);
 
-/* The groups as text: one spelling for one meaning (names in lower case, no comments, numbers to the last bit). Groups and
-   keys for which `leave_out` is true are left out (key NULL: the whole group). */
+/* The groups as text: one spelling for one meaning (names in lower case, no comments, numbers to
+   the last bit). Groups and keys for which `leave_out` is true are left out (key NULL: the whole
+   group). */
 char *namelist_text(arena *a, const namelist *n,
                     bool (*leave_out)(const char *group, const char *key));
 

@@ -153,7 +153,8 @@ static void keep_points(cell *c) {
   c->edge_count = 0;
 }
 
-/* Number, among those on the cut, of the point where an edge is cut; both faces of the edge ask for it. */
+/* Number, among those on the cut, of the point where an edge is cut; both faces of the edge ask for
+   it. */
 static int cut_point(cell *c, int in, int out) {
   for (int k = 0; k < c->edge_count; k++)
     if (c->edge[k][0] == in && c->edge[k][1] == out) return k;
@@ -182,7 +183,8 @@ static void close_face(cell_part *p) {
   p->face[++p->face_count] = p->corner_count;
 }
 
-/* What is left of a face runs along the cut from where it leaves to where it comes back; the new face, the other way. */
+/* What is left of a face runs along the cut from where it leaves to where it comes back; the new
+   face, the other way. */
 static void cut_face(cell *c, int face, int first_new) {
   const int *corner = c->now.corner + c->now.face[face];
   const int count = c->now.face[face + 1] - c->now.face[face];

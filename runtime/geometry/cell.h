@@ -1,5 +1,6 @@
-/* Convex cells about a point: a polygon or a polyhedron that half spaces are taken from one by one, as the cells of a
-   Voronoi diagram are made (Rycroft 2009). All places are seen from the point, which stays inside. Lengths in m. */
+/* Convex cells about a point: a polygon or a polyhedron that half spaces are taken from one by one,
+   as the cells of a Voronoi diagram are made (Rycroft 2009). All places are seen from the point,
+   which stays inside. Lengths in m. */
 #ifndef PERILAT_RUNTIME_CELL_H
 #define PERILAT_RUNTIME_CELL_H
 

@@ -9,30 +9,21 @@
 #include "dsl/base/elementary.h"
 #include "runtime/geometry/bins.h"
 
-enum { POINTS_A_CELL = 2, MOST_CELLS = 1 << 20 /* along an axis */ };
+enum { POINTS_A_BOX = 2 };
 
-/* --- cells ------------------------------------------------------------------------------------ */
-
-typedef struct cell_grid {
+typedef struct search { /* points, and which of them are in each box */
   const point_cloud *points;
-  double low[3], side; /* m */
-  long cells[3];
-  int32_t *first; /* [all cells + 1] into `order` */
-  int32_t *order; /* points, cell by cell */
-} cell_grid;
+  bins bins;
+} search;
 
-static long cell_along(const cell_grid *g, int axis, double x) {
-  const double k = floor((x - g->low[axis]) / g->side);
-  return k <= 0 ? 0 : k >= (double)g->cells[axis] ? g->cells[axis] - 1 : (long)k;
+static search search_new(const point_cloud *c) {
+  search s = {.points = c};
+  bins_of_few(&s.bins, c->dimensions, c->at, c->count, POINTS_A_BOX);
+  return s;
 }
 
-static void cell_of(const cell_grid *g, const double at[3], long cell[3]) {
-  for (int a = 0; a < 3; a++)
-    cell[a] = a < g->points->dimensions ? cell_along(g, a, at[a]) : 0;
-}
-
-static long cell_number(const cell_grid *g, const long cell[3]) {
-  return (cell[2] * g->cells[1] + cell[1]) * g->cells[0] + cell[0];
+static void search_free(search *s) {
+  bins_end(&s->bins);
 }
 
 static void point_at(const point_cloud *c, long p, double at[3]) {
@@ -40,100 +31,44 @@ static void point_at(const point_cloud *c, long p, double at[3]) {
     at[a] = a < c->dimensions ? c->at[a][p] : 0;
 }
 
-/* A side with so many points a cell of the box around nearly all of them (others are in the cells at its sides); axes along
-   which the box is thinner than a cell do not count. */
-static void choose_cells(cell_grid *g, const double extent[3]) {
-  bool flat[3] = {false, false, false};
-  g->side = 0;
-  for (int round = 0; round < 3; round++) {
-    double measure = 1;
-    int axes = 0;
-    for (int a = 0; a < g->points->dimensions; a++) {
-      flat[a] = flat[a] || extent[a] <= g->side;
-      if (flat[a]) continue;
-      measure *= extent[a];
-      axes++;
-    }
-    if (axes > 0) g->side = pl_pow(measure * POINTS_A_CELL / (double)g->points->count, 1.0 / axes);
-  }
-  if (!(g->side > 0)) g->side = 1; /* all points are one */
-  for (int a = 0; a < 3; a++) {
-    const double wanted = flat[a] || a >= g->points->dimensions ? 1 : ceil(extent[a] / g->side);
-    g->cells[a] = wanted < 1 ? 1 : wanted > MOST_CELLS ? MOST_CELLS : (long)wanted;
-  }
-}
-
-static cell_grid grid_new(const point_cloud *c) {
-  cell_grid g = {.points = c};
-  double extent[3] = {0, 0, 0}, range[2], at[3];
-  long cell[3];
-  for (int a = 0; a < c->dimensions; a++) {
-    bins_range(c->at[a], c->count, range);
-    g.low[a] = range[0];
-    extent[a] = range[1] - range[0];
-  }
-  choose_cells(&g, extent);
-  const long all = g.cells[0] * g.cells[1] * g.cells[2];
-  g.first = must_calloc((size_t)all + 2, sizeof *g.first);
-  g.order = must_alloc(((size_t)c->count + 1) * sizeof *g.order);
-  for (int round = 0; round < 2; round++) { /* count, then sort in */
-    for (long p = 0; p < c->count; p++) {
-      point_at(c, p, at);
-      cell_of(&g, at, cell);
-      const long n = cell_number(&g, cell);
-      if (round == 0)
-        g.first[n + 2]++;
-      else
-        g.order[g.first[n + 1]++] = (int32_t)p;
-    }
-    for (long n = 0; round == 0 && n < all; n++)
-      g.first[n + 2] += g.first[n + 1];
-  }
-  return g;
-}
-
-static void grid_free(cell_grid *g) {
-  free(g->first);
-  free(g->order);
-}
-
-/* --- walks over cells ------------------------------------------------------------------------- */
+/* --- walks over boxes ------------------------------------------------------------------------- */
 
 typedef struct walk {
-  const cell_grid *grid;
+  const search *in;
   double from[3];
-  long low[3], high[3]; /* cells looked at */
+  int low[3], high[3]; /* boxes looked at */
 } walk;
 
-/* Something is done with every point of a cell; true ends the walk. */
+/* Something is done with every point of a box; true ends the walk. */
 typedef bool (*point_visit)(void *of, int32_t point, double square);
 
 static double square_to(const walk *w, int32_t point) {
   double square = 0;
-  for (int a = 0; a < w->grid->points->dimensions; a++) {
-    const double d = w->grid->points->at[a][point] - w->from[a];
+  for (int a = 0; a < w->in->points->dimensions; a++) {
+    const double d = w->in->points->at[a][point] - w->from[a];
     square += d * d;
   }
   return square;
 }
 
-static bool visit_run(const walk *w, long from, long to, point_visit visit, void *of) {
-  const cell_grid *g = w->grid;
-  for (int32_t k = g->first[from]; k < g->first[to + 1]; k++)
-    if (visit(of, g->order[k], square_to(w, g->order[k]))) return true;
+static bool visit_run(const walk *w, int64_t from, int64_t to, point_visit visit, void *of) {
+  const bins *b = &w->in->bins;
+  for (int32_t k = b->first[from]; k < b->first[to + 1]; k++)
+    if (visit(of, b->point[k], square_to(w, b->point[k]))) return true;
   return false;
 }
 
-/* Cells of the box low .. high that do not lie in the box `seen` (NULL: none does). */
-static bool visit_box(const walk *w, const walk *seen, point_visit visit, void *of) {
-  long cell[3];
-  for (cell[2] = w->low[2]; cell[2] <= w->high[2]; cell[2]++)
-    for (cell[1] = w->low[1]; cell[1] <= w->high[1]; cell[1]++) {
-      cell[0] = 0;
-      const long row = cell_number(w->grid, cell);
-      const bool through = seen && cell[1] >= seen->low[1] && cell[1] <= seen->high[1] &&
-                           cell[2] >= seen->low[2] && cell[2] <= seen->high[2];
-      const long end = through ? seen->low[0] - 1 : w->high[0];
+/* Boxes from low to high that do not lie among those `seen` (NULL: none does), a row of them at a
+   time. */
+static bool visit_boxes(const walk *w, const walk *seen, point_visit visit, void *of) {
+  int box[3];
+  for (box[2] = w->low[2]; box[2] <= w->high[2]; box[2]++)
+    for (box[1] = w->low[1]; box[1] <= w->high[1]; box[1]++) {
+      box[0] = 0;
+      const int64_t row = boxes_number(&w->in->bins.boxes, box);
+      const bool through = seen && box[1] >= seen->low[1] && box[1] <= seen->high[1] &&
+                           box[2] >= seen->low[2] && box[2] <= seen->high[2];
+      const int end = through ? seen->low[0] - 1 : w->high[0];
       if (w->low[0] <= end && visit_run(w, row + w->low[0], row + end, visit, of)) return true;
       if (through && seen->high[0] < w->high[0] &&
           visit_run(w, row + seen->high[0] + 1, row + w->high[0], visit, of))
@@ -142,37 +77,39 @@ static bool visit_box(const walk *w, const walk *seen, point_visit visit, void *
   return false;
 }
 
-static walk walk_from(const cell_grid *g, const double from[3], double distance) {
-  walk w = {.grid = g};
+static walk walk_from(const search *s, const double from[3], double distance) {
+  walk w = {.in = s};
   memcpy(w.from, from, sizeof w.from);
-  for (int a = 0; a < g->points->dimensions; a++) {
-    w.low[a] = cell_along(g, a, from[a] - distance);
-    w.high[a] = cell_along(g, a, from[a] + distance);
+  for (int a = 0; a < s->points->dimensions; a++) {
+    w.low[a] = boxes_along(&s->bins.boxes, a, from[a] - distance);
+    w.high[a] = boxes_along(&s->bins.boxes, a, from[a] + distance);
   }
   return w;
 }
 
-/* One cell more on all sides; false when there is none. */
+/* One box more on all sides; false when there is none. */
 static bool widen(walk *w) {
+  const int *count = w->in->bins.boxes.count;
   bool wider = false;
   for (int a = 0; a < 3; a++) {
-    wider = wider || w->low[a] > 0 || w->high[a] < w->grid->cells[a] - 1;
+    wider = wider || w->low[a] > 0 || w->high[a] < count[a] - 1;
     if (w->low[a] > 0) w->low[a]--;
-    if (w->high[a] < w->grid->cells[a] - 1) w->high[a]++;
+    if (w->high[a] < count[a] - 1) w->high[a]++;
   }
   return wider;
 }
 
 /* All points nearer than this were looked at. */
 static double seen_to(const walk *w) {
+  const boxes *b = &w->in->bins.boxes;
   double least = INFINITY;
-  for (int a = 0; a < w->grid->points->dimensions; a++) {
-    const double low = w->grid->low[a], side = w->grid->side;
+  for (int a = 0; a < w->in->points->dimensions; a++) {
+    const double low = b->lower[a], side = b->size;
     if (w->low[a] > 0) least = pl_fmin(least, w->from[a] - (low + (double)w->low[a] * side));
-    if (w->high[a] < w->grid->cells[a] - 1)
+    if (w->high[a] < b->count[a] - 1)
       least = pl_fmin(least, low + (double)(w->high[a] + 1) * side - w->from[a]);
   }
-  return pl_fmax(least, 0) * (1 - 1e-12); /* cells were found to rounding */
+  return pl_fmax(least, 0) * (1 - 1e-12); /* boxes were found to rounding */
 }
 
 /* --- the nearest ------------------------------------------------------------------------------ */
@@ -208,18 +145,18 @@ static bool take_nearer(void *of, int32_t point, double square) {
   return false;
 }
 
-static void find_nearest(const cell_grid *g, nearest_list *l) {
+static void find_nearest(const search *s, nearest_list *l) {
   double from[3];
   point_at(l->points, l->own, from);
-  walk w = walk_from(g, from, 0), seen = w;
+  walk w = walk_from(s, from, 0), seen = w;
   l->count = 0;
-  visit_box(&w, NULL, take_nearer, l);
+  visit_boxes(&w, NULL, take_nearer, l);
   for (;;) {
     const double reach = seen_to(&w);
     if (l->count == l->wanted && l->items[l->count - 1].square < reach * reach) return;
     seen = w;
     if (!widen(&w)) return;
-    visit_box(&w, &seen, take_nearer, l);
+    visit_boxes(&w, &seen, take_nearer, l);
   }
 }
 
@@ -257,12 +194,12 @@ point_pairs pairs_of_nearest(const point_cloud *c, int nearest, int most) {
   long room = 0;
   const int wanted = nearest < c->count ? nearest : (int)(c->count > 0 ? c->count - 1 : 0);
   if (wanted == 0) return pairs;
-  cell_grid g = grid_new(c);
+  search s = search_new(c);
   int32_t *lists = must_alloc((size_t)c->count * (size_t)wanted * sizeof *lists);
   candidate *items = must_alloc((size_t)wanted * sizeof *items);
   for (long p = 0; p < c->count; p++) {
     nearest_list l = {.points = c, .own = (int32_t)p, .wanted = wanted, .items = items};
-    find_nearest(&g, &l);
+    find_nearest(&s, &l);
     for (int k = 0; k < wanted; k++)
       lists[p * wanted + k] = items[k].point;
   }
@@ -275,7 +212,7 @@ point_pairs pairs_of_nearest(const point_cloud *c, int nearest, int most) {
   pairs.crowded = find_crowded(&pairs, c->count, most);
   free(lists);
   free(items);
-  grid_free(&g);
+  search_free(&s);
   return pairs;
 }
 
@@ -298,15 +235,15 @@ point_pairs pairs_within(const point_cloud *c, double distance, int most) {
   point_pairs pairs = {.crowded = -1};
   long room = 0;
   if (c->count == 0) return pairs;
-  cell_grid g = grid_new(c);
+  search s = search_new(c);
   for (long p = 0; p < c->count && pairs.crowded < 0; p++) {
     double from[3];
     point_at(c, p, from);
-    const walk w = walk_from(&g, from, distance);
+    const walk w = walk_from(&s, from, distance);
     reach_list l = {&pairs, &room, (int32_t)p, distance * distance, 0, most};
-    if (visit_box(&w, NULL, take_within, &l)) pairs.crowded = p;
+    if (visit_boxes(&w, NULL, take_within, &l)) pairs.crowded = p;
   }
-  grid_free(&g);
+  search_free(&s);
   return pairs;
 }
 
@@ -329,14 +266,14 @@ void points_near(const point_cloud *c, const int32_t *chosen, long chosen_count,
       at[a * chosen_count + p] = c->at[a][chosen[p]];
   }
   if (chosen_count > 0) {
-    cell_grid g = grid_new(&some);
+    search s = search_new(&some);
     for (long p = 0; p < c->count; p++) {
       double from[3];
       point_at(c, p, from);
-      const walk w = walk_from(&g, from, distance);
-      near[p] = visit_box(&w, NULL, is_within, &square);
+      const walk w = walk_from(&s, from, distance);
+      near[p] = visit_boxes(&w, NULL, is_within, &square);
     }
-    grid_free(&g);
+    search_free(&s);
   }
   free(at);
 }

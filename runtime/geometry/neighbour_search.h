@@ -1,8 +1,9 @@
-/* Which of many points are near each other: the nearest ones of each, or all within a distance. Points are sorted into cells
-   of about two, so that the cost grows as their number does as long as nearly all are spread with some evenness.
+/* Which of many points are near each other: the nearest ones of each, or all within a distance.
+   Points are sorted into boxes of about two, so that the cost grows as their number does as long as
+   nearly all are spread with some evenness.
 
-   What is found does not depend on the order of the points: of points equally far away those with the smaller x, then y, then
-   z are nearer. */
+   What is found does not depend on the order of the points: of points equally far away those with
+   the smaller x, then y, then z are nearer. */
 #ifndef PERILAT_RUNTIME_NEIGHBOUR_SEARCH_H
 #define PERILAT_RUNTIME_NEIGHBOUR_SEARCH_H
 

@@ -8,8 +8,8 @@ const double *outline_corner(const outline *o, int k) {
   return o->points + 2 * (k < o->count ? k : 0);
 }
 
-/* An edge that is part of a circle: its points lie on the outer side of the chord when it rises outward, counter-
-   clockwise from a to b, and else on the inner side, clockwise. */
+/* An edge that is part of a circle: its points lie on the outer side of the chord when it rises
+   outward, counter- clockwise from a to b, and else on the inner side, clockwise. */
 typedef struct arc {
   double centre[2], radius;
   double middle[2], outward[2]; /* of the chord */
@@ -110,8 +110,8 @@ static bool ray_crosses_piece(const double p[2], const arc *e, double y0, double
   return p[0] < e->centre[0] + (on_the_right ? x : -x);
 }
 
-/* An arc turns back in y at the top and at the bottom of its circle, but not where it ends there: a half circle on an
-   upright chord rises or falls throughout. */
+/* An arc turns back in y at the top and at the bottom of its circle, but not where it ends there: a
+   half circle on an upright chord rises or falls throughout. */
 static int ray_crossings(const double p[2], const arc *e, const double a[2], const double b[2]) {
   const double top = e->centre[1] + e->radius, bottom = e->centre[1] - e->radius;
   const bool climbs = (a[0] >= e->centre[0]) == (e->rise > 0);

@@ -15,7 +15,8 @@ typedef struct outline {
 /* Smallest box with sides along x and y that holds it; not a number where its numbers are not. */
 void outline_box(const outline *o, double lower[2], double upper[2]);
 
-/* Distance of a point to the outline, negative inside: where a ray crosses the outline an odd number of times. */
+/* Distance of a point to the outline, negative inside: where a ray crosses the outline an odd
+   number of times. */
 double outline_distance(const outline *o, const double p[2]);
 
 /* What it encloses is less than `tolerance` wide: a polygon folded flat. */

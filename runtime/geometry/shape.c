@@ -54,7 +54,8 @@ static void rectangle_outline(const deck_shape *shape, shape_outline *s) {
   if (shape->rotation != 0) turn_corners(s, shape->corner, shape->rotation);
 }
 
-/* Arcs of the given radius, one on either side, end on the straight sides half a chord from the middle. */
+/* Arcs of the given radius, one on either side, end on the straight sides half a chord from the
+   middle. */
 static void dog_bone_outline(const deck_shape *shape, shape_outline *s) {
   const double w = shape->width / 2, h = shape->height / 2, rise = w - shape->neck / 2;
   const double chord = sqrt(pl_fmax(rise * (2 * shape->radius - rise), 0));
@@ -333,8 +334,8 @@ bool shape_contains(const deck_shape *shape, const double *point, double toleran
 
 /* --- places where a chord meets the surface --------------------------------------------------- */
 
-/* Places u (0 at a, 1 at b) where a chord meets the surface, or its continuation; `near` serves unless there are very
-   many. */
+/* Places u (0 at a, 1 at b) where a chord meets the surface, or its continuation; `near` serves
+   unless there are very many. */
 typedef struct cuts {
   double near[NEAR_CUTS];
   double *all;

@@ -1,5 +1,6 @@
-/* Shapes of a deck, in the plane and in space: which points lie in them, which chords cross them. Points are [2] for
-   shapes of the plane and [3] for those of space. Lengths in m. */
+/* This room: shapes, cells, points and what is near them, in numbers alone: it knows no deck. Here
+   shapes, in the plane and in space: which points lie in them, which chords cross them. Points are
+   [2] for shapes of the plane and [3] for those of space. Lengths in m. */
 #ifndef PERILAT_RUNTIME_SHAPE_H
 #define PERILAT_RUNTIME_SHAPE_H
 
@@ -42,35 +43,38 @@ typedef struct deck_shape { /* m */
   int bulge_count;
 } deck_shape;
 
-/* Smallest box with sides along the axes that holds the shape; not a number where the shape's numbers are not.
-   lower[2] and upper[2] are 0 for shapes of the plane. */
+/* Smallest box with sides along the axes that holds the shape; not a number where the shape's
+   numbers are not. lower[2] and upper[2] are 0 for shapes of the plane. */
 void shape_box(const deck_shape *shape, double lower[3], double upper[3]);
 
-/* True inside, on the outline, and outside within `tolerance` of the outline. A polygon's inside is where a ray
-   crosses its outline an odd number of times; a disc with an inner radius is a ring; points, segments and faces are
-   their own outlines. */
+/* True inside, on the outline, and outside within `tolerance` of the outline. A polygon's inside is
+   where a ray crosses its outline an odd number of times; a disc with an inner radius is a ring;
+   points, segments and faces are their own outlines. */
 bool shape_contains(const deck_shape *shape, const double *point, double tolerance);
 
 /* True for all kinds with an area or a volume; false for points, segments and faces. */
 bool shape_has_size(const deck_shape *shape);
 
-/* Places u, 0 < u < 1 from a to b, where the chord may enter or leave the shape, in no order: between two that follow
-   each other it is inside or outside throughout. At most `most` are written; returns how many there are. */
+/* Places u, 0 < u < 1 from a to b, where the chord may enter or leave the shape, in no order:
+   between two that follow each other it is inside or outside throughout. At most `most` are
+   written; returns how many there are. */
 int shape_cuts(const deck_shape *shape, const double *a, const double *b, double *u, int most);
 
-/* Coordinates along axis c (0, 1, 2) of the corners, of the ends of the shape's box and of a disc's hole; likewise. */
+/* Coordinates along axis c (0, 1, 2) of the corners, of the ends of the shape's box and of a disc's
+   hole; likewise. */
 int shape_levels(const deck_shape *shape, int c, double *level, int most);
 
 /* True when a straight line meets the shape in one piece. */
 bool shape_is_convex(const deck_shape *shape);
 
-/* True when the open chord a-b has a point deeper than `tolerance` inside the shape: touching a corner or running
-   along the outline is no crossing. A shape without area (a segment, a rectangle of width 0, a polygon folded flat) or
-   without volume (a face) is a slit: every chord that has its ends on either side and meets it, its tip included,
-   crosses it. A point is never crossed. */
+/* True when the open chord a-b has a point deeper than `tolerance` inside the shape: touching a
+   corner or running along the outline is no crossing. A shape without area (a segment, a rectangle
+   of width 0, a polygon folded flat) or without volume (a face) is a slit: every chord that has its
+   ends on either side and meets it, its tip included, crosses it. A point is never crossed. */
 bool shape_crossed(const deck_shape *shape, const double *a, const double *b, double tolerance);
 
-/* Largest distance of a face's corners from one plane, in parts of its extent; not a number for a face without area. */
+/* Largest distance of a face's corners from one plane, in parts of its extent; not a number for a
+   face without area. */
 double shape_unevenness(const deck_shape *face);
 
 C_LINKAGE_END

@@ -53,8 +53,8 @@ static void walk_trail(trails *t, int32_t from) {
   }
 }
 
-/* Trails pass through particles, so that as many bonds come in as go out, but for one where a trail begins or ends: at
-   particles with an odd number of bonds. What is left then are round trips. */
+/* Trails pass through particles, so that as many bonds come in as go out, but for one where a trail
+   begins or ends: at particles with an odd number of bonds. What is left then are round trips. */
 static void choose_owners(const point_pairs *pairs, long particles, numbered_bond *bonds) {
   const size_t n = (size_t)particles + 1;
   trails t = {.pairs = pairs, .bonds = bonds};
@@ -115,8 +115,9 @@ static void add_to_path(colouring *c, long at, int32_t bond) {
   c->path[at] = bond;
 }
 
-/* The bonds numbered a, b, a, ... that hang together from the other side of particle p on change numbers: a is free there
-   afterwards. Such a chain does not come to the owner's side of a particle where a is free. */
+/* The bonds numbered a, b, a, ... that hang together from the other side of particle p on change
+   numbers: a is free there afterwards. Such a chain does not come to the owner's side of a particle
+   where a is free. */
 static void exchange(colouring *c, long p, int a, int b) {
   long length = 0;
   int side = OTHER, number = a;

@@ -1,5 +1,6 @@
 #include "runtime/lattice/lattice.h"
 
+#include "runtime/lattice/rows_build.h"
 #include "runtime/lattice/scattered.h"
 
 rows *lattice_build(const deck *k, int lattice, diagnostics *d) {

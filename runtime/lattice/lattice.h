@@ -1,5 +1,6 @@
-/* The particles of a deck's lattice and the bonds between them, whether they stand on sites that repeat themselves (rows.h) or
-   nowhere in particular (scattered.h). */
+/* This room: particles, their bonds, and what differs from bond to bond. Here the particles of a
+   deck's lattice and the bonds between them, whether they stand on sites that repeat themselves
+   (rows.h) or nowhere in particular (scattered.h). */
 #ifndef PERILAT_RUNTIME_LATTICE_H
 #define PERILAT_RUNTIME_LATTICE_H
 

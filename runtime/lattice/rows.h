@@ -1,18 +1,31 @@
-/* A Bravais lattice (bravais.h) as rows: row r holds consecutive sites along the first lattice vector, all rows in one
-   array with one pitch. In space the rows of a layer follow those of the layer below. Neighbour k of site q is always
-   q + rows_offset(row, k): the number is the same along a row, and rows fall into one or two classes by their shift.
-   Empty rows before the first, behind the last and between layers, and empty columns before each, which serve the row before,
-   too, make every neighbour of every site of a row a place of the array. Nothing that an absent site's offset leads to is
-   its neighbour by a bond that exists. Sites cut away stay as absent sites. Rows begin on aligned
-   addresses.
+/* A Bravais lattice (bravais.h) as rows: row r holds consecutive sites along the first lattice
+   vector, all rows in one array with one pitch. In space the rows of a layer follow those of the
+   layer below. Neighbour k of site q is always q + rows_offset(row, k): the number is the same
+   along a row, and rows fall into one or two classes by their shift. Empty rows before the first,
+   behind the last and between layers, and empty columns before each, which serve the row before,
+   too, make every neighbour of every site of a row a place of the array. Nothing that an absent
+   site's offset leads to is its neighbour by a bond that exists. Sites cut away stay as absent
+   sites. Rows begin on aligned addresses.
 
-   Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first `directions`, in the
-   order of bravais_family, are those whose bonds a site owns: they lie in a higher layer, else in a higher row, else
-   further along the row.
+   Three rows of three sites of a hexagonal lattice, o, and places without a site, . :
 
-   Particles that stand on no lattice are rows with a list (scattered.h): sites of all rows one after the other, each with
-   neighbours of its own. Particles, and with them results, are in the order of rows; on lists in that in which they were
-   given. */
+        row  3    . . . . .        margin
+        row  2    . o o o .        class 0
+        row  1     . o o o .       class 1: half a step further along
+        row  0    . o o o .        class 0; begins at `first`, row 1 `pitch` later
+        row -1    . . . . .        margin
+
+   From a site of row 0 the neighbour up right is `pitch` further, from one of row 1 it is pitch +
+   1; up left pitch - 1 and pitch. One offset serves the whole row, so that a loop over sites reads
+   its neighbours with unit stride.
+
+   Neighbours come in opposite pairs, neighbour k + directions opposite to neighbour k. The first
+   `directions`, in the order of bravais_family, are those whose bonds a site owns: they lie in a
+   higher layer, else in a higher row, else further along the row.
+
+   Particles that stand on no lattice are rows with a list (scattered.h): sites of all rows one
+   after the other, each with neighbours of its own. Particles, and with them results, are in the
+   order of rows; on lists in that in which they were given. */
 #ifndef PERILAT_RUNTIME_ROWS_H
 #define PERILAT_RUNTIME_ROWS_H
 
@@ -22,15 +35,16 @@
 
 #include "dsl/base/c_linkage.h"
 #include "runtime/deck/bravais.h"
-#include "runtime/deck/deck.h"
+#include "runtime/geometry/shape.h"
 #include "runtime/kernel.h"
 
 C_LINKAGE_BEGIN
 
-/* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the bonds of a particle those
-   it owns have different numbers below `directions`, those others own have different numbers from there on, and
-   a bond that is number k at its owner is number k + directions at its other end: what rows have by themselves. Where there
-   is no neighbour of a number, an absent site without bonds stands for it, at a chord of a spacing along x. */
+/* Explicit neighbours, for particles that stand on no lattice. Each bond has an owner; among the
+   bonds of a particle those it owns have different numbers below `directions`, those others own
+   have different numbers from there on, and a bond that is number k at its owner is number k +
+   directions at its other end: what rows have by themselves. Where there is no neighbour of a
+   number, an absent site without bonds stands for it, at a chord of a spacing along x. */
 typedef struct neighbour_list {
   int32_t *neighbour; /* [2 directions][size] how much further the neighbour stands than the site */
   uint64_t *incoming; /* [size] bit k: bond k + directions exists */
@@ -42,7 +56,7 @@ enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 typedef struct rows {
   bravais infinite; /* the lattice without ends */
   int dimensions;   /* 2 or 3 */
-  int row_count; /* rows from the first with sites to the last, empty ones between layers included */
+  int row_count; /* from the first with sites to the last, empty ones between layers included */
   int layer_rows; /* rows from the first of a layer to the first of the next */
   int margin;     /* empty rows before the first, and as many behind the last */
   long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
@@ -83,7 +97,8 @@ static inline int rows_row(const rows *w, long site) {
   return (int)((site - w->first) / w->pitch);
 }
 
-/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. Not on lists. */
+/* From a site of the row to its neighbour in that direction, 0 .. 2 directions - 1. Not on
+   lists. */
 static inline long rows_offset(const rows *w, int row, int direction) {
   return w->offset[w->row_class[row + w->margin]][direction];
 }
@@ -117,7 +132,8 @@ static inline bool rows_has_neighbour(const rows *w, long site, int direction) {
   return rows_has_bond(w, rows_partner(w, site, direction), k);
 }
 
-/* Reference chord (m) from a site to its neighbour in that direction, 0 .. 2 directions - 1. Returns its length. */
+/* Reference chord (m) from a site to its neighbour in that direction, 0 .. 2 directions - 1.
+   Returns its length. */
 static inline double rows_chord(const rows *w, long site, int direction, double chord[3]) {
   const int k = direction % w->directions;
   const double sign = direction < w->directions ? 1 : -1;
@@ -141,23 +157,10 @@ void rows_set_density(rows *w, double rho);
    mean number of bonds, rounded. */
 pl_bond_class rows_bond_class(const rows *w, int direction);
 
-/* Sites that are inside or on the outlines of the bodies (tolerance 1e-6 spacing), less the notches; bonds between
-   present neighbours whose chord crosses no notch. NULL on errors (a body without sites, a point body with no
-   lattice site within its tolerance, too many sites or neighbours), reported at the deck's line. */
-rows *rows_build(const deck *k, int lattice, diagnostics *d);
 void rows_free(rows *w);
 
-/* Particles inside or on the shape, ascending; a point gives the nearest within its tolerance. `list` is malloc'ed.
-   Returns the count. */
-long rows_select(const rows *w, const deck_shape *shape, int32_t **list);
-
-/* body[particle_count]: number, from 0 in the order of the deck, of the first body that each particle belongs to. */
-void rows_bodies(const rows *w, const deck *k, int lattice, int32_t *body);
-
-/* Holds the damage of every particle within `radius` (m) of one of the `particles`, and of the bonds of these. */
-void rows_protect(rows *w, const int32_t *particles, long count, double radius);
-
-/* Bond m of the results: its ends as particles and where its fields stand (direction * size + site). */
+/* Bond m of the results: its ends as particles and where its fields stand (direction * size +
+   site). */
 typedef struct rows_bond {
   int32_t i, j;
   int64_t slot;
@@ -165,8 +168,22 @@ typedef struct rows_bond {
 /* All bonds, in the order of the particles that own them; malloc'ed, bond_count long. */
 rows_bond *rows_bonds(const rows *w);
 
-/* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks describe. */
+/* Tells lists of other particles or bonds from each other; 0 on lattices, which their decks
+   describe. */
 uint64_t rows_fingerprint(const rows *w);
+
+/* --- for what builds rows: rows_build.h, and scattered.h for particles on no lattice --- */
+
+/* `count` zeros of `each` bytes, aligned; NULL without memory. */
+void *rows_array(long count, size_t each);
+/* The arrays over sites of rows whose size and dimensions are set; false without memory. */
+bool rows_new_sites(rows *w);
+/* width, height and depth; bond_count. */
+void rows_find_extent(rows *w);
+void rows_count_bonds(rows *w);
+/* Cuts the bonds that the site owns and that cross the shape. Returns how many do, whether they
+   were cut before or not. */
+long rows_cut(rows *w, long site, const deck_shape *shape);
 
 C_LINKAGE_END
 

@@ -9,7 +9,6 @@
 #include "runtime/geometry/hilbert.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/bond_numbers.h"
-#include "runtime/lattice/rows_parts.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/site_marks.h"
@@ -217,7 +216,8 @@ static double longest_bond(const rows *w) {
   return longest;
 }
 
-/* A notch does nothing when no particle stands near it: around those that it has removed there are others. */
+/* A notch does nothing when no particle stands near it: around those that it has removed there are
+   others. */
 static void cut_notch(rows *w, const deck_notch *notch, const deck_lattice *l, double longest,
                       diagnostics *d) {
   double lower[3], upper[3];
@@ -285,7 +285,8 @@ static double mean_nearest(const rows *w) {
   return sum / (double)w->particle_count;
 }
 
-/* Particles as far apart as they are large: volumes in another unit than the file says are the usual slip. */
+/* Particles as far apart as they are large: volumes in another unit than the file says are the
+   usual slip. */
 static void compare_sizes(const rows *w, const deck_lattice *l, diagnostics *d) {
   const double apart = mean_nearest(w), ratio = apart / w->spacing;
   if (ratio > 0.3 && ratio < 2) return;

@@ -1,8 +1,10 @@
-/* Particles that stand anywhere, as rows (rows.h) with explicit neighbours. Sites follow a Hilbert curve, so that those of a row
-   are near each other; a row has 512 of them, whatever the threads, and some absent ones at its end: the first of these is where
-   neighbours lead that are not there. Particles keep the numbers that they come with, which are those of results.
+/* Particles that stand anywhere, as rows (rows.h) with explicit neighbours. Sites follow a Hilbert
+   curve, so that those of a row are near each other; a row has 512 of them, whatever the threads,
+   and some absent ones at its end: the first of these is where neighbours lead that are not there.
+   Particles keep the numbers that they come with, which are those of results.
 
-   Forces and everything else that depends on the order of sites and bonds does not depend on those numbers. */
+   Forces and everything else that depends on the order of sites and bonds does not depend on those
+   numbers. */
 #ifndef PERILAT_RUNTIME_SCATTERED_H
 #define PERILAT_RUNTIME_SCATTERED_H
 
@@ -14,17 +16,17 @@ typedef struct scattered {
   const double *measure; /* [points.count] m^2 of the plane, m^3 of space */
   double spacing;        /* m, nominal: scales tolerances and limits, and is told to laws */
   double horizon; /* m: bonds join particles at most this far apart; 0: `neighbours` decides */
-  int neighbours; /* a bond joins two particles when either is among so many nearest ones of the other */
+  int neighbours; /* a bond: either particle is among so many nearest ones of the other */
   double stiffness_thickness, mass_thickness; /* m; in the plane */
 } scattered;
 
-/* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than that, all of mean size. NULL
-   when there is not enough memory or are 2^31 bonds or more (*crowded < 0), or when particle *crowded has more neighbours than
-   there can be. */
+/* With `neighbours` the rows' horizon is the radius of a disc or sphere of one particle more than
+   that, all of mean size. NULL when there is not enough memory or are 2^31 bonds or more (*crowded
+   < 0), or when particle *crowded has more neighbours than there can be. */
 rows *scattered_rows(const scattered *from, long *crowded);
 
-/* The particles of a deck's lattice, whose kind deck_lattice_is_irregular; notches that cut bonds have cut them. NULL with
-   diagnostics. */
+/* The particles of a deck's lattice, whose kind deck_lattice_is_irregular; notches that cut bonds
+   have cut them. NULL with diagnostics. */
 rows *scattered_build(const deck *k, int lattice, diagnostics *d);
 
 #endif

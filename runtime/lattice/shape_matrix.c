@@ -7,8 +7,8 @@
 #include "dsl/base/arena.h"
 #include "runtime/base/eigen.h"
 
-/* Of the largest eigenvalue: smaller ones count as 0. Families of lattices lack a strain or have it well; on lists there is
-   all between, and where a strain is hardly seen its fit is noise. */
+/* Of the largest eigenvalue: smaller ones count as 0. Families of lattices lack a strain or have it
+   well; on lists there is all between, and where a strain is hardly seen its fit is noise. */
 #define SMALLEST         1e-9
 #define SMALLEST_ON_LIST 1e-3
 #define RESOLVED         1e-3
@@ -35,8 +35,9 @@ static int products(const rows *w, const double c[3], double s, double n[MOST_OR
   return count;
 }
 
-/* Least squares with the smallest tensor, sum of e_ab^2, so that the axes do not matter: shear, which counts twice in
-   that, is scaled by the root of 2. Behind the matrix stands whether the bonds resolve all strains. */
+/* Least squares with the smallest tensor, sum of e_ab^2, so that the axes do not matter: shear,
+   which counts twice in that, is scaled by the root of 2. Behind the matrix stands whether the
+   bonds resolve all strains. */
 static void invert(int dimensions, int order, double smallest, double *sum) {
   double scale[MOST_ORDER], a[MOST_ORDER][MOST_ORDER], values[MOST_ORDER],
       vectors[MOST_ORDER][MOST_ORDER];

@@ -6,15 +6,18 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/base/random_number.h"
+#include "runtime/geometry/bins.h"
 #include "runtime/geometry/shape.h"
 
-/* Darts saturate at 0.78 of the hexagonal and 0.80 of the fcc spacing. Those at a larger distance first spare gaps later. */
+/* Darts saturate at 0.78 of the hexagonal and 0.80 of the fcc spacing. Those at a larger distance
+   first spare gaps later. */
 #define FIRST_DISTANCE 0.85 /* spacings */
 #define DISTANCE_FALLS 0.98 /* by this factor after so many misses: */
 enum { MISSES = 50 };
 
-/* The standard deviation of the volumes falls from 0.21 of the mean (in space 0.25) to 0.11 (0.12) in 5 steps, to 0.09 (0.10) in
-   10, to 0.08 (0.08) in 20: further steps cost as much and gain less, and let the particles freeze into grains of a lattice. */
+/* The standard deviation of the volumes falls from 0.21 of the mean (in space 0.25) to 0.11 (0.12)
+   in 5 steps, to 0.09 (0.10) in 10, to 0.08 (0.08) in 20: further steps cost as much and gain less,
+   and let the particles freeze into grains of a lattice. */
 enum { LLOYD_STEPS = 10 };
 static const double lloyd_tolerance[] = {[2] = 1e-3, [3] = 1e-2}; /* of a cell */
 
@@ -22,9 +25,8 @@ static const double lloyd_tolerance[] = {[2] = 1e-3, [3] = 1e-2}; /* of a cell *
 
 typedef struct board {
   const solid *solid;
-  double *share; /* [bodies] of boxes of bodies up to this one in the volume of all boxes */
-  double size;   /* m, of a box */
-  int count[3];
+  double *share;        /* [bodies] of boxes of bodies up to this one in the volume of all boxes */
+  boxes boxes;          /* as large as the distance, or larger */
   int32_t *head, *next; /* first point of each box, the next of each point, or -1 */
   uint64_t seed, thrown;
 } board;
@@ -45,15 +47,16 @@ static void find_shares(board *b) {
 }
 
 static void board_begin(board *b, const solid *s, long points, double size, uint64_t seed) {
-  *b = (board){.solid = s, .size = size, .count = {1, 1, 1}, .seed = random_mix(seed)};
-  size_t boxes = 1;
+  *b = (board){.solid = s,
+               .boxes = {.dimensions = s->dimensions, .size = size, .count = {1, 1, 1}},
+               .seed = random_mix(seed)};
   for (int c = 0; c < s->dimensions; c++) {
-    b->count[c] = (int)((s->upper[c] - s->lower[c]) / size) + 1;
-    boxes *= (size_t)b->count[c];
+    b->boxes.lower[c] = s->lower[c];
+    b->boxes.count[c] = (int)((s->upper[c] - s->lower[c]) / size) + 1;
   }
-  b->head = must_alloc(boxes * sizeof *b->head);
+  const size_t bytes = (size_t)boxes_all(&b->boxes) * sizeof *b->head;
+  b->head = memset(must_alloc(bytes), 0xff, bytes);
   b->next = must_alloc((size_t)points * sizeof *b->next);
-  memset(b->head, 0xff, boxes * sizeof *b->head);
   find_shares(b);
 }
 
@@ -84,24 +87,10 @@ static bool throw_dart(board *b, double at[3]) {
   return shape_contains(s->bodies[body], at, 0) && solid_holds(s, at);
 }
 
-static void box_of(const board *b, const double at[3], int box[3]) {
-  box[2] = 0;
-  for (int c = 0; c < b->solid->dimensions; c++) {
-    const int from_low = (int)((at[c] - b->solid->lower[c]) / b->size);
-    box[c] = from_low < b->count[c] ? from_low : b->count[c] - 1;
-  }
-}
-
-static size_t number_of(const board *b, const int box[3]) {
-  return ((size_t)box[2] * (size_t)b->count[1] + (size_t)box[1]) * (size_t)b->count[0] +
-         (size_t)box[0];
-}
-
 static bool is_near(const board *b, const voronoi_points *p, const int box[3], const double at[3],
                     double square) {
-  for (int c = 0; c < 3; c++)
-    if (box[c] < 0 || box[c] >= b->count[c]) return false;
-  for (int32_t k = b->head[number_of(b, box)]; k >= 0; k = b->next[k]) {
+  const int64_t number = boxes_number(&b->boxes, box);
+  for (int32_t k = number < 0 ? -1 : b->head[number]; k >= 0; k = b->next[k]) {
     double sum = 0;
     for (int c = 0; c < p->dimensions; c++)
       sum += (p->at[c][k] - at[c]) * (p->at[c][k] - at[c]);
@@ -110,11 +99,10 @@ static bool is_near(const board *b, const voronoi_points *p, const int box[3], c
   return false;
 }
 
-/* The boxes are at least as large as the distance. */
 static bool is_free(const board *b, const voronoi_points *p, const double at[3], double distance) {
   const int layers = p->dimensions == 3 ? 1 : 0;
   int home[3];
-  box_of(b, at, home);
+  boxes_home(&b->boxes, at, home);
   for (int z = -layers; z <= layers; z++)
     for (int y = -1; y <= 1; y++)
       for (int x = -1; x <= 1; x++) {
@@ -128,8 +116,8 @@ static void put(board *b, voronoi_points *p, long k, const double at[3]) {
   int box[3];
   for (int c = 0; c < p->dimensions; c++)
     p->at[c][k] = at[c];
-  box_of(b, at, box);
-  int32_t *head = &b->head[number_of(b, box)];
+  boxes_home(&b->boxes, at, box);
+  int32_t *head = &b->head[boxes_number(&b->boxes, box)];
   b->next[k] = *head;
   *head = (int32_t)k;
 }

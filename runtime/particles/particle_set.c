@@ -99,8 +99,8 @@ static bool has_body(const maker *m) {
 
 /* --- blue noise ------------------------------------------------------------------------------- */
 
-/* Boxes of the bodies' common box are kept while it is filled: their number is what memory must bear. Across a thin body there
-   is one. */
+/* Boxes of the bodies' common box are kept while it is filled: their number is what memory must
+   bear. Across a thin body there is one. */
 static bool few_enough(const maker *m, double measure) {
   double box = 1;
   for (int c = 0; c < m->solid.dimensions; c++)

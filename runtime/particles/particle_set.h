@@ -1,8 +1,9 @@
-/* Particles that stand on no lattice: where they are and how much of the body each stands for. Two kinds of &lattice give
-   such sets. `blue_noise` fills the bodies less the notches evenly but at random: darts of a falling least distance
-   (McCool and Fiume 1992), then a few steps of Lloyd (1982) to the centroids of the particles' cells. `particles` reads
-   a table or a result (particle_table.h). A volume that no file gives is that of the Voronoi cell, cut by the body
-   (voronoi.h). */
+/* This room: what takes a body's place, particles that stand on no lattice and the sites that
+   bodies take. Here the former: where they are and how much of the body each stands for. Two kinds
+   of &lattice give such sets. `blue_noise` fills the bodies less the notches evenly but at random:
+   darts of a falling least distance (McCool and Fiume 1992), then a few steps of Lloyd (1982) to
+   the centroids of the particles' cells. `particles` reads a table or a result (particle_table.h).
+   A volume that no file gives is that of the Voronoi cell, cut by the body (voronoi.h). */
 #ifndef PERILAT_RUNTIME_PARTICLE_SET_H
 #define PERILAT_RUNTIME_PARTICLE_SET_H
 
@@ -14,13 +15,15 @@ typedef struct particle_set {
   long count;
   double *at[3];  /* [count] m; at[2] is NULL in the plane */
   double *volume; /* [count] m^2 of the plane or m^3 of space */
-  /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck, or from the mean volume */
+  /* m, of nearest neighbours in the hexagonal or fcc lattice with as large particles: of the deck,
+     or from the mean volume */
   double spacing;
 } particle_set;
 
-/* Particles of the deck's lattice of that number, whose kind deck_lattice_is_irregular. The same bits for the same deck,
-   whatever the threads. NULL with diagnostics: a body that holds no particle, more particles than can be stored, a file
-   that cannot be read or holds what is no set of particles. */
+/* Particles of the deck's lattice of that number, whose kind deck_lattice_is_irregular. The same
+   bits for the same deck, whatever the threads. NULL with diagnostics: a body that holds no
+   particle, more particles than can be stored, a file that cannot be read or holds what is no set
+   of particles. */
 particle_set *particle_set_make(const deck *k, int lattice, diagnostics *d);
 void particle_set_free(particle_set *set);
 

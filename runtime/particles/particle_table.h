@@ -15,9 +15,10 @@ typedef struct particle_table {
   text_table text; /* without columns when the file is a result */
 } particle_table;
 
-/* Takes over `path` (malloc'ed). `thickness` (m) turns volumes in the plane into areas. False with diagnostics, at `where`
-   for what concerns the file as a whole: it cannot be read, is of the other dimensions, lacks a column, holds no particle,
-   or a value is no finite number, a volume not positive. To be freed in either case. */
+/* Takes over `path` (malloc'ed). `thickness` (m) turns volumes in the plane into areas. False with
+   diagnostics, at `where` for what concerns the file as a whole: it cannot be read, is of the other
+   dimensions, lacks a column, holds no particle, or a value is no finite number, a volume not
+   positive. To be freed in either case. */
 bool particle_table_read(particle_table *t, char *path, int dimensions, double thickness,
                          span where, diagnostics *d);
 void particle_table_free(particle_table *t);

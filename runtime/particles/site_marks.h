@@ -7,8 +7,8 @@
 #include "runtime/deck/deck.h"
 
 #define SITE_OUTLINE_TOLERANCE 1e-6 /* spacings: a site this near to an outline lies on it */
-#define SITE_TIE_TOLERANCE     1e-9 /* spacings: of sites equally near to a point the first is taken */
-#define SITE_MOST              2e8 /* absent ones included: site numbers and memory stay in bounds */
+#define SITE_TIE_TOLERANCE     1e-9 /* spacings: of sites equally near a point the first is taken */
+#define SITE_MOST              2e8 /* with absent ones: site numbers and memory stay in bounds */
 
 /* Columns, rows and layers of the infinite lattice, ends included; empty where first > last. */
 typedef struct site_range {
@@ -18,7 +18,8 @@ typedef struct site_range {
 double site_range_count(const site_range *r);
 /* The range without what lies out of `to`. */
 void site_range_clip(site_range *r, const site_range *to);
-/* Numbers of the sites that may lie in the shape's box. False when it is too far away to be numbered. */
+/* Numbers of the sites that may lie in the shape's box. False when it is too far away to be
+   numbered. */
 bool site_range_of(const bravais *b, const deck_shape *shape, site_range *out);
 
 typedef struct site_marks {
@@ -28,8 +29,8 @@ typedef struct site_marks {
   long *removed; /* [notches of the deck] sites that each notch takes from the bodies */
 } site_marks;
 
-/* False with diagnostics: no body, a body without sites, too many sites, nothing left by the notches. To be freed in
-   either case. */
+/* False with diagnostics: no body, a body without sites, too many sites, nothing left by the
+   notches. To be freed in either case. */
 bool site_marks_make(site_marks *m, const bravais *b, const deck *k, const deck_lattice *l,
                      diagnostics *d);
 void site_marks_free(site_marks *m);

@@ -124,8 +124,8 @@ static void find_cuts(solid_desk *w, const double *a, const double *b) {
     add_cuts(w, w->near.notches[n], a, b);
 }
 
-/* Sums of u1^n - u0^n over the pieces u0 < u < u1 of the line a-b that lie in the near shapes, for n = power and
-   n = power + 1. */
+/* Sums of u1^n - u0^n over the pieces u0 < u < u1 of the line a-b that lie in the near shapes, for
+   n = power and n = power + 1. */
 static void fill_line(solid_desk *w, const double *a, const double *b, int power, double sum[2]) {
   find_cuts(w, a, b);
   if (power == 3 && w->leaves_once) {
@@ -213,7 +213,8 @@ static cell_moments across(const filling *f, double y) {
   return (cell_moments){length, {low * length + 0.5 * whole * whole * sum[1], y * length, 0}};
 }
 
-/* Gauss's rule of three points, exact to the fifth power. It never asks at the ends, where lengths may jump. */
+/* Gauss's rule of three points, exact to the fifth power. It never asks at the ends, where lengths
+   may jump. */
 static cell_moments gauss(const filling *f, double low, double high) {
   static const double node[3] = {-0.77459666924148337704, 0, 0.77459666924148337704};
   static const double weight[3] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
@@ -298,8 +299,8 @@ typedef struct beam { /* to a triangle */
   bool whole; /* no ray leaves the solid */
 } beam;
 
-/* The rays to a triangle of a face, corners seen from the point: what of their tetrahedron is filled, by the rule of
-   three points that is exact to the second power (Strang and Fix 1973). */
+/* The rays to a triangle of a face, corners seen from the point: what of their tetrahedron is
+   filled, by the rule of three points that is exact to the second power (Strang and Fix 1973). */
 static beam rays(const filling *f, const double corners[3][3]) {
   const double *p = corners[0], *q = corners[1], *r = corners[2];
   const double volume = (p[0] * (q[1] * r[2] - q[2] * r[1]) + p[1] * (q[2] * r[0] - q[0] * r[2]) +

@@ -1,5 +1,6 @@
-/* What a lattice's bodies fill less what its notches take away, as one set of points: what lies in it, how large it is,
-   and how much of a convex cell it fills. Slits (notches without area or volume) take nothing away. Lengths in m. */
+/* What a lattice's bodies fill less what its notches take away, as one set of points: what lies in
+   it, how large it is, and how much of a convex cell it fills. Slits (notches without area or
+   volume) take nothing away. Lengths in m. */
 #ifndef PERILAT_RUNTIME_SOLID_H
 #define PERILAT_RUNTIME_SOLID_H
 
@@ -31,17 +32,19 @@ typedef struct solid_desk {
 void solid_desk_begin(solid_desk *w, const solid *s);
 void solid_desk_end(solid_desk *w);
 
-/* Size and first moment, seen from `at`, of the part of the cell about `at` that lies in the solid. Up to rounding where the
-   cell lies in one body and, in the plane, where the surfaces in it are straight; else steps are halved until two
-   results differ by less than `tolerance` (of the cell's size). */
+/* Size and first moment, seen from `at`, of the part of the cell about `at` that lies in the solid.
+   Up to rounding where the cell lies in one body and, in the plane, where the surfaces in it are
+   straight; else steps are halved until two results differ by less than `tolerance` (of the cell's
+   size). */
 cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const double at[3],
                         double tolerance);
 
-/* True when some of the straight line a-b lies in the solid; both lie in the cell that was filled last. */
+/* True when some of the straight line a-b lies in the solid; both lie in the cell that was filled
+   last. */
 bool solid_meets(solid_desk *w, const double a[3], const double b[3]);
 
-/* m^2 or m^3 of the whole, as solid_fill finds it in the box of the bodies, halved into 512 boxes and more where shapes crowd;
-   in space to about a thousandth where surfaces are round. */
+/* m^2 or m^3 of the whole, as solid_fill finds it in the box of the bodies, halved into 512 boxes
+   and more where shapes crowd; in space to about a thousandth where surfaces are round. */
 double solid_size(const solid *s, double tolerance);
 
 #endif

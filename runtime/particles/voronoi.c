@@ -46,7 +46,7 @@ static int least(int a, int b) {
 }
 
 /* All boxes that a point `reach` boxes away may lie in. */
-static vicinity vicinity_of(const bins *b, double reach) {
+static vicinity vicinity_of(const boxes *b, double reach) {
   int most[3];
   long count = 1;
   for (int c = 0; c < 3; c++) {
@@ -138,17 +138,17 @@ static void cut_by_candidates(cutter *w) {
 static void cut_by_neighbours(cutter *w, const voronoi_points *p, const bins *b, const vicinity *v,
                               long k, const double at[3]) {
   int home[3];
-  bins_box(b, at, home);
+  boxes_home(&b->boxes, at, home);
   for (long n = 0; n < v->count;) {
     const double distance = v->boxes[n].distance;
-    if (distance * b->size >= 2 * w->cell.reach) return;
+    if (distance * b->boxes.size >= 2 * w->cell.reach) return;
     for (; n < v->count && v->boxes[n].distance == distance; n++) {
       const int *step = v->boxes[n].step;
       const int box[3] = {home[0] + step[0], home[1] + step[1], home[2] + step[2]};
-      int64_t from, to;
-      if (!bins_points(b, box, &from, &to)) continue;
-      for (; from < to; from++)
-        if (b->point[from] != k) add_candidate(w, p, b->point[from], at);
+      const int64_t number = boxes_number(&b->boxes, box);
+      if (number < 0) continue;
+      for (int32_t m = b->first[number]; m < b->first[number + 1]; m++)
+        if (b->point[m] != k) add_candidate(w, p, b->point[m], at);
     }
     cut_by_candidates(w);
   }
@@ -166,8 +166,9 @@ static void begin_cell(cutter *w, const solid *s, const double at[3], double rea
   cell_set_box(&w->cell, lower, upper);
 }
 
-/* Side of the box that the cell was begun with, 2 c for the lower one along axis c, 2 c + 1 for the upper, on which all
-   these points lie; -1 when there is none. Sides that were drawn in to the bodies' box do not count. */
+/* Side of the box that the cell was begun with, 2 c for the lower one along axis c, 2 c + 1 for the
+   upper, on which all these points lie; -1 when there is none. Sides that were drawn in to the
+   bodies' box do not count. */
 static int side_of(const cell *c, const int *points, int count, double reach) {
   for (int side = 0; side < 2 * c->dimensions; side++) {
     const double sign = side % 2 ? 1 : -1;
@@ -283,12 +284,13 @@ void voronoi_measure(const voronoi_points *p, const solid *s, double tolerance, 
                      double *const centroid[3]) {
   diagram g = {p, s, .tolerance = tolerance, .volume = volume, .centroid = centroid};
   if (p->count == 0) return;
-  bins_begin(&g.bins, p->dimensions, p->at, p->count, BOX_SIZE * p->spacing);
+  bins_of_size(&g.bins, p->dimensions, (const double *const *)p->at, p->count,
+               BOX_SIZE * p->spacing);
   g.open = must_alloc((size_t)p->count * sizeof *g.open);
   memset(g.open, true, (size_t)p->count * sizeof *g.open);
   const double all = farthest(&g);
   for (g.reach = FIRST_REACH * p->spacing;; g.reach *= 2) {
-    g.vicinity = vicinity_of(&g.bins, 2 * g.reach * sqrt(p->dimensions) / g.bins.size);
+    g.vicinity = vicinity_of(&g.bins.boxes, 2 * g.reach * sqrt(p->dimensions) / g.bins.boxes.size);
     measure_open_cells(&g);
     free(g.vicinity.boxes);
     if (g.reach >= all || !any_open(&g)) break;
@@ -304,14 +306,14 @@ static long near_partner(const voronoi_points *p, const bins *b, long k, double 
   int home[3];
   long found = -1;
   place_of(p, k, at);
-  bins_box(b, at, home);
+  boxes_home(&b->boxes, at, home);
   for (int n = 0; n < (p->dimensions == 3 ? 27 : 9); n++) {
     const int box[3] = {home[0] + n % 3 - 1, home[1] + n / 3 % 3 - 1,
                         home[2] + (p->dimensions == 3 ? n / 9 - 1 : 0)};
-    int64_t from, to;
-    if (!bins_points(b, box, &from, &to)) continue;
-    for (; from < to; from++) {
-      const long m = b->point[from];
+    const int64_t number = boxes_number(&b->boxes, box);
+    if (number < 0) continue;
+    for (int32_t i = b->first[number]; i < b->first[number + 1]; i++) {
+      const long m = b->point[i];
       place_of(p, m, other);
       if (m > k && (found < 0 || m < found) &&
           pl_hypot(pl_hypot(other[0] - at[0], other[1] - at[1]), other[2] - at[2]) < distance)
@@ -323,7 +325,7 @@ static long near_partner(const voronoi_points *p, const bins *b, long k, double 
 
 bool voronoi_too_near(const voronoi_points *p, double distance, long pair[2]) {
   bins b;
-  bins_begin(&b, p->dimensions, p->at, p->count, distance);
+  bins_of_size(&b, p->dimensions, (const double *const *)p->at, p->count, distance);
   pair[1] = -1;
   for (pair[0] = 0; pair[0] < p->count; pair[0]++) {
     pair[1] = near_partner(p, &b, pair[0], distance);

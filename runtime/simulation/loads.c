@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/lattice/rows_select.h"
 
 /* --- regions ---------------------------------------------------------------------------------- */
 

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "generator/kernel/model.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten.h"
 #include "tests/benchmark/measure.h"
@@ -111,7 +112,7 @@ typedef struct beam {
   source_set sources;
   diagnostics said;
   arena *memory;
-  deck *deck;
+  const deck *deck;
   model model;
   simulation_law law;
   simulation *run;

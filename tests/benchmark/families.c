@@ -14,6 +14,7 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "generator/kernel/model.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/scattered.h"
@@ -47,7 +48,7 @@ typedef struct contest {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   rows *rows, *list;
   model opened[KERNELS];
   double *parameters;

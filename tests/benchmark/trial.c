@@ -8,6 +8,7 @@
 #include "dsl/semantics/law_variant.h"
 #include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,

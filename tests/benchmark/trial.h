@@ -9,7 +9,8 @@ typedef struct trial {
   source_set sources;
   diagnostics said;
   arena *memory;
-  deck *deck;
+  const deck *deck;
+  deck_material material; /* its own, without the options */
   model model;
   simulation_law law;
   simulation *run;

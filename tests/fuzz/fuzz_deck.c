@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/deck/namelist.h"
 #include "tests/fuzz/fuzz.h"
 

@@ -123,7 +123,7 @@ cat >host.cpp <<'END'
 
 #include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/result/result.h"
 #include "runtime/simulation/simulation.h"
 
@@ -144,7 +144,7 @@ int main(int argc, char **argv) {
   diagnostics said;
   diag_begin(&said, &sources);
   const int file = source_add(&sources, "host", deck_text, std::strlen(deck_text));
-  deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
+  const deck *k = deck_read(memory, &sources, file, nullptr, 0, &said);
   model m = {};
   long steps = 0;
   if (k && material_law_open(&k->materials[0], &k->lattices[0], nullptr, &m, &said)) {

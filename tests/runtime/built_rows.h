@@ -6,13 +6,14 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 
 typedef struct built_rows {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   rows *rows;
 } built_rows;
 

@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/runtime/elastic_law.h"
 
@@ -14,7 +15,7 @@ typedef struct small_run {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   double parameters[ELASTIC_PARAMETERS];
   simulation_law law;
   simulation *simulation;

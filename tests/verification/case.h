@@ -14,6 +14,7 @@
 #include "generator/kernel/model.h"
 #include "generator/plan/plan.h"
 #include "generator/run/run.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/pairwise.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/simulation/simulation.h"
@@ -81,7 +82,7 @@ typedef struct deck_case {
   arena *memory;
   source_set sources;
   diagnostics said;
-  deck *deck;
+  const deck *deck;
   rows *lattice;      /* of deck_case_lattice */
   model model;        /* of deck_case_run */
   simulation_law law; /* of deck_case_run */

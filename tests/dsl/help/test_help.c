@@ -15,7 +15,7 @@
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "dsl/syntax/words.h"
-#include "runtime/deck/deck_table.h"
+#include "runtime/deck/deck_groups.h"
 #include "tests/dsl/text_files.h"
 
 static const char *const words_of_the_language[] = {
@@ -229,10 +229,10 @@ static void the_command_answers(void **state) {
   assert_known("check", "(a command)");
   for (int g = 0; g < DECK_GROUP_COUNT; g++) {
     char topic[64];
-    snprintf(topic, sizeof topic, "&%s", deck_groups[g].name);
-    assert_known(topic, deck_groups[g].doc);
-    for (int k = 0; k < deck_groups[g].key_count; k++)
-      assert_known(topic, deck_groups[g].keys[k].name);
+    snprintf(topic, sizeof topic, "&%s", deck_groups[g]->name);
+    assert_known(topic, deck_groups[g]->doc);
+    for (int k = 0; k < deck_groups[g]->key_count; k++)
+      assert_known(topic, deck_groups[g]->keys[k].name);
   }
   int status;
   char *said = ask("damge", &status);

@@ -16,7 +16,7 @@
 
 #include "generator/drive/drive_grammar.h"
 #include "generator/kernel/model.h"
-#include "runtime/deck/deck_table.h"
+#include "runtime/deck/deck_groups.h"
 #include "runtime/deck/namelist.h"
 #include "tests/generator/command_tools.h"
 
@@ -214,14 +214,14 @@ static void write_reader(workplace *w, const collection *c) {
   assert_non_null(out);
   fputs(module_head, out);
   for (int g = 0; g < c->grammar->group_count; g++)
-    if (has_variables(c, &c->grammar->groups[g])) write_group(out, c, &c->grammar->groups[g]);
+    if (has_variables(c, c->grammar->groups[g])) write_group(out, c, c->grammar->groups[g]);
   fputs("end module\n\nprogram read_decks\n  use decks\n  implicit none\n"
         "  character(text_width) :: path\n  call get_command_argument(1, path)\n"
         "  open (10, file=path, status='old', action='read')\n",
         out);
   for (int g = 0; g < c->grammar->group_count; g++)
-    if (has_variables(c, &c->grammar->groups[g]))
-      fprintf(out, "  call read_%s()\n", c->grammar->groups[g].name);
+    if (has_variables(c, c->grammar->groups[g]))
+      fprintf(out, "  call read_%s()\n", c->grammar->groups[g]->name);
   fputs("end program\n", out);
   assert_int_equal(fclose(out), 0);
   if (shell(w, "gfortran -O0 -ffree-line-length-none read_decks.f90 -o read_decks"))
@@ -274,7 +274,7 @@ static void expect_deck(workplace *w, const collection *c, const text_of_deck *k
   const char *said = w->said;
   int groups = 0;
   for (int t = 0; t < c->grammar->group_count; t++) {
-    const deck_group_info *info = &c->grammar->groups[t];
+    const deck_group_info *info = c->grammar->groups[t];
     variable list[DECK_MOST_KEYS + MOST_OWN];
     const int count = variables_of(c, info, list);
     int number = 0;
@@ -336,7 +336,7 @@ static void no_key_is_named_like_its_group(void **state) {
   const deck_grammar *const grammars[] = {&deck_grammar_of_decks, &drive_grammar};
   for (size_t f = 0; f < 2; f++)
     for (int g = 0; g < grammars[f]->group_count; g++) {
-      const deck_group_info *info = &grammars[f]->groups[g];
+      const deck_group_info *info = grammars[f]->groups[g];
       for (int k = 0; k < info->key_count; k++)
         assert_int_not_equal(strcasecmp(info->keys[k].name, info->name), 0);
     }

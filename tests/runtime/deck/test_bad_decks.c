@@ -12,7 +12,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 
 enum { MOST_OVERRIDES = 8, LEAST_CASES = 40 };
 

@@ -13,7 +13,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_groups.h"
+#include "runtime/deck/deck_read.h"
 
 static const char beam[] =
     "! Notched beam D6 in three-point bending (Asadollahi 2014, chapter 4)\n"
@@ -75,7 +76,7 @@ typedef struct reading {
   source_set sources;
   diagnostics d;
   arena *memory;
-  deck *k;
+  const deck *k;
 } reading;
 
 static void read_bytes(reading *r, const char *text, size_t length, const char *const *sets,

@@ -19,10 +19,10 @@ static const deck_key_info load_keys[] = {
     {.name = "name", .type = DECK_NAME},
     {.name = "size", .former = "force", .type = DECK_REAL, .unit = "N"},
     {.name = "at", .type = DECK_PLACE, .unit = "m"}};
-static const deck_group_info groups[] = {
-    {.name = "run", .single = true, .keys = run_keys, .key_count = 2},
-    {.name = "load", .identity = "name", .keys = load_keys, .key_count = 3},
-    {.name = "law", .open = true, .keys = run_keys, .key_count = 1}};
+static const deck_group_info *const groups[] = {
+    &(deck_group_info){.name = "run", .single = true, .keys = run_keys, .key_count = 2},
+    &(deck_group_info){.name = "load", .identity = "name", .keys = load_keys, .key_count = 3},
+    &(deck_group_info){.name = "law", .open = true, .keys = run_keys, .key_count = 1}};
 static const deck_grammar grammar = {.file = "recipe", .groups = groups, .group_count = 3};
 
 static const char recipe[] =

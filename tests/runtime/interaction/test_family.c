@@ -13,7 +13,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/family.h"
 #include "runtime/lattice/lattice.h"
 #include "tests/runtime/family_law.h"
@@ -43,7 +43,7 @@ static void open_body(body *b, double rotation, int threads, double tau, double 
   b->memory = arena_new();
   diag_begin(&b->said, &b->sources);
   const int file = source_add(&b->sources, "deck.nml", text, strlen(text));
-  deck *k = deck_read(b->memory, &b->sources, file, NULL, 0, &b->said);
+  const deck *k = deck_read(b->memory, &b->sources, file, NULL, 0, &b->said);
   b->lattice = lattice_build(k, 0, &b->said);
   assert_non_null(b->lattice);
   for (int p = 0; p < FAMILY_PARAMETERS; p++)

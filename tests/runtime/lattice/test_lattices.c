@@ -15,6 +15,8 @@
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
+#include "runtime/lattice/rows_build.h"
+#include "runtime/lattice/rows_select.h"
 
 typedef struct bench {
   deck deck;
@@ -529,8 +531,24 @@ static void a_million_particles_take_seconds(void **unused) {
   end(&b, w);
 }
 
+/* Particles on no lattice have no rows to build. */
+static void a_kind_without_sites_is_refused(void **unused) {
+  (void)unused;
+  static const char *const kinds[] = {"blue_noise", "particles", "hexagon"};
+  for (int k = 0; k < 3; k++) {
+    bench b;
+    begin(&b, kinds[k], 0, 0);
+    add_body(&b, (deck_shape){.kind = SHAPE_DISC, .radius = 3});
+    assert_null(rows_build(&b.deck, 0, &b.d));
+    assert_int_equal(b.d.count, 1);
+    assert_non_null(strstr(b.d.items[0].message, "there is no lattice of kind"));
+    end(&b, NULL);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(a_kind_without_sites_is_refused),
       cmocka_unit_test(families_have_their_neighbours),
       cmocka_unit_test(order_is_stable),
       cmocka_unit_test(linear_correction_weighs_the_horizon),

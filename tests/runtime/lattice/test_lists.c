@@ -10,10 +10,10 @@
 #include <stdio.h>
 
 #include "runtime/analysis/stability.h"
-#include "runtime/deck/deck.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/lattice/lattice.h"
-#include "runtime/lattice/rows_parts.h"
+#include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/lattice/shape_matrix.h"
 #include "tests/runtime/family_law.h"
@@ -95,7 +95,7 @@ static rows *rows_of_deck(const char *text) {
   source_set sources = {0};
   diagnostics said = {0};
   diag_begin(&said, &sources);
-  deck *k = deck_read(memory, &sources, source_add(&sources, "deck.nml", text, strlen(text)), NULL,
+  const deck *k = deck_read(memory, &sources, source_add(&sources, "deck.nml", text, strlen(text)), NULL,
                       0, &said);
   rows *g = k ? lattice_build(k, 0, &said) : NULL;
   if (!g) diag_print(&said, stderr);

@@ -9,6 +9,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/notch_depth.h"
 
@@ -24,7 +25,7 @@ static notch_depth depth_of(const char *lattice, const char *body, const char *n
            "&simulation end_time = 1 /\n&material lattice = 'l' model = 'none' /\n"
            "&lattice name = 'l' %s /\n&body lattice = 'l' %s /\n&notch lattice = 'l' %s /\n",
            lattice, body, notch);
-  deck *k = deck_read(memory, &sources, source_add(&sources, "n.nml", text, strlen(text)), NULL, 0,
+  const deck *k = deck_read(memory, &sources, source_add(&sources, "n.nml", text, strlen(text)), NULL, 0,
                       &said);
   rows *w = k ? lattice_build(k, 0, &said) : NULL;
   if (said.errors) diag_print(&said, stderr);

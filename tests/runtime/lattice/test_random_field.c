@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <omp.h>
 
+#include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/random_field.h"
 #include "tests/runtime/small_run.h"

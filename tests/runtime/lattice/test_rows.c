@@ -14,6 +14,7 @@
 #include "runtime/geometry/shape.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
+#include "runtime/lattice/rows_select.h"
 
 enum { MOST_SHAPES = 8 };
 

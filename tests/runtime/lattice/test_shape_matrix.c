@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/shape_matrix.h"
 
@@ -28,7 +29,7 @@ static void strain_of_one_bond(const char *deck_text, double strain[6], double n
   double *matrix[MOST_VALUES];
   diag_begin(&said, &sources);
   const int file = source_add(&sources, "deck.nml", deck_text, strlen(deck_text));
-  deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
+  const deck *k = deck_read(memory, &sources, file, NULL, 0, &said);
   if (said.errors) diag_print(&said, stderr);
   rows *w = lattice_build(k, 0, &said);
   assert_non_null(w);

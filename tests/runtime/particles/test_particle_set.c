@@ -14,6 +14,7 @@
 #include <omp.h>
 
 #include "runtime/base/random_number.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/geometry/shape.h"
 #include "runtime/particles/particle_set.h"
 #include "runtime/particles/voronoi.h"
@@ -24,7 +25,7 @@ typedef struct bench {
   arena *memory;
   source_set sources;
   diagnostics d;
-  deck *deck;
+  const deck *deck;
 } bench;
 
 /* A deck of one lattice with these keys, and of these groups. */

@@ -1,12 +1,126 @@
-/* Lattices, and what belongs to one: its material and the random fields of its parameters. */
+#include "runtime/deck/group_lattice.h"
+
 #include <ctype.h>
 #include <string.h>
 #include <strings.h>
 
-#include "runtime/deck/deck_check_parts.h"
+#include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/lattice_kind.h"
 
-/* --- lattices --------------------------------------------------------------------------------- */
+/* --- lattices */
+
+static const deck_key_info lattice_keys[] = {
+    {.name = "name",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(lattice, name),
+     .doc = "its name"},
+    {.name = "kind",
+     .type = DECK_WORD,
+     .choices = LATTICE_KIND_CHOICES,
+     .required = true,
+     DECK_AT(lattice, kind),
+     .doc = "arrangement of the sites: `hexagonal` and `square` in the plane, `cubic` and `fcc` "
+            "(edges of the cubes "
+            "along x, y, z) in space; without a lattice, in the plane or in space as `setting` "
+            "says: `blue_noise`, even "
+            "but at random, and `particles`, read from a `file`"},
+    {.name = "spacing",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= from the mean volume with kind `particles`; else required",
+     DECK_AT(lattice, spacing),
+     .doc = "distance of nearest neighbours; `blue_noise`, `particles`: in the hexagonal or fcc "
+            "lattice with particles as "
+            "large"},
+    {.name = "horizon",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= the nearest neighbours",
+     DECK_AT(lattice, horizon),
+     .doc = "in spacings: bonds join sites as far apart as this, and 0.1 % more; e.g. 3.015"},
+    {.name = "shells",
+     .type = DECK_COUNT,
+     .fallback = "= 1",
+     .most = 64,
+     DECK_AT(lattice, shells),
+     .doc = "instead of the horizon: 1 for the nearest neighbours, 2 for the second nearest, too, "
+            "and so on"},
+    {.name = "neighbours",
+     .type = DECK_COUNT,
+     .fallback = "= 12, in space 18, without a horizon",
+     .most = 128,
+     DECK_AT(lattice, neighbours),
+     .doc = "`blue_noise`, `particles`, instead of the horizon: a bond joins two particles when "
+            "either is among so many "
+            "nearest ones of the other"},
+    {.name = "seed",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 2147483647,
+     DECK_AT(lattice, seed),
+     .doc = "`blue_noise`: another seed gives another set of particles"},
+    {.name = "file",
+     .type = DECK_NAME,
+     .fallback = "= none; required with kind `particles`",
+     DECK_AT(lattice, file),
+     .doc = "`particles`: a table (`.csv`) or a result (`.h5`), beside the deck"},
+    {.name = "volume_correction",
+     .type = DECK_CHOICE,
+     .choices = "none|linear",
+     .fallback = "'none'",
+     DECK_AT(lattice, volume_correction),
+     .doc = "part of a neighbour's volume that counts, for laws that use it; `linear`: (horizon + "
+            "spacing/2 - "
+            "distance)/spacing, from 0 to 1"},
+    {.name = "rotation",
+     .type = DECK_ANGLE,
+     .fallback = "0",
+     DECK_AT(lattice, rotation),
+     .doc = "angle from x to the rows of sites; a plain number is in degrees"},
+    {.name = "axis",
+     .type = DECK_DIRECTION,
+     .unit = "1",
+     .fallback = "= 0, 0, 1",
+     DECK_AT(lattice, axis),
+     .doc = "in space: direction about which the lattice is rotated"},
+    {.name = "origin",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .fallback = "= 0, 0",
+     DECK_AT(lattice, origin),
+     .doc = "a point that is a site"},
+    {.name = "thickness",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= none; required in the plane",
+     DECK_AT(lattice, thickness),
+     .doc = "out of the plane; the thicknesses are not for lattices in space"},
+    {.name = "stiffness_thickness",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= thickness",
+     DECK_AT(lattice, stiffness_thickness),
+     .doc = "thickness that the law sees as `t`"},
+    {.name = "mass_thickness",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= thickness",
+     DECK_AT(lattice, mass_thickness),
+     .doc = "thickness for volume and mass"},
+    {.name = "setting",
+     .type = DECK_WORD,
+     .choices = "plane_stress|plane_strain|space",
+     .fallback = "= 'plane_stress'",
+     DECK_AT(lattice, setting),
+     .doc = "what the thickness direction does; `space`: `blue_noise` and `particles` in space"},
+};
 
 enum {
   PLANE = 2, /* by dimensions, and particles that stand on no lattice in space */
@@ -83,11 +197,26 @@ static void check_neighbours(deck_reader *r, const namelist_group *from, deck_la
     item->neighbours = dimensions == 2 ? 12 : 18;
 }
 
+/* "lattices in space are 'cubic', 'fcc' and 'particles'" */
+static void hint_kinds_in_space(deck_reader *r) {
+  const char *list = "";
+  int left = 0;
+  for (int k = 0; k < LATTICE_KIND_COUNT; k++)
+    left += lattice_kinds[k].dimensions != 2;
+  for (int k = 0; k < LATTICE_KIND_COUNT; k++)
+    if (lattice_kinds[k].dimensions != 2)
+      list = arena_printf(r->memory, "%s'%s'%s", list, lattice_kinds[k].name,
+                          --left > 1 ? ", "
+                          : left     ? " and "
+                                     : "");
+  diag_hint(r->d, "lattices in space are %s", list);
+}
+
 static bool setting_suits(deck_reader *r, const deck_lattice *item, int dimensions) {
   if (dimensions != 2 || !item->setting || strcmp(item->setting, "space") != 0) return true;
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "setting"),
               "a %s lattice lies in the plane", item->kind);
-  diag_hint(r->d, "lattices in space are 'cubic', 'fcc', 'blue_noise' and 'particles'");
+  hint_kinds_in_space(r);
   return false;
 }
 
@@ -101,12 +230,13 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
                      r->d) ||
       !deck_keys_fit(from, dimension_uses, 5, kind, dimension_words[kind], r->d))
     return;
-  deck_check_place(r, from, "origin", dimensions);
+  deck_check_places(r, from, &deck_group_lattice, dimensions);
   if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";
   if (arrangement != REGULAR) check_neighbours(r, from, item, dimensions);
 }
 
-void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice *item) {
+static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {
+  deck_lattice *item = into;
   static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
                                       "force", "damage",     "rotation",     "."};
   check_kind(r, from, item);
@@ -127,8 +257,26 @@ void deck_check_lattice(deck_reader *r, const namelist_group *from, deck_lattice
                   first < 0 ? NULL : &r->k->lattices[first].item);
 }
 
-static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assignment *a) {
-  if (!deck_values_counted(key, 1, r->d)) return false;
+DECK_LIST(lattice, .identity = "name", .check = check_lattice,
+          .doc = "A lattice of particles that bodies are cut from. At least one.");
+
+/* --- materials */
+
+static const deck_key_info material_keys[] = {
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(material, lattice),
+     .doc = "name of the lattice"},
+    {.name = "model",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(material, model),
+     .doc = "name of a law in `models/`, or a path that ends in `.plm`"},
+};
+
+static bool read_assignment(const namelist_key *key, deck_assignment *a, diagnostics *d) {
+  if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   *a = (deck_assignment){
       .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
@@ -138,20 +286,28 @@ static bool read_assignment(deck_reader *r, const namelist_key *key, deck_assign
     return true;
   }
   deck_quantity q;
-  if (!deck_quantity_read(v, key->name, &q, r->d)) return false;
+  if (!deck_quantity_read(v, key->name, &q, d)) return false;
   a->value = q.value;
   a->has_unit = q.has_unit;
   a->dim = q.dim;
   return true;
 }
 
-void deck_check_material(deck_reader *r, const namelist_group *from, deck_material *item) {
-  item->assignments = arena_alloc(r->memory, (size_t)from->key_count * sizeof(*item->assignments));
-  for (int i = 0; i < from->key_count; i++) {
-    if (deck_key_find(&deck_groups[DECK_GROUP_material], from->keys[i].name) >= 0) continue;
-    if (read_assignment(r, &from->keys[i], &item->assignments[item->assignment_count]))
-      item->assignment_count++;
+bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material *m,
+                           diagnostics *d) {
+  const int errors = d->errors;
+  m->assignments = arena_alloc(memory, (size_t)g->key_count * sizeof *m->assignments);
+  for (int i = 0; i < g->key_count; i++) {
+    if (deck_key_find(&deck_group_material, g->keys[i].name) >= 0) continue;
+    if (read_assignment(&g->keys[i], &m->assignments[m->assignment_count], d))
+      m->assignment_count++;
   }
+  return d->errors == errors;
+}
+
+static void check_material(deck_reader *r, const namelist_group *from, void *into) {
+  deck_material *item = into;
+  deck_assignments_read(r->memory, from, item, r->d);
   if (!deck_lattice_known(r, &item->item, item->lattice)) return;
   const int first = deck_find_material(r->k, item->lattice);
   if (first < 0) return;
@@ -160,7 +316,92 @@ void deck_check_material(deck_reader *r, const namelist_group *from, deck_materi
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
 }
 
-/* --- random fields ---------------------------------------------------------------------------- */
+DECK_LIST(
+    material, .identity = "lattice", .open = true, .check = check_material,
+    .doc =
+        "The law of a lattice's bonds. Every other key sets a parameter or an option of the law, "
+        "e.g. `E = '30 GPa'`.");
+
+/* --- random fields */
+
+static const deck_key_info field_keys[] = {
+    {.name = "parameter",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(field, parameter),
+     .doc = "of the law, but not `rho`"},
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .fallback = "= the only one",
+     DECK_AT(field, lattice),
+     .doc = "name of the lattice; needed when there are several"},
+    {.name = "on",
+     .type = DECK_WORD,
+     .choices = "bond|particle",
+     .fallback = "'bond'",
+     DECK_NOT_KEPT,
+     .doc = "`particle`: a value for each particle; a bond has the mean of its two ends"},
+    {.name = "distribution",
+     .type = DECK_CHOICE,
+     .choices = "uniform|normal|lognormal|weibull",
+     .required = true,
+     DECK_AT(field, kind),
+     .doc = "of the values"},
+    {.name = "mean",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     .fallback = "= the material's value",
+     DECK_NOT_KEPT,
+     .doc = "mean of the values"},
+    {.name = "cv",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(field, cv),
+     .doc = "standard deviation over mean"},
+    {.name = "low",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     DECK_NOT_KEPT,
+     .doc = "uniform: smallest value"},
+    {.name = "high",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     DECK_NOT_KEPT,
+     .doc = "uniform: largest value"},
+    {.name = "shape",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_POSITIVE,
+     DECK_AT(field, shape),
+     .doc = "Weibull: exponent; the part of values above x is exp(-(x/scale)**shape)"},
+    {.name = "scale",
+     .type = DECK_LATER,
+     .unit = "as the parameter",
+     .fallback = "= from the mean",
+     DECK_NOT_KEPT,
+     .doc = "Weibull: see shape"},
+    {.name = "correlation_length",
+     .type = DECK_REAL,
+     .unit = "m",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(field, correlation_length),
+     .doc = "L in exp(-(r/L)**2), the correlation of the underlying normal field at a distance r; "
+            "0: none"},
+    {.name = "seed",
+     .type = DECK_COUNT,
+     .fallback = "1",
+     .most = 2147483647,
+     DECK_AT(field, seed),
+     .doc = "another seed gives another field"},
+    {.name = "clip",
+     .type = DECK_LOGICAL,
+     .fallback = ".false.",
+     DECK_AT(field, clip),
+     .doc = "move values that the law does not allow to the nearest that it allows; else they are "
+            "an error"},
+};
 
 enum { OF_UNIFORM = 1 << FIELD_UNIFORM, OF_WEIBULL = 1 << FIELD_WEIBULL };
 static const char *const field_words[] = {"a uniform distribution", "a normal distribution",
@@ -221,7 +462,8 @@ static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
   m->varying_count++;
 }
 
-void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *item) {
+static void check_field(deck_reader *r, const namelist_group *from, void *into) {
+  deck_field *item = into;
   const namelist_key *on = namelist_find(from, "on");
   if (on) item->on_particles = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1;
   if (!deck_keys_fit(from, field_uses, 4, (int)item->kind, field_words[item->kind], r->d)) return;
@@ -243,5 +485,12 @@ void deck_check_field(deck_reader *r, const namelist_group *from, deck_field *it
   }
   for (int i = 0; i < r->k->material_count; i++)
     if (deck_same_name(r->k->materials[i].lattice, item->lattice))
-      add_varying(r, &r->k->materials[i], item);
+      add_varying(r, (deck_material *)(uintptr_t)&r->k->materials[i], item); /* still being read */
 }
+
+DECK_LIST(
+    field, .identity = "parameter", .check = check_field,
+    .doc =
+        "A parameter of the law that differs from bond to bond at random, the same for the same "
+        "seed whatever the threads. Uniform: `low` and `high`, or `cv`; normal, lognormal: `cv`; "
+        "Weibull: `shape`, or `cv`.");

@@ -1,0 +1,368 @@
+#include "runtime/deck/deck_read.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_groups.h"
+#include "runtime/deck/deck_set.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/text_table.h"
+
+enum { MOST_ERRORS = 100 };
+
+/* --- one group -------------------------------------------------------------------------------- */
+
+static void copy_places(arena *a, const namelist_group *from, deck_item *item) {
+  deck_key *keys = arena_alloc(a, (size_t)from->key_count * sizeof(*keys));
+  for (int i = 0; i < from->key_count; i++) {
+    const namelist_key *key = &from->keys[i];
+    keys[i] = (deck_key){key->name, key->name_where, key->value_where};
+  }
+  item->where = from->where;
+  item->keys = keys;
+  item->key_count = from->key_count;
+}
+
+static void report_unknown(deck_reader *r, const deck_group_info *info, const namelist_key *key) {
+  static const char *const synonyms[][2] = {
+      {"dt", "step"}, {"time_step", "step"}, {"position", "at"}, {"center", "centre"}};
+  diag_report(r->d, DIAG_UNKNOWN_KEY, key->name_where, "`&%s` has no key `%s`", info->name,
+              key->name);
+  for (int i = 0; i < 4; i++)
+    if (strcasecmp(key->name, synonyms[i][0]) == 0 && deck_key_find(info, synonyms[i][1]) >= 0) {
+      diag_hint(r->d, "did you mean `%s`?", synonyms[i][1]);
+      return;
+    }
+  const char *names[DECK_MOST_KEYS];
+  deck_suggest(r->d, key->name, names, deck_key_names(info, names), "its keys are");
+}
+
+static bool is_repeated(deck_reader *r, const namelist_group *from, const namelist_key *key) {
+  const namelist_key *first = namelist_find(from, key->name);
+  if (first == key) return false;
+  diag_report(r->d, DIAG_DUPLICATE_KEY, key->name_where, "`%s` is given twice in this `&%s`",
+              key->name, from->name);
+  diag_note(r->d, first->name_where, "it is given here");
+  if (strcmp(first->name, key->name) != 0)
+    diag_hint(r->d, "upper and lower case are the same here");
+  return true;
+}
+
+/* A required key that was only misspelt is not missing as well. */
+static bool is_misspelt(const namelist_group *from, const deck_group_info *info, const char *name) {
+  if (info->open) return false;
+  for (int i = 0; i < from->key_count; i++)
+    if (deck_key_find(info, from->keys[i].name) < 0 && nearest_name(from->keys[i].name, &name, 1))
+      return true;
+  return false;
+}
+
+static void read_keys(deck_reader *r, const namelist_group *from, const deck_group_info *info,
+                      void *item) {
+  for (int i = 0; i < from->key_count; i++) {
+    const namelist_key *key = &from->keys[i];
+    if (is_repeated(r, from, key)) continue;
+    int k = deck_key_find(info, key->name);
+    if (k >= 0 && !key->broken)
+      deck_field_read(r->memory, &info->keys[k], key, item, r->d);
+    else if (k < 0 && !info->open)
+      report_unknown(r, info, key);
+  }
+  if (from->broken) return; /* what seems missing may stand in the part that could not be read */
+  for (int k = 0; k < info->key_count; k++) {
+    const deck_key_info *key = &info->keys[k];
+    if (!key->required || namelist_find(from, key->name) || is_misspelt(from, info, key->name))
+      continue;
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&%s` has no `%s`", info->name, key->name);
+    bool has_unit = key->unit && strcmp(key->unit, "1") != 0;
+    diag_hint(r->d, "%s: %s%s%s%s", key->name, key->doc, has_unit ? " (" : "",
+              has_unit ? key->unit : "", has_unit ? ")" : "");
+  }
+}
+
+/* --- the groups of a kind --------------------------------------------------------------------- */
+
+static void lack(deck *k, int kind) {
+  k->lacks |= 1u << kind;
+}
+
+static bool too_many_errors(const deck_reader *r) {
+  return r->d->errors > MOST_ERRORS;
+}
+
+/* Fills `item`, which begins with a deck_item. */
+static void read_item(deck_reader *r, const namelist_group *from, int kind, void *of) {
+  const deck_group_info *info = deck_groups[kind];
+  const int errors = r->d->errors;
+  deck_item *item = of;
+  copy_places(r->memory, from, item);
+  deck_defaults(r->memory, info, item);
+  read_keys(r, from, info, item);
+  item->faulty = from->broken || r->d->errors > errors;
+  if (info->check && !item->faulty) info->check(r, from, item);
+  item->faulty |= r->d->errors > errors;
+  if (item->faulty) lack(r->k, kind);
+}
+
+/* The next group of the kind from *i on, or NULL. */
+static const namelist_group *next_of(const namelist *n, int kind, int *i) {
+  while (*i < n->group_count) {
+    const namelist_group *g = &n->groups[(*i)++];
+    if (strcmp(g->name, deck_groups[kind]->name) == 0) return g;
+  }
+  return NULL;
+}
+
+static size_t count_of(const namelist *n, int kind) {
+  size_t count = 0;
+  for (int i = 0; next_of(n, kind, &i);)
+    count++;
+  return count;
+}
+
+/* The items of a list in the deck, and where their count stands. */
+static char *items_of(deck *k, const deck_group_info *info, int **count) {
+  char *items;
+  memcpy(&items, (char *)k + info->place, sizeof items);
+  *count = (int *)(void *)((char *)k + info->count_place);
+  return items;
+}
+
+static void read_list(deck_reader *r, const namelist *n, int kind) {
+  const deck_group_info *info = deck_groups[kind];
+  void *room = arena_alloc(r->memory, count_of(n, kind) * info->size);
+  int *count, i = 0;
+  memcpy((char *)r->k + info->place, &room, sizeof room);
+  char *items = items_of(r->k, info, &count);
+  for (const namelist_group *g; !too_many_errors(r) && (g = next_of(n, kind, &i)); ++*count)
+    read_item(r, g, kind, items + (size_t)*count * info->size);
+}
+
+static void read_one(deck_reader *r, const namelist *n, int kind) {
+  void *item = (char *)r->k + deck_groups[kind]->place;
+  const namelist_group *first = NULL;
+  int i = 0;
+  deck_defaults(r->memory, deck_groups[kind], item);
+  for (const namelist_group *g; !too_many_errors(r) && (g = next_of(n, kind, &i));) {
+    if (!first) {
+      first = g;
+      read_item(r, g, kind, item);
+      continue;
+    }
+    diag_report(r->d, DIAG_DUPLICATE_NAME, g->where, "a deck has one `&%s`", g->name);
+    diag_note(r->d, first->where, "it is given here");
+  }
+}
+
+static void report_unknown_groups(deck_reader *r, const namelist *n) {
+  const char *names[DECK_GROUP_COUNT];
+  for (int i = 0; i < n->group_count && !too_many_errors(r); i++) {
+    const namelist_group *g = &n->groups[i];
+    if (deck_group_find(g->name) >= 0) continue;
+    diag_report(r->d, DIAG_UNKNOWN_GROUP, g->where, "there is no group `&%s`", g->name);
+    const char *meant = nearest_name(g->name, names, deck_group_names(names));
+    if (meant) lack(r->k, deck_group_find(meant));
+    if (strcmp(g->name, "cut") == 0)
+      diag_hint(r->d, "a cut-out is a `&notch`, with cut_bonds = .false. when bonds may span it");
+    else
+      deck_suggest(r->d, g->name, names, deck_group_names(names), "the groups are");
+  }
+}
+
+/* A name that could not be read may be the one that a reference means. */
+static bool all_names_known(const deck *k, const namelist *n) {
+  bool known = !n->broken;
+  for (int i = 0; i < k->lattice_count; i++)
+    known &= k->lattices[i].name != NULL;
+  for (int i = 0; i < k->region_count; i++)
+    known &= k->regions[i].name != NULL;
+  for (int i = 0; i < k->monitor_count; i++)
+    known &= k->monitors[i].name != NULL;
+  return known;
+}
+
+/* A material is still good for saying what is wrong with its law. */
+static bool is_kept(const deck_item *item, int kind) {
+  const deck_material *m = (const deck_material *)item;
+  return !item->faulty || (kind == DECK_GROUP_material && m->model && m->lattice);
+}
+
+static void leave_out_faulty(deck *k, int kind) {
+  const size_t size = deck_groups[kind]->size;
+  int *count, kept = 0;
+  char *items = items_of(k, deck_groups[kind], &count);
+  for (int i = 0; i < *count; i++) {
+    void *item = items + (size_t)i * size;
+    if (is_kept(item, kind)) memmove(items + (size_t)kept++ * size, item, size);
+  }
+  *count = kept;
+}
+
+static const char *without_ending(arena *a, const char *path, const char *ending) {
+  const char *slash = strrchr(path, '/');
+  const char *name = slash ? slash + 1 : path;
+  size_t length = strlen(name), tail = strlen(ending);
+  if (length > tail && strcmp(name + length - tail, ending) == 0) length -= tail;
+  return arena_text(a, name, length);
+}
+
+static void set_computed_defaults(deck_reader *r) {
+  deck *k = r->k;
+  const char *name = without_ending(r->memory, k->name, ".nml");
+  if (!k->simulation.title) k->simulation.title = name;
+  if (!k->output.result) k->output.result = arena_printf(r->memory, "%s.h5", name);
+  if (k->simulation.step_safety <= 0)
+    k->simulation.step_safety = k->relaxation.increments > 0 ? 0.9 : 0.25;
+}
+
+/* --- files of loads --------------------------------------------------------------------------- */
+
+static int find_source(const source_set *sources, const char *name) {
+  for (int i = 0; i < sources->count; i++)
+    if (strcmp(sources->items[i].name, name) == 0) return i;
+  return -1;
+}
+
+static bool is_listed(const deck *k, int number) {
+  for (int i = 0; i < k->file_count; i++)
+    if (k->files[i].source == number) return true;
+  return false;
+}
+
+static void list_file(deck_reader *r, const namelist_value *v) {
+  const char *columns;
+  char *name = text_table_split(v->text, &columns), *path = deck_file_path(r->k->name, name);
+  const int found = find_source(r->d->sources, path);
+  if (found >= 0 && !is_listed(r->k, found))
+    r->k->files[r->k->file_count++] = (deck_file){arena_text(r->memory, name, strlen(name)), found};
+  free(path);
+  free(name);
+}
+
+/* Loads alone have a `file` that is read with the deck. */
+static void list_files(deck_reader *r, const namelist *n) {
+  r->k->files = arena_alloc(r->memory, ((size_t)n->group_count + 1) * sizeof *r->k->files);
+  for (int i = 0; i < n->group_count; i++) {
+    const int kind = deck_group_find(n->groups[i].name);
+    const namelist_key *file = namelist_find(&n->groups[i], "file");
+    if (kind < 0 || !file || file->value_count != 1 || file->values[0].kind != NAMELIST_TEXT)
+      continue;
+    const int key = deck_key_find(deck_groups[kind], "file");
+    if (key >= 0 && deck_groups[kind]->keys[key].type == DECK_LATER) list_file(r, &file->values[0]);
+  }
+}
+
+/* What may differ between a run and the run that resumes it. */
+static bool is_no_matter(const char *group, const char *key) {
+  if (strcmp(group, "checkpoint") == 0) return true;
+  return key && strcmp(group, "simulation") == 0 &&
+         (strcasecmp(key, "title") == 0 || strcasecmp(key, "threads") == 0);
+}
+
+/* --- the whole deck --------------------------------------------------------------------------- */
+
+/* Lattices with bodies, a mark each. */
+static bool *find_bodies(const deck_reader *r) {
+  const deck *k = r->k;
+  bool *found = arena_alloc(r->memory, (size_t)k->lattice_count + 1);
+  for (int i = 0; i < k->body_count; i++) {
+    const int l = k->bodys[i].lattice ? deck_find_lattice(k, k->bodys[i].lattice) : -1;
+    if (l >= 0) found[l] = true;
+  }
+  return found;
+}
+
+/* A faulty item may be the one that is missed. Particles of a file need no body. */
+static bool needs_body(const deck *k, const deck_lattice *lattice) {
+  return !deck_lacks(k, "body") && !deck_same_name(lattice->kind, "particles");
+}
+
+static bool has_material(const deck *k, const char *lattice) {
+  return deck_lacks(k, "material") || deck_find_material(k, lattice) >= 0;
+}
+
+/* Inertia and its damping are means of the relaxation. */
+static void check_quasi_static(deck_reader *r) {
+  const deck *k = r->k;
+  if (k->relaxation.increments < 1) return;
+  if (k->damping_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->dampings[0].item.where,
+                "a quasi-static run chooses its damping itself: no `&damping` with `&relaxation`");
+  if (k->initial_velocity_count > 0)
+    diag_report(r->d, DIAG_CONFLICT, k->initial_velocitys[0].item.where,
+                "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");
+}
+
+static void check_whole(deck_reader *r) {
+  const deck *k = r->k;
+  const deck_item *simulation = &k->simulation.item;
+  if (simulation->where.end == 0 && !deck_lacks(k, "simulation")) /* never read */
+    diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&simulation`");
+  if (k->lattice_count == 0 && !deck_lacks(k, "lattice"))
+    diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
+  check_quasi_static(r);
+  const bool *has_body = find_bodies(r);
+  for (int i = 0; i < k->lattice_count; i++) {
+    const deck_lattice *lattice = &k->lattices[i];
+    if (!lattice->name) continue;
+    const char *name = deck_shown(r->memory, lattice->name);
+    if (!has_material(k, lattice->name))
+      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
+                  "the lattice `%s` has no `&material`", name);
+    if (needs_body(k, lattice) && !has_body[i])
+      diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
+                  name);
+  }
+}
+
+/* --- the deck --------------------------------------------------------------------------------- */
+
+static void read_groups(deck_reader *r, const namelist *n) {
+  report_unknown_groups(r, n);
+  for (int kind = 0; kind < DECK_GROUP_COUNT; kind++) {
+    r->names_known = all_names_known(r->k, n);
+    if (deck_groups[kind]->single)
+      read_one(r, n, kind);
+    else
+      read_list(r, n, kind);
+  }
+  set_computed_defaults(r);
+  list_files(r, n);
+  if (!n->broken && !too_many_errors(r)) check_whole(r);
+}
+
+static void leave_out_all_faulty(deck *k) {
+  for (int kind = 0; kind < DECK_GROUP_COUNT; kind++)
+    if (!deck_groups[kind]->single) leave_out_faulty(k, kind);
+}
+
+const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
+                                    const deck_override *overrides, int override_count,
+                                    diagnostics *d) {
+  namelist *n = namelist_read(a, sources, file, d);
+  deck_present_names(n, &deck_grammar_of_decks, d);
+  deck_set(a, sources, n, &deck_grammar_of_decks, overrides, override_count, d);
+
+  deck *k = arena_alloc(a, sizeof(*k));
+  k->names = deck_names_new(a);
+  k->name = arena_text(a, sources->items[file].name, strlen(sources->items[file].name));
+  k->identity = namelist_text(a, n, is_no_matter);
+  k->simulation.item.where.file = k->output.item.where.file = k->checkpoint.item.where.file =
+      (uint16_t)file;
+  deck_reader r = {.memory = a, .d = d, .k = k, .names_known = true};
+  read_groups(&r, n);
+  if (k->simulation.item.where.end == 0) lack(k, DECK_GROUP_simulation);
+  if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
+  leave_out_all_faulty(k);
+  k->names = deck_names_new(a); /* others have moved up */
+  return k;
+}
+
+const deck *deck_read(arena *a, source_set *sources, int file, const deck_override *overrides,
+                      int override_count, diagnostics *d) {
+  const int errors = d->errors;
+  const deck *k = deck_read_what_is_right(a, sources, file, overrides, override_count, d);
+  return d->errors > errors ? NULL : k;
+}

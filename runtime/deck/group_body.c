@@ -1,0 +1,364 @@
+#include "runtime/deck/group_body.h"
+
+#include <math.h>
+#include <string.h>
+
+#include "dsl/base/elementary.h"
+#include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/lattice_kind.h"
+
+/* --- shapes */
+
+#define SHAPE_KEYS(group)                                                                          \
+  {.name = "shape",                                                                                \
+   .type = DECK_CHOICE,                                                                            \
+   .choices = "point|rectangle|disc|polygon|dog_bone|segment|box|cylinder|sphere|extrusion|face",  \
+   .required = true,                                                                               \
+   DECK_AT(group, shape.kind),                                                                     \
+   .doc = "decides which of the keys below are needed; those from `box` on are "                   \
+          "of space, a point is of both"},                                                         \
+      {.name = "at",                                                                               \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.at),                                                                   \
+       .doc = "point: position; the nearest site is meant"},                                       \
+      {.name = "within",                                                                           \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       .fallback = "= half a spacing",                                                             \
+       DECK_AT(group, shape.within),                                                               \
+       .doc = "point: largest distance of that site"},                                             \
+      {.name = "corner",                                                                           \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.corner),                                                               \
+       .doc = "rectangle, box: the corner of least coordinates"},                                  \
+      {.name = "size",                                                                             \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       DECK_AT(group, shape.size),                                                                 \
+       .doc = "rectangle, box: extent along x, y, z"},                                             \
+      {.name = "rotation",                                                                         \
+       .type = DECK_ANGLE,                                                                         \
+       .fallback = "0",                                                                            \
+       DECK_AT(group, shape.rotation),                                                             \
+       .doc = "rectangle: about its corner; dog-bone: about its centre; a plain "                  \
+              "number is in degrees"},                                                             \
+      {.name = "centre",                                                                           \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.centre),                                                               \
+       .doc = "disc, dog-bone, sphere: centre"},                                                   \
+      {.name = "radius",                                                                           \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       DECK_AT(group, shape.radius),                                                               \
+       .doc = "disc, cylinder, sphere: outer radius; dog-bone: of the arcs at its "                \
+              "neck"},                                                                             \
+      {.name = "inner_radius",                                                                     \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_NOT_NEGATIVE,                                                                \
+       .fallback = "0",                                                                            \
+       DECK_AT(group, shape.inner_radius),                                                         \
+       .doc = "disc, cylinder, sphere: radius of the hole"},                                       \
+      {.name = "width",                                                                            \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       DECK_AT(group, shape.width),                                                                \
+       .doc = "dog-bone: of its ends"},                                                            \
+      {.name = "height",                                                                           \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       DECK_AT(group, shape.height),                                                               \
+       .doc = "dog-bone: from end to end"},                                                        \
+      {.name = "neck",                                                                             \
+       .type = DECK_REAL,                                                                          \
+       .unit = "m",                                                                                \
+       .bound = BOUND_POSITIVE,                                                                    \
+       DECK_AT(group, shape.neck),                                                                 \
+       .doc = "dog-bone: width in the middle, between two arcs"},                                  \
+      {.name = "from",                                                                             \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.from),                                                                 \
+       .doc = "segment, cylinder: one end, of the cylinder's axis"},                               \
+      {.name = "to",                                                                               \
+       .type = DECK_PLACE,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.to),                                                                   \
+       .doc = "segment, cylinder: the other end"},                                                 \
+      {.name = "z",                                                                                \
+       .type = DECK_PAIR,                                                                          \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.z),                                                                    \
+       .doc = "extrusion: from where to where the polygon reaches"},                               \
+      {.name = "points",                                                                           \
+       .type = DECK_REALS,                                                                         \
+       .unit = "m",                                                                                \
+       DECK_AT(group, shape.points),                                                               \
+       DECK_COUNT_AT(group, shape.point_count),                                                    \
+       .doc = "polygon, extrusion: x1, y1, x2, y2, x3, y3, ...; face: x1, y1, z1, "                \
+              "... of the corners of a plane polygon in space"},                                   \
+  {                                                                                                \
+    .name = "bulge", .type = DECK_REALS, .unit = "m", .fallback = "= straight edges",              \
+    DECK_AT(group, shape.bulge), DECK_COUNT_AT(group, shape.bulge_count),                          \
+    .doc = "polygon, extrusion: for each point, how far the edge that begins "                     \
+           "there rises as an arc above its chord, outward positive, 0: straight"                  \
+  }
+
+enum {
+  A_POINT = 1 << SHAPE_POINT,
+  A_RECTANGLE = 1 << SHAPE_RECTANGLE,
+  A_DISC = 1 << SHAPE_DISC,
+  A_POLYGON = 1 << SHAPE_POLYGON,
+  A_DOG_BONE = 1 << SHAPE_DOG_BONE,
+  A_SEGMENT = 1 << SHAPE_SEGMENT,
+  A_BOX = 1 << SHAPE_BOX,
+  A_CYLINDER = 1 << SHAPE_CYLINDER,
+  A_SPHERE = 1 << SHAPE_SPHERE,
+  AN_EXTRUSION = 1 << SHAPE_EXTRUSION,
+  A_FACE = 1 << SHAPE_FACE
+};
+static const char *const shape_words[] = {"a point",    "a rectangle",  "a disc", "a polygon",
+                                          "a dog-bone", "a segment",    "a box",  "a cylinder",
+                                          "a sphere",   "an extrusion", "a face"};
+static const deck_key_use shape_uses[] = {
+    {"at", A_POINT, true},
+    {"within", A_POINT, false},
+    {"corner", A_RECTANGLE | A_BOX, true},
+    {"size", A_RECTANGLE | A_BOX, true},
+    {"rotation", A_RECTANGLE | A_DOG_BONE, false},
+    {"centre", A_DISC | A_DOG_BONE | A_SPHERE, true},
+    {"radius", A_DISC | A_DOG_BONE | A_CYLINDER | A_SPHERE, true},
+    {"inner_radius", A_DISC | A_CYLINDER | A_SPHERE, false},
+    {"width", A_DOG_BONE, true},
+    {"height", A_DOG_BONE, true},
+    {"neck", A_DOG_BONE, true},
+    {"from", A_SEGMENT | A_CYLINDER, true},
+    {"to", A_SEGMENT | A_CYLINDER, true},
+    {"z", AN_EXTRUSION, true},
+    {"points", A_POLYGON | AN_EXTRUSION | A_FACE, true},
+    {"bulge", A_POLYGON | AN_EXTRUSION, false}};
+
+/* As read, `point_count` counts values; afterwards points. */
+static bool check_points(deck_reader *r, const deck_item *item, deck_shape *shape) {
+  const bool face = shape->kind == SHAPE_FACE;
+  const span where = deck_where(item, "points");
+  const int values = shape->point_count, each = face ? 3 : 2;
+  shape->point_count = values / each;
+  if (values % each && face)
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                "`points` holds triples x, y, z, but there are %d values", values);
+  else if (values % each)
+    diag_report(r->d, DIAG_BAD_VALUE, where,
+                "`points` holds pairs x, y, but the number of values is odd (%d)", values);
+  else if (values < 3 * each)
+    diag_report(r->d, DIAG_BAD_VALUE, where, "a %s has at least 3 points; here are %d",
+                face ? "face" : "polygon", values / each);
+  else
+    return true;
+  return false;
+}
+
+/* Twice the area of a polygon of straight edges, positive when its corners are
+   counter-clockwise. */
+static double twice_area(const deck_shape *shape, double *extent) {
+  const double *p = shape->points;
+  const int values = 2 * shape->point_count;
+  double area = 0;
+  *extent = 0;
+  for (int i = 2; i < values; i += 2) {
+    int next = (i + 2) % values;
+    area += (p[i] - p[0]) * (p[next + 1] - p[1]) - (p[next] - p[0]) * (p[i + 1] - p[1]);
+    *extent = pl_fmax(*extent, pl_fmax(fabs(p[i] - p[0]), fabs(p[i + 1] - p[1])));
+  }
+  return area;
+}
+
+/* Edges with arcs are put in counter-clockwise order: the edge that began at point k then begins at
+   its other end. */
+static void put_counter_clockwise(deck_reader *r, deck_shape *shape) {
+  const int n = shape->point_count;
+  double *points = arena_alloc(r->memory, 2 * (size_t)n * sizeof *points);
+  double *bulge = arena_alloc(r->memory, (size_t)n * sizeof *bulge);
+  for (int k = 0; k < n; k++) {
+    memcpy(points + 2 * k, shape->points + 2 * (n - 1 - k), 2 * sizeof *points);
+    bulge[k] = shape->bulge[(2 * n - 2 - k) % n];
+  }
+  shape->points = points;
+  shape->bulge = bulge;
+}
+
+static void check_polygon(deck_reader *r, const deck_item *item, deck_shape *shape) {
+  double extent;
+  if (!check_points(r, item, shape)) return;
+  const double area = twice_area(shape, &extent);
+  if (fabs(area) <= 1e-12 * extent * extent) {
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(item, "points"), "this polygon has no area");
+  } else if (shape->bulge && shape->bulge_count != shape->point_count) {
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(item, "bulge"),
+                "`bulge` has a value for each of the %d points, but %d are given",
+                shape->point_count, shape->bulge_count);
+  } else if (shape->bulge && area < 0) {
+    put_counter_clockwise(r, shape);
+  }
+}
+
+static void check_face(deck_reader *r, const deck_item *item, deck_shape *shape) {
+  if (!check_points(r, item, shape)) return;
+  const double away = shape_unevenness(shape);
+  if (away <= 1e-6) return;
+  diag_report(r->d, DIAG_BAD_VALUE, deck_where(item, "points"),
+              isnan(away) ? "this face has no area"
+                          : "the corners of this face do not lie in a plane");
+}
+
+static void check_dog_bone(deck_reader *r, const deck_item *item, const deck_shape *shape) {
+  const double rise = (shape->width - shape->neck) / 2;
+  if (rise <= 0) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "neck"),
+                "`neck` must be less than `width`");
+  } else if (shape->radius < rise) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "radius"),
+                "with this radius the arcs do not reach the neck: at least half the difference of "
+                "`width` and `neck` "
+                "is needed");
+  } else if (2 * sqrt(rise * (2 * shape->radius - rise)) > shape->height) {
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "radius"),
+                "the arcs at the neck are longer than the dog-bone is high");
+  }
+}
+
+static void check_numbers(deck_reader *r, const deck_item *item, deck_shape *shape) {
+  if (shape->inner_radius > 0 && shape->inner_radius >= shape->radius)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "inner_radius"),
+                "`inner_radius` must be less than `radius`");
+  if ((1 << shape->kind & (A_SEGMENT | A_CYLINDER)) &&
+      memcmp(shape->from, shape->to, sizeof shape->to) == 0)
+    diag_report(r->d, DIAG_BAD_VALUE, deck_where(item, "to"), "%s has two different ends",
+                shape_words[shape->kind]);
+  if (shape->kind == SHAPE_EXTRUSION && !(shape->z[0] < shape->z[1]))
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, "z"),
+                "the second value of `z` must be larger than the first");
+  if (shape->kind == SHAPE_DOG_BONE) check_dog_bone(r, item, shape);
+  if (1 << shape->kind & (A_POLYGON | AN_EXTRUSION)) check_polygon(r, item, shape);
+  if (shape->kind == SHAPE_FACE) check_face(r, item, shape);
+}
+
+static bool shape_is_of(deck_reader *r, const deck_item *item, const deck_shape *shape,
+                        int dimensions) {
+  if (shape->kind == SHAPE_POINT || (shape->kind >= SHAPE_BOX) == (dimensions == 3)) return true;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"), "%s is a shape %s, the lattice is %s",
+              shape_words[shape->kind], dimensions == 2 ? "in space" : "of the plane",
+              dimensions == 2 ? "in the plane" : "in space");
+  diag_hint(r->d, "there are %s",
+            dimensions == 2 ? "'point', 'rectangle', 'disc', 'polygon', 'dog_bone' and 'segment'"
+                            : "'point', 'box', 'cylinder', 'sphere', 'extrusion' and 'face'");
+  return false;
+}
+
+static void check_shape(deck_reader *r, const namelist_group *from, const deck_group_info *info,
+                        const deck_item *item, deck_shape *shape, const char *lattice) {
+  const int count = (int)(sizeof shape_uses / sizeof *shape_uses);
+  const int dimensions = deck_dimensions_of(r, lattice), errors = r->d->errors;
+  if (!deck_keys_fit(from, shape_uses, count, (int)shape->kind, shape_words[shape->kind], r->d))
+    return;
+  if (dimensions && !shape_is_of(r, item, shape, dimensions)) return;
+  if (dimensions) deck_check_places(r, from, info, dimensions);
+  if (r->d->errors == errors) check_numbers(r, item, shape);
+}
+
+static void check_can_be_filled(deck_reader *r, const deck_item *item, const deck_shape *shape,
+                                const char *lattice, bool is_body) {
+  const int l = deck_find_lattice(r->k, lattice);
+  const bool suits = is_body ? shape_has_size(shape) : shape->kind != SHAPE_POINT;
+  if (suits || l < 0 || r->k->lattices[l].item.faulty ||
+      !deck_lattice_is_irregular(&r->k->lattices[l]))
+    return;
+  diag_report(r->d, DIAG_CONFLICT, deck_where(item, "shape"),
+              shape->kind == SHAPE_POINT ? "%s means a site of a lattice, but here are none"
+                                         : "%s cannot be filled with particles",
+              shape_words[shape->kind]);
+}
+
+/* --- what has a shape */
+
+static const deck_key_info body_keys[] = {
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(body, lattice),
+     .doc = "name of the lattice"},
+    SHAPE_KEYS(body),
+};
+
+static void check_body(deck_reader *r, const namelist_group *from, void *into) {
+  deck_body *item = into;
+  deck_lattice_known(r, &item->item, item->lattice);
+  check_shape(r, from, &deck_group_body, &item->item, &item->shape, item->lattice);
+  check_can_be_filled(r, &item->item, &item->shape, item->lattice, true);
+}
+
+DECK_LIST(body, .identity = "lattice", .check = check_body,
+          .doc = "Adds the lattice sites inside or on a shape. At least one for each lattice.");
+
+static const deck_key_info notch_keys[] = {
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .required = true,
+     DECK_AT(notch, lattice),
+     .doc = "name of the lattice"},
+    {.name = "cut_bonds",
+     .type = DECK_LOGICAL,
+     .fallback = ".true.",
+     DECK_AT(notch, cut_bonds),
+     .doc = "also remove bonds between remaining sites whose line crosses the shape"},
+    SHAPE_KEYS(notch),
+};
+
+static void check_notch(deck_reader *r, const namelist_group *from, void *into) {
+  deck_notch *item = into;
+  deck_lattice_known(r, &item->item, item->lattice);
+  check_shape(r, from, &deck_group_notch, &item->item, &item->shape, item->lattice);
+  check_can_be_filled(r, &item->item, &item->shape, item->lattice, false);
+}
+
+DECK_LIST(
+    notch, .identity = "lattice", .check = check_notch,
+    .doc = "Removes the sites inside or on a shape and, by default, the bonds that cross it.");
+
+static const deck_key_info region_keys[] = {
+    {.name = "name", .type = DECK_NAME, .required = true, DECK_AT(region, name), .doc = "its name"},
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .fallback = "= the only one",
+     DECK_AT(region, lattice),
+     .doc = "name of the lattice; needed when there are several"},
+    SHAPE_KEYS(region),
+};
+
+static void check_region(deck_reader *r, const namelist_group *from, void *into) {
+  deck_region *item = into;
+  check_shape(r, from, &deck_group_region, &item->item, &item->shape, item->lattice);
+  int first = deck_find_region(r->k, item->name);
+  deck_check_name(r, "region", item->name, &item->item,
+                  first < 0 ? NULL : &r->k->regions[first].item);
+  if (item->lattice) {
+    deck_lattice_known(r, &item->item, item->lattice);
+  } else if (r->k->lattice_count == 1) {
+    item->lattice = r->k->lattices[0].name;
+  } else if (r->names_known && r->k->lattice_count > 1) {
+    diag_report(r->d, DIAG_MISSING_KEY, item->item.where, "`&region` needs `lattice` here");
+    diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+  }
+}
+
+DECK_LIST(region, .identity = "name", .check = check_region,
+          .doc = "Names the particles inside or on a shape, for loads and monitors.");

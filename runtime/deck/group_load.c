@@ -1,0 +1,359 @@
+#include "runtime/deck/group_load.h"
+
+#include <math.h>
+
+#include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_load.h"
+
+#define REGION_KEY(group, text)                                                                    \
+  { .name = "region", .type = DECK_NAME, .required = true, DECK_AT(group, region), .doc = text }
+
+/* --- support */
+
+static const deck_key_info support_keys[] = {
+    REGION_KEY(support, "what is held"),
+    {.name = "fix",
+     .type = DECK_FIXED,
+     .choices = "x|y|z|xy|xz|yz|xyz|rotation",
+     .required = true,
+     DECK_AT(support, fix),
+     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` is "
+            "for lattices in "
+            "space, `rotation` for those in the plane"},
+};
+
+/* Of all regions; NULL where the region is not known. */
+static deck_motions *motions_of(deck_reader *r, const char *region) {
+  const int k = region ? deck_find_region(r->k, region) : -1;
+  if (!r->motions)
+    r->motions = arena_alloc(r->memory, ((size_t)r->k->region_count + 1) * sizeof *r->motions);
+  return k < 0 ? NULL : &r->motions[k];
+}
+
+/* Of an item in which nothing is wrong; `components` has a bit each. */
+static void note_motions(deck_reader *r, const char *region, int components, span where) {
+  deck_motions *m = motions_of(r, region);
+  r->moved |= components;
+  for (int c = 0; m && c < 3; c++)
+    if (components & 1 << c && m->of[c].end == 0) m->of[c] = where;
+}
+
+static void check_support(deck_reader *r, const namelist_group *from, void *into) {
+  deck_support *item = into;
+  (void)from;
+  const int errors = r->d->errors;
+  const span where = deck_where(&item->item, "fix");
+  int fix = 0;
+  deck_item_region_known(r, &item->item, item->region);
+  for (int k = 0; k <= DECK_WRITTEN_ROTATION; k++) {
+    if (!(item->fix & 1 << k)) continue;
+    const int component = deck_component(r, where, item->region, k);
+    if (component >= 0) fix |= 1 << component;
+  }
+  item->fix = fix;
+  if (r->d->errors == errors) note_motions(r, item->region, fix, where);
+}
+
+DECK_LIST(support, .identity = "region", .check = check_support,
+          .doc = "Holds particles where they are.");
+
+/* --- drive */
+
+static const deck_key_info drive_keys[] = {
+    REGION_KEY(drive, "what is moved"),
+    {.name = "component",
+     .type = DECK_CHOICE,
+     .choices = DECK_COMPONENTS,
+     .required = true,
+     DECK_AT(drive, component),
+     .doc = "direction of the motion"},
+    {.name = "velocity",
+     .type = DECK_LATER,
+     .unit = "m/s; rotation: rad/s",
+     DECK_NOT_KEPT,
+     .doc = "full velocity"},
+    {.name = "displacement",
+     .type = DECK_LATER,
+     .unit = "m; rotation: rad",
+     DECK_NOT_KEPT,
+     .doc = "full displacement, counted from where the region is at `start`"},
+    DECK_TIME_KEYS,
+};
+
+/* A particle cannot follow two motions; regions that overlap are found when their particles are
+ * known. */
+static void check_other_motions(deck_reader *r, const deck_drive *item) {
+  const span where = deck_where(&item->item, "component");
+  const deck_motions *m = motions_of(r, item->region);
+  const span other = m ? m->of[item->component] : (span){0};
+  if (other.end == 0) return;
+  const char *component = deck_component_of(r, item->region, item->component);
+  diag_report(r->d, DIAG_CONFLICT, where, "`%s` of region `%s` has two motions", component,
+              deck_shown(r->memory, item->region));
+  diag_note(r->d, other, "the other one");
+}
+
+/* A load without a history grows with the increments of a quasi-static run. */
+static void spread(const deck_reader *r, const namelist_group *from, time_function *f) {
+  const double rest = r->k->simulation.end_time - f->start;
+  if (r->k->relaxation.increments < 1 || f->shape != TIME_CONSTANT || !(rest > 0)) return;
+  if (namelist_find(from, "history")) return;
+  f->shape = TIME_RAMP_HOLD;
+  f->rise = rest;
+}
+
+static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_function *f) {
+  if (time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
+  const bool table = f->shape == TIME_TABLE;
+  const namelist_key *at = namelist_find(from, !table ? "displacement" : "values");
+  diag_report(r->d, DIAG_DECK_WARNING, (at ? at : namelist_find(from, "file"))->name_where,
+              table ? "this displacement begins with a jump"
+                    : "this displacement comes all at once");
+  diag_hint(r->d, table ? "let the first value be 0" : "give a `rise`, e.g. rise = '1 ms'");
+}
+
+static void complete_drive(deck_reader *r, const namelist_group *from, deck_drive *item) {
+  deck_item_region_known(r, &item->item, item->region);
+  if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
+  const bool rotates = deck_is_rotation(r, item->region, item->component);
+  check_other_motions(r, item);
+  const deck_load_kind kinds[] = {{"velocity", rotates ? "1/s" : "m/s", false},
+                                  {"displacement", rotates ? "1" : "m", false}};
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  if (kind < 0) return;
+  item->is_displacement = kind == 1;
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
+    if (rotates && r->d->items[r->d->count - 1].code == DIAG_UNITS)
+      diag_hint(r->d, "a rotation is in rad, its velocity in rad/s");
+    return;
+  }
+  deck_warn_late(r, &item->item, "start", item->motion.start);
+  if (!item->is_displacement) return;
+  spread(r, from, &item->motion);
+  warn_of_jump(r, from, &item->motion);
+}
+
+static void check_drive(deck_reader *r, const namelist_group *from, void *into) {
+  deck_drive *item = into;
+  const int errors = r->d->errors;
+  complete_drive(r, from, item);
+  if (r->d->errors == errors)
+    note_motions(r, item->region, 1 << item->component, deck_where(&item->item, "component"));
+}
+
+DECK_LIST(drive, .identity = "region", .check = check_drive,
+          .doc = "Prescribed motion of a region from `start` on; free before. Give `velocity` or "
+                 "`displacement`.");
+
+/* --- force */
+
+static const deck_key_info force_keys[] = {
+    REGION_KEY(force, "what is loaded"),
+    {.name = "component",
+     .type = DECK_LATER,
+     .choices = DECK_COMPONENTS,
+     .fallback = "= 'rotation' with a moment; else required",
+     DECK_NOT_KEPT,
+     .doc = "direction of the load"},
+    {.name = "total",
+     .former = "force", /* Fortran's own reader wants no variable named like its group */
+     .type = DECK_LATER,
+     .unit = "N",
+     DECK_NOT_KEPT,
+     .doc = "full force, of all particles together (`x`, `y`, `z`)"},
+    {.name = "moment",
+     .type = DECK_LATER,
+     .unit = "N*m",
+     DECK_NOT_KEPT,
+     .doc = "full moment, of all particles together (`rotation`)"},
+    DECK_TIME_KEYS,
+};
+
+static void check_force(deck_reader *r, const namelist_group *from, void *into) {
+  deck_force *item = into;
+  static const deck_load_kind kinds[] = {{"total", "N", false}, {"moment", "N*m", false}};
+  deck_item_region_known(r, &item->item, item->region);
+  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  const namelist_key *component = namelist_find(from, "component");
+  if (kind < 0) return;
+  const bool rotates = kind == 1;
+  item->component = rotates ? DECK_WRITTEN_ROTATION : 0;
+  if (component) item->component = deck_choice_read(r->memory, component, DECK_COMPONENTS, r->d);
+  if (item->component < 0 || !deck_take_component(r, &item->item, item->region, &item->component))
+    return;
+  if (!component && !rotates) {
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
+    diag_hint(r->d, deck_dimensions_of_region(r, item->region) == 3 ? "component = 'x', 'y' or 'z'"
+                                                                    : "component = 'x' or 'y'");
+    return;
+  }
+  if (rotates != deck_is_rotation(r, item->region, item->component)) {
+    const namelist_key *key = namelist_find(from, kinds[kind].key);
+    diag_report(r->d, DIAG_CONFLICT,
+                key ? key->name_where : namelist_find(from, "file")->value_where,
+                "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
+                key ? "`" : "", deck_component_of(r, item->region, item->component));
+    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
+    return;
+  }
+  if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;
+  deck_warn_late(r, &item->item, "start", item->force.start);
+  spread(r, from, &item->force);
+}
+
+DECK_LIST(force, .identity = "region", .check = check_force,
+          .doc = "Force on a region, shared equally by its particles. Give `total` or `moment`.");
+
+/* --- end moment */
+
+static const deck_key_info end_moment_keys[] = {
+    REGION_KEY(end_moment, "what is loaded, e.g. the end columns of a beam"),
+    {.name = "moment",
+     .type = DECK_LATER,
+     .unit = "N*m",
+     .fallback = "= required, but for a file with a unit",
+     DECK_NOT_KEPT,
+     .doc = "full moment; counter-clockwise on the body is positive"},
+    DECK_TIME_KEYS,
+};
+
+static void check_end_moment(deck_reader *r, const namelist_group *from, void *into) {
+  deck_end_moment *item = into;
+  static const deck_load_kind kind = {"moment", "N*m", false};
+  deck_item_region_known(r, &item->item, item->region);
+  if (deck_load_kind_of(from, &kind, 1, r->d) < 0 ||
+      !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
+    return;
+  deck_warn_late(r, &item->item, "start", item->moment.start);
+  spread(r, from, &item->moment);
+}
+
+DECK_LIST(end_moment, .identity = "region", .check = check_end_moment,
+          .doc = "Moment on a region: horizontal forces, linear in y, without resultant.");
+
+/* --- protect */
+
+static const deck_key_info protect_keys[] = {
+    REGION_KEY(protect, "around which bonds stay whole"),
+    {.name = "radius",
+     .type = DECK_REAL,
+     .unit = "1",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(protect, radius),
+     .doc = "in spacings: all bonds of particles within it; 0: of the region's own particles"},
+};
+
+static void check_protect(deck_reader *r, const namelist_group *from, void *into) {
+  deck_protect *item = into;
+  (void)from;
+  deck_item_region_known(r, &item->item, item->region);
+}
+
+DECK_LIST(protect, .identity = "region", .check = check_protect,
+          .doc = "Bonds near a region take no damage.");
+
+/* --- damping */
+
+static const deck_key_info damping_keys[] = {
+    {.name = "kind",
+     .type = DECK_WORD,
+     .choices = "mass",
+     .fallback = "'mass'",
+     DECK_NOT_KEPT,
+     .doc = "`mass`: force = -rate * mass * velocity"},
+    {.name = "rate",
+     .type = DECK_REAL,
+     .unit = "1/s",
+     .bound = BOUND_POSITIVE,
+     .required = true,
+     DECK_AT(damping, rate),
+     .doc = "how fast velocities decay"},
+    {.name = "from",
+     .type = DECK_REAL,
+     .unit = "s",
+     .bound = BOUND_NOT_NEGATIVE,
+     .fallback = "0",
+     DECK_AT(damping, from),
+     .doc = "begin"},
+    {.name = "until",
+     .type = DECK_REAL,
+     .unit = "s",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= the end of the run",
+     DECK_AT(damping, until),
+     .doc = "end"},
+};
+
+static void check_damping(deck_reader *r, const namelist_group *from, void *into) {
+  deck_damping *item = into;
+  if (!namelist_find(from, "until")) item->until = INFINITY;
+  deck_warn_late(r, &item->item, "from", item->from);
+  if (item->until > item->from) return;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "until"),
+              "`until` must be later than `from`");
+}
+
+DECK_LIST(damping, .check = check_damping, .doc = "Slows the motion of every particle for a time.");
+
+/* --- gravity */
+
+static const deck_key_info gravity_keys[] = {
+    {.name = "acceleration",
+     .type = DECK_PLACE,
+     .unit = "m/s^2",
+     .required = true,
+     DECK_AT(gravity, acceleration),
+     .doc = "full acceleration along x, y and, in space, z; e.g. 0, '-9.81 m/s^2'"},
+    DECK_TIME_KEYS,
+};
+
+static void check_gravity(deck_reader *r, const namelist_group *from, void *into) {
+  deck_gravity *item = into;
+  if (deck_factor_read(r->memory, from, "acceleration", &item->factor, r->d)) {
+    deck_warn_late(r, &item->item, "start", item->factor.start);
+    spread(r, from, &item->factor);
+  }
+  if (deck_dimensions_of(r, NULL))
+    deck_check_places(r, from, &deck_group_gravity, deck_dimensions_of(r, NULL));
+  if (item->acceleration[0] == 0 && item->acceleration[1] == 0 && item->acceleration[2] == 0)
+    diag_report(r->d, DIAG_DECK_WARNING, deck_where(&item->item, "acceleration"),
+                "this gravity is zero");
+}
+
+DECK_LIST(gravity, .check = check_gravity,
+          .doc = "Weight of every particle; several add up. Its work is in the energy ledger.");
+
+/* --- initial velocity */
+
+static const deck_key_info initial_velocity_keys[] = {
+    REGION_KEY(initial_velocity, "what moves"),
+    {.name = "component",
+     .type = DECK_CHOICE,
+     .choices = DECK_COMPONENTS,
+     .required = true,
+     DECK_AT(initial_velocity, component),
+     .doc = "direction of the motion"},
+    {.name = "value",
+     .type = DECK_LATER,
+     .unit = "m/s; rotation: rad/s",
+     .required = true,
+     DECK_NOT_KEPT,
+     .doc = "the velocity, of each particle"},
+};
+
+static void check_initial_velocity(deck_reader *r, const namelist_group *from, void *into) {
+  deck_initial_velocity *item = into;
+  const namelist_key *key = namelist_find(from, "value");
+  deck_item_region_known(r, &item->item, item->region);
+  if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
+  const bool rotates = deck_is_rotation(r, item->region, item->component);
+  if (!deck_values_counted(key, 1, r->d) ||
+      deck_real_read(&key->values[0], "value", rotates ? "1/s" : "m/s", BOUND_NONE, &item->value,
+                     r->d))
+    return;
+  if (rotates) diag_hint(r->d, "a rotation's velocity is in rad/s");
+}
+
+DECK_LIST(initial_velocity, .identity = "region", .check = check_initial_velocity,
+          .doc = "Velocity of a region when the run begins.");

@@ -1,0 +1,9 @@
+/* Groups of what is watched: monitors, and stops that a monitor decides. */
+#ifndef PERILAT_RUNTIME_GROUP_MONITOR_H
+#define PERILAT_RUNTIME_GROUP_MONITOR_H
+
+#include "runtime/deck/deck_schema.h"
+
+extern const deck_group_info deck_group_monitor, deck_group_stop;
+
+#endif

@@ -1,0 +1,42 @@
+#include "runtime/deck/lattice_kind.h"
+
+#include <string.h>
+
+#define ROW(name, dimensions, square, shift_by) {#name, dimensions, BRACED square, BRACED shift_by},
+#define BRACED(...)                                                                                \
+  { __VA_ARGS__ }
+const lattice_kind lattice_kinds[LATTICE_KIND_COUNT] = {LATTICE_KINDS(ROW)};
+
+const lattice_kind *lattice_kind_find(const char *name) {
+  for (int k = 0; k < LATTICE_KIND_COUNT; k++)
+    if (strcmp(lattice_kinds[k].name, name) == 0) return &lattice_kinds[k];
+  return NULL;
+}
+
+bool deck_lattice_is_irregular(const deck_lattice *l) {
+  const lattice_kind *kind = lattice_kind_find(l->kind);
+  return kind && kind->dimensions == 0;
+}
+
+static bool is_space(const char *setting) {
+  return setting && strcmp(setting, "space") == 0;
+}
+
+int deck_lattice_dimensions(const deck_lattice *l) {
+  const lattice_kind *kind = lattice_kind_find(l->kind);
+  if (!kind) return 0;
+  return kind->dimensions ? kind->dimensions : is_space(l->setting) ? 3 : 2;
+}
+
+deck_lattice lattice_default(const char *setting, double spacing, double thickness) {
+  const bool space = is_space(setting);
+  const double t = space ? 0 : thickness;
+  return (deck_lattice){.name = "lattice",
+                        .kind = space ? "fcc" : "hexagonal",
+                        .spacing = spacing,
+                        .shells = space ? 2 : 0,
+                        .thickness = t,
+                        .stiffness_thickness = t,
+                        .mass_thickness = t,
+                        .setting = setting};
+}

@@ -1,0 +1,68 @@
+/* The kinds of lattices that a deck can name, in one table, and what follows from the kind: a new
+   kind of lattice is a row. */
+#ifndef PERILAT_RUNTIME_LATTICE_KIND_H
+#define PERILAT_RUNTIME_LATTICE_KIND_H
+
+#include <stdbool.h>
+
+#include "dsl/base/c_linkage.h"
+#include "runtime/deck/deck.h"
+
+C_LINKAGE_BEGIN
+
+/* X(name, dimensions, squares of the steps along a row, across rows, across layers in spacings,
+   half steps by which a row and a layer are shifted against the one before). Particles that stand
+   on no lattice have no steps: 0 dimensions, the setting says whether they are in the plane or in
+   space.
+
+       o   o   o   o         hexagonal: rows are sqrt(3)/2 = sqrt(0.75) apart,
+         o   o   o   o       each shifted by one half step
+       o   o   o   o
+ */
+#define LATTICE_KINDS(X)                                                                           \
+  X(hexagonal, 2, (1, 0.75, 0), (1, 0))                                                            \
+  X(square, 2, (1, 1, 0), (0, 0))                                                                  \
+  X(cubic, 3, (1, 1, 1), (0, 0))                                                                   \
+  X(fcc, 3, (2, 0.5, 0.5), (1, 1)) /* cube edges along the axes */                                 \
+  X(blue_noise, 0, (0, 0, 0), (0, 0))                                                              \
+  X(particles, 0, (0, 0, 0), (0, 0))
+
+/* Those that have sites, in a sentence. */
+#define LATTICE_KINDS_OF_SITES "hexagonal, square, cubic or fcc"
+
+typedef struct lattice_kind {
+  const char *name;
+  int dimensions;   /* 2, 3; 0: particles on no lattice */
+  double square[3]; /* of the steps, in spacings: exact */
+  int shift_by[2];  /* half steps */
+} lattice_kind;
+
+/* "hexagonal|square|..." */
+/* clang-format off */
+#define LATTICE_KIND_CHOICE(name, dimensions, square, shift_by) "|" #name
+#define LATTICE_KIND_CHOICES (&(LATTICE_KINDS(LATTICE_KIND_CHOICE))[1])
+/* clang-format on */
+
+enum {
+#define X(name, dimensions, square, shift_by) LATTICE_KIND_##name,
+  LATTICE_KINDS(X)
+#undef X
+      LATTICE_KIND_COUNT
+};
+extern const lattice_kind lattice_kinds[LATTICE_KIND_COUNT];
+/* NULL for an unknown name. */
+const lattice_kind *lattice_kind_find(const char *name);
+
+/* True for particles that stand on no lattice. */
+bool deck_lattice_is_irregular(const deck_lattice *l);
+/* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
+   kind. */
+int deck_lattice_dimensions(const deck_lattice *l);
+
+/* The lattice that is meant where none is named: hexagonal in the plane, fcc with two shells in
+   space. The thickness is that of both stiffness and mass, and 0 in space. */
+deck_lattice lattice_default(const char *setting, double spacing, double thickness);
+
+C_LINKAGE_END
+
+#endif
