@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "dsl/semantics/law_check.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/toolchain.h"
 #include "generator/target/words_c.h"
