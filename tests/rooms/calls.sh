@@ -37,7 +37,8 @@ circles() {
         members = w " " members; ring[w] = v
         if (w == v) break
       }
-      if (n > 1) { circle[v] = members }
+      sub(/ $/, "", members)
+      if (n > 1) circle[v] = members
     }
     $2 == "+" { home[$3] = $1 }
     $2 == "-" { from[++needs] = $1; what[needs] = $3 }
