@@ -3,7 +3,7 @@
 #ifndef PERILAT_RUNTIME_PAIR_SUMS_H
 #define PERILAT_RUNTIME_PAIR_SUMS_H
 
-#include "runtime/interaction/sweep_parts.h"
+#include "runtime/interaction/sweep.h"
 
 typedef struct pair_sums { /* of one thread */
   int before, last;        /* rows before .. last-1 are its own and those that reach them */
@@ -13,7 +13,7 @@ typedef struct pair_sums { /* of one thread */
 } pair_sums;
 
 /* `reach`: rows that a bond reaches ahead, at most. */
-pair_sums pair_sums_new(sweep *w, const sweep_block *b, int reach);
+pair_sums pair_sums_new(sweep *w, const body_block *b, int reach);
 void pair_sums_free(pair_sums *s);
 /* Points at the sums of a run that begins at that site. */
 double *const *pair_sums_at(const sweep *w, pair_sums *s, long start);

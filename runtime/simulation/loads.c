@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/body/motion.h"
 
 /* --- regions ---------------------------------------------------------------------------------- */
 
@@ -182,7 +183,7 @@ static double part_of(const load_clock *c, long step) {
   return pl_fmin(1, (double)(step - c->first) / (double)c->ramp);
 }
 
-static double time_of(const loads *l, const sweep *w, long step) {
+static double time_of(const loads *l, const body *w, long step) {
   const load_clock *c = &l->clock;
   if (c->ramp == 0) return (double)step * w->time_step;
   return c->from + (c->to - c->from) * part_of(c, step);
@@ -203,7 +204,7 @@ static double settled(const load_clock *c, const time_function *f, in_time *valu
 
 /* After a number of steps; within an increment evenly from its beginning to its end, so that no load
    comes all at once. */
-static double load_at(const loads *l, const sweep *w, const time_function *f, in_time *value,
+static double load_at(const loads *l, const body *w, const time_function *f, in_time *value,
                       long step) {
   const load_clock *c = &l->clock;
   if (c->ramp == 0) return value(f, time_of(l, w, step));
@@ -212,12 +213,12 @@ static double load_at(const loads *l, const sweep *w, const time_function *f, in
 }
 
 /* Part of the time within half a step of t that comes after `start`. The run itself begins with what begins at 0. */
-static double part_after(const sweep *w, double start, double t) {
+static double part_after(const body *w, double start, double t) {
   return start <= 0 ? 1 : pl_fmin(pl_fmax((t - start) / w->time_step + 0.5, 0), 1);
 }
 
 /* What acts in the step: the value at its instant, of a jump nearby the part that is covered. */
-static double acting(const loads *l, const sweep *w, const time_function *f, long step) {
+static double acting(const loads *l, const body *w, const time_function *f, long step) {
   const double value = load_at(l, w, f, time_function_at, step), jump = time_function_jump(f);
   if (l->clock.ramp > 0 || jump == 0) return value;
   const double t = time_of(l, w, step);
@@ -312,7 +313,7 @@ static const time_function *cause_of(const loads *l, int cause) {
                         : &l->deck->end_moments[cause - forces].moment;
 }
 
-static double factor_at(const loads *l, const sweep *w, int cause, long step) {
+static double factor_at(const loads *l, const body *w, int cause, long step) {
   return acting(l, w, cause_of(l, cause), step);
 }
 
@@ -418,7 +419,7 @@ long loads_constraints_of(const loads *l, int region, int component, int32_t **i
 
 /* --- velocities at the start ------------------------------------------------------------------ */
 
-bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
+bool loads_initial_velocity(const loads *l, body *w, diagnostics *d) {
   bool good = true;
   for (int i = 0; i < l->deck->initial_velocity_count; i++) {
     const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
@@ -436,12 +437,12 @@ bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d) {
 
 /* --- in time ---------------------------------------------------------------------------------- */
 
-static double decay_with(const sweep *w, double rate) {
+static double decay_with(const body *w, double rate) {
   return rate > 0 ? pl_exp(-rate * w->time_step) : 1;
 }
 
 /* Factor of the step that begins at step * time_step. */
-static double decay_of(const loads *l, const sweep *w, long step) {
+static double decay_of(const loads *l, const body *w, long step) {
   const double t = time_of(l, w, step);
   double rate = 0;
   for (int i = 0; i < l->deck->damping_count; i++) {
@@ -452,7 +453,7 @@ static double decay_of(const loads *l, const sweep *w, long step) {
 }
 
 /* Motion prescribed after `step` steps since the drive's start: m, rad. */
-static double motion_at(const loads *l, const sweep *w, const constraint *c, long step) {
+static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return 0;
   const deck_drive *drive = &l->deck->drives[c->drive];
   return load_at(l, w, &drive->motion,
@@ -464,20 +465,20 @@ static double start_of(const loads *l, const constraint *c) {
 }
 
 /* What of the time of a step is rounding. */
-static double hardly(const sweep *w) {
+static double hardly(const body *w) {
   return 1e-6 * w->time_step;
 }
 
 /* A drive holds its particles from the step on that begins with it, to rounding; in a quasi-static run from the beginning of the
    increment that it begins in. */
-static bool is_held(const loads *l, const sweep *w, const constraint *c, long step) {
+static bool is_held(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return true;
   if (l->clock.ramp > 0) return l->clock.to > just_after(&l->clock, start_of(l, c));
   return time_of(l, w, step) >= start_of(l, c) - hardly(w);
 }
 
 /* Velocity prescribed just after the instant of a step, which rounding may have put before the start. */
-static double velocity_at(const loads *l, const sweep *w, const constraint *c, long step) {
+static double velocity_at(const loads *l, const body *w, const constraint *c, long step) {
   const deck_drive *drive = &l->deck->drives[c->drive];
   const double t = pl_fmax(time_of(l, w, step), drive->motion.start);
   return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
@@ -485,7 +486,7 @@ static double velocity_at(const loads *l, const sweep *w, const constraint *c, l
 
 /* A motion that begins moves on as if it had always gone so: its velocity half a step before is that after, mirrored at the
    velocity prescribed now. A place that is prescribed at once has no velocity. */
-static double impulse_of(const loads *l, const sweep *w, const constraint *c, long step) {
+static double impulse_of(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0 || l->clock.ramp > 0) return 0;
   const deck_drive *drive = &l->deck->drives[c->drive];
   if (drive->is_displacement && time_function_jump(&drive->motion) != 0) return 0;
@@ -494,7 +495,7 @@ static double impulse_of(const loads *l, const sweep *w, const constraint *c, lo
 }
 
 /* The motion takes up a particle that was free and stands where it is. */
-static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
+static void take_up(const loads *l, const body *w, constraint *c, long step) {
   if (c->active || !is_held(l, w, c, step)) return;
   const bool placed = c->drive >= 0 && l->deck->drives[c->drive].is_displacement;
   c->active = 1;
@@ -505,7 +506,7 @@ static void take_up(const loads *l, const sweep *w, constraint *c, long step) {
 
 /* Weight of the step that begins at step * time_step, and its work for a velocity after that step; as for forces the mean of both
    ends of the way works. */
-static void set_gravity(const loads *l, sweep *w, long step) {
+static void set_gravity(const loads *l, body *w, long step) {
   for (int c = 0; c < w->dimensions; c++) {
     double here = 0, next = 0;
     for (int i = 0; i < l->deck->gravity_count; i++) {
@@ -518,13 +519,13 @@ static void set_gravity(const loads *l, sweep *w, long step) {
   }
 }
 
-void loads_increment(loads *l, const sweep *w, load_clock clock) {
+void loads_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
   for (long i = 0; i < l->constraint_count; i++)
     take_up(l, w, &l->constraints[i], (long)clock.first);
 }
 
-void loads_begin(loads *l, sweep *w) {
+void loads_begin(loads *l, body *w) {
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
     c->velocity = w->velocity[c->component][c->site];
@@ -554,21 +555,21 @@ static double damping_at_once(const loads *l) {
   return rate;
 }
 
-/* With v- = 2/(1 + decay) v - dt/2 a the step (sweep.h) goes to v+ with (v- + v+)/2 = v. */
-void loads_set_back(loads *l, sweep *w) {
+/* With v- = 2/(1 + decay) v - dt/2 a the step (motion.h) goes to v+ with (v- + v+)/2 = v. */
+void loads_set_back(loads *l, body *w) {
   const double half = 0.5 * w->time_step, back = 2 / (1 + decay_with(w, damping_at_once(l)));
   for (int d = 0; d < w->dof; d++) {
     const double weight = d < w->dimensions ? weight_at_once(l, d) : 0;
     for (long p = 0; p < l->lattice->particle_count; p++) {
       const int64_t q = l->lattice->particle_site[p];
       double *v = &w->velocity[d][q];
-      *v = back * *v - half * (w->force[d][q] / sweep_mass(w, d, q) + weight);
+      *v = back * *v - half * (w->force[d][q] / body_mass(w, d, q) + weight);
     }
   }
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
     const double force = f->share * time_function_at(cause_of(l, f->cause), 0);
-    w->velocity[f->component][f->site] -= half * force / sweep_mass(w, f->component, f->site);
+    w->velocity[f->component][f->site] -= half * force / body_mass(w, f->component, f->site);
   }
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
@@ -599,14 +600,14 @@ static long first_at(const void *items, long count, size_t size, int64_t site) {
 /* The loads on the rows of a block in a step. */
 typedef struct load_run {
   loads *l;
-  sweep *w;
+  body *w;
   long step;
   bool stuck; /* some rows have not moved */
   long first_constraint, last_constraint, first_force, last_force;
 } load_run;
 
-static load_run run_of(loads *l, sweep *w, int block, long step) {
-  const sweep_block *b = &w->blocks[block];
+static load_run run_of(loads *l, body *w, int block, long step) {
+  const body_block *b = &w->blocks[block];
   const int64_t from = rows_start(l->lattice, b->first), to = rows_start(l->lattice, b->last);
   load_run r = {.l = l, .w = w, .step = step, .stuck = b->bad_site >= 0};
   r.first_constraint = first_at(l->constraints, l->constraint_count, sizeof *l->constraints, from);
@@ -617,28 +618,27 @@ static load_run run_of(loads *l, sweep *w, int block, long step) {
 }
 
 static bool has_moved(const load_run *r, int64_t site) {
-  return !r->stuck || sweep_has_moved(r->w, site);
+  return !r->stuck || body_has_moved(r->w, site);
 }
 
 /* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds over the way of a free particle,
    whose velocity was `before` and is `after`; it turns out to be larger by `change`. */
-static void correct_free_way(const sweep *w, int component, int64_t site, double before,
+static void correct_free_way(const body *w, int component, int64_t site, double before,
                              double after, double change, load_sums *sums) {
-  const double mass = sweep_mass(w, component, site);
+  const double mass = body_mass(w, component, site);
   if (component < w->dimensions)
     sums->work += w->gravity_work[component] * (mass / w->mass[component]) * change;
-  sums->dissipated += 0.5 * mass * sweep_drag(w) * change * (2 * (before + after) + change);
-  if (w->law->kind == PL_STATE && w->ledger)
-    sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
+  sums->dissipated += 0.5 * mass * motion_drag(w) * change * (2 * (before + after) + change);
+  if (w->works) sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
 }
 
 /* Velocity that a force gives in a step. */
-static double given_by(const sweep *w, int component, int64_t site, double force) {
-  return w->time_step / sweep_mass(w, component, site) * (sweep_force_part(w) * force);
+static double given_by(const body *w, int component, int64_t site, double force) {
+  return w->time_step / body_mass(w, component, site) * (motion_force_part(w) * force);
 }
 
 static void apply_forces(const load_run *r) {
-  const sweep *w = r->w;
+  const body *w = r->w;
   for (long i = r->first_force; i < r->last_force; i++) {
     applied *f = &r->l->forces[i];
     if (!has_moved(r, f->site)) continue;
@@ -679,13 +679,13 @@ static double force_after(const load_run *r, const applied *f, remembered *m) {
 }
 
 /* Force that gives a particle one velocity instead of another after a step. */
-static double force_for(const sweep *w, const constraint *c, double change) {
-  return sweep_mass(w, c->component, c->site) * change / (w->time_step * sweep_force_part(w));
+static double force_for(const body *w, const constraint *c, double change) {
+  return body_mass(w, c->component, c->site) * change / (w->time_step * motion_force_part(w));
 }
 
 /* Moves the particle to `target` instead of where it would go. What this takes works with the mean of the velocities before and
    after. */
-static double pull(const sweep *w, constraint *c, double target) {
+static double pull(const body *w, constraint *c, double target) {
   double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
   const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
   const double force = force_for(w, c, prescribed - *v);
@@ -698,13 +698,13 @@ static double pull(const sweep *w, constraint *c, double target) {
 }
 
 /* Part of the force in the step that a motion begins with: its impulse. */
-static double impulsive(const sweep *w, const constraint *c) {
+static double impulsive(const body *w, const constraint *c) {
   return c->impulse == 0 ? 0 : force_for(w, c, w->decay * c->impulse);
 }
 
 /* A motion that begins between the ends of the step: until then the particle was free. */
 static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
-  const sweep *w = r->w;
+  const body *w = r->w;
   const double rest = time_of(r->l, w, r->step + 1) - start_of(r->l, c);
   if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
   const double v = w->velocity[c->component][c->site],
@@ -716,7 +716,7 @@ static void begin_on_the_way(const load_run *r, constraint *c, remembered *after
 }
 
 static void apply_motion(const load_run *r, constraint *c, remembered *after) {
-  const sweep *w = r->w;
+  const body *w = r->w;
   const bool held = c->active;
   c->reaction = 0;
   if (held)
@@ -745,7 +745,7 @@ static void next_forces(const load_run *r) {
   }
 }
 
-void loads_apply(loads *l, sweep *w, int block, long step) {
+void loads_apply(loads *l, body *w, int block, long step) {
   const load_run r = run_of(l, w, block, step);
   apply_forces(&r);
   apply_motions(&r);
@@ -754,7 +754,7 @@ void loads_apply(loads *l, sweep *w, int block, long step) {
     take_up(l, w, &l->constraints[i], step + 1);
 }
 
-void loads_turn(const loads *l, sweep *w, long step) {
+void loads_turn(const loads *l, body *w, long step) {
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, step + 1);
   if (w->weight) set_gravity(l, w, step + 1);
 }
@@ -775,37 +775,37 @@ load_sums loads_total(const loads *l) {
 }
 
 /* Velocity after the coming step if nothing but bonds, damping and gravity acted on a particle. */
-static double free_velocity(const sweep *w, int component, int64_t site) {
+static double free_velocity(const body *w, int component, int64_t site) {
   const double weight = component < w->dimensions ? w->gravity[component] : 0;
   return w->decay * w->velocity[component][site] +
          given_by(w, component, site, w->force[component][site]) +
-         w->time_step * sweep_force_part(w) * weight;
+         w->time_step * motion_force_part(w) * weight;
 }
 
 /* The same when a motion is prescribed. */
-static double prescribed_velocity(const loads *l, const sweep *w, const constraint *c, long step) {
+static double prescribed_velocity(const loads *l, const body *w, const constraint *c, long step) {
   return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
 }
 
 /* In quasi-static runs inertia is but a means: a reaction is what balances bonds and weight. */
-static double force_at_rest(const sweep *w, const constraint *c) {
+static double force_at_rest(const body *w, const constraint *c) {
   const double weight = c->component < w->dimensions ? w->gravity[c->component] : 0;
-  return w->force[c->component][c->site] + sweep_mass(w, c->component, c->site) * weight;
+  return w->force[c->component][c->site] + body_mass(w, c->component, c->site) * weight;
 }
 
-load_look loads_observe(loads *l, const sweep *w, long step) {
+load_look loads_observe(loads *l, const body *w, long step) {
   load_look sum = {0, 0, 0};
   for (long i = 0; i < l->constraint_count; i++) {
     constraint *c = &l->constraints[i];
     c->reaction = 0;
     if (!c->active) continue;
-    const double mass = sweep_mass(w, c->component, c->site);
+    const double mass = body_mass(w, c->component, c->site);
     const double change =
         prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
     const double force = force_for(w, c, change);
     c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
     sum.kinetic += 0.5 * mass * c->velocity * change;
-    sum.dissipated += 0.5 * mass * sweep_drag(w) * c->velocity * change;
+    sum.dissipated += 0.5 * mass * motion_drag(w) * c->velocity * change;
     sum.work += 0.5 * w->time_step * c->velocity * force;
   }
   for (long i = 0; i < l->force_count; i++) {
@@ -817,17 +817,17 @@ load_look loads_observe(loads *l, const sweep *w, long step) {
       sum.work -= power;
       continue;
     }
-    sum.kinetic += sweep_force_part(w) * power;
-    sum.dissipated += sweep_force_part(w) * sweep_drag(w) * power;
+    sum.kinetic += motion_force_part(w) * power;
+    sum.dissipated += motion_force_part(w) * motion_drag(w) * power;
   }
   return sum;
 }
 
-static double mean_velocity(const loads *l, const sweep *w, const constraint *c, long step) {
+static double mean_velocity(const loads *l, const body *w, const constraint *c, long step) {
   return 0.5 * (c->velocity + c->impulse + prescribed_velocity(l, w, c, step));
 }
 
-double loads_velocity(const loads *l, const sweep *w, int component, int64_t site, long step) {
+double loads_velocity(const loads *l, const body *w, int component, int64_t site, long step) {
   const long count = l->constraint_count;
   long i = first_at(l->constraints, count, sizeof *l->constraints, site);
   for (; i < count && l->constraints[i].site == site; i++)

@@ -21,8 +21,8 @@
 #define PERILAT_RUNTIME_LOADS_H
 
 #include "dsl/base/diagnostics.h"
+#include "runtime/body/body.h"
 #include "runtime/deck/deck.h"
-#include "runtime/interaction/sweep.h"
 #include "runtime/lattice/rows.h"
 
 typedef struct load_sums { /* J, since the start */
@@ -40,8 +40,10 @@ typedef struct constraint { /* one component of one particle that is held or dri
   double anchor;   /* m, rad: displacement less the motion prescribed */
   double held;     /* present prescribed displacement */
   double velocity; /* after the last step */
-  double impulse;  /* m/s, rad/s: what the velocity changes by at once, as the motion begins in the coming step */
-  double reaction; /* N, N m: in the state that the last step began with, or in the one observed since */
+  double
+      impulse; /* m/s, rad/s: what the velocity changes by at once, as the motion begins in the coming step */
+  double
+      reaction; /* N, N m: in the state that the last step began with, or in the one observed since */
   load_sums sums;
 } constraint;
 
@@ -56,10 +58,11 @@ typedef struct applied { /* part of a force that acts on one component of one pa
   load_sums sums;
 } applied;
 
-typedef struct load_look { /* at the state observed: what loaded particles add to the sweep's sums, J */
-  double kinetic;          /* they are not free */
-  double work;             /* of reactions, from the last half step on */
-  double dissipated;       /* by mass damping, likewise */
+typedef struct
+    load_look {      /* at the state observed: what loaded particles add to the sweep's sums, J */
+  double kinetic;    /* they are not free */
+  double work;       /* of reactions, from the last half step on */
+  double dissipated; /* by mass damping, likewise */
 } load_look;
 
 typedef struct region_sites { /* of a region of the deck */
@@ -94,24 +97,24 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
 void loads_free(loads *l);
 
 /* Velocities that regions begin with. False with diagnostics where one is too large for a step. */
-bool loads_initial_velocity(const loads *l, sweep *w, diagnostics *d);
+bool loads_initial_velocity(const loads *l, body *w, diagnostics *d);
 /* Before the first step of each increment of a quasi-static run: its loads, and what they hold. */
-void loads_increment(loads *l, const sweep *w, load_clock clock);
+void loads_increment(loads *l, const body *w, load_clock clock);
 /* To be called once, before the first step: forces at time 0, places of the supports. */
-void loads_begin(loads *l, sweep *w);
+void loads_begin(loads *l, body *w);
 /* Then, in dynamic runs, when the state at time 0 was observed: velocities from there to half a step before. */
-void loads_set_back(loads *l, sweep *w);
+void loads_set_back(loads *l, body *w);
 /* When step n -> n+1 has moved the rows of a block: applied forces, prescribed motions, reactions, work. What has not moved, as
    its row has a bad velocity, is left alone. */
-void loads_apply(loads *l, sweep *w, int block, long step);
+void loads_apply(loads *l, body *w, int block, long step);
 /* When all blocks have, alone: gravity and damping of the coming step (with a clock of its own that stays as it is). */
-void loads_turn(const loads *l, sweep *w, long step);
+void loads_turn(const loads *l, body *w, long step);
 load_sums loads_total(const loads *l);
 
 /* When the state after `step` steps was observed: reactions in it. */
-load_look loads_observe(loads *l, const sweep *w, long step);
+load_look loads_observe(loads *l, const body *w, long step);
 /* Then: velocity (m/s, rad/s) of a particle at this instant, the mean of those half a step before and after. */
-double loads_velocity(const loads *l, const sweep *w, int component, int64_t site, long step);
+double loads_velocity(const loads *l, const body *w, int component, int64_t site, long step);
 
 /* Indices of the constraints of a region's particles in a component; malloc'ed. */
 long loads_constraints_of(const loads *l, int region, int component, int32_t **indices);

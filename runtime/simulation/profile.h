@@ -23,7 +23,7 @@ typedef enum profile_part {
 
 typedef struct profile {
   double part[PROFILE_PART_COUNT]; /* s */
-  double pass[SWEEP_TIMED_PASSES]; /* s: of a law of families, pass by pass */
+  double pass[BODY_TIMED_PASSES];  /* s: of a law of families, pass by pass */
   double elapsed;                  /* s: of the team, work and waiting */
   double sampled, loaded;          /* s: by one thread for all: samples; loads and monitors */
 } profile;

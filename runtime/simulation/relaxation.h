@@ -15,7 +15,7 @@
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
-#include "runtime/interaction/sweep.h"
+#include "runtime/body/body.h"
 #include "runtime/simulation/loads.h"
 
 typedef struct relaxation_state { /* what a later step depends on */
@@ -31,18 +31,18 @@ typedef struct relaxation {
   relaxation_state state;
   double *displacement[PL_MAX_DOF]; /* [size] at the last look */
   double *force[PL_MAX_DOF];
-  double interval;    /* s of the deck's time in an increment */
-  long ramp;          /* steps */
+  double interval; /* s of the deck's time in an increment */
+  long ramp;       /* steps */
 
   /* own */
   const deck_relaxation *deck;
-  sweep *sweep;
+  body *body;
   loads *loads;
   double *total; /* [size] */
 } relaxation;
 
 /* Forces of the sweep must be kept. `part` of the largest stable step is taken. */
-relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part);
+relaxation *relaxation_new(const deck *k, body *w, loads *l, double part);
 void relaxation_free(relaxation *r);
 
 /* Before the first step. */

@@ -278,14 +278,15 @@ static bool set_up(simulation *s, diagnostics *d) {
   if (!s->lattice) s->lattice = lattice_build(k, 0, d);
   if (!s->lattice || !is_sound(s, d) || deck_lacks(k, NULL)) return false;
   s->bonds = rows_bonds(s->lattice);
-  s->state = sweep_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
-                       k->output.energy, quasi_static);
-  s->team = team_new(s->state->block_count);
+  s->state = interaction_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
+                             k->output.energy, quasi_static);
+  s->body = s->state->body;
+  s->team = team_new(s->body->block_count);
   if (s->fields) s->state->parameter = s->fields->value;
-  if (k->gravity_count > 0) sweep_add_gravity(s->state);
-  if (!loads_initial_velocity(s->loads, s->state, d)) return false;
+  if (k->gravity_count > 0) body_add_gravity(s->body);
+  if (!loads_initial_velocity(s->loads, s->body, d)) return false;
   if (quasi_static)
-    s->relaxation = relaxation_new(k, s->state, s->loads, s->limit.step / s->limit.limit);
+    s->relaxation = relaxation_new(k, s->body, s->loads, s->limit.step / s->limit.limit);
   s->monitors = monitors_new(k, s->state, s->loads, s->bonds,
                              quasi_static ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
@@ -373,7 +374,7 @@ double simulation_time(const simulation *s) {
                        : (double)s->at.step * s->limit.step;
 }
 int simulation_threads(const simulation *s) {
-  return s->state->block_count;
+  return s->body->block_count;
 }
 sweep *simulation_state(simulation *s) {
   return s->state;
@@ -381,12 +382,12 @@ sweep *simulation_state(simulation *s) {
 
 double simulation_memory(const simulation *s) {
   const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
-  const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->state->dof + 1) : 0;
+  const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->body->dof + 1) : 0;
   const rows *g = s->lattice;
   const double list =
       g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
               : 0;
-  return (double)s->state->bytes + list * (double)g->size +
+  return (double)s->body->bytes + list * (double)g->size +
          (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
          site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
@@ -494,14 +495,14 @@ double simulation_monitor_peak(const simulation *s, int index, double *time) {
 
 /* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_step(simulation *s) {
-  if (sweep_bad(s->state) >= 0) {
+  if (body_bad(s->body) >= 0) {
     bad_explain(s);
     s->at.status = STEP_BAD;
     s->go_on = s->observe = false;
     return;
   }
   sweep_turn(s->state);
-  loads_turn(s->loads, s->state, (long)s->at.step);
+  loads_turn(s->loads, s->body, (long)s->at.step);
   s->at.step++;
   s->go_on = s->at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
@@ -525,7 +526,7 @@ static void end_increment(simulation *s, const load_look *look) {
 }
 
 static void after_observing(simulation *s) {
-  const load_look look = loads_observe(s->loads, s->state, (long)s->at.step);
+  const load_look look = loads_observe(s->loads, s->body, (long)s->at.step);
   s->observe = false;
   s->observed_step = s->at.step;
   if (s->relaxation && s->at.step > 0) {
@@ -552,7 +553,7 @@ static double add_time(const simulation *s, double begun, double *sum) {
 static void do_stage(void *of, int task, int block) {
   simulation *s = of;
   const sweep_engine *engine = &s->state->engine;
-  sweep_block *b = &s->state->blocks[block];
+  body_block *b = &s->body->blocks[block];
   double now = s->profile ? monotonic_seconds() : 0;
   if (task >= engine->step_stages) {
     engine->observe(s->state, task - engine->step_stages, block);
@@ -562,13 +563,13 @@ static void do_stage(void *of, int task, int block) {
   engine->step(s->state, task, block);
   now = add_time(s, now, &b->stepping);
   if (task < engine->step_stages - 1) return;
-  loads_apply(s->loads, s->state, block, (long)s->at.step);
+  loads_apply(s->loads, s->body, block, (long)s->at.step);
   add_time(s, now, &b->loading);
 }
 
 /* Blocks keep the times of what they do in steps only. */
 static int next_task(simulation *s) {
-  s->state->timed = s->profile && !s->observe;
+  s->body->timed = s->profile && !s->observe;
   return s->observe ? s->state->engine.step_stages : s->go_on ? 0 : TEAM_END;
 }
 
@@ -602,10 +603,10 @@ static void begin(simulation *s) {
   if (s->at.begun) return;
   s->at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);
-  loads_begin(s->loads, s->state);
+  loads_begin(s->loads, s->body);
   if (!s->relaxation) {
     sweep_observe(s->state);
-    loads_set_back(s->loads, s->state);
+    loads_set_back(s->loads, s->body);
     monitors_step(s->monitors, 0);
   }
 }
@@ -614,23 +615,23 @@ void simulation_observe(simulation *s) {
   begin(s);
   if (s->observed_step == s->at.step) return;
   sweep_observe(s->state);
-  loads_observe(s->loads, s->state, (long)s->at.step);
+  loads_observe(s->loads, s->body, (long)s->at.step);
   s->observed_step = s->at.step;
 }
 
 static void run_team(simulation *s) {
   const team_work work = {.of = s, .block = do_stage, .next = after_stage};
   team_begin(s->team, next_task(s));
-#pragma omp parallel num_threads(s->state->block_count)
+#pragma omp parallel num_threads(s->body->block_count)
   {
-    const unsigned environment = sweep_enter();
+    const unsigned environment = subnormals_off();
     team_join(s->team, &work);
-    sweep_leave(environment);
+    subnormals_restore(environment);
   }
 }
 
 /* Of all blocks, a thread's share; when it does not work, it waits. */
-static void sum_profile(profile *p, const sweep *w) {
+static void sum_profile(profile *p, const body *w) {
   const double share = 1.0 / w->block_count;
   double *part = p->part;
   part[PROFILE_LAW] = part[PROFILE_PARTICLES] = 0;
@@ -638,12 +639,12 @@ static void sum_profile(profile *p, const sweep *w) {
   part[PROFILE_LOADS] = p->loaded;
   memset(p->pass, 0, sizeof p->pass);
   for (int k = 0; k < w->block_count; k++) {
-    const sweep_block *b = &w->blocks[k];
+    const body_block *b = &w->blocks[k];
     part[PROFILE_LAW] += share * (b->stepping - b->moving);
     part[PROFILE_PARTICLES] += share * b->moving;
     part[PROFILE_LOADS] += share * b->loading;
     part[PROFILE_SAMPLING] += share * b->observing;
-    for (int n = 0; n < SWEEP_TIMED_PASSES; n++)
+    for (int n = 0; n < BODY_TIMED_PASSES; n++)
       p->pass[n] += share * b->passes[n];
   }
   part[PROFILE_WAITING] = p->elapsed - part[PROFILE_LAW] - part[PROFILE_PARTICLES] -
@@ -662,7 +663,7 @@ step_status simulation_advance(simulation *s, long steps,
   run_team(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
-    sum_profile(s->profile, s->state);
+    sum_profile(s->profile, s->body);
   }
   if (s->at.status == STEP_OK && s->at.step == s->step_count) s->at.status = STEP_END;
   return (step_status)s->at.status;

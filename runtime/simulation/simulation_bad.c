@@ -8,8 +8,8 @@
 
 /* From a bad particle on, or from a little before it, its row has not moved; all else has. */
 static void ends_before(const simulation *s, int64_t site, double u[3], double v[3]) {
-  const sweep *w = s->state;
-  const bool moved = sweep_has_moved(w, site);
+  const body *w = s->body;
+  const bool moved = body_has_moved(w, site);
   for (int d = 0; d < 3; d++) {
     u[d] = d < w->dof ? w->displacement[d][site] : 0;
     v[d] = d < w->dof ? w->velocity[d][site] : 0;
@@ -120,7 +120,7 @@ static void look_at_family(simulation *s, long site) {
 }
 
 void bad_explain(simulation *s) {
-  const sweep_block *at = &s->state->blocks[sweep_bad(s->state)];
+  const body_block *at = &s->body->blocks[body_bad(s->body)];
   const int32_t particle = s->lattice->site_particle[at->bad_site];
   double worst = 0;
   s->bad = (bad_state){.step = (long)s->at.step,

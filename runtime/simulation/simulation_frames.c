@@ -42,8 +42,8 @@ static const char *words_of(const char *doc, const char *otherwise) {
 /* What is stored of any law. */
 static void offer_own(simulation *s, bool damage) {
   const pl_law *law = s->law;
-  double *const *u = s->state->displacement;
-  const int dimensions = s->state->dimensions;
+  double *const *u = s->body->displacement;
+  const int dimensions = s->body->dimensions;
   offer(s, frames_want(s, "displacement"),
         (frame_field){"displacement", "m", false, dimensions, "other", "displacement"},
         (frame_source){FROM_STATE, u, 0});
@@ -56,7 +56,7 @@ static void offer_own(simulation *s, bool damage) {
         (frame_source){FROM_STATE, u + 2, 0});
   offer(s, frames_want(s, "force"),
         (frame_field){"force", "N", false, dimensions, "other", "sum of the forces of the bonds"},
-        (frame_source){FROM_STATE, s->state->force, 0});
+        (frame_source){FROM_STATE, s->body->force, 0});
   offer(s, damage,
         (frame_field){"damage", "1", false, 1, "damage",
                       damage_on_particles(law)
@@ -237,12 +237,12 @@ static void velocities(const simulation *s, int components, double *values) {
   for (long p = 0; p < s->lattice->particle_count; p++)
     for (int c = 0; c < components; c++)
       values[p * components + c] =
-          loads_velocity(s->loads, s->state, c, s->lattice->particle_site[p], (long)s->at.step);
+          loads_velocity(s->loads, s->body, c, s->lattice->particle_site[p], (long)s->at.step);
 }
 
 void simulation_frame_values(simulation *s, int field, double *values) {
   const frame_source *from = &s->frame_sources[field];
-  const unsigned environment = sweep_enter();
+  const unsigned environment = subnormals_off();
   simulation_observe(s);
   switch (from->kind) {
   case FROM_VELOCITY:
@@ -267,5 +267,5 @@ void simulation_frame_values(simulation *s, int field, double *values) {
     bond_values(s, s->fields->value[from->index], values);
     break;
   }
-  sweep_leave(environment);
+  subnormals_restore(environment);
 }

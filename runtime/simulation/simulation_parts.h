@@ -4,8 +4,9 @@
 #define PERILAT_RUNTIME_SIMULATION_PARTS_H
 
 #include "dsl/base/arena.h"
+#include "runtime/base/subnormals.h"
 #include "runtime/base/team.h"
-#include "runtime/interaction/sweep.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/simulation/ledger.h"
 #include "runtime/simulation/loads.h"
@@ -21,7 +22,7 @@ typedef struct progress_state { /* first part of a checkpoint: the sizes of othe
   int64_t samples;              /* taken */
   int64_t next_sample;          /* in multiples of the interval */
   int64_t next_frame, last_frame_step;
-  int64_t stop; /* which &stop has ended the run; -1: none */
+  int64_t stop;      /* which &stop has ended the run; -1: none */
   frame_mark frames; /* of the caller */
 } progress_state;
 
@@ -46,7 +47,8 @@ struct simulation {
   double *parameters;    /* the caller's; those of random fields become their mean */
   random_fields *fields; /* NULL without */
   sweep *state;
-  team *team; /* of the threads; each has a block of the sweep */
+  body *body; /* of the state */
+  team *team; /* of the threads; each has a block of the body */
   loads *loads;
   monitors *monitors;
   relaxation *relaxation; /* NULL: a dynamic run */
@@ -66,9 +68,9 @@ struct simulation {
   double *bad_fields;     /* [law's fields], of the bad bond; families: [1 + neighbours] of these */
   bad_neighbour *bad_family;
   progress_state at;
-  bool observe, go_on;         /* set by one thread for all */
-  int64_t observed_step;       /* of the state observed last; -1: none */
-  profile *profile;            /* NULL: nothing is measured */
+  bool observe, go_on;   /* set by one thread for all */
+  int64_t observed_step; /* of the state observed last; -1: none */
+  profile *profile;      /* NULL: nothing is measured */
   int64_t until;
   const volatile sig_atomic_t *interrupted;
 };

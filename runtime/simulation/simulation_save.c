@@ -19,9 +19,9 @@ static void add_part(part_list *l, const char *name, void *data, size_t bytes) {
 static void add_state(part_list *l, const simulation *s) {
   const sweep *w = s->state;
   const size_t site = (size_t)s->lattice->size * sizeof(double);
-  for (int d = 0; d < w->dof; d++) {
-    add_part(l, "displacement", w->displacement[d], site);
-    add_part(l, "velocity", w->velocity[d], site);
+  for (int d = 0; d < w->body->dof; d++) {
+    add_part(l, "displacement", w->body->displacement[d], site);
+    add_part(l, "velocity", w->body->velocity[d], site);
   }
   for (int f = 0; f < w->law->field_count; f++)
     add_part(l, w->law->fields[f].name, w->field[f],
@@ -30,18 +30,19 @@ static void add_state(part_list *l, const simulation *s) {
     add_part(l, "dissipated_state", w->dissipated_state, site);
     add_part(l, "dissipated_rate", w->dissipated_rate, site);
   }
-  if (w->weight) {
-    add_part(l, "work_of_gravity", w->row_gravity, (size_t)s->lattice->row_count * sizeof(double));
-    add_part(l, "gravity", s->state->gravity, sizeof s->state->gravity);
-    add_part(l, "gravity_work", s->state->gravity_work, sizeof s->state->gravity_work);
+  if (w->body->weight) {
+    add_part(l, "work_of_gravity", w->body->row_gravity,
+             (size_t)s->lattice->row_count * sizeof(double));
+    add_part(l, "gravity", s->body->gravity, sizeof s->body->gravity);
+    add_part(l, "gravity_work", s->body->gravity_work, sizeof s->body->gravity_work);
   }
-  add_part(l, "dissipated_mass", w->row_mass, (size_t)s->lattice->row_count * sizeof(double));
-  add_part(l, "internal", w->row_internal, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "dissipated_mass", w->body->row_mass, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "internal", w->body->row_internal, (size_t)s->lattice->row_count * sizeof(double));
 }
 
 static void add_relaxation(part_list *l, relaxation *r, size_t site) {
   add_part(l, "relaxation", &r->state, sizeof r->state);
-  for (int d = 0; d < r->sweep->dof; d++) {
+  for (int d = 0; d < r->body->dof; d++) {
     add_part(l, "displacement looked at", r->displacement[d], site);
     add_part(l, "force looked at", r->force[d], site);
   }
@@ -53,7 +54,7 @@ static part_list parts_of(const simulation *s, progress_state *head) {
   add_part(&l, "progress", head, sizeof *head);
   const size_t samples = (size_t)head->samples * sizeof(double);
   add_state(&l, s);
-  add_part(&l, "decay", &s->state->decay, sizeof(double));
+  add_part(&l, "decay", &s->body->decay, sizeof(double));
   add_part(&l, "clock", &s->loads->clock, sizeof(load_clock));
   if (s->relaxation) add_relaxation(&l, s->relaxation, (size_t)s->lattice->size * sizeof(double));
   add_part(&l, "constraints", s->loads->constraints,
@@ -136,7 +137,8 @@ static void put_places_back(const simulation *s, own_places *own) {
     s->relaxation->state.done = s->at.samples - 1;
     l->clock = relaxation_clock(s->relaxation, l->clock.first);
   }
-  for (int m = 0; m < s->monitors->count; m++) { /* one push a step, and perhaps one before the first */
+  for (int m = 0; m < s->monitors->count;
+       m++) { /* one push a step, and perhaps one before the first */
     int64_t *filled = &s->monitors->items[m].state.filled;
     if (*filled < 0 || *filled > simulation_position(s) + 1) *filled = 0;
   }

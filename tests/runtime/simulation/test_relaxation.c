@@ -287,10 +287,10 @@ static const char keys_of[] = "increments = 12 tolerance = 1e-3";
 
 static void same_runs(small_run *a, small_run *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->lattice->size * sizeof(double);
+  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
   assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
   for (int d = 0; d < 2; d++)
-    assert_memory_equal(x->displacement[d], y->displacement[d], site);
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
   assert_memory_equal(x->field[0], y->field[0], site);
   const double *p, *q;
   const long samples = simulation_history(a->simulation, &p);

@@ -7,6 +7,8 @@
 
 #include <cmocka.h>
 
+#include "runtime/body/motion.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/simulation/loads.h"
 #include "tests/runtime/small_run.h"
@@ -61,10 +63,10 @@ static double measured_frequency(double step) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  assert_int_equal(w->lattice->particle_count, 2);
-  const double *u = &w->displacement[0][w->lattice->particle_site[1]];
-  w->velocity[0][w->lattice->particle_site[0]] = -1e-3;
-  w->velocity[0][w->lattice->particle_site[1]] = 1e-3;
+  assert_int_equal(w->body->lattice->particle_count, 2);
+  const double *u = &w->body->displacement[0][w->body->lattice->particle_site[1]];
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = -1e-3;
+  w->body->velocity[0][w->body->lattice->particle_site[1]] = 1e-3;
   double last[3] = {0};
   while (simulation_step_done(r.simulation) < 10 || fabs(last[1]) < 0.5 * 1e-3 * 2e-6) {
     simulation_advance(r.simulation, 1, NULL);
@@ -188,11 +190,11 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   simulation_advance(r.simulation, 200, NULL); /* counter-clockwise: the upper part goes left */
   const sweep *s = simulation_state(r.simulation);
   double low = 0, high = 0;
-  for (long p = 0; p < s->lattice->particle_count; p++) {
-    const long site = s->lattice->particle_site[p];
-    if (s->lattice->x[site] < 0.094) continue;
-    if (s->lattice->y[site] < 0.001) low = s->displacement[0][site];
-    if (s->lattice->y[site] > 0.05) high = s->displacement[0][site];
+  for (long p = 0; p < s->body->lattice->particle_count; p++) {
+    const long site = s->body->lattice->particle_site[p];
+    if (s->body->lattice->x[site] < 0.094) continue;
+    if (s->body->lattice->y[site] < 0.001) low = s->body->displacement[0][site];
+    if (s->body->lattice->y[site] > 0.05) high = s->body->displacement[0][site];
   }
   assert_true(low > 0 && high < 0);
   small_close(&r);
@@ -215,12 +217,12 @@ static void each_end_moment_comes_in_its_own_time(void **state) {
   simulation_advance(r.simulation, TURNS, NULL);
   const sweep *w = simulation_state(r.simulation);
   double momentum = 0;
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    momentum +=
-        w->mass[0] * (w->lattice->x[q] * w->velocity[1][q] - w->lattice->y[q] * w->velocity[0][q]);
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    momentum += w->body->mass[0] * (w->body->lattice->x[q] * w->body->velocity[1][q] -
+                                    w->body->lattice->y[q] * w->body->velocity[0][q]);
   }
-  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->time_step) - 1) < 1e-6);
+  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->body->time_step) - 1) < 1e-6);
   small_close(&r);
 }
 
@@ -258,19 +260,19 @@ static void a_drive_is_followed_exactly_from_its_start(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  const long left = w->lattice->particle_site[0], right = w->lattice->particle_site[1];
-  w->velocity[0][left] = w->velocity[0][right] = 1; /* free until the start */
+  const long left = w->body->lattice->particle_site[0], right = w->body->lattice->particle_site[1];
+  w->body->velocity[0][left] = w->body->velocity[0][right] = 1; /* free until the start */
   simulation_advance(r.simulation, 100, NULL);
-  const double start = w->displacement[0][left];
+  const double start = w->body->displacement[0][left];
   assert_true(fabs(start - 1e-5) < 1e-15);
   for (int k = 101; k <= 400; k++) {
     simulation_advance(r.simulation, 1, NULL);
     const double t = k * 1e-7 - 1e-5, way = t < 1e-5 ? 0.25 * t * t / 1e-5 : 0.5 * (t - 0.5e-5);
-    assert_true(fabs(w->displacement[0][left] - start - way) < 1e-16 + 1e-12 * way);
+    assert_true(fabs(w->body->displacement[0][left] - start - way) < 1e-16 + 1e-12 * way);
     const double rise = t < 2e-5 ? (1 - cos(acos(-1) * t / 2e-5)) / 2 : 1;
-    assert_true(fabs(w->displacement[1][right] - 2e-6 * rise) < 1e-18 + 1e-12 * 2e-6);
+    assert_true(fabs(w->body->displacement[1][right] - 2e-6 * rise) < 1e-18 + 1e-12 * 2e-6);
   }
-  assert_true(fabs(w->velocity[0][left] - 0.5) < 1e-8);
+  assert_true(fabs(w->body->velocity[0][left] - 0.5) < 1e-8);
   small_close(&r);
 }
 
@@ -294,36 +296,37 @@ static void reactions_balance_the_momentum(void **state) {
   small_run r;
   must_open(&r, &elastic_beam, text);
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   rows *copy = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, copy, "m", 3, &r.said);
   double largest = 0;
   l->lattice = g;
-  loads_begin(l, w);
+  loads_begin(l, w->body);
   for (long n = 0; n < 100; n++) {
     double before[2] = {0}, after[2] = {0}, outside[2] = {200, -300};
-    const double drag = sweep_drag(w) / w->time_step;
+    const double drag = motion_drag(w->body) / w->body->time_step;
     for (long p = 0; p < g->particle_count; p++)
       for (int d = 0; d < 2; d++)
-        before[d] += w->mass[d] * w->velocity[d][g->particle_site[p]];
-    for (long c = 0; c < l->constraint_count; c++) { /* what begins to move at once is no reaction */
+        before[d] += w->body->mass[d] * w->body->velocity[d][g->particle_site[p]];
+    for (long c = 0; c < l->constraint_count;
+         c++) { /* what begins to move at once is no reaction */
       const int d = l->constraints[c].component;
-      outside[d] += w->mass[d] * w->decay * l->constraints[c].impulse /
-                    (w->time_step * sweep_force_part(w));
+      outside[d] += w->body->mass[d] * w->body->decay * l->constraints[c].impulse /
+                    (w->body->time_step * motion_force_part(w->body));
     }
     sweep_step(w);
-    for (int block = 0; block < w->block_count; block++)
-      loads_apply(l, w, block, n);
-    loads_turn(l, w, n);
+    for (int block = 0; block < w->body->block_count; block++)
+      loads_apply(l, w->body, block, n);
+    loads_turn(l, w->body, n);
     for (long c = 0; c < l->constraint_count; c++)
       outside[l->constraints[c].component] += l->constraints[c].reaction;
     for (long p = 0; p < g->particle_count; p++)
       for (int d = 0; d < 2; d++)
-        after[d] += w->mass[d] * w->velocity[d][g->particle_site[p]];
+        after[d] += w->body->mass[d] * w->body->velocity[d][g->particle_site[p]];
     for (int d = 0; d < 2; d++) {
       outside[d] -= drag * (before[d] + after[d]);
       largest = fmax(largest, fabs(outside[d]));
-      assert_true(fabs((after[d] - before[d]) / w->time_step - outside[d]) < 1e-9 * 1e4);
+      assert_true(fabs((after[d] - before[d]) / w->body->time_step - outside[d]) < 1e-9 * 1e4);
     }
   }
   assert_true(largest > 100);
@@ -403,7 +406,8 @@ static void each_of_many_drives_goes_its_own_way(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   for (int k = 0; k < MANY; k++) {
     const double way = 1e-5 * (k + 1) * 1e-6;
-    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-12);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) <
+                1e-12);
   }
   small_close(&r);
 }
@@ -419,7 +423,8 @@ static void each_of_many_forces_is_its_own(void **state) {
   for (int k = 0; k < MANY; k++) {
     const double slope = (k + 1) * 1e-6 / 1e-5;
     const double way = slope * 1e-21 * 100 * (100 * 100 - 1) / (6 * particle_mass());
-    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-9);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) <
+                1e-9);
   }
   small_close(&r);
 }
@@ -546,7 +551,8 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *now, *mean, *zeroed;
   assert_int_equal(simulation_history(r.simulation, &time), 11);
@@ -618,7 +624,8 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   int frames = 0;
   step_status status = STEP_OK;
   while (status == STEP_OK) {
@@ -668,7 +675,8 @@ static void a_stop_waits_for_its_time(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_STOPPED);
   assert_int_equal(simulation_step_done(r.simulation), 50);
   small_close(&r);
@@ -689,7 +697,8 @@ static void times_between_steps_are_rounded_to_the_nearest(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *zeroed, *mean;
   static const int steps[] = {0, 3, 5, 8, 11, 14, 16};
@@ -780,7 +789,7 @@ static void the_larger_of_two_damages_counts(void **state) {
   must_open(&r, &law, text);
   sweep *w = simulation_state(r.simulation);
   rows_bond *bonds = rows_bonds(simulation_rows(r.simulation, 0));
-  assert_int_equal(w->lattice->bond_count, 2);
+  assert_int_equal(w->body->lattice->bond_count, 2);
   const double given[2][3] = {{0.3, 0.99, 0.6},
                               {0.9, 0.99, 0.1}}; /* of each bond: omega, alpha, crush */
   int32_t ends[3] = {0};
