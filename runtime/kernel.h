@@ -14,7 +14,7 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 12
+#define PL_KERNEL_ABI 13
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -47,9 +47,10 @@ typedef struct pl_bond_class {
   double area;           /* m^2, bars */
   double shell;          /* 1, 2, ... */
   double n;              /* bonds of a full family */
-  double chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists of families carry their own) */
+  double chord
+      [3]; /* reference chord from i to j, m; |chord| = s (rows only; lists of families carry their own) */
   double horizon; /* m: how far neighbours may be */
-  double weight; /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
+  double weight;  /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
 } pl_bond_class;
 
 typedef struct pl_parameter {
@@ -87,7 +88,7 @@ struct pl_law;
 typedef void (*pl_strip_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_strip *strip);
 
-#define PL_MAX_DIRECTIONS 64 /* pairs of opposite neighbours of a family */
+#define PL_MAX_DIRECTIONS           64 /* pairs of opposite neighbours of a family */
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
 #define PL_SHAPE_PLANES(dimensions) (PL_SHAPE_VALUES(dimensions) + 1)
 
@@ -104,17 +105,18 @@ typedef struct pl_family {
   long rows, row_stride; /* 1 where pl_law.neighbours is 0 */
   long neighbours;       /* of a full family; even */
   long plane;            /* doubles between planes of a field, or of what lists know of bonds */
-  long new_plane, link_plane;        /* the same of new fields and what is observed; of links of bonds */
-  const long *offset, *link_offset;  /* [neighbours] rows */
-  const uint64_t *bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
-  const uint64_t *held;  /* not 0: the damage of this particle, and of its bonds, stays as it is */
+  long new_plane, link_plane; /* the same of new fields and what is observed; of links of bonds */
+  const long *offset, *link_offset; /* [neighbours] rows */
+  const uint64_t *
+      bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
+  const uint64_t *held; /* not 0: the damage of this particle, and of its bonds, stays as it is */
   const double *displacement[3], *velocity[3]; /* [dimensions] */
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord is some vector that is
      not 0. */
-  const int32_t *neighbour; /* [neighbours][plane] */
-  const uint64_t *incoming; /* bit k: the bond to neighbour k + neighbours/2 exists */
-  const double *length;     /* [neighbours][plane] m */
-  const double *chord[3];   /* [neighbours][plane] reference chord to the neighbour, m */
+  const int32_t *neighbour;    /* [neighbours][plane] */
+  const uint64_t *incoming;    /* bit k: the bond to neighbour k + neighbours/2 exists */
+  const double *length;        /* [neighbours][plane] m */
+  const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
   const double *volume, *mass; /* of the particles: m^3, kg */
   /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T) on rows, on lists
      sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2, z^2, x y, y z, x z) of the bond's reference
@@ -122,12 +124,16 @@ typedef struct pl_family {
      strains (condition of the matrix at most 1e3), else 0. */
   const double *const *shape;     /* [PL_SHAPE_PLANES] */
   const double *const *old_field; /* [fields] at the beginning of the step */
-  double *const *new_field;       /* [fields] written by the pass that finds them; never the same memory */
-  double *const *link;            /* [links] values of particles, written by one pass and read by later ones */
-  double *const *bond_link;       /* [bond_links] the same of values toward each neighbour, in planes like a field's */
-  double *const *force;           /* [dimensions] N: sum over the bonds, written by the last pass of the step */
-  double *const *observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
-  double time_step;        /* s */
+  double *const
+      *new_field;      /* [fields] written by the pass that finds them; never the same memory */
+  double *const *link; /* [links] values of particles, written by one pass and read by later ones */
+  double *const *
+      bond_link; /* [bond_links] the same of values toward each neighbour, in planes like a field's */
+  double *const
+      *force; /* [dimensions] N: sum over the bonds, written by the last pass of the step */
+  double *const *
+      observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
+  double time_step; /* s */
   /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a part of it that begins at
      its start or where the last run ended, and runs go from lower to higher sites; neighbours k < neighbours/2 stand at
      higher sites. sum[s] is what earlier runs have added to these particles; a run adds to particles ahead, and what it has
@@ -185,14 +191,15 @@ typedef struct pl_law {
   const char *key; /* hash of law, options, compiler and flags */
   int parameter_count;
   const pl_parameter *parameters;
+  int density; /* place in `parameters` of the mass density (kg/m^3) of particles, or -1 */
   int varying_count; /* parameters that strips read bond by bond; all else takes them as given to `prepare` */
   const int *varying; /* [varying_count] their places in `parameters` */
   int field_count;
   const pl_field *fields;
   int output_count;
   const pl_field *outputs;
-  int stores;      /* what is observed as stored is all energy that the bonds hold */
-  int reads_rates; /* forces or new fields depend on velocities */
+  int stores;                /* what is observed as stored is all energy that the bonds hold */
+  int reads_rates;           /* forces or new fields depend on velocities */
   int uniform_count;         /* doubles that `prepare` writes */
   double flops_per_bond;     /* of `rows`: additions, multiplications, selections */
   double divisions_per_bond; /* of `rows`: divisions and roots */
@@ -219,12 +226,13 @@ typedef struct pl_law {
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
   int neighbours; /* of the full families that the passes are written for; 0: of any */
   int link_count, bond_link_count;
-  int sum_count;      /* bonds add to both ends: so many sums; 0: either end computes its bonds */
+  int sum_count; /* bonds add to both ends: so many sums; 0: either end computes its bonds */
   int constant_sum_count; /* sums that the passes may keep from step to step; 0 where they keep none */
-  int reads_shape;    /* the passes read `shape` */
-  int pairwise; /* a law of bonds in this form: the force of a bond depends on its ends alone */
-  pl_program step;    /* new fields and the forces */
-  pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
+  int reads_shape;        /* the passes read `shape` */
+  int pairwise;    /* a law of bonds in this form: the force of a bond depends on its ends alone */
+  pl_program step; /* new fields and the forces */
+  pl_program
+      observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
 
   const void *context; /* the interpreter's; NULL in compiled kernels */
 } pl_law;

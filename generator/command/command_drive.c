@@ -12,6 +12,7 @@
 #include "generator/kernel/document.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
+#include "runtime/simulation/material.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
 enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };

@@ -686,6 +686,7 @@ static void write_descriptor(emitter *e, const char *key) {
   c_text_string(e->out, key);
   c_text_add(e->out, ",\n");
   write_table(e, "parameter", "law_parameters", p->law->parameters.count);
+  c_text_add(e->out, "    .density = %d,\n", p->law->rho ? p->law->rho->index : -1);
   if (p->varying_count)
     c_text_add(e->out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
   write_table(e, "field", "law_fields", p->law->fields.count);

@@ -7,6 +7,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/run/run_parts.h"
 #include "runtime/base/clock.h"
+#include "runtime/interaction/sweep.h"
 
 /* --- the machine ------------------------------------------------------------------------------ */
 

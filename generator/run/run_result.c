@@ -13,6 +13,7 @@
 #include "generator/run/run_parts.h"
 #include "runtime/base/whole_file.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 

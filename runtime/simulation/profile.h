@@ -3,7 +3,7 @@
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
-#include "runtime/interaction/sweep.h"
+#include "runtime/body/body.h"
 
 /* X(code, name) */
 #define PROFILE_PARTS(X)                                                                           \
@@ -29,5 +29,8 @@ typedef struct profile {
 } profile;
 
 extern const char *const profile_names[PROFILE_PART_COUNT];
+
+/* From what the blocks of the body have measured so far. */
+void profile_sum(profile *p, const body *w);
 
 #endif

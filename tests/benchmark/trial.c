@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "generator/run/run.h"
+#include "runtime/simulation/material.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,

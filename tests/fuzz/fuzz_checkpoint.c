@@ -7,6 +7,7 @@
 
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/checkpoint.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/runtime/small_run.h"
 

@@ -10,6 +10,7 @@
 
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/checkpoint.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
 
 static const char path[] = "test_checkpoint.state";
