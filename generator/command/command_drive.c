@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive.h"
+#include "generator/drive/drive_draw.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/settings.h"

@@ -252,7 +252,5 @@ bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t
 /* As a result file of two particles: `perilat plot` and `perilat info` read it. */
 bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
                       size_t size);
-bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
-                size_t size);
 
 #endif

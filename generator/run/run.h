@@ -68,11 +68,6 @@ bool run_open_material(deck_material *m, const deck_lattice *l, const char *deck
 bool run_law_obeys(model *opened, const deck_lattice *lattice, const double *parameters, span where,
                    diagnostics *of_law, diagnostics *of_values);
 
-/* main() of a stand-alone solver. */
-int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count, const built_in_file *files,
-                        int file_count);
-
 C_LINKAGE_END
 
 #endif

@@ -57,6 +57,7 @@ sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
 PATH=/nonexistent ./solver --set "simulation.end_time=0.1 ms" --set output.result=solver.h5 >solver.log 2>&1
 "$perilat" compare run.h5 solver.h5 | grep -q '^same'
+! objdump -p solver | grep -q 'NEEDED.*cairo' || fail "a solver draws nothing, and asks for Cairo"
 "$perilat" new mine >new.log
 "$perilat" drive mine_drive.nml | grep -q '5 of 5 expectations hold'
 
