@@ -103,7 +103,8 @@ static void find_kink(stiffness *b, const double *x) {
   free(difference);
 }
 
-/* result += factor M^-1/2 K M^-1/2 x, or C for K: central differences of the forces by displacements or velocities. */
+/* result += factor M^-1/2 K M^-1/2 x, or C for K: central differences of the forces by
+   displacements or velocities. */
 static void add_product(stiffness *b, bool rates, double factor, const double *x, double *result) {
   double *const *moving = rates ? b->body->velocity : b->body->displacement;
   for (long k = 0; k < b->length; k++)

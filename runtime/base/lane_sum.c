@@ -5,8 +5,8 @@
 
 #include "runtime/kernel.h"
 
-/* Of eight lanes and 16 values: lane 0 has a[0] + a[8], lane 1 a[1] + a[9], ..., and the sum is ((lane 0 + lane 1) + lane 2) + ...
-   Literal choices make vectors. */
+/* Of eight lanes and 16 values: lane 0 has a[0] + a[8], lane 1 a[1] + a[9], ..., and the sum is
+   ((lane 0 + lane 1) + lane 2) + ... Literal choices make vectors. */
 static inline __attribute__((always_inline)) double
 sum_products(long count, const double *restrict weight, const double *restrict a,
              const double *restrict b, bool square) {

@@ -1,5 +1,5 @@
-/* Sums over arrays in an order of their own, the same whatever the vector width: PL_LANES lanes, then their sum. `count` is a
-   multiple of PL_LANES. */
+/* Sums over arrays in an order of their own, the same whatever the vector width: PL_LANES lanes,
+   then their sum. `count` is a multiple of PL_LANES. */
 #ifndef PERILAT_RUNTIME_LANE_SUM_H
 #define PERILAT_RUNTIME_LANE_SUM_H
 

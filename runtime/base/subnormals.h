@@ -1,4 +1,5 @@
-/* Subnormal numbers are slow and mean nothing to a run: they count as zero in this thread between the two calls. */
+/* Subnormal numbers are slow and mean nothing to a run: they count as zero in this thread between
+   the two calls. */
 #ifndef PERILAT_RUNTIME_SUBNORMALS_H
 #define PERILAT_RUNTIME_SUBNORMALS_H
 

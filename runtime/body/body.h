@@ -1,5 +1,6 @@
-/* A body of particles on the rows of a lattice: where they are, how they move, their masses, the forces on them. Knows neither
-   laws nor loads; motion.h moves it, the engines of runtime/interaction find the forces.
+/* A body of particles on the rows of a lattice: where they are, how they move, their masses, the
+   forces on them. Knows neither laws nor loads; motion.h moves it, the engines of
+   runtime/interaction find the forces.
 
    Rows are shared out to threads in contiguous blocks:
      row 5  . o o o .   block 1 (second thread): rows 3 .. 5
@@ -16,7 +17,8 @@
 #include "runtime/lattice/rows.h"
 
 enum { BODY_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
-/* B: nearer to what another thread writes, reading waits for that thread: pairs of cache lines go together */
+/* B: nearer to what another thread writes, reading waits for that thread: pairs of cache lines go
+   together */
 enum { BODY_APART = 128 };
 
 typedef struct body_block { /* what one thread works on */
@@ -25,8 +27,9 @@ typedef struct body_block { /* what one thread works on */
   long bad_site;            /* first site whose velocity left the limits in this step, or -1 */
   int bad_component;
   double bad_velocity;
-  /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law of families, and on
-     samples; only kept when `timed`. Putting loaded particles right is no part of a step. */
+  /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law
+     of families, and on samples; only kept when `timed`. Putting loaded particles right is no part
+     of a step. */
   double stepping, moving, passes[BODY_TIMED_PASSES], loading, observing;
   char apart[BODY_APART];
 } body_block;
@@ -106,7 +109,8 @@ static inline double body_mass(const body *w, int component, long site) {
   return w->relative_mass ? w->mass[component] * w->relative_mass[site] : w->mass[component];
 }
 
-/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there on. */
+/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there
+   on. */
 int body_bad(const body *w);
 /* In the last step: false where a bad velocity keeps the site where it was. */
 bool body_has_moved(const body *w, long site);

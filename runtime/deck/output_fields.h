@@ -1,9 +1,9 @@
-/* What frames can hold of any law, beside its own states, damages, outputs and parameters. The values
-   of field NAME are values_of_NAME in runtime/simulation/frames.c.
+/* What frames can hold of any law, beside its own states, damages, outputs and parameters. The
+   values of field NAME are values_of_NAME in runtime/simulation/frames.c.
 
    X(name, unit, components, exists, kind, words), in the order of results. Components: VECTOR (one
-   for each direction of space) or SCALAR. Exists: in which runs. Kind as in results: "damage" of the
-   law, else "other". */
+   for each direction of space) or SCALAR. Exists: in which runs. Kind as in results: "damage" of
+   the law, else "other". */
 #ifndef PERILAT_RUNTIME_OUTPUT_FIELDS_H
 #define PERILAT_RUNTIME_OUTPUT_FIELDS_H
 

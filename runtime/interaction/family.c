@@ -25,8 +25,8 @@ static const double *force_of_row(const sweep *w, const body_block *b, int row, 
   return w->body->force[component] + body_start(w->body, row);
 }
 
-/* `moving`: the forces are those of a step, and not of looking at the present state. All components in one loop, with a
-   literal number of them and what is the same for most bodies left out:
+/* `moving`: the forces are those of a step, and not of looking at the present state. All components
+   in one loop, with a literal number of them and what is the same for most bodies left out:
 
      next = decay v + part dt/m f (motion.h)
 
@@ -149,8 +149,8 @@ static void fields_set(sweep *w) {
 
 /* --- sampling --------------------------------------------------------------------------------- */
 
-/* Values at absent sites mean nothing, and without bonds a particle stores nothing: a law may divide by what a family
-   has. */
+/* Values at absent sites mean nothing, and without bonds a particle stores nothing: a law may
+   divide by what a family has. */
 static double stored_in_row(const sweep *w, int row) {
   const long start = body_start(w->body, row);
   double sum = 0;
@@ -170,8 +170,8 @@ static void observe_rows(sweep *w, int block) {
   }
 }
 
-/* Forces and new fields of the present state: the passes of a step, whose new fields are written again by the next one. Then
-   energy and outputs with these. */
+/* Forces and new fields of the present state: the passes of a step, whose new fields are written
+   again by the next one. Then energy and outputs with these. */
 static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
   const int forces = program_stages(f, &w->law->step),

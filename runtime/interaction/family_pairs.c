@@ -60,8 +60,8 @@ static void run_row(const sweep *w, int pass, int block, int row, bool ahead_onl
   w->law->step.pass[pass](w->law, f->uniforms, run);
 }
 
-/* Bonds of the rows before reach the block's own: they are done once more here, for these ends only, so that sums have the
-   same terms in the same order whatever the blocks. */
+/* Bonds of the rows before reach the block's own: they are done once more here, for these ends
+   only, so that sums have the same terms in the same order whatever the blocks. */
 void family_pairs_stage(const sweep *w, int pass, int block) {
   const body_block *b = &w->body->blocks[block];
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;

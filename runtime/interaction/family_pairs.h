@@ -1,5 +1,5 @@
-/* Passes whose bonds add to both of their ends (pl_law.sum_count): a stage for each pass, links of the whole body, sums that run
-   ahead (pair_sums.h). */
+/* Passes whose bonds add to both of their ends (pl_law.sum_count): a stage for each pass, links of
+   the whole body, sums that run ahead (pair_sums.h). */
 #ifndef PERILAT_RUNTIME_FAMILY_PAIRS_H
 #define PERILAT_RUNTIME_FAMILY_PAIRS_H
 

@@ -1,6 +1,6 @@
-/* A run of particles as the passes of a law of families see it: where arrays, links and neighbours stand for the particles of a
-   row. Below family.c, which marches, and the three ways to run the passes of a program over the rows of a body:
-   family_stages.h, family_window.h, family_pairs.h. */
+/* A run of particles as the passes of a law of families see it: where arrays, links and neighbours
+   stand for the particles of a row. Below family.c, which marches, and the three ways to run the
+   passes of a program over the rows of a body: family_stages.h, family_window.h, family_pairs.h. */
 #ifndef PERILAT_RUNTIME_FAMILY_RUN_H
 #define PERILAT_RUNTIME_FAMILY_RUN_H
 
@@ -42,8 +42,9 @@ static inline family *family_of(const sweep *w) {
   return w->engine.own;
 }
 
-/* What a pass reads and writes, all but links: what is the same for all rows, once before some runs, and from the first site
-   of a row on. A short row takes little longer than a fresh pl_family would. */
+/* What a pass reads and writes, all but links: what is the same for all rows, once before some
+   runs, and from the first site of a row on. A short row takes little longer than a fresh pl_family
+   would. */
 void family_run_begin(const sweep *w, const pl_program *program, int block, pl_family *run);
 void family_run_row(const sweep *w, int block, int row, pl_family *run);
 

@@ -2,8 +2,8 @@
 
 #include <stdlib.h>
 
-/* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
-   long row, with absent sites in between. */
+/* The row after the last that goes on in memory as this one begins, with neighbours at the same
+   offsets: together they are one long row, with absent sites in between. */
 static int end_of_alike(const sweep *w, int row, int last) {
   const unsigned char *kind = w->body->lattice->row_class + w->body->lattice->margin;
   int end = row + 1;
@@ -26,8 +26,9 @@ static void run_rows(const sweep *w, const pl_program *program, int pass, int bl
   }
 }
 
-/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs the pass before on all
-   rows in reach, so each loses as many at either end, but at the ends of the body. */
+/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs
+   the pass before on all rows in reach, so each loses as many at either end, but at the ends of the
+   body. */
 static void inner_rows(const sweep *w, int block, int pass, int *first, int *last) {
   const body_block *b = &w->body->blocks[block];
   const int lost = pass * family_of(w)->reach;
@@ -36,8 +37,8 @@ static void inner_rows(const sweep *w, int block, int pass, int *first, int *las
   if (*last < *first) *last = *first = b->last;
 }
 
-/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
-   leaves the next finds in a cache. */
+/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far
+   enough ahead: what one leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {
   enum { ROWS_AT_A_TIME = 16 };
   enum { FARTHEST = 100 }; /* rows between passes that a cache may still hold */

@@ -1,5 +1,5 @@
-/* Passes with links of the whole body: a stage for each pass, between which all blocks wait. What can be done without other
-   blocks is done in the first stage, pass closely behind pass. */
+/* Passes with links of the whole body: a stage for each pass, between which all blocks wait. What
+   can be done without other blocks is done in the first stage, pass closely behind pass. */
 #ifndef PERILAT_RUNTIME_FAMILY_STAGES_H
 #define PERILAT_RUNTIME_FAMILY_STAGES_H
 

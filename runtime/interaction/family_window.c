@@ -6,9 +6,28 @@
 
 #include "dsl/base/arena.h"
 
-/* Each pass follows the one before as soon as that has done all rows in reach, some rows at a time; so links are needed
-   of few rows, and stay in a cache. A block does the first passes on rows of its neighbours, too, as far as its own need
-   them: that costs a few rows, and blocks wait for each other but once a step. */
+/* Each pass follows the one before as soon as that has done all rows in reach, some rows at a time;
+   so links are needed of few rows, and stay in a cache. Two passes with a reach of one row, four
+   rows at a time, in a block of rows 0 .. 9 that is the whole body (`behind` is 0 and 1, window of
+   4 + 2 rows):
+
+              row  0  1  2  3  4  5  6  7  8  9
+     round 1       A  A  A  A                       pass A
+                   B  B  B                          pass B: its row 3 needs A on row 4
+                   m  m                             move: row 2 is still to be read by B on row 3
+     round 2                   A  A  A  A
+                            B  B  B  B
+                         m  m  m  m
+     round 3                               A  A
+                                        B  B  B
+                                     m  m  m  m
+
+   Row r has its links in place r mod 6. In round 2 pass A writes rows 4 .. 7 to places 4, 5, 0, 1;
+   pass B reads rows 2 .. 7, which are all six places.
+
+   A block does the first passes on rows of its neighbours, too, as far as its own need them: that
+   costs a few rows, and blocks wait for each other but once a step. Those rows stay where they are
+   until then, and so do the block's own that the others read (`inner` are the rest). */
 
 typedef struct sites {
   long begin, end;
@@ -28,7 +47,8 @@ struct family_window { /* row r stands in place r mod rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
   sites *
-      left; /* [passes of a step][rows] sites of a place where the pass has left what both ends share */
+      /* [passes of a step][rows] sites of a place where the pass has left what both ends share */
+      left;
   int *straight; /* [rows] places from here on before a row, or one of a neighbour, is at place 0 */
 };
 
@@ -85,8 +105,9 @@ static bool suits(const sweep *w, const family *f) {
           least >= ROWS_TO_HALO * most(halo(f, &w->law->step), halo(f, &w->law->observe)));
 }
 
-/* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much as some vectors take. Of long
-   rows the next one finds more in the first cache than the next one alike. */
+/* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much
+   as some vectors take. Of long rows the next one finds more in the first cache than the next one
+   alike. */
 static void choose_runs(family_window *v, const pl_law *law, long pitch) {
   enum { SITES = 1024, FEW = 8, MANY = 32 };
   const int rows_here = (int)(SITES / pitch);
@@ -94,8 +115,9 @@ static void choose_runs(family_window *v, const pl_law *law, long pitch) {
   v->step = law->neighbours && rows_here >= FEW ? FAMILY_ROWS_ALIKE : 1;
 }
 
-/* Room for a row before and one after, and an odd number of cache lines: the same places of no two of 64 planes are a
-   multiple of a page apart, where a load would wait for the store to such a place. */
+/* Room for a row before and one after, and an odd number of cache lines: the same places of no two
+   of 64 planes are a multiple of a page apart, where a load would wait for the store to such a
+   place. */
 static long distance_of_planes(const family_window *v, long pitch) {
   const long lines = (v->rows + 2) * pitch / PL_LANES;
   return (lines | 1) * PL_LANES;
@@ -185,7 +207,8 @@ void family_windows_free(const sweep *w, family_window *v) {
   free(v);
 }
 
-/* --- what stands where no run has come ----------------------------------------------------------- */
+/* --- what stands where no run has come -----------------------------------------------------------
+   */
 
 /* The values of shared bit s. */
 static double *shared_planes(const sweep *w, const family_window *v, int s) {
@@ -202,8 +225,8 @@ static void clear_sites(const sweep *w, const family_window *v, uint64_t shared,
              (size_t)(of.end - of.begin) * sizeof(double));
 }
 
-/* Rows first .. last-1 take their places before a pass of a step does them: beside their sites what it leaves for both ends is
-   0. Rows below the body have no sites; observing shares nothing. */
+/* Rows first .. last-1 take their places before a pass of a step does them: beside their sites what
+   it leaves for both ends is 0. Rows below the body have no sites; observing shares nothing. */
 static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
                         int last) {
   const family_window *v = &family_of(w)->windows[block];
@@ -264,8 +287,8 @@ const double *family_window_force(const sweep *w, int block, int row, int compon
              : force_place(w, v, row, component);
 }
 
-/* The end of the rows that a run may take from `row` on, step by step: as many as need no other links, fields or forces than
-   the first, and whose neighbours stand alike. */
+/* The end of the rows that a run may take from `row` on, step by step: as many as need no other
+   links, fields or forces than the first, and whose neighbours stand alike. */
 static int end_of_run(const sweep *w, int block, int row, int last) {
   const body_block *b = &w->body->blocks[block];
   const family_window *v = &family_of(w)->windows[block];

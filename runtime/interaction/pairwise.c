@@ -39,8 +39,8 @@ typedef struct pairwise {
   int64_t *some;    /* [row_count] the flags of all these bonds together */
   long stride;      /* doubles of a direction in a buffer */
   long buffer;      /* doubles of a buffer */
-  /* What a row is the first to read, by its sites: states of its bonds, motions of the row above. None where a body fits into
-     caches. */
+  /* What a row is the first to read, by its sites: states of its bonds, motions of the row above.
+     None where a body fits into caches. */
   const double **streams;
   int stream_count;
   long steps;             /* done */
@@ -58,8 +58,8 @@ static double *plane(const sweep *w, const row_forces *buffer, int p, int direct
          PL_LANES;
 }
 
-/* Prepares a buffer for another row: what an earlier row left outside the span of this one counts as absent bonds. Most
-   rows are as long as the one before, and nothing is to be done. */
+/* Prepares a buffer for another row: what an earlier row left outside the span of this one counts
+   as absent bonds. Most rows are as long as the one before, and nothing is to be done. */
 static void take_buffer(const sweep *w, row_forces *buffer, long begin, long end) {
   const long low = begin - buffer->begin, high = buffer->end - end;
   for (int p = 0; p < w->law->force_planes && (low > 0 || high > 0); p++)
@@ -109,8 +109,8 @@ const double *pairwise_uniforms(const sweep *w, int direction) {
   return own(w)->uniforms + (long)direction * w->law->uniform_count;
 }
 
-/* Forces of the bonds that a row owns in one direction, from place `first` on, into `buffer`; their fields move on by one
-   step. */
+/* Forces of the bonds that a row owns in one direction, from place `first` on, into `buffer`; their
+   fields move on by one step. */
 static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, long first,
                            long count, const row_forces *buffer) {
   double *force[PL_MAX_PLANES];
@@ -126,7 +126,8 @@ static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, 
   kernel(w->law, pairwise_uniforms(w, direction), &s);
 }
 
-/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that seem to do nothing. */
+/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that
+   seem to do nothing. */
 static inline __attribute__((always_inline)) void fetch(const double *from, long count,
                                                         bool to_write) {
   enum { SECOND_CACHE = 2 };
@@ -138,7 +139,8 @@ static inline __attribute__((always_inline)) void fetch(const double *from, long
   }
 }
 
-/* A third of what the part after this one is the first to read: a processor waits for few lines at a time. */
+/* A third of what the part after this one is the first to read: a processor waits for few lines at
+   a time. */
 static inline __attribute__((always_inline)) void fetch_ahead(const sweep *w, row_part at,
                                                               int direction) {
   const pairwise *p = own(w);
@@ -163,8 +165,8 @@ static void clear_lost(const sweep *w, int row) {
   memset(w->lost_rate + body_start(w->body, row), 0, bytes);
 }
 
-/* The same on a copy of the fields: forces and new fields of the present state. Of a row of another block, whose first row needs
-   them, only the forces are kept. */
+/* The same on a copy of the fields: forces and new fields of the present state. Of a row of another
+   block, whose first row needs them, only the forces are kept. */
 static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
   const rows *g = w->body->lattice;
   pairwise_block *b = &own(w)->blocks[block];
@@ -197,14 +199,15 @@ const int64_t *pairwise_flags(const sweep *w, int row) {
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
-/* Where bond forces stand that add up to those on the particles of a row: in plane 0; those of direction k that the row
-   owns k strides further on, the other planes `plane` further on. */
+/* Where bond forces stand that add up to those on the particles of a row: in plane 0; those of
+   direction k that the row owns k strides further on, the other planes `plane` further on. */
 typedef struct gathered {
   const double *own, *incoming[DIRECTIONS];
   long stride, plane;
 } gathered;
 
-/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other. */
+/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
+   */
 static gathered gather(const sweep *w, int row, const row_forces *here, const row_forces *below) {
   const rows *g = w->body->lattice;
   const long begin = w->body->begin[row], stride = own(w)->stride;
@@ -218,7 +221,8 @@ static gathered gather(const sweep *w, int row, const row_forces *here, const ro
   return s;
 }
 
-/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are alike. */
+/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are
+   alike. */
 static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int component,
                                                              long q) {
   const long near = component * s->plane, far = (component < 2 ? component : 3) * s->plane;
@@ -240,8 +244,9 @@ static inline uint64_t size_bits(double x) {
   return u.bits;
 }
 
-/* next = decay v + part dt/m f (motion.h) in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
-   (NaN is not below anything). One loop whose choices are literal: that is what compilers make vectors of. */
+/* next = decay v + part dt/m f (motion.h) in all components, from place `first` of a row on. Not 0
+   when a velocity is not below its limit (NaN is not below anything). One loop whose choices are
+   literal: that is what compilers make vectors of. */
 static inline __attribute__((always_inline)) int64_t
 kick(const body *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
   const long start = body_start(w, at.row), pitch = w->lattice->pitch;
@@ -280,8 +285,8 @@ typedef struct moved_row {
   long moved; /* places that are, from the first on */
 } moved_row;
 
-/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does what follows in its row:
-   the state before the step can be reported. */
+/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does
+   what follows in its row: the state before the step can be reported. */
 static void move_part(body *w, body_block *b, moved_row *m, row_part at) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   int64_t bad = kick_part(w, &m->from, at, b->next);
@@ -308,7 +313,8 @@ static inline __attribute__((always_inline)) void fetch_row(const body *w, int r
   }
 }
 
-/* The bonds of a block's last row, before it or the row above moves: the first row of the next block waits for them. */
+/* The bonds of a block's last row, before it or the row above moves: the first row of the next
+   block waits for them. */
 static void need_seam(sweep *w, int block) {
   pairwise_block *p = &own(w)->blocks[block];
   const int row = w->body->blocks[block].last - 1;
@@ -319,8 +325,8 @@ static void need_seam(sweep *w, int block) {
   team_did(&p->seam_done, own(w)->steps);
 }
 
-/* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
-   for those of the next, and their forces for the particles. */
+/* A row's particles by one step, part by part: what the bonds of one direction have brought into
+   the first cache is there for those of the next, and their forces for the particles. */
 static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
   body_block *b = &w->body->blocks[block];
   const long count = w->body->count[m->row], part = part_of(count);
@@ -395,8 +401,9 @@ static void output_values(sweep *w, int output, double *values) {
     }
 }
 
-/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other forces, count half a step
-   until the state is reached; they are none of those that a step must be short enough for (body_row.free). */
+/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other
+   forces, count half a step until the state is reached; they are none of those that a step must be
+   short enough for (body_row.free). */
 static void sum_lost(sweep *w, int row) {
   const long start = body_start(w->body, row), count = w->body->count[row];
   const double pending = 0.5 * lane_total(count, w->lost_rate + start);
@@ -458,7 +465,8 @@ static void read_flags(const sweep *w, int row, int64_t *flags) {
     flags[q] = (int64_t)(g->bonds[start + q] | g->held_bonds[start + q] << 32);
 }
 
-/* Most rows of a body are as the row two below: these share what they have, so that it stays in a cache. */
+/* Most rows of a body are as the row two below: these share what they have, so that it stays in a
+   cache. */
 static void compose_flags(sweep *w, pairwise *p) {
   const rows *g = w->body->lattice;
   int64_t *read = must_calloc((size_t)g->pitch, sizeof *read);

@@ -1,10 +1,11 @@
-/* A law at work on a body: its fields, and the engine that finds the forces and moves the particles by one step. Knows neither
-   loads nor files.
+/* A law at work on a body: its fields, and the engine that finds the forces and moves the particles
+   by one step. Knows neither loads nor files.
 
-   A step is a few stages: every block of rows does a stage, and when all blocks have, the next one begins. What the stages do
-   is the engine's affair: pairwise.h for laws of bonds, family.h for laws that read a particle's whole family. Both kick and
-   move the particles of a row in the same way (motion.h). A particle's bonds are summed in one order, whatever the blocks, so
-   that results are the same to the last bit. */
+   A step is a few stages: every block of rows does a stage, and when all blocks have, the next one
+   begins. What the stages do is the engine's affair: pairwise.h for laws of bonds, family.h for
+   laws that read a particle's whole family. Both kick and move the particles of a row in the same
+   way (motion.h). A particle's bonds are summed in one order, whatever the blocks, so that results
+   are the same to the last bit. */
 #ifndef PERILAT_RUNTIME_SWEEP_H
 #define PERILAT_RUNTIME_SWEEP_H
 
@@ -24,7 +25,8 @@ typedef struct sweep_engine {
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
   bool
-      keeps_links; /* laws of families: what passes leave for each other is kept of the whole body */
+      /* laws of families: what passes leave for each other is kept of the whole body */
+      keeps_links;
   void *own;
 } sweep_engine;
 
@@ -34,12 +36,12 @@ typedef sweep_engine sweep_engine_new(sweep *w, const double *parameters);
 struct sweep {
   body *body; /* owned */
   const pl_law *law;
-  /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed last; which memory is
-     whose may change in a step. */
+  /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed
+     last; which memory is whose may change in a step. */
   double **field, **new_field;
   double *const *parameter; /* [varying][directions * size] of random fields; not owned */
-  /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state observed; NULL without
-     ledger and for laws of families. */
+  /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state
+     observed; NULL without ledger and for laws of families. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
   sweep_engine engine;
 };
@@ -64,15 +66,17 @@ bool sweep_step(sweep *w);
 /* Forces of the present state, a thread for each block; nothing moves, and the fields stay. */
 void sweep_find_forces(sweep *w);
 
-/* Observing is done in stages too: the law at the present places, aside: forces on the particles, new fields, stored energy and
-   outputs with these; it changes no state. A step brings places to t_n and fields to t_(n-1): observed, all is of t_n. The
-   velocity after the coming kick is needed for the kinetic energy: that of free particles without applied forces is taken. This
-   does all stages, a thread for each block; then body_sum has the energies. */
+/* Observing is done in stages too: the law at the present places, aside: forces on the particles,
+   new fields, stored energy and outputs with these; it changes no state. A step brings places to
+   t_n and fields to t_(n-1): observed, all is of t_n. The velocity after the coming kick is needed
+   for the kinetic energy: that of free particles without applied forces is taken. This does all
+   stages, a thread for each block; then body_sum has the energies. */
 void sweep_observe(sweep *w);
-/* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a law
-   of families the mean of both sides. */
+/* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a
+   law of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
-/* An output in the state observed last: values[sweep_planes * size], defined where bonds or particles are. */
+/* An output in the state observed last: values[sweep_planes * size], defined where bonds or
+   particles are. */
 void sweep_output(sweep *w, int output, double *values);
 
 #endif

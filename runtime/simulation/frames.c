@@ -8,6 +8,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
+#include "runtime/simulation/load_steps.h"
 
 typedef struct frame_source frame_source;
 typedef void values_of(const frames_of *of, const frame_source *from, double *values);
@@ -25,7 +26,8 @@ struct frame_set {
   int count;
 };
 
-/* --- values --------------------------------------------------------------------------------------- */
+/* --- values
+   --------------------------------------------------------------------------------------- */
 
 static void site_values(const frames_of *of, double *const *arrays, int components,
                         double *values) {
@@ -69,7 +71,8 @@ static void values_of_parameter(const frames_of *of, const frame_source *from, d
   bond_values(of, of->parameter[from->index], values);
 }
 
-/* --- fields of any law ---------------------------------------------------------------------------- */
+/* --- fields of any law
+   ---------------------------------------------------------------------------- */
 
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
   site_values(of, of->state->body->displacement, from->components, values);
@@ -79,7 +82,7 @@ static void values_of_velocity(const frames_of *of, const frame_source *from, do
   const rows *g = of->state->body->lattice;
   for (long p = 0; p < g->particle_count; p++)
     for (int c = 0; c < from->components; c++)
-      values[p * from->components + c] = loads_velocity(
+      values[p * from->components + c] = load_steps_velocity(
           of->loads, of->state->body, c, g->particle_site[p], (long)of->clock->at.step);
 }
 
@@ -155,7 +158,8 @@ static const own_field *find_own(const char *name) {
   return NULL;
 }
 
-/* --- what frames hold ----------------------------------------------------------------------------- */
+/* --- what frames hold
+   ----------------------------------------------------------------------------- */
 
 static bool is_asked(const deck_output *o, const char *name) {
   for (int k = 0; k < o->field_count; k++)
@@ -249,7 +253,8 @@ void frames_values(const frame_set *f, int field, double *values) {
   f->sources[field].values(&f->of, &f->sources[field], values);
 }
 
-/* --- what the deck asks for ----------------------------------------------------------------------- */
+/* --- what the deck asks for
+   ----------------------------------------------------------------------- */
 
 /* Names that this run can store, or with `all` that some run can; to be freed. */
 static const char **field_names(const deck_output *o, const pl_law *law, bool all, int *count) {
@@ -300,7 +305,8 @@ bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
   return good;
 }
 
-/* --- when ----------------------------------------------------------------------------------------- */
+/* --- when
+   ----------------------------------------------------------------------------------------- */
 
 /* Position at which a frame is due; the first is that of the undeformed body. */
 static int64_t position_of(const frame_set *f, int64_t frame) {

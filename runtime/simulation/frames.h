@@ -26,7 +26,8 @@ typedef struct frames_of {
 
 /* False with a diagnostic when the deck asks for fields that no run has. */
 bool frames_check(const deck_output *asked, const pl_law *law, diagnostics *d);
-/* What the deck asks for and the run has; `damage` is that of particles and all damages of the law. */
+/* What the deck asks for and the run has; `damage` is that of particles and all damages of the law.
+   */
 frame_set *frames_new(const frames_of *of);
 void frames_free(frame_set *f);
 

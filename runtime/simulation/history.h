@@ -1,4 +1,5 @@
-/* The history of a run: values of its monitors, energies and, in quasi-static runs, of its increments, sample by sample. */
+/* The history of a run: values of its monitors, energies and, in quasi-static runs, of its
+   increments, sample by sample. */
 #ifndef PERILAT_RUNTIME_HISTORY_H
 #define PERILAT_RUNTIME_HISTORY_H
 

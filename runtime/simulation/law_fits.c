@@ -23,7 +23,8 @@ bool law_fits_motion(const pl_law *law, const deck *k, diagnostics *d) {
   return false;
 }
 
-/* Protection keeps damage as it is: a law that softens through a plain state is not held back by it. */
+/* Protection keeps damage as it is: a law that softens through a plain state is not held back by
+   it. */
 void law_fits_protection(const pl_law *law, const deck *k, diagnostics *d) {
   for (int f = 0; f < law->field_count; f++)
     if (law->fields[f].kind == PL_FIELD_DAMAGE) return;
@@ -36,7 +37,8 @@ void law_fits_protection(const pl_law *law, const deck *k, diagnostics *d) {
 
 /* --- the lattice ------------------------------------------------------------------------------ */
 
-/* The kernel of a law of families is made for lattices or for lists. A solver has one, and its deck may change. */
+/* The kernel of a law of families is made for lattices or for lists. A solver has one, and its deck
+   may change. */
 static bool topology_serves(const pl_law *law, const deck *k, const rows *lattice, diagnostics *d) {
   const deck_lattice *l = &k->lattices[0];
   const bool list = lattice->list != NULL;

@@ -1,4 +1,5 @@
-/* Does a law suit its lattice and deck: dimensions, kind of lattice, mass, names of what is stored. */
+/* Does a law suit its lattice and deck: dimensions, kind of lattice, mass, names of what is stored.
+   */
 #ifndef PERILAT_RUNTIME_LAW_FITS_H
 #define PERILAT_RUNTIME_LAW_FITS_H
 
@@ -11,7 +12,8 @@
 /* Where the deck says which law the lattice has. */
 span law_fits_where(const deck *k);
 
-/* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest neighbours. */
+/* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest
+   neighbours. */
 bool law_fits_lattice(const pl_law *law, const deck *k, const rows *lattice, diagnostics *d);
 /* Particles have a mass: the law has a density. */
 bool law_fits_motion(const pl_law *law, const deck *k, diagnostics *d);

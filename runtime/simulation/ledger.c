@@ -41,7 +41,7 @@ static bool is_sound(const ledger *g, const sweep *state, const body_totals *t, 
 bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_look *look,
                    double omega, double terms[LEDGER_COUNT]) {
   const body_totals t = body_sum(state->body);
-  const load_sums s = loads_total(l);
+  const load_sums s = load_steps_total(l);
   const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
   const double kinetic = t.kinetic + look->kinetic, held = kinetic + t.stored;
   const double lost = t.internal + s.internal - t.stored;

@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/interaction/damage.h"
+#include "runtime/simulation/load_steps.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
@@ -322,7 +323,8 @@ static double field_mean(const monitors *all, const monitor *m, double *const *f
 static double velocity_mean(const monitors *all, const monitor *m, long step) {
   double sum = 0;
   for (long p = 0; p < m->index_count[0]; p++)
-    sum += loads_velocity(all->loads, all->state->body, m->deck->component, m->indices[0][p], step);
+    sum += load_steps_velocity(all->loads, all->state->body, m->deck->component, m->indices[0][p],
+                               step);
   return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
 }
 
@@ -350,7 +352,8 @@ static double value_now(const monitors *all, const monitor *m, long step) {
   return count_damaged(all, m);
 }
 
-/* What a step has made known for a window: the velocity in it, the field of the state that it left; the same for all else. */
+/* What a step has made known for a window: the velocity in it, the field of the state that it left;
+   the same for all else. */
 static double value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
     return mean_at(all->state->body->velocity[m->deck->component], m->indices[0],
@@ -365,8 +368,8 @@ static void push(monitor *m, double value) {
   m->ring[m->state.filled++ % m->window] = value;
 }
 
-/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the newest, so that a resumed run
-   sums in the same order. */
+/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the
+   newest, so that a resumed run sums in the same order. */
 static double mean_of_ring(const monitor *m, long most, const double *more) {
   const int64_t count = m->state.filled < most ? m->state.filled : most;
   double sum = 0;

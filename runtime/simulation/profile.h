@@ -1,5 +1,6 @@
-/* Where the time of a run goes, a mean over its threads: what they work on, and how long they wait for each other. Parts do
-   not overlap, so that they add up to what the run took but for the little that is in none. */
+/* Where the time of a run goes, a mean over its threads: what they work on, and how long they wait
+   for each other. Parts do not overlap, so that they add up to what the run took but for the little
+   that is in none. */
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 

@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/simulation/load_steps.h"
 
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
@@ -72,7 +73,7 @@ load_clock relaxation_clock(const relaxation *r, int64_t first) {
 }
 
 void relaxation_next(relaxation *r, int64_t step) {
-  loads_increment(r->loads, r->body, relaxation_clock(r, step));
+  load_steps_increment(r->loads, r->body, relaxation_clock(r, step));
   damp(r, step);
 }
 

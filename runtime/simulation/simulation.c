@@ -14,7 +14,8 @@
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Small bodies are not worth many threads: a block has at least eight rows, of a list two, unless the deck insists. */
+/* Small bodies are not worth many threads: a block has at least eight rows, of a list two, unless
+   the deck insists. */
 static int choose_threads(const simulation *s) {
   const int asked = s->deck->simulation.threads;
   if (asked > 0) return asked;
@@ -210,7 +211,8 @@ const deck_stop *simulation_stopped_by(const simulation *s) {
   return s->clock.at.stop >= 0 ? &s->deck->stops[s->clock.at.stop] : NULL;
 }
 
-/* --- what others ask ---------------------------------------------------------------------------- */
+/* --- what others ask ----------------------------------------------------------------------------
+   */
 
 step_status simulation_advance(simulation *s, long steps,
                                const volatile sig_atomic_t *interrupted) {

@@ -1,8 +1,8 @@
 /* One run: bodies, their laws, loads and the time loop. Setting up allocates and checks everything;
-   a step allocates nothing. Leapfrog steps, v += dt a, u += dt v, with velocities half a step before
-   the places (loads.h), by the sweep in stages that all threads do together (sweep.h). Forces are
-   summed in a fixed order: results do not depend on the number of threads. With a &relaxation the
-   steps lead from one state of balance to the next (relaxation.h).
+   a step allocates nothing. Leapfrog steps, v += dt a, u += dt v, with velocities half a step
+   before the places (loads.h), by the sweep in stages that all threads do together (sweep.h).
+   Forces are summed in a fixed order: results do not depend on the number of threads. With a
+   &relaxation the steps lead from one state of balance to the next (relaxation.h).
 
    The energy ledger is explained in ledger.h, signs of reactions and drives in loads.h, means and
    zeros in monitor.h. */
@@ -41,8 +41,8 @@ typedef struct simulation_law {
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
-/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation from
-   then on; NULL: to be built. */
+/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation
+   from then on; NULL: to be built. */
 simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
                               diagnostics *d);
 void simulation_free(simulation *s);
@@ -60,7 +60,8 @@ long simulation_increments(const simulation *s, long *unbalanced);
 double simulation_time(const simulation *s);   /* s, as the deck's loads count it */
 double simulation_memory(const simulation *s); /* bytes */
 int simulation_threads(const simulation *s);   /* that will work on it */
-/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay. */
+/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay.
+   */
 void simulation_measure(simulation *s, struct profile *p);
 /* The arrays of the state, for tools and tests; before the first step they may be set (an initial
  * velocity, say). */
@@ -82,7 +83,8 @@ int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
 /* What a series is, in words. */
 char *simulation_series_words(const simulation *s, int k, arena *a);
-/* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
+/* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says
+   nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
                                double *time); /* value that is largest in size, its sign kept */

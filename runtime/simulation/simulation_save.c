@@ -82,8 +82,8 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
   return good;
 }
 
-/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at least one multiple of the
-   interval, the one at the end perhaps none. */
+/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at
+   least one multiple of the interval, the one at the end perhaps none. */
 static bool is_reachable(const simulation *s, const run_progress *at) {
   const int64_t frames = s->deck->output.frames > 0 ? s->deck->output.frames : 0;
   if (at->begun != 0 && at->begun != 1) return false;

@@ -68,7 +68,8 @@ static bool count_increments(const deck *of, step_plan *plan) {
   return true;
 }
 
-/* Unless the deck asks for more: a sample takes up to four steps, so that these take less than 2 % of a run. */
+/* Unless the deck asks for more: a sample takes up to four steps, so that these take less than 2 %
+   of a run. */
 enum { STEPS_A_SAMPLE = 200 };
 
 bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, diagnostics *d) {

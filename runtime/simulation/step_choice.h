@@ -15,7 +15,8 @@ typedef struct step_plan {
   int64_t history_capacity; /* samples, at most */
 } step_plan;
 
-/* The stable step of the virgin body, and the deck's part of it. False with a diagnostic where none is stable. */
+/* The stable step of the virgin body, and the deck's part of it. False with a diagnostic where none
+   is stable. */
 bool step_choose(const deck *k, const pl_law *law, const double *parameters,
                  const random_fields *fields, const rows *lattice, step_limit *limit,
                  diagnostics *d);

@@ -4,6 +4,7 @@
 
 #include "runtime/base/clock.h"
 #include "runtime/base/subnormals.h"
+#include "runtime/simulation/load_steps.h"
 
 /* --- samples ---------------------------------------------------------------------------------- */
 
@@ -71,7 +72,7 @@ static void after_step(simulation *s) {
     return;
   }
   sweep_turn(s->state);
-  loads_turn(s->loads, s->body, (long)s->clock.at.step);
+  load_steps_turn(s->loads, s->body, (long)s->clock.at.step);
   s->clock.at.step++;
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
@@ -95,7 +96,7 @@ static void end_increment(simulation *s, const load_look *look) {
 }
 
 static void after_observing(simulation *s) {
-  const load_look look = loads_observe(s->loads, s->body, (long)s->clock.at.step);
+  const load_look look = load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
   s->observe = false;
   s->observed_step = s->clock.at.step;
   if (s->relaxation && s->clock.at.step > 0) {
@@ -128,7 +129,7 @@ static void do_stage(void *of, int task, int block) {
   engine->step(s->state, task, block);
   now = add_time(s, now, &b->stepping);
   if (task < engine->step_stages - 1) return;
-  loads_apply(s->loads, s->body, block, (long)s->clock.at.step);
+  load_steps_apply(s->loads, s->body, block, (long)s->clock.at.step);
   add_time(s, now, &b->loading);
 }
 
@@ -165,10 +166,10 @@ static void begin(simulation *s) {
   if (s->clock.at.begun) return;
   s->clock.at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);
-  loads_begin(s->loads, s->body);
+  load_steps_begin(s->loads, s->body);
   if (!s->relaxation) {
     sweep_observe(s->state);
-    loads_set_back(s->loads, s->body);
+    load_steps_set_back(s->loads, s->body);
     monitors_step(s->monitors, 0);
   }
 }
@@ -177,7 +178,7 @@ void time_loop_observe(simulation *s) {
   begin(s);
   if (s->observed_step == s->clock.at.step) return;
   sweep_observe(s->state);
-  loads_observe(s->loads, s->body, (long)s->clock.at.step);
+  load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
   s->observed_step = s->clock.at.step;
 }
 

@@ -6,7 +6,8 @@
 
 /* Up to `steps` more steps, or to the next frame (simulation_advance). */
 step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted);
-/* Makes sure that the run has begun and that its present state is the one observed; outside of the loop. */
+/* Makes sure that the run has begun and that its present state is the one observed; outside of the
+   loop. */
 void time_loop_observe(simulation *s);
 
 #endif

@@ -10,6 +10,7 @@
 #include "runtime/body/motion.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
+#include "runtime/simulation/load_steps.h"
 #include "runtime/simulation/loads.h"
 #include "tests/runtime/small_run.h"
 
@@ -301,7 +302,7 @@ static void reactions_balance_the_momentum(void **state) {
   loads *l = loads_new(r.deck, 0, copy, "m", 3, &r.said);
   double largest = 0;
   l->lattice = g;
-  loads_begin(l, w->body);
+  load_steps_begin(l, w->body);
   for (long n = 0; n < 100; n++) {
     double before[2] = {0}, after[2] = {0}, outside[2] = {200, -300};
     const double drag = motion_drag(w->body) / w->body->time_step;
@@ -316,8 +317,8 @@ static void reactions_balance_the_momentum(void **state) {
     }
     sweep_step(w);
     for (int block = 0; block < w->body->block_count; block++)
-      loads_apply(l, w->body, block, n);
-    loads_turn(l, w->body, n);
+      load_steps_apply(l, w->body, block, n);
+    load_steps_turn(l, w->body, n);
     for (long c = 0; c < l->constraint_count; c++)
       outside[l->constraints[c].component] += l->constraints[c].reaction;
     for (long p = 0; p < g->particle_count; p++)
