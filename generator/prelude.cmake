@@ -1,5 +1,5 @@
 # Writes the texts of kernel.h and elementary.h as C string constants: emitted kernels are self-contained.
-file(WRITE ${OUT} "/* Generated from runtime/kernel.h and dsl/base/elementary.h. */\n#include \"generator/emit/prelude.h\"\n")
+file(WRITE ${OUT} "/* Generated from runtime/kernel.h and dsl/base/elementary.h. */\n#include \"generator/target/prelude.h\"\n")
 foreach(pair "kernel_h;runtime/kernel.h" "elementary_h;dsl/base/elementary.h")
   list(GET pair 0 name)
   list(GET pair 1 path)

@@ -1,4 +1,4 @@
-/* C++ hosts link what the public headers declare as C: each has its declarations between these two. */
+/* C++ hosts link what public headers declare as C: each has its declarations between these two. */
 #ifndef PERILAT_DSL_C_LINKAGE_H
 #define PERILAT_DSL_C_LINKAGE_H
 

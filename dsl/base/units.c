@@ -374,3 +374,11 @@ void dim_describe(dimension d, char *text, size_t size) {
 bool unit_is_pure(const char *symbol) {
   return !symbol || !*symbol || strcmp(symbol, "1") == 0;
 }
+
+dimension dimension_of(const char *unit_text) {
+  unit u = {DIMENSIONLESS, 1};
+  const char *bad;
+  size_t length;
+  (void)unit_parse(unit_text, strlen(unit_text), &u, &bad, &length);
+  return u.dim;
+}

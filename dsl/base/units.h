@@ -1,5 +1,5 @@
 /* Physical dimensions and units. A dimension is a vector of rational exponents over the SI base
-   quantities; angles are pure numbers. `30 [GPa]` is a value times a unit; all values are held in SI. */
+   quantities; angles are pure numbers. `30 [GPa]` is a value times a unit; all in SI. */
 #ifndef PERILAT_DSL_UNITS_H
 #define PERILAT_DSL_UNITS_H
 
@@ -33,6 +33,9 @@ bool dim_pow(dimension a, int numerator, int denominator, dimension *result);
    On failure returns false, and *bad / *bad_length name the offending part of `text`. */
 bool unit_parse(const char *text, size_t length, unit *result, const char **bad,
                 size_t *bad_length);
+
+/* Of a unit that the program itself writes: dimension_of("N/m"). No unit is a pure number. */
+dimension dimension_of(const char *unit_text);
 
 /* "a stress (Pa)", "a pure number", or "a quantity in kg^2*m/s" where the field has no word for it.
    Writes at most `size` bytes including the NUL. */

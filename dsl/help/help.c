@@ -5,87 +5,6 @@
 #include "dsl/base/units.h"
 #include "dsl/semantics/builtins.h"
 
-/* X(code, line of a law) */
-#define FUNCTION_EXAMPLES(X)                                                                       \
-  X(ABS, "x = abs(stretch)")                                                                       \
-  X(SQRT, "x = sqrt(length*s)")                                                                    \
-  X(CBRT, "x = cbrt(V)")                                                                           \
-  X(EXP, "x = exp(-stretch/S_t)")                                                                  \
-  X(LOG, "x = log(1 + stretch)")                                                                   \
-  X(SIN, "x = sin(norm(theta_i))")                                                                 \
-  X(COS, "x = cos(30 [deg])")                                                                      \
-  X(TAN, "x = tan(30 [deg])")                                                                      \
-  X(TANH, "x = tanh(stretch/S_t)")                                                                 \
-  X(ATAN2, "x = atan2(norm(theta_i), stretch)")                                                    \
-  X(SIGN, "x = sign(stretch)")                                                                     \
-  X(SOFT_SIGN, "x = soft_sign(stretch_rate/10 [1/s])")                                             \
-  X(MACAULAY, "x = positive_part(stretch - S_t)")                                                  \
-  X(MIN, "x = min(stretch, S_t)")                                                                  \
-  X(MAX, "x = max(norm(theta_i), norm(theta_j))")                                                  \
-  X(NORM, "x = norm(theta_i + theta_j)")                                                           \
-  X(PREVIOUS, "x = omega - previous(omega)")                                                       \
-  X(DIFF, "x = diff(stretch**2, stretch)")                                                         \
-  X(SUM, "x = sum(stretch[j])")                                                                    \
-  X(MEAN, "x = mean(stretch[j], weight = length[j])")                                              \
-  X(DEVIATOR, "x[j] = deviator(F[j])")                                                             \
-  X(VIRTUAL_WORK, "stress x = virtual_work(F)")                                                    \
-  X(FIT, "strain x = fit(stretch)")                                                                \
-  X(UNIFORM_FORCE, "x[j] = uniform_force(virtual_work(F))")                                        \
-  X(UNIFORM_STRETCH, "x[j] = stretch[j] - uniform_stretch(fit(stretch))")                          \
-  X(HOOKE, "stress x = hooke(fit(stretch), 30 [GPa], 0.2)")                                        \
-  X(PRINCIPAL, "x = principal(fit(stretch), 1)")                                                   \
-  X(TRACE, "x = trace(fit(stretch))")                                                              \
-  X(DEV, "x = norm(dev(fit(stretch)))")                                                            \
-  X(J2, "x = J2(virtual_work(F))")                                                                 \
-  X(VON_MISES, "x = von_mises(virtual_work(F))")
-
-/* X(code, line of a law) */
-#define QUANTITY_EXAMPLES(X)                                                                       \
-  X(STRETCH, "x = stretch**2")                                                                     \
-  X(STRETCH_RATE, "x = stretch_rate/10 [1/s]")                                                     \
-  X(THETA_I, "x = norm(2*theta_i + theta_j)")                                                      \
-  X(THETA_J, "x = norm(2*theta_j + theta_i)")                                                      \
-  X(TWIST, "x = twist/s")                                                                          \
-  X(LENGTH, "x = length/s - 1")                                                                    \
-  X(S, "x = stretch*s")                                                                            \
-  X(SPACING, "x = s/spacing")                                                                      \
-  X(T, "x = s*t")                                                                                  \
-  X(V, "x = V/spacing**2")                                                                         \
-  X(M_BOND, "x = sqrt(EA/s/m)")                                                                    \
-  X(M_END_I, "x = m_i*m_j/(m_i + m_j)")                                                            \
-  X(M_END_J, "x = min(m_i, m_j)/m_j")                                                              \
-  X(AREA, "x = area*length")                                                                       \
-  X(SHELL, "x = | 1 when shell == 1 | 0.5 otherwise")                                              \
-  X(HORIZON, "x = s/horizon")                                                                      \
-  X(WEIGHT, "x = sum(weight*stretch[j])")                                                          \
-  X(RESOLVED, "x = | 1 when resolved >= 1 | 0 otherwise")                                          \
-  X(N_FAMILY, "x = sum(stretch[j])/n")                                                             \
-  X(DIRECTION, "x = norm(direction)")
-
-const char *help_function_example(int function) {
-  switch (function) {
-#define X(code, line)                                                                              \
-  case FUNCTION_##code:                                                                            \
-    return line;
-    FUNCTION_EXAMPLES(X)
-#undef X
-  default:
-    return NULL;
-  }
-}
-
-const char *help_quantity_example(int quantity) {
-  switch (quantity) {
-#define X(code, line)                                                                              \
-  case QUANTITY_##code:                                                                            \
-    return line;
-    QUANTITY_EXAMPLES(X)
-#undef X
-  default:
-    return NULL;
-  }
-}
-
 /* --- pages ------------------------------------------------------------------------------------ */
 
 /* A Markdown page for a terminal: examples are indented instead of fenced. */
@@ -129,7 +48,7 @@ static void show_quantity(int q, FILE *out) {
   const builtin_quantity_info *b = &builtin_quantities[q];
   fprintf(out, "%s (a quantity of lattice and motion)\n\n%s.\n", b->name, b->meaning);
   fprintf(out, "unit %s; a %s of the %s; in %s\n\n    %s\n", b->unit, shapes[b->shape],
-          placement_name(b->place), laws[b->kinds], help_quantity_example(q));
+          placement_name(b->place), laws[b->kinds], b->example);
 }
 
 static void show_function(int f, FILE *out) {
@@ -139,7 +58,7 @@ static void show_function(int f, FILE *out) {
     fprintf(out, "%d argument%s\n", b->least, b->least == 1 ? "" : "s");
   else
     fprintf(out, "%d to %d arguments\n", b->least, b->most);
-  fprintf(out, "\n    %s\n", help_function_example(f));
+  fprintf(out, "\n    %s\n", b->example);
 }
 
 static void show_units(FILE *out) {

@@ -16,10 +16,6 @@ typedef struct help_page {
 extern const help_page help_pages[];
 extern const int help_page_count;
 
-/* A line of a law in which the function is used. */
-const char *help_function_example(int function);
-const char *help_quantity_example(int quantity);
-
 /* Prints all that is known of a topic: its pages and built-ins of that name, or "units". Returns
    how many there are. */
 int help_show(const char *topic, FILE *out);

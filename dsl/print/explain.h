@@ -15,7 +15,8 @@ typedef enum explain_form {
   EXPLAIN_LATEX     /* a whole document for pdflatex */
 } explain_form;
 
-/* `choices` are those that `l` was checked with: cases on these options show the branch chosen alone; on other options all. */
+/* `choices` are those that `l` was checked with: cases on these options show the branch chosen
+   alone; on other options all. */
 void explain_law(const law *l, explain_form form, const law_choice *choices, int choice_count,
                  FILE *out);
 

@@ -10,8 +10,9 @@
 #define GREEK(X)                                                                                   \
   X("alpha", "alpha")                                                                              \
   X("beta", "beta")                                                                                \
-  X("gamma", "gamma") X("delta", "delta") X("eps", "varepsilon") X("epsilon", "epsilon")           \
-      X("zeta", "zeta") X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")  \
+  X("gamma", "gamma")                                                                              \
+  X("delta", "delta") X("eps", "varepsilon") X("epsilon", "epsilon") X("zeta", "zeta")             \
+      X("eta", "eta") X("theta", "theta") X("iota", "iota") X("kappa", "kappa")                    \
           X("lambda", "lambda") X("mu", "mu") X("nu", "nu") X("xi", "xi") X("pi", "pi")            \
               X("rho", "rho") X("sigma", "sigma") X("tau", "tau") X("upsilon", "upsilon")          \
                   X("phi", "varphi") X("chi", "chi") X("psi", "psi") X("omega", "omega")           \
@@ -353,8 +354,8 @@ static bool is_call_of(const expr *e, int function) {
 static bool is_good_base(const expr *e) {
   if (e->kind == EXPR_NUMBER) return level_of(e) == HOLDS_ATOM;
   if (e->kind == EXPR_NAME) return !math_has_step(e->symbol) && !e->primed;
-  return is_call_of(e, FUNCTION_ABS) || is_call_of(e, FUNCTION_NORM) ||
-         is_call_of(e, FUNCTION_MACAULAY);
+  return e->kind == EXPR_CALL && e->builtin >= 0 &&
+         strncmp(builtin_functions[e->builtin].formula, "\\left", 5) == 0;
 }
 
 static void put_power(const law *l, const expr *e, FILE *out) {
@@ -418,49 +419,6 @@ static void put_cases(const law *l, const expr *e, FILE *out) {
 
 /* --- functions -------------------------------------------------------------------------------- */
 
-/* Marks around the only argument. X(code, before, after) */
-#define ENCLOSED(X)                                                                                \
-  X(ABS, "\\left|", "\\right|")                                                                    \
-  X(SQRT, "\\sqrt{", "}")                                                                          \
-  X(CBRT, "\\sqrt[3]{", "}")                                                                       \
-  X(MACAULAY, "\\left\\langle ", "\\right\\rangle")                                                \
-  X(NORM, "\\left\\lVert ", "\\right\\rVert")                                                      \
-  X(SUM, "\\sum_{j}\\left(", "\\right)")
-
-/* Names before bracketed arguments. X(code, name) */
-#define NAMED(X)                                                                                   \
-  X(EXP, "\\exp")                                                                                  \
-  X(LOG, "\\ln")                                                                                   \
-  X(SIN, "\\sin") X(COS, "\\cos") X(TAN, "\\tan") X(TANH, "\\tanh")                                \
-      X(ATAN2, "\\operatorname{atan2}") X(SIGN, "\\operatorname{sign}")                            \
-          X(SOFT_SIGN, "\\operatorname{soft\\_sign}") X(MIN, "\\min") X(MAX, "\\max")              \
-              X(MEAN, "\\operatorname{mean}_{j}") X(DEVIATOR, "\\operatorname{deviator}")          \
-                  X(VIRTUAL_WORK, "\\operatorname{virtual\\_work}") X(FIT, "\\operatorname{fit}")  \
-                      X(PRINCIPAL, "\\operatorname{principal}") X(TRACE, "\\operatorname{tr}")     \
-                          X(DEV, "\\operatorname{dev}") X(J2, "J_{2}")                             \
-                              X(VON_MISES, "\\operatorname{von\\_Mises}")
-
-static const struct {
-  int function;
-  const char *before, *after;
-} enclosed[] = {
-#define X(code, before, after) {FUNCTION_##code, before, after},
-    ENCLOSED(X)
-#undef X
-};
-
-static const char *function_name(int function) {
-  switch (function) {
-#define X(code, name)                                                                              \
-  case FUNCTION_##code:                                                                            \
-    return name;
-    NAMED(X)
-#undef X
-  default:
-    return NULL;
-  }
-}
-
 static void put_arguments(const law *l, const expr *e, FILE *out) {
   fputs("\\left(", out);
   for (int i = 0; i < e->argument_count; i++) {
@@ -472,15 +430,21 @@ static void put_arguments(const law *l, const expr *e, FILE *out) {
   fputs("\\right)", out);
 }
 
-static bool put_enclosed(const law *l, const expr *e, FILE *out) {
-  for (size_t i = 0; i < sizeof enclosed / sizeof enclosed[0]; i++) {
-    if (enclosed[i].function != e->builtin || e->argument_count != 1) continue;
-    fputs(enclosed[i].before, out);
+/* As the table of functions has it: |x|, or a name before bracketed arguments. */
+static void put_function(const law *l, const expr *e, FILE *out) {
+  const char *formula = e->builtin < 0 ? "" : builtin_functions[e->builtin].formula;
+  const size_t before = strcspn(formula, "#");
+  if (formula[before]) {
+    fprintf(out, "%.*s", (int)before, formula);
     put(l, e->arguments[0].value, HOLDS_OR, out);
-    fputs(enclosed[i].after, out);
-    return true;
+    fputs(formula + before + 1, out);
+    return;
   }
-  return false;
+  if (*formula)
+    fputs(formula, out);
+  else
+    math_symbol(l, e->name, NO_STEP, false, false, out);
+  put_arguments(l, e, out);
 }
 
 static void put_derivative(const law *l, const expr *e, FILE *out) {
@@ -496,13 +460,8 @@ static void put_call(const law *l, const expr *e, FILE *out) {
     math_symbol(l, first->name, STEP_OLD, first->indexed, first->primed, out);
   } else if (is_call_of(e, FUNCTION_DIFF) && e->argument_count == 2) {
     put_derivative(l, e, out);
-  } else if (!put_enclosed(l, e, out)) {
-    const char *name = function_name(e->builtin);
-    if (name)
-      fputs(name, out);
-    else
-      math_symbol(l, e->name, NO_STEP, false, false, out);
-    put_arguments(l, e, out);
+  } else {
+    put_function(l, e, out);
   }
 }
 

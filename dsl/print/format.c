@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/syntax/parser.h"
+#include "dsl/syntax/lexer.h"
 
 enum {
   INDENT = 2,

@@ -2,15 +2,29 @@
 
 #include <string.h>
 
+#include "dsl/base/elementary.h"
+
+static double soft_sign(double x) {
+  return x / (1 + pl_abs(x));
+}
+
+static double positive_part(double x) {
+  return pl_max(x, 0);
+}
+
 const builtin_quantity_info builtin_quantities[QUANTITY_COUNT] = {
-#define X(code, name, unit, shape, place, kinds, meaning)                                          \
-  {name, unit, meaning, SHAPE_##shape, ON_##place, kinds},
+#define X(code, name, unit, shape, place, kinds, fixed, example, meaning)                          \
+  {name, unit, meaning, example, SHAPE_##shape, ON_##place, kinds, fixed},
     BUILTIN_QUANTITIES(X)
 #undef X
 };
 
+#define NO_VALUE .of_one = NULL
+#define ONE(f)   .of_one = f
+#define MANY(f)  .of_many = f
 const builtin_function_info builtin_functions[FUNCTION_COUNT] = {
-#define X(code, name, least, most, meaning) {name, meaning, least, most},
+#define X(code, name, least, most, check, value, formula, example, meaning)                        \
+  {name, meaning, example, formula, least, most, value},
     BUILTIN_FUNCTIONS(X)
 #undef X
 };

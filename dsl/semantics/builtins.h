@@ -1,4 +1,5 @@
-/* Names the language brings along: lattice and kinematic quantities, functions. One table each. */
+/* What the language brings along: quantities of lattice and motion, functions. One table each; what
+   else a new function needs stands in dsl/README.md, "Modules". */
 #ifndef PERILAT_DSL_BUILTINS_H
 #define PERILAT_DSL_BUILTINS_H
 
@@ -10,87 +11,150 @@ C_LINKAGE_BEGIN
 /* Which kinds of law may read a quantity. */
 enum { IN_CENTRAL = 1, IN_MICROPOLAR = 2, IN_STATE = 4, IN_PAIR = 3, IN_ANY = 7 };
 
-/* X(code, name, unit, shape, place, kinds, meaning) */
+/* Whether it is the same at all times. */
+enum { MOVES, FIXED };
+
+/* clang-format off */
+/* X(code, name, unit, shape, place, laws that may read it, does it change in time,
+     a line of a law that reads it, meaning) */
 #define BUILTIN_QUANTITIES(X)                                                                      \
-  X(STRETCH, "stretch", "1", SCALAR, BOND, IN_ANY, "change of bond length over reference length")  \
-  X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_ANY, "time derivative of the stretch")   \
-  X(THETA_I, "theta_i", "1", BENDING, BOND, IN_MICROPOLAR, "rotation of end i less the chord's")   \
-  X(THETA_J, "theta_j", "1", BENDING, BOND, IN_MICROPOLAR, "rotation of end j less the chord's")   \
-  X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, "rotation of end j about the bond less that of end i; 0 in 2D") \
-  X(LENGTH, "length", "m", SCALAR, BOND, IN_ANY, "present length of the bond")                     \
-  X(S, "s", "m", SCALAR, BOND, IN_ANY, "reference length of the bond")                             \
-  X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, "distance of nearest sites of the lattice")     \
-  X(T, "t", "m", SCALAR, BODY, IN_ANY, "thickness used for stiffness")                             \
-  X(V, "V", "m^3", SCALAR, PARTICLE, IN_ANY, "volume of the particle; all have the same on a lattice") \
-  X(M_BOND, "m", "kg", SCALAR, BOND, IN_ANY, "smaller mass of the two particles of the bond")      \
-  X(M_END_I, "m_i", "kg", SCALAR, BOND, IN_ANY, "mass of particle i")                              \
-  X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, "mass of particle j")                              \
-  X(AREA, "area", "m^2", SCALAR, BODY, IN_PAIR, "cross-section of a bar")                          \
-  X(SHELL, "shell", "1", SCALAR, BOND, IN_ANY, "shell of the neighbour: 1 nearest, 2 second, ...") \
-  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, "distance up to which particles are neighbours")   \
-  X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes") \
-  X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, "number of bonds of the particle")               \
-  X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE, "1 where the particle's bonds resolve all strains, else 0") \
-  X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, "unit vector along the reference bond")
+  X(STRETCH, "stretch", "1", SCALAR, BOND, IN_ANY, MOVES, "x = stretch**2",                        \
+    "change of bond length over reference length")                                                 \
+  X(STRETCH_RATE, "stretch_rate", "1/s", SCALAR, BOND, IN_ANY, MOVES, "x = stretch_rate/10 [1/s]", \
+    "time derivative of the stretch")                                                              \
+  X(THETA_I, "theta_i", "1", BENDING, BOND, IN_MICROPOLAR, MOVES, "x = norm(2*theta_i + theta_j)", \
+    "rotation of end i less the chord's")                                                          \
+  X(THETA_J, "theta_j", "1", BENDING, BOND, IN_MICROPOLAR, MOVES, "x = norm(2*theta_j + theta_i)", \
+    "rotation of end j less the chord's")                                                          \
+  X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, MOVES, "x = twist/s",                        \
+    "rotation of end j about the bond less that of end i; 0 in 2D")                                \
+  X(LENGTH, "length", "m", SCALAR, BOND, IN_ANY, MOVES, "x = length/s - 1",                        \
+    "present length of the bond")                                                                  \
+  X(S, "s", "m", SCALAR, BOND, IN_ANY, FIXED, "x = stretch*s", "reference length of the bond")     \
+  X(SPACING, "spacing", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s/spacing",                         \
+    "distance of nearest sites of the lattice")                                                    \
+  X(T, "t", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s*t", "thickness used for stiffness")           \
+  X(V, "V", "m^3", SCALAR, PARTICLE, IN_ANY, FIXED, "x = V/spacing**2",                            \
+    "volume of the particle; all have the same on a lattice")                                      \
+  X(M_BOND, "m", "kg", SCALAR, BOND, IN_ANY, FIXED, "x = sqrt(EA/s/m)",                            \
+    "smaller mass of the two particles of the bond")                                               \
+  X(M_END_I, "m_i", "kg", SCALAR, BOND, IN_ANY, FIXED, "x = m_i*m_j/(m_i + m_j)",                  \
+    "mass of particle i")                                                                          \
+  X(M_END_J, "m_j", "kg", SCALAR, BOND, IN_ANY, FIXED, "x = min(m_i, m_j)/m_j",                    \
+    "mass of particle j")                                                                          \
+  X(AREA, "area", "m^2", SCALAR, BODY, IN_PAIR, FIXED, "x = area*length",                          \
+    "cross-section of a bar")                                                                      \
+  X(SHELL, "shell", "1", SCALAR, BOND, IN_ANY, FIXED, "x = | 1 when shell == 1 | 0.5 otherwise",   \
+    "shell of the neighbour: 1 nearest, 2 second, ...")                                            \
+  X(HORIZON, "horizon", "m", SCALAR, BODY, IN_ANY, FIXED, "x = s/horizon",                         \
+    "distance up to which particles are neighbours")                                               \
+  X(WEIGHT, "weight", "1", SCALAR, BOND, IN_STATE, FIXED, "x = sum(weight*stretch[j])",            \
+    "part of the neighbour's volume that counts: 1 unless the lattice corrects volumes")           \
+  X(N_FAMILY, "n", "1", SCALAR, PARTICLE, IN_STATE, FIXED, "x = sum(stretch[j])/n",                \
+    "number of bonds of the particle")                                                             \
+  X(RESOLVED, "resolved", "1", SCALAR, PARTICLE, IN_STATE, FIXED,                                  \
+    "x = | 1 when resolved >= 1 | 0 otherwise",                                                    \
+    "1 where the particle's bonds resolve all strains, else 0")                                    \
+  X(DIRECTION, "direction", "1", VECTOR, BOND, IN_ANY, FIXED, "x = norm(direction)",               \
+    "unit vector along the reference bond")
+
+/* X(code, name, least arguments, most arguments, check of the arguments (calls.c), value, formula,
+     a line of a law that calls it, meaning)
+   The value, of numbers alone, is ONE(f) of one argument, MANY(f) where f(f(a, b), c) goes on from
+   two to many, or NO_VALUE. In the formula (LaTeX) # stands for the argument; without #, it is a
+   name before bracketed arguments, and "" is the function's own name. */
+#define BUILTIN_FUNCTIONS(X)                                                                       \
+  X(ABS, "abs", 1, 1, same_unit, ONE(pl_abs), "\\left|#\\right|", "x = abs(stretch)",              \
+    "absolute value")                                                                              \
+  X(SQRT, "sqrt", 1, 1, root, ONE(pl_sqrt), "\\sqrt{#}", "x = sqrt(length*s)", "square root")      \
+  X(CBRT, "cbrt", 1, 1, root, ONE(pl_cbrt), "\\sqrt[3]{#}", "x = cbrt(V)", "cube root")            \
+  X(EXP, "exp", 1, 1, pure, ONE(pl_exp), "\\exp", "x = exp(-stretch/S_t)",                         \
+    "exponential of a pure number")                                                                \
+  X(LOG, "log", 1, 1, pure, ONE(pl_log), "\\ln", "x = log(1 + stretch)",                           \
+    "natural logarithm of a pure number")                                                          \
+  X(SIN, "sin", 1, 1, pure, ONE(pl_sin), "\\sin", "x = sin(norm(theta_i))", "sine")                \
+  X(COS, "cos", 1, 1, pure, ONE(pl_cos), "\\cos", "x = cos(30 [deg])", "cosine")                   \
+  X(TAN, "tan", 1, 1, pure, ONE(pl_tan), "\\tan", "x = tan(30 [deg])", "tangent")                  \
+  X(TANH, "tanh", 1, 1, pure, ONE(pl_tanh), "\\tanh", "x = tanh(stretch/S_t)",                     \
+    "hyperbolic tangent")                                                                          \
+  X(ATAN2, "atan2", 2, 2, arctangent, NO_VALUE, "\\operatorname{atan2}",                           \
+    "x = atan2(norm(theta_i), stretch)", "angle of the vector (x, y) given as y, x")               \
+  X(SIGN, "sign", 1, 1, sign, ONE(pl_sign), "\\operatorname{sign}", "x = sign(stretch)",           \
+    "-1, 0 or 1")                                                                                  \
+  X(SOFT_SIGN, "soft_sign", 1, 1, pure, ONE(soft_sign), "\\operatorname{soft\\_sign}",             \
+    "x = soft_sign(stretch_rate/10 [1/s])", "x/(1 + |x|)")                                         \
+  X(MACAULAY, "positive_part", 1, 1, same_unit, ONE(positive_part),                                \
+    "\\left\\langle #\\right\\rangle", "x = positive_part(stretch - S_t)", "max(x, 0)")            \
+  X(MIN, "min", 1, 16, extreme, MANY(pl_min), "\\min", "x = min(stretch, S_t)",                    \
+    "smallest of its arguments, or of x[j] over the family")                                       \
+  X(MAX, "max", 1, 16, extreme, MANY(pl_max), "\\max", "x = max(norm(theta_i), norm(theta_j))",    \
+    "largest of its arguments, or of x[j] over the family")                                        \
+  X(NORM, "norm", 1, 1, norm, NO_VALUE, "\\left\\lVert #\\right\\rVert",                           \
+    "x = norm(theta_i + theta_j)",                                                                 \
+    "magnitude of a bending quantity, vector, tensor or directed quantity")                        \
+  X(PREVIOUS, "previous", 1, 1, previous, NO_VALUE, "", "x = omega - previous(omega)",             \
+    "value of a state or damage at the end of the last step")                                      \
+  X(DIFF, "diff", 2, 2, derivative, NO_VALUE, "", "x = diff(stretch**2, stretch)",                 \
+    "symbolic derivative of the first argument by the second")                                     \
+  X(SUM, "sum", 1, 1, sum, NO_VALUE, "\\sum_{j}\\left(#\\right)", "x = sum(stretch[j])",           \
+    "sum over the family")                                                                         \
+  X(MEAN, "mean", 1, 2, mean, NO_VALUE, "\\operatorname{mean}_{j}",                                \
+    "x = mean(stretch[j], weight = length[j])", "mean over the family, with an optional weight")   \
+  X(DEVIATOR, "deviator", 1, 1, deviator, NO_VALUE, "\\operatorname{deviator}",                    \
+    "x[j] = deviator(F[j])", "directed quantity less its mean")                                    \
+  X(VIRTUAL_WORK, "virtual_work", 1, 1, virtual_work, NO_VALUE, "\\operatorname{virtual\\_work}",  \
+    "stress x = virtual_work(F)", "stress tensor of a force state")                                \
+  X(FIT, "fit", 1, 1, fit, NO_VALUE, "\\operatorname{fit}", "strain x = fit(stretch)",             \
+    "strain tensor that fits the family's stretches best")                                         \
+  X(UNIFORM_FORCE, "uniform_force", 1, 1, uniform_force, NO_VALUE, "",                             \
+    "x[j] = uniform_force(virtual_work(F))",                                                       \
+    "force state toward each neighbour of a uniform stress")                                       \
+  X(UNIFORM_STRETCH, "uniform_stretch", 1, 1, uniform_stretch, NO_VALUE, "",                       \
+    "x[j] = stretch[j] - uniform_stretch(fit(stretch))",                                           \
+    "stretch toward each neighbour of a uniform strain")                                           \
+  X(HOOKE, "hooke", 3, 3, hooke, NO_VALUE, "", "stress x = hooke(fit(stretch), 30 [GPa], 0.2)",    \
+    "stress of a strain: hooke(eps, E, nu), isotropic")                                            \
+  X(PRINCIPAL, "principal", 2, 2, principal, NO_VALUE, "\\operatorname{principal}",                \
+    "x = principal(fit(stretch), 1)", "principal value 1, 2 or 3 of a tensor, largest first")      \
+  X(TRACE, "trace", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{tr}",                        \
+    "x = trace(fit(stretch))", "trace of a tensor")                                                \
+  X(DEV, "dev", 1, 1, tensor_argument, NO_VALUE, "\\operatorname{dev}",                            \
+    "x = norm(dev(fit(stretch)))", "deviator of a tensor")                                         \
+  X(J2, "J2", 1, 1, tensor_to_scalar, NO_VALUE, "J_{2}", "x = J2(virtual_work(F))",                \
+    "second invariant of a stress deviator")                                                       \
+  X(VON_MISES, "von_mises", 1, 1, tensor_to_scalar, NO_VALUE, "\\operatorname{von\\_Mises}",       \
+    "x = von_mises(virtual_work(F))", "von Mises equivalent of a stress tensor")
 
 typedef enum builtin_quantity {
-#define X(code, name, unit, shape, place, kinds, meaning) QUANTITY_##code,
+#define X(code, ...) QUANTITY_##code,
   BUILTIN_QUANTITIES(X)
 #undef X
   QUANTITY_COUNT
 } builtin_quantity;
 
-/* X(code, name, least arguments, most arguments, meaning) */
-#define BUILTIN_FUNCTIONS(X)                                                                       \
-  X(ABS, "abs", 1, 1, "absolute value")                                                            \
-  X(SQRT, "sqrt", 1, 1, "square root")                                                             \
-  X(CBRT, "cbrt", 1, 1, "cube root")                                                               \
-  X(EXP, "exp", 1, 1, "exponential of a pure number")                                              \
-  X(LOG, "log", 1, 1, "natural logarithm of a pure number")                                        \
-  X(SIN, "sin", 1, 1, "sine")                                                                      \
-  X(COS, "cos", 1, 1, "cosine")                                                                    \
-  X(TAN, "tan", 1, 1, "tangent")                                                                   \
-  X(TANH, "tanh", 1, 1, "hyperbolic tangent")                                                      \
-  X(ATAN2, "atan2", 2, 2, "angle of the vector (x, y) given as y, x")                              \
-  X(SIGN, "sign", 1, 1, "-1, 0 or 1")                                                              \
-  X(SOFT_SIGN, "soft_sign", 1, 1, "x/(1 + |x|)")                                                   \
-  X(MACAULAY, "positive_part", 1, 1, "max(x, 0)")                                                  \
-  X(MIN, "min", 1, 16, "smallest of its arguments, or of x[j] over the family")                    \
-  X(MAX, "max", 1, 16, "largest of its arguments, or of x[j] over the family")                     \
-  X(NORM, "norm", 1, 1, "magnitude of a bending quantity, vector, tensor or directed quantity")    \
-  X(PREVIOUS, "previous", 1, 1, "value of a state or damage at the end of the last step")          \
-  X(DIFF, "diff", 2, 2, "symbolic derivative of the first argument by the second")                 \
-  X(SUM, "sum", 1, 1, "sum over the family")                                                       \
-  X(MEAN, "mean", 1, 2, "mean over the family, with an optional weight")                           \
-  X(DEVIATOR, "deviator", 1, 1, "directed quantity less its mean")                                 \
-  X(VIRTUAL_WORK, "virtual_work", 1, 1, "stress tensor of a force state")                          \
-  X(FIT, "fit", 1, 1, "strain tensor that fits the family's stretches best")                       \
-  X(UNIFORM_FORCE, "uniform_force", 1, 1, "force state toward each neighbour of a uniform stress")   \
-  X(UNIFORM_STRETCH, "uniform_stretch", 1, 1, "stretch toward each neighbour of a uniform strain")  \
-  X(HOOKE, "hooke", 3, 3, "stress of a strain: hooke(eps, E, nu), isotropic")                      \
-  X(PRINCIPAL, "principal", 2, 2, "principal value 1, 2 or 3 of a tensor, largest first")          \
-  X(TRACE, "trace", 1, 1, "trace of a tensor")                                                     \
-  X(DEV, "dev", 1, 1, "deviator of a tensor")                                                      \
-  X(J2, "J2", 1, 1, "second invariant of a stress deviator")                                       \
-  X(VON_MISES, "von_mises", 1, 1, "von Mises equivalent of a stress tensor")
-
 typedef enum builtin_function {
-#define X(code, name, least, most, meaning) FUNCTION_##code,
+#define X(code, ...) FUNCTION_##code,
   BUILTIN_FUNCTIONS(X)
 #undef X
   FUNCTION_COUNT
 } builtin_function;
 
+/* clang-format on */
+
 typedef struct builtin_quantity_info {
-  const char *name, *unit, *meaning;
+  const char *name, *unit, *meaning, *example;
   enum shape shape;
   placement place;
   int kinds;
+  bool fixed;
 } builtin_quantity_info;
 
 typedef struct builtin_function_info {
-  const char *name, *meaning;
+  const char *name, *meaning, *example;
+  const char *formula; /* LaTeX */
   int least, most;
+  double (*of_one)(double x);            /* value, or NULL */
+  double (*of_many)(double x, double y); /* of the first two arguments; or NULL */
 } builtin_function_info;
 
 extern const builtin_quantity_info builtin_quantities[QUANTITY_COUNT];

@@ -1,7 +1,10 @@
-/* Calls of built-in functions and of the law's own. */
+#include "dsl/semantics/calls.h"
+
 #include <string.h>
 
-#include "dsl/semantics/check.h"
+#include "dsl/semantics/names.h"
+#include "dsl/semantics/order.h"
+#include "dsl/semantics/types.h"
 
 static expr *operand(const expr *e, int i) {
   return e->arguments[i].value;
@@ -322,27 +325,9 @@ static value principal(checker *ck, expr *e) {
   return BROKEN;
 }
 
-/* X(code, checker of the call) */
-#define CALLS(X)                                                                                   \
-  X(ABS, same_unit)                                                                                \
-  X(SQRT, root)                                                                                    \
-  X(CBRT, root)                                                                                    \
-  X(EXP, pure)                                                                                     \
-  X(LOG, pure)                                                                                     \
-  X(SIN, pure)                                                                                     \
-  X(COS, pure)                                                                                     \
-  X(TAN, pure)                                                                                     \
-  X(TANH, pure) X(ATAN2, arctangent) X(SIGN, sign) X(SOFT_SIGN, pure) X(MACAULAY, same_unit)       \
-      X(MIN, extreme) X(MAX, extreme) X(NORM, norm) X(PREVIOUS, previous) X(DIFF, derivative)      \
-          X(SUM, sum) X(MEAN, mean) X(DEVIATOR, deviator) X(VIRTUAL_WORK, virtual_work)            \
-              X(FIT, fit) X(UNIFORM_FORCE, uniform_force) X(UNIFORM_STRETCH, uniform_stretch)      \
-                  X(HOOKE, hooke) X(PRINCIPAL, principal) X(TRACE, tensor_to_scalar)               \
-                      X(DEV, tensor_argument) X(J2, tensor_to_scalar)                              \
-                          X(VON_MISES, tensor_to_scalar)
-
 static value (*const calls[FUNCTION_COUNT])(checker *ck, expr *e) = {
-#define X(code, function) [FUNCTION_##code] = function,
-    CALLS(X)
+#define X(code, name, least, most, check, ...) check,
+    BUILTIN_FUNCTIONS(X)
 #undef X
 };
 
@@ -382,6 +367,9 @@ static bool check_arity(checker *ck, const expr *e, int least, int most, const c
   return false;
 }
 
+/* A function has no units of its own: with f(p, q) = p*q, f(s, s) is in m^2 and f(k, stretch) in N.
+   The body is checked once where it is declared, its arguments agreeing with everything, and again
+   at each call with the arguments' units; what is wrong there is reported at the call. */
 static value expand(checker *ck, expr *e, entry *function) {
   value values[MOST_ARGUMENTS];
   bool broken = false;

@@ -1,5 +1,6 @@
-/* A checked law: every name resolved, every unit agreed, every quantity placed, in an order in which it
-   can be evaluated. The checker annotates the tree in place; the generator reads this and nothing else. */
+/* A checked law: every name resolved, every unit agreed, every quantity placed, in an order in
+   which it can be evaluated. The checker annotates the tree in place; the generator reads this and
+   nothing else. */
 #ifndef PERILAT_DSL_LAW_H
 #define PERILAT_DSL_LAW_H
 
@@ -64,13 +65,16 @@ typedef struct law_choice {
   const char *option, *choice;
 } law_choice;
 
-/* What the lattice of a law is: it decides `when plane_strain` and the third direction of tensors. */
-typedef enum law_setting { SETTING_PLANE_STRESS, SETTING_PLANE_STRAIN, SETTING_SPACE } law_setting;
+/* The lattice of a law: it decides `when plane_strain` and the third direction of tensors. */
+typedef enum law_setting {
+#define X(code, word) SETTING_##code,
+  LAW_SETTINGS(X)
+#undef X
+} law_setting;
 
 typedef struct law {
   struct tree *tree;
-  law_setting
-      setting; /* the first that the law names, or plane stress; may be changed before it is lowered */
+  law_setting setting; /* first that the law names; may be changed before it is lowered */
   bool irregular; /* lowered for particles that stand on no lattice */
   int neighbours; /* of a full family, where they are known; else 0 */
   arena *memory;  /* not owned */
@@ -87,32 +91,9 @@ typedef struct law {
   const char *nonconservative; /* reason, or NULL */
 } law;
 
-/* Checks names, units, placement, definite assignment, options. All errors of the file are reported.
-   `choices` selects options (NULL, 0: the first of each). Returns NULL when there are errors.
-   What cannot be compiled is no error here: the generator says so. */
-law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
-               int choice_count, diagnostics *d);
-
 const char *law_setting_name(law_setting setting);
 /* The first that the law names in its line `for`; plane stress without one. */
 law_setting law_first_setting(const law *l);
-
-/* Value in SI of an expression made of numbers and parameters, given the parameters' values in the order of
-   law->parameters; used for bounds. Infinite bounds have no expression. */
-double law_constant_value(const expr *e, const double *parameters);
-
-/* True when `value` respects the bounds of parameter `p`, given all values; otherwise `text` (size bytes) says
-   what the bounds are, e.g. "(20, inf)". */
-bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size);
-/* The bounds as numbers, SI: lower and upper, infinite where there is none, NAN where one depends on a value that is NAN;
-   and whether the bound itself is left out. */
-typedef struct law_limits {
-  double lower, upper;
-  bool lower_open, upper_open;
-} law_limits;
-law_limits law_parameter_limits(const law *l, int p, const double *values);
-/* The bounds alone as such a text, in SI; "(-inf, inf)" where none are declared. */
-void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size);
 
 C_LINKAGE_END
 

@@ -1,14 +1,11 @@
-/* Declares the names of a law and finds them again. */
-#include <ctype.h>
+#include "dsl/semantics/names.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/check.h"
-
-/* Words of the deck's material group, which a law's parameters and options stand beside. */
-static const char *const deck_words[] = {"name", "model", "lattice"};
-
-static const char *const settings[] = {"plane_stress", "plane_strain", "space", LAW_IRREGULAR};
+#define X(code, word) word,
+static const char *const settings[] = {LAW_SETTINGS(X) LAW_IRREGULAR};
+#undef X
 
 enum { SETTING_COUNT = sizeof(settings) / sizeof(settings[0]), MOST_SUGGESTIONS = 100 };
 
@@ -36,7 +33,7 @@ entry *names_find_choice(const checker *ck, const symbol *option, const char *na
   return found;
 }
 
-static entry *add(checker *ck, name_space space, const char *key, symbol what) {
+entry *names_add(checker *ck, name_space space, const char *key, symbol what) {
   entry *added = arena_alloc(ck->memory, sizeof(entry));
   entry **bucket = &ck->buckets[hash_of(space, key) % (unsigned)ck->bucket_count];
   *added = (entry){.symbol = what,
@@ -60,25 +57,25 @@ static void add_builtins(checker *ck) {
     const builtin_quantity_info *q = &builtin_quantities[i];
     dimension dim = dimension_of(q->unit);
     const placement on = is_pairwise(ck) && q->place == ON_PARTICLE ? ON_BODY : q->place;
-    entry *e = add(ck, SPACE_QUANTITIES, q->name,
-                   (symbol){.kind = SYMBOL_QUANTITY,
-                            .name = q->name,
-                            .index = i,
-                            .dim = dim,
-                            .shape = q->shape,
-                            .place = on,
-                            .doc = q->meaning,
-                            .used = true});
+    entry *e = names_add(ck, SPACE_QUANTITIES, q->name,
+                         (symbol){.kind = SYMBOL_QUANTITY,
+                                  .name = q->name,
+                                  .index = i,
+                                  .dim = dim,
+                                  .shape = q->shape,
+                                  .place = on,
+                                  .doc = q->meaning,
+                                  .used = true});
     e->type = (value){.dim = dim, .shape = q->shape, .place = on};
     e->known = true;
   }
   for (int i = 0; i < SETTING_COUNT; i++) {
-    entry *e = add(ck, SPACE_QUANTITIES, settings[i],
-                   (symbol){.kind = SYMBOL_CHOICE,
-                            .name = settings[i],
-                            .index = i,
-                            .shape = SHAPE_LOGICAL,
-                            .used = true});
+    entry *e = names_add(ck, SPACE_QUANTITIES, settings[i],
+                         (symbol){.kind = SYMBOL_CHOICE,
+                                  .name = settings[i],
+                                  .index = i,
+                                  .shape = SHAPE_LOGICAL,
+                                  .used = true});
     e->type = (value){.shape = SHAPE_LOGICAL};
     e->known = true;
   }
@@ -115,366 +112,6 @@ void names_suggest(checker *ck, name_space space, const char *name) {
   free(candidates);
 }
 
-/* --- declaring -------------------------------------------------------------------------------- */
-
-static bool refuse_reserved(checker *ck, const char *name, span where) {
-  if (strcmp(name, "j") == 0) {
-    complain(ck, DIAG_RESERVED_NAME, where, "`j` is reserved for the neighbour, as in x[j]");
-    return true;
-  }
-  const entry *found = names_find(ck, SPACE_QUANTITIES, name);
-  if (!found || found->declared_at >= 0) return false;
-  if (found->symbol.kind == SYMBOL_QUANTITY)
-    complain(ck, DIAG_RESERVED_NAME, where, "`%s` is built in: %s", name, found->symbol.doc);
-  else
-    complain(ck, DIAG_RESERVED_NAME, where, "`%s` is built in: a setting of the lattice", name);
-  diag_hint(ck->d, "choose another name");
-  return true;
-}
-
-static void report_duplicate(checker *ck, const char *name, span where, const entry *first) {
-  complain(ck, DIAG_DUPLICATE_NAME, where, "`%s` is declared twice", name);
-  diag_note(ck->d, first->symbol.where, "first declared here");
-}
-
-static entry *declare(checker *ck, symbol_kind kind, stmt *s) {
-  if (!s->name || refuse_reserved(ck, s->name, s->name_where)) return NULL;
-  const entry *first = names_find(ck, SPACE_QUANTITIES, s->name);
-  if (first) {
-    report_duplicate(ck, s->name, s->name_where, first);
-    return NULL;
-  }
-  entry *e = add(ck, SPACE_QUANTITIES, s->name,
-                 (symbol){.kind = kind,
-                          .name = s->name,
-                          .where = s->name_where,
-                          .declared = s,
-                          .doc = s->doc ? s->doc : s->text});
-  s->symbol = &e->symbol;
-  return e;
-}
-
-static void append(checker *ck, symbol_list *list, entry *e) {
-  /* The list's room is always the power of two at or above its count. */
-  if ((list->count & (list->count - 1)) == 0) {
-    size_t room = list->count ? 2 * (size_t)list->count : 1;
-    symbol **items = arena_alloc(ck->memory, room * sizeof(symbol *));
-    if (list->count) memcpy(items, list->items, (size_t)list->count * sizeof(symbol *));
-    list->items = items;
-  }
-  e->symbol.index = list->count;
-  list->items[list->count++] = &e->symbol;
-}
-
-/* Namelists do not know case, so names a deck sets must differ in more than case. */
-static void declare_in_deck(checker *ck, const stmt *s) {
-  char *key = arena_text(ck->memory, s->name, strlen(s->name));
-  for (char *c = key; *c; c++)
-    *c = (char)tolower((unsigned char)*c);
-  for (size_t i = 0; i < sizeof(deck_words) / sizeof(deck_words[0]); i++)
-    if (strcmp(key, deck_words[i]) == 0) {
-      complain(ck, DIAG_RESERVED_NAME, s->name_where, "`%s` is a word of the deck's material group",
-               s->name);
-      diag_hint(ck->d, "choose another name: decks do not know case");
-    }
-  const entry *first = names_find(ck, SPACE_DECK, key);
-  if (first) {
-    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s` and `%s` differ only in case", s->name,
-             first->symbol.name);
-    diag_note(ck->d, first->symbol.where, "`%s` is declared here", first->symbol.name);
-    diag_hint(ck->d, "choose another name: decks do not know case");
-  } else {
-    add(ck, SPACE_DECK, key, (symbol){.name = s->name, .where = s->name_where});
-  }
-}
-
-static void declare_parameter(checker *ck, stmt *s) {
-  entry *e = declare(ck, SYMBOL_PARAMETER, s);
-  if (!e) return;
-  append(ck, &ck->law->parameters, e);
-  if (strcmp(s->name, "rho") == 0) ck->law->rho = &e->symbol;
-  declare_in_deck(ck, s);
-}
-
-static void declare_option(checker *ck, stmt *s) {
-  entry *e = declare(ck, SYMBOL_OPTION, s);
-  if (!e) return;
-  append(ck, &ck->law->options, e);
-  declare_in_deck(ck, s);
-  for (int i = 0; i < s->word_count; i++) {
-    if (names_find_choice(ck, &e->symbol, s->words[i]))
-      complain(ck, DIAG_OPTION, s->word_where[i], "option `%s` has the choice `%s` twice", s->name,
-               s->words[i]);
-    add(ck, SPACE_CHOICES, s->words[i],
-        (symbol){.kind = SYMBOL_CHOICE,
-                 .name = s->words[i],
-                 .where = s->word_where[i],
-                 .declared = s,
-                 .index = i,
-                 .option = &e->symbol});
-  }
-}
-
-static void declare_argument(checker *ck, stmt *s, int i, entry *e) {
-  const char *name = s->words[i];
-  refuse_reserved(ck, name, s->word_where[i]);
-  for (int k = 0; k < i; k++)
-    if (strcmp(name, s->words[k]) == 0) {
-      complain(ck, DIAG_DUPLICATE_NAME, s->word_where[i], "`%s` has two arguments called `%s`",
-               s->name, name);
-      diag_note(ck->d, s->word_where[k], "the first one is here");
-      break;
-    }
-  e->key = name;
-  e->rule_at = -1;
-  e->declared_at = ck->now;
-  e->symbol = (symbol){
-      .kind = SYMBOL_ARGUMENT, .name = name, .where = s->word_where[i], .declared = s, .index = i};
-}
-
-static void declare_function(checker *ck, stmt *s) {
-  if (!s->name) return;
-  if (builtin_function_find(s->name) >= 0) {
-    complain(ck, DIAG_RESERVED_NAME, s->name_where, "`%s` is a built-in function: %s", s->name,
-             builtin_functions[builtin_function_find(s->name)].meaning);
-    diag_hint(ck->d, "choose another name");
-    return;
-  }
-  const entry *first = names_find(ck, SPACE_FUNCTIONS, s->name);
-  if (first) {
-    report_duplicate(ck, s->name, s->name_where, first);
-    return;
-  }
-  if (s->word_count > MOST_ARGUMENTS) {
-    complain(ck, DIAG_ARGUMENTS, s->name_where, "`%s` has %d arguments; %d are the most", s->name,
-             s->word_count, MOST_ARGUMENTS);
-    return;
-  }
-  entry *e = add(ck, SPACE_FUNCTIONS, s->name,
-                 (symbol){.kind = SYMBOL_FUNCTION,
-                          .name = s->name,
-                          .where = s->name_where,
-                          .declared = s,
-                          .rule = s,
-                          .doc = s->doc ? s->doc : s->text});
-  s->symbol = &e->symbol;
-  e->arguments = arena_alloc(ck->memory, (size_t)s->word_count * sizeof(entry));
-  for (int i = 0; i < s->word_count; i++)
-    declare_argument(ck, s, i, &e->arguments[i]);
-}
-
-static void declare_field(checker *ck, stmt *s) {
-  entry *e = declare(ck, s->kind == STMT_STATE ? SYMBOL_STATE : SYMBOL_DAMAGE, s);
-  if (!e) return;
-  append(ck, &ck->law->fields, e);
-  if (s->kind == STMT_DAMAGE && s->value) {
-    e->rule_at = ck->now;
-    e->symbol.rule = s;
-  }
-}
-
-static void set_rule(checker *ck, stmt *s, entry *field) {
-  if (field->symbol.rule) {
-    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "%s `%s` has two rules",
-             field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
-    diag_note(ck->d, field->symbol.rule->name_where, "its first rule is here");
-    if (field->symbol.rule->kind == STMT_DAMAGE)
-      diag_hint(ck->d, "a damage starts at 0: declare it without a value, `damage %s on ...`",
-                s->name);
-    else
-      diag_hint(ck->d, "join them in one rule with cases: | value when guard");
-    return;
-  }
-  field->rule_at = ck->now;
-  field->symbol.rule = s;
-  s->symbol = &field->symbol;
-}
-
-static void declare_flow(checker *ck, stmt *s) {
-  entry *field = s->name ? names_find(ck, SPACE_QUANTITIES, s->name) : NULL;
-  if (field && field->symbol.kind == SYMBOL_STATE) {
-    set_rule(ck, s, field);
-    return;
-  }
-  complain(ck, DIAG_UNKNOWN_NAME, s->name_where, "flow needs a state, but `%s` is not one",
-           s->name);
-  diag_hint(ck->d, "declare it above: `state %s on %s = 0`", s->name,
-            is_pairwise(ck) ? "bond" : "neighbour");
-}
-
-static void declare_definition(checker *ck, stmt *s) {
-  entry *found = s->name ? names_find(ck, SPACE_QUANTITIES, s->name) : NULL;
-  if (found && (found->symbol.kind == SYMBOL_STATE || found->symbol.kind == SYMBOL_DAMAGE)) {
-    set_rule(ck, s, found);
-    return;
-  }
-  entry *e = declare(ck, SYMBOL_DEFINED, s);
-  if (e) {
-    e->symbol.rule = s;
-  } else if (found && found->symbol.kind == SYMBOL_DEFINED) {
-    diag_hint(ck->d, "a name has one rule: join them with cases, | value when guard");
-  }
-}
-
-static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "W"};
-static const stmt_kind result_kinds[RESULT_COUNT] = {STMT_FORCE, STMT_FORCE, STMT_MOMENT,
-                                                     STMT_MOMENT, STMT_ENERGY};
-
-static void report_result_name(checker *ck, const stmt *s) {
-  const char *kind = stmt_kind_name(s->kind);
-  bool micropolar = ck->tree->law == LAW_MICROPOLAR_BOND;
-  const char *names = s->kind == STMT_ENERGY   ? "`W`"
-                      : s->kind == STMT_MOMENT ? "`M_i` or `M_j`"
-                      : micropolar             ? "`N` (along the bond) or `V` (across it)"
-                                               : "`N`";
-  complain(ck, DIAG_LAW_KIND, s->name_where, "the %s of a bond law is called %s", kind, names);
-  ck->result_refused = true;
-}
-
-/* `force V` stands beside the volume V of the particle, so it cannot be read by its name. */
-static void declare_bond_result(checker *ck, stmt *s) {
-  int which = 0;
-  while (which < RESULT_COUNT &&
-         (result_kinds[which] != s->kind || strcmp(result_names[which], s->name) != 0))
-    which++;
-  bool central = ck->tree->law == LAW_CENTRAL_BOND;
-  if (central && (s->kind == STMT_MOMENT || which == RESULT_V)) {
-    complain(ck, DIAG_LAW_KIND, s->name_where, "a central law has no %s",
-             which == RESULT_V ? "shear force" : "moments");
-    diag_hint(ck->d, "begin with `law micropolar bond`");
-    return;
-  }
-  if (which == RESULT_COUNT) {
-    report_result_name(ck, s);
-    return;
-  }
-  if (ck->law->results[which]) {
-    complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "`%s %s` is given twice",
-             stmt_kind_name(s->kind), s->name);
-    diag_note(ck->d, ck->law->results[which]->where, "first given here");
-    return;
-  }
-  symbol what = {.kind = SYMBOL_RESULT,
-                 .name = s->name,
-                 .where = s->name_where,
-                 .declared = s,
-                 .rule = s,
-                 .doc = s->doc ? s->doc : s->text};
-  entry *e;
-  if (which == RESULT_V) {
-    e = arena_alloc(ck->memory, sizeof(entry));
-    *e = (entry){.symbol = what, .key = s->name, .declared_at = ck->now, .rule_at = -1};
-    s->symbol = &e->symbol;
-  } else {
-    e = declare(ck, SYMBOL_RESULT, s);
-    if (!e) return;
-    e->symbol.rule = s;
-  }
-  e->symbol.index = which;
-  ck->law->results[which] = &e->symbol;
-}
-
-static void report_kind_of_result(checker *ck, const stmt *s) {
-  complain(ck, DIAG_LAW_KIND, s->name_where, "a %s law has no %s",
-           is_pairwise(ck) ? "bond" : "state", stmt_kind_name(s->kind));
-  if (!is_pairwise(ck))
-    diag_hint(ck->d, "a state law gives `force state F[j] = ...`");
-  else if (s->kind == STMT_FORCE_STATE)
-    diag_hint(ck->d, "a bond law gives `force N = ...`");
-  else
-    diag_hint(ck->d, "stress and strain belong to a particle's family: begin with `law state`");
-}
-
-static void declare_result(checker *ck, stmt *s) {
-  if (!s->name) return;
-  bool of_family = s->kind == STMT_FORCE_STATE || s->kind == STMT_STRESS || s->kind == STMT_STRAIN;
-  if (!of_family && is_pairwise(ck)) {
-    declare_bond_result(ck, s);
-    return;
-  }
-  bool refused = of_family == is_pairwise(ck) && s->kind != STMT_ENERGY;
-  ck->result_refused |= refused;
-  if (refused) report_kind_of_result(ck, s);
-  bool result = s->kind == STMT_FORCE_STATE || s->kind == STMT_ENERGY;
-  entry *e = declare(ck, result ? SYMBOL_RESULT : SYMBOL_DEFINED, s);
-  if (!e) return;
-  e->symbol.rule = s;
-  e->refused = refused;
-  e->symbol.index = s->kind == STMT_ENERGY ? RESULT_W : RESULT_COUNT;
-  if (s->kind == STMT_ENERGY && !ck->law->results[RESULT_W])
-    ck->law->results[RESULT_W] = &e->symbol;
-}
-
-static void declare_output(checker *ck, stmt *s) {
-  entry *e = declare(ck, SYMBOL_OUTPUT, s);
-  if (!e) return;
-  e->symbol.rule = s;
-  append(ck, &ck->law->outputs, e);
-}
-
-static void declare_ruled(checker *ck, stmt *s) {
-  entry *e = declare(ck, s->kind == STMT_CONSTANT ? SYMBOL_CONSTANT : SYMBOL_DEFINED, s);
-  if (e) e->symbol.rule = s;
-}
-
-static void declare_nonconservative(checker *ck, stmt *s) {
-  if (ck->law->nonconservative)
-    complain(ck, DIAG_DUPLICATE_NAME, s->where, "`nonconservative` is written twice");
-  ck->law->nonconservative = s->text ? s->text : "";
-}
-
-static void declare_one(checker *ck, stmt *s) {
-  switch (s->kind) {
-  case STMT_PARAMETER:
-    declare_parameter(ck, s);
-    break;
-  case STMT_OPTION:
-    declare_option(ck, s);
-    break;
-  case STMT_FUNCTION:
-    declare_function(ck, s);
-    break;
-  case STMT_STATE:
-  case STMT_DAMAGE:
-    declare_field(ck, s);
-    break;
-  case STMT_DEFINITION:
-    declare_definition(ck, s);
-    break;
-  case STMT_FLOW:
-    declare_flow(ck, s);
-    break;
-  case STMT_FORCE:
-  case STMT_FORCE_STATE:
-  case STMT_MOMENT:
-  case STMT_ENERGY:
-  case STMT_STRESS:
-  case STMT_STRAIN:
-    declare_result(ck, s);
-    break;
-  case STMT_OUTPUT:
-    declare_output(ck, s);
-    break;
-  case STMT_CONSTANT:
-  case STMT_YIELD:
-    declare_ruled(ck, s);
-    break;
-  case STMT_NONCONSERVATIVE:
-    declare_nonconservative(ck, s);
-    break;
-  case STMT_INCLUDE:
-  case STMT_COUNT:
-    break;
-  }
-}
-
-void names_declare(checker *ck) {
-  for (int i = 0; i < ck->statement_count; i++) {
-    ck->now = i;
-    declare_one(ck, ck->statements[i]);
-  }
-}
-
 /* --- reading ---------------------------------------------------------------------------------- */
 
 static void report_unknown(checker *ck, const expr *e) {
@@ -498,18 +135,8 @@ static void report_unknown(checker *ck, const expr *e) {
 }
 
 bool is_fixed(const symbol *s) {
-  if (s->kind != SYMBOL_QUANTITY) return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
-  switch (s->index) {
-  case QUANTITY_STRETCH:
-  case QUANTITY_STRETCH_RATE:
-  case QUANTITY_THETA_I:
-  case QUANTITY_THETA_J:
-  case QUANTITY_TWIST:
-  case QUANTITY_LENGTH:
-    return false;
-  default:
-    return true;
-  }
+  if (s->kind == SYMBOL_QUANTITY) return builtin_quantities[s->index].fixed;
+  return s->kind == SYMBOL_CONSTANT || s->kind == SYMBOL_PARAMETER;
 }
 
 static const char *law_that_has(int kinds) {
@@ -612,7 +239,11 @@ entry *names_resolve(checker *ck, expr *e) {
   if (!context_allows(ck, e, s)) return NULL;
   if (s->kind == SYMBOL_STATE || s->kind == SYMBOL_DAMAGE)
     return field_may_be_read(ck, e, found) ? found : NULL;
-  if (found->declared_at < ck->now || ck->context == IN_BOUNDS || ck->call_depth > 0) return found;
-  report_undefined(ck, e, found);
-  return NULL;
+  return found;
+}
+
+bool names_is_below(const checker *ck, const entry *e) {
+  const symbol_kind kind = e->symbol.kind;
+  if (kind == SYMBOL_STATE || kind == SYMBOL_DAMAGE || kind == SYMBOL_ARGUMENT) return false;
+  return e->declared_at >= ck->now && ck->context != IN_BOUNDS && ck->call_depth == 0;
 }

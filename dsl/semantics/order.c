@@ -1,8 +1,9 @@
-/* What depends on what: cycles, and names that reach no force and no output. */
+#include "dsl/semantics/order.h"
+
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/check.h"
+#include "dsl/semantics/names.h"
 
 /* A search along the names that rules read, with a stack of its own: chains may be as long as the
  * file. */
@@ -75,6 +76,11 @@ static bool search_run(search *s, const entry *goal) {
 }
 
 /* --- cycles ----------------------------------------------------------------------------------- */
+
+/* a = b + 1, b = 2*c, c = a: while `a` is checked, `b` is found below. A search from `b` along what
+   rules read arrives at `a`: "`a` needs `b`, which needs `c`, which needs `a`". Without `c = a` it
+   does not arrive, and `b` is only used above its definition. A state whose rule stands below is
+   read with its value of the last step: it ends the search. */
 
 /* "`a` needs `b`, which needs `a`": the chain from the target back to what is being defined. */
 static const char *chain_text(checker *ck, const entry *self) {

@@ -1,163 +1,18 @@
-/* Units of numbers, defaults and bounds of parameters. */
+#include "dsl/semantics/parameters.h"
+
 #include <math.h>
 #include <string.h>
 
-#include "dsl/base/elementary.h"
-#include "dsl/base/powers.h"
-#include "dsl/base/unit_hint.h"
-#include "dsl/semantics/check.h"
-
-/* --- units ------------------------------------------------------------------------------------ */
-
-static bool is_whole_unit(const char *text, size_t length) {
-  unit u;
-  const char *bad;
-  size_t bad_length;
-  return length > 0 && unit_parse(text, length, &u, &bad, &bad_length);
-}
-
-bool read_unit(checker *ck, const char *text, span where, unit *result) {
-  const char *bad;
-  size_t length, whole = strlen(text);
-  if (unit_parse(text, whole, result, &bad, &length)) return true;
-  span part = where;
-  if (where.end - where.begin == whole && length > 0) {
-    part.begin = where.begin + (uint32_t)(bad - text);
-    part.end = part.begin + (uint32_t)length;
-  }
-  if (length == 0) {
-    complain(ck, DIAG_UNKNOWN_UNIT, where, "a unit is missing in `[%s]`", text);
-    diag_hint(ck->d, "write a unit such as `[N/m]`, or no brackets for a pure number");
-  } else if (is_whole_unit(bad, length) && bad > text && memchr(text, '/', (size_t)(bad - text))) {
-    complain(ck, DIAG_UNKNOWN_UNIT, part, "does `%.*s` stand above or below the line?", (int)length,
-             bad);
-    diag_hint(ck->d, "write `*`, or put the divisor in parentheses: `J/(kg*K)`");
-  } else {
-    complain(ck, DIAG_UNKNOWN_UNIT, part, "there is no unit `%.*s`", (int)length, bad);
-    unit_hint(ck->d, bad, length);
-  }
-  return false;
-}
-
-/* --- values ----------------------------------------------------------------------------------- */
-
-static double call_value(const expr *e, const double *parameters) {
-  double x = e->argument_count > 0 ? law_constant_value(e->arguments[0].value, parameters) : NAN;
-  switch (e->builtin) {
-  case FUNCTION_ABS:
-    return fabs(x);
-  case FUNCTION_SQRT:
-    return sqrt(x);
-  case FUNCTION_CBRT:
-    return pl_cbrt(x);
-  case FUNCTION_EXP:
-    return pl_exp(x);
-  case FUNCTION_LOG:
-    return pl_log(x);
-  case FUNCTION_SIN:
-    return pl_sin(x);
-  case FUNCTION_COS:
-    return pl_cos(x);
-  case FUNCTION_TAN:
-    return pl_tan(x);
-  case FUNCTION_TANH:
-    return pl_tanh(x);
-  case FUNCTION_SIGN:
-    return (x > 0) - (x < 0);
-  case FUNCTION_MACAULAY:
-    return pl_max(x, 0);
-  case FUNCTION_SOFT_SIGN:
-    return x / (1 + fabs(x));
-  case FUNCTION_MIN:
-  case FUNCTION_MAX:
-    for (int i = 1; i < e->argument_count; i++) {
-      double y = law_constant_value(e->arguments[i].value, parameters);
-      x = e->builtin == FUNCTION_MIN ? pl_min(x, y) : pl_max(x, y);
-    }
-    return x;
-  default:
-    return NAN;
-  }
-}
-
-static double binary_value(const expr *e, const double *parameters) {
-  double a = law_constant_value(e->left, parameters), b = law_constant_value(e->right, parameters);
-  switch (e->binary) {
-  case OP_ADD:
-    return a + b;
-  case OP_SUB:
-    return a - b;
-  case OP_MUL:
-    return a * b;
-  case OP_DIV:
-    return a / b;
-  case OP_POW:
-    return power_of(a, b);
-  default:
-    return NAN;
-  }
-}
-
-static double number_value(const expr *e) {
-  unit u = {DIMENSIONLESS, 1};
-  const char *bad;
-  size_t length;
-  if (e->unit_text && !unit_parse(e->unit_text, strlen(e->unit_text), &u, &bad, &length))
-    return NAN;
-  return e->number * u.factor;
-}
-
-double law_constant_value(const expr *e, const double *parameters) {
-  switch (e->kind) {
-  case EXPR_NUMBER:
-    return number_value(e);
-  case EXPR_NAME:
-    if (!parameters || !e->symbol || e->symbol->kind != SYMBOL_PARAMETER) return NAN;
-    return parameters[e->symbol->index];
-  case EXPR_UNARY: {
-    double a = law_constant_value(e->left, parameters);
-    return e->unary == OP_NEG ? -a : a;
-  }
-  case EXPR_BINARY:
-    return binary_value(e, parameters);
-  case EXPR_CALL:
-    return call_value(e, parameters);
-  case EXPR_CASES:
-    return NAN;
-  }
-  return NAN;
-}
-
-/* Calls and cases that law_constant_value does not know are refused where a plain value is asked
- * for. */
-static bool is_plain(const expr *e) {
-  switch (e->kind) {
-  case EXPR_NUMBER:
-  case EXPR_NAME:
-    return true;
-  case EXPR_UNARY:
-    return e->unary != OP_NOT && is_plain(e->left);
-  case EXPR_BINARY:
-    return e->binary > OP_GE && e->binary != OP_CONTRACT && is_plain(e->left) && is_plain(e->right);
-  case EXPR_CALL:
-    if (e->builtin < 0 || e->builtin == FUNCTION_ATAN2 ||
-        (e->builtin > FUNCTION_MAX && e->builtin < FUNCTION_COUNT))
-      return false;
-    for (int i = 0; i < e->argument_count; i++)
-      if (!is_plain(e->arguments[i].value)) return false;
-    return true;
-  case EXPR_CASES:
-    return false;
-  }
-  return false;
-}
+#include "dsl/semantics/law_limits.h"
+#include "dsl/semantics/literals.h"
+#include "dsl/semantics/types.h"
 
 static value check_plain(checker *ck, expr *e, context where) {
   context before = ck->context;
   ck->context = where;
   value v = check_number(ck, e);
   ck->context = before;
-  if (!v.broken && !is_plain(e)) {
+  if (!v.broken && !law_is_plain(e)) {
     complain(ck, DIAG_BAD_NUMBER, e->where,
              "a value given here is made of numbers, + - * / ** and plain functions");
     return BROKEN;
@@ -251,37 +106,17 @@ static bool check_limit(checker *ck, expr *limit, const symbol *parameter) {
   return false;
 }
 
-static bool limits_of(const bounds *in, const double *values, double *lower, double *upper) {
-  *lower = in->lower ? law_constant_value(in->lower, values) : -INFINITY;
-  *upper = in->upper ? law_constant_value(in->upper, values) : INFINITY;
-  return !isnan(*lower) && !isnan(*upper);
-}
-
-static bool is_within(const bounds *in, double lower, double upper, double x) {
-  bool above = in->lower_open || !in->lower ? x > lower : x >= lower;
-  bool below = in->upper_open || !in->upper ? x < upper : x <= upper;
-  return above && below;
-}
-
-static void limits_text(const bounds *in, double lower, double upper, char *text, size_t size) {
-  char low[32] = "-inf", high[32] = "inf";
-  if (in->lower) snprintf(low, sizeof(low), "%.6g", lower);
-  if (in->upper) snprintf(high, sizeof(high), "%.6g", upper);
-  snprintf(text, size, "%c%s, %s%c", in->lower_open || !in->lower ? '(' : '[', low, high,
-           in->upper_open || !in->upper ? ')' : ']');
-}
-
 static void check_default_in_bounds(checker *ck, const symbol *p, const double *defaults) {
   const stmt *s = p->declared;
-  double lower, upper;
-  if (!limits_of(&s->in, defaults, &lower, &upper)) return; /* of a parameter without a default */
+  law_limits in = law_parameter_limits(ck->law, p->index, defaults);
+  if (isnan(in.lower) || isnan(in.upper)) return; /* of a parameter without a default */
   char text[80], unit_name[64];
   double factor = own_unit(p, unit_name, sizeof(unit_name));
-  limits_text(&s->in, lower / factor, upper / factor, text, sizeof(text));
-  if (lower > upper || (lower == upper && (s->in.lower_open || s->in.upper_open))) {
+  limits_text(limits_in(in, factor), text, sizeof(text));
+  if (in.lower > in.upper || (in.lower == in.upper && (in.lower_open || in.upper_open))) {
     complain(ck, DIAG_BOUNDS, s->in.where, "no value lies in %s", text);
-    if (lower > upper) diag_hint(ck->d, "the lower bound comes first");
-  } else if (p->has_default && !is_within(&s->in, lower, upper, p->initial)) {
+    if (in.lower > in.upper) diag_hint(ck->d, "the lower bound comes first");
+  } else if (p->has_default && !limits_hold(in, p->initial)) {
     bool plain = strcmp(unit_name, "1") == 0;
     complain(ck, DIAG_BOUNDS, s->value->where, "the default of `%s` is not in %s%s%s", p->name,
              text, plain ? "" : " ", plain ? "" : unit_name);
@@ -301,33 +136,4 @@ void check_bounds(checker *ck) {
     bool lower = check_limit(ck, in->lower, p), upper = check_limit(ck, in->upper, p);
     if (lower && upper) check_default_in_bounds(ck, p, defaults);
   }
-}
-
-law_limits law_parameter_limits(const law *l, int p, const double *values) {
-  const bounds *in = &l->parameters.items[p]->declared->in;
-  law_limits limits = {.lower_open = in->lower_open || !in->lower,
-                       .upper_open = in->upper_open || !in->upper};
-  limits_of(in, values, &limits.lower, &limits.upper);
-  return limits;
-}
-
-void law_parameter_bounds(const law *l, int p, const double *values, char *text, size_t size) {
-  const bounds *in = &l->parameters.items[p]->declared->in;
-  double lower, upper;
-  limits_of(in, values, &lower, &upper);
-  limits_text(in, lower, upper, text, size);
-}
-
-bool law_parameter_within(const law *l, int p, const double *values, char *text, size_t size) {
-  const bounds *in = &l->parameters.items[p]->declared->in;
-  if (!in->given) {
-    if (isfinite(values[p])) return true;
-    snprintf(text, size, "(-inf, inf)");
-    return false;
-  }
-  double lower, upper;
-  bool known = limits_of(in, values, &lower, &upper);
-  if (known && is_within(in, lower, upper, values[p])) return true;
-  limits_text(in, lower, upper, text, size);
-  return false;
 }

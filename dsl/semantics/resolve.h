@@ -1,5 +1,6 @@
-/* Expressions with some of the law's options decided: case lines that are then never chosen are left out, conditions that then
-   always hold fall away. For readers; the compiler decides options where it lowers comparisons. */
+/* Expressions with some of the law's options decided: case lines that are then never chosen, and
+   conditions that then always hold, fall away. For readers; the compiler decides options where it
+   lowers comparisons. */
 #ifndef PERILAT_DSL_RESOLVE_H
 #define PERILAT_DSL_RESOLVE_H
 

@@ -8,8 +8,8 @@
 
 C_LINKAGE_BEGIN
 
-/* Answers `include "name"`: returns the text (malloc'ed, NUL-terminated) and its name for messages in
-   *found (malloc'ed), or NULL when there is no such file. `from` is the including source's name. */
+/* Answers `include "name"`: returns the text (malloc'ed, NUL-terminated) and its name for messages
+   in *found (malloc'ed), or NULL when there is no such file. `from` names the including source. */
 typedef char *(*include_reader)(void *context, const char *name, const char *from, char **found);
 
 typedef struct parse_options {
@@ -17,17 +17,16 @@ typedef struct parse_options {
   void *context;
 } parse_options;
 
-/* Parses sources->items[file]. Returns the tree, also after errors if a model line was read (then with
-   what could be understood), or NULL. All syntax errors of the file are reported, one a statement;
-   after 200 reading stops. An `include` stays in the tree, followed by the statements it brought;
-   a text that is included twice brings them once. */
+/* Parses sources->items[file]. Returns the tree, also after errors if a model line was read (then
+   with what could be understood), or NULL. All syntax errors of the file are reported, one a
+   statement; after 200 reading stops. An `include` stays in the tree, followed by the statements it
+   brought; a text that is included twice brings them once. */
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
 
-/* What a text is, by its first word behind comments: what a person has not named himself is not
-   quoted unless it is a law, or a text that laws include. */
+/* Is a text a law, by its first word behind comments? What a person has not named himself is not
+   quoted unless it is one. */
 bool parse_begins_law(const char *text);
-bool parse_begins_include(const char *text); /* or holds no word at all */
 
 C_LINKAGE_END
 

@@ -1,5 +1,5 @@
 /* Grammar of a model file: a list of lines. What may stand where among the lines (model first, end
-   last, one law) is checked by parse.c, so that each slip gets its own message. */
+   last, one law) is checked by lines.c, so that each slip gets its own message. */
 %define api.pure full
 %define api.prefix {model_}
 %define api.token.prefix {T_}
@@ -14,6 +14,11 @@
 #include "dsl/syntax/parsing.h"
 }
 
+%code provides {
+/* Reads the text of p->file to its end, with the texts that it includes. */
+void parser_read(parsing *p);
+}
+
 %union {
   double number;
   word word;
@@ -26,14 +31,20 @@
 }
 
 %code {
+#include "dsl/syntax/includes.h"
+#include "dsl/syntax/lexer.h"
+#include "dsl/syntax/lines.h"
+#include "dsl/syntax/syntax_error.h"
+#include "dsl/syntax/tree_build.h"
+
 #define YYLLOC_DEFAULT(Current, Rhs, N)                                                            \
   do {                                                                                             \
     (Current) = (N) ? span_join(YYRHSLOC(Rhs, 1), YYRHSLOC(Rhs, N))                                \
                     : (span){YYRHSLOC(Rhs, 0).end, YYRHSLOC(Rhs, 0).end, p->file};                 \
   } while (0)
 
-int model_lex(MODEL_STYPE *value, span *where, parsing *p);
 static void model_error(span *where, parsing *p, const char *message);
+static void read_included(parsing *p, const stmt *s);
 
 static const word no_word;
 }
@@ -74,14 +85,16 @@ line:
 | LAW NAME NAME NEWLINE             { line_law(p, $2, $3, span_join(@2, @3)); }
 | FOR names NEWLINE                 { line_settings(p, $2, @2); }
 | declaration text NEWLINE          { line_statement(p, $1, $2, span_join(@1, @2)); }
-| only_text STRING NEWLINE          { line_statement(p, $1, $2, span_join(@1, @2)); }
+| only_text STRING NEWLINE          { if (line_statement(p, $1, $2, span_join(@1, @2)))
+                                        read_included(p, $1); }
 | error NEWLINE                     { line_broken(p); yyerrok; }
 ;
 
 only_text:
   NONCONSERVATIVE                   { $$ = build_stmt(p, STMT_NONCONSERVATIVE, no_word, no_word,
                                                       NULL, @1); }
-| INCLUDE                           { $$ = build_stmt(p, STMT_INCLUDE, no_word, no_word, NULL, @1); }
+| INCLUDE                           { $$ = build_stmt(p, STMT_INCLUDE, no_word, no_word,
+                                                      NULL, @1); }
 ;
 
 declaration:
@@ -313,4 +326,18 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing *p) {
   for (int token = 0; token <= YYMAXUTOK; token++) expected[token] = wanted[YYTRANSLATE(token)];
   syntax_error(p, p->lex.last, *yypcontext_location(context), expected);
   return 0;
+}
+
+void parser_read(parsing *p) {
+  const source *s = &p->sources->items[p->file];
+  lexer_open(p, s->text, s->length);
+  model_parse(p);
+  lexer_close(p);
+}
+
+static void read_included(parsing *p, const stmt *s) {
+  parsing *inner = include_open(p, s);
+  if (!inner) return;
+  parser_read(inner);
+  include_close(p, inner);
 }

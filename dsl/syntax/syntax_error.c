@@ -1,9 +1,10 @@
-/* Words for what the grammar refuses. bison knows which tokens could have stood in a place; the
-   user gets one sentence in the language's own words and, for the usual slips, the mend. */
+#include "dsl/syntax/syntax_error.h"
+
 #include <ctype.h>
 #include <string.h>
 
 #include "dsl/syntax/parser.h"
+#include "dsl/syntax/words.h"
 
 typedef struct trouble {
   int token; /* the one that does not fit */
@@ -121,8 +122,10 @@ static bool misspelt_statement(parsing *p, const trouble *t) {
   bool second = l->before_last == T_NAME && l->before_where.begin == l->first_where.begin;
   if (l->first != T_NAME || !second || t->token == '=' || t->token == ')' || t->token == ']')
     return false;
-  int count;
-  const char *const *candidates = line_words(&count);
+#define X(token, text) text,
+  static const char *const candidates[] = {LINE_WORDS(X)};
+#undef X
+  const int count = (int)(sizeof candidates / sizeof candidates[0]);
   const char *written = arena_text(p->memory, l->text + l->first_where.begin,
                                    l->first_where.end - l->first_where.begin);
   const char *near = nearest_name(written, candidates, count);

@@ -1,5 +1,6 @@
 /* The tree of a model file: what was written, with a span on every node. The parser builds it; the
-   checker (law.h) fills in the fields marked "checker". Nothing here assumes that a law is pairwise. */
+   checker (law_check.h) fills in the fields marked "checker". Nothing here assumes that a law is
+   pairwise. */
 #ifndef PERILAT_DSL_TREE_H
 #define PERILAT_DSL_TREE_H
 
@@ -12,6 +13,12 @@
 #include "dsl/base/units.h"
 
 C_LINKAGE_BEGIN
+
+/* What the lattice of a law may be, after `for` and `when`. X(code, word) */
+#define LAW_SETTINGS(X)                                                                            \
+  X(PLANE_STRESS, "plane_stress")                                                                  \
+  X(PLANE_STRAIN, "plane_strain")                                                                  \
+  X(SPACE, "space")
 
 /* `for irregular`, `when irregular`: particles that stand on no lattice. */
 #define LAW_IRREGULAR "irregular"
@@ -43,7 +50,8 @@ typedef enum unary_op { OP_NEG, OP_PLUS, OP_NOT } unary_op;
 /* What a value is, beside its dimension. A bending quantity has one component in 2D, two in 3D. */
 typedef enum shape { SHAPE_SCALAR, SHAPE_LOGICAL, SHAPE_BENDING, SHAPE_VECTOR, SHAPE_TENSOR } shape;
 
-/* Where a value lives. Ordered: a bond value may be made of uniform ones. NEIGHBOUR is directed, i toward j. */
+/* Where a value lives. Ordered: a bond value may be made of uniform ones. NEIGHBOUR is directed, i
+   toward j. */
 typedef enum placement { ON_NOTHING, ON_BODY, ON_PARTICLE, ON_BOND, ON_NEIGHBOUR } placement;
 
 struct symbol; /* law.h */
@@ -101,10 +109,10 @@ struct expr {
 
 typedef enum stmt_kind {
 #define TREE_STATEMENTS(X)                                                                         \
-  X(PARAMETER, "parameter") X(CONSTANT, "constant") X(OPTION, "option") X(DEFINITION, "definition") \
-  X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force")                   \
-  X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress")         \
-  X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                         \
+  X(PARAMETER, "parameter") X(CONSTANT, "constant") X(OPTION, "option") X(DEFINITION, "definition")\
+  X(STATE, "state") X(DAMAGE, "damage") X(FUNCTION, "function") X(FORCE, "force")                  \
+  X(FORCE_STATE, "force state") X(MOMENT, "moment") X(ENERGY, "energy") X(STRESS, "stress")        \
+  X(STRAIN, "strain") X(YIELD, "yield") X(FLOW, "flow") X(OUTPUT, "output")                        \
   X(NONCONSERVATIVE, "nonconservative") X(INCLUDE, "include")
 #define X(code, text) STMT_##code,
   TREE_STATEMENTS(X)
@@ -163,7 +171,7 @@ typedef struct tree {
 const char *stmt_kind_name(stmt_kind kind);
 const char *placement_name(placement p);
 
-/* Prints the tree as indented text, one node a line, without spans: the form of the golden tests. */
+/* Prints the tree as indented text, one node a line, without spans, as golden tests have it. */
 void tree_dump(const tree *t, FILE *out);
 /* Prints an expression as source text with the fewest parentheses. */
 void expr_print(const expr *e, FILE *out);

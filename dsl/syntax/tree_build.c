@@ -1,13 +1,6 @@
-/* Nodes of the tree, as the grammar makes them. */
+#include "dsl/syntax/tree_build.h"
+
 #include <string.h>
-
-#include "dsl/syntax/parsing.h"
-
-bool first_complaint(parsing *p) {
-  bool first = !p->failed;
-  p->failed = true;
-  return first;
-}
 
 static expr *node(parsing *p, expr_kind kind, span where) {
   expr *e = arena_alloc(p->memory, sizeof *e);

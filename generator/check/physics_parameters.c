@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_limits.h"
 #include "generator/ir/random_values.h"
 
 /* Something in the middle of the bounds for a parameter that has no default. */

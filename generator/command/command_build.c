@@ -7,7 +7,7 @@
 #include "generator/check/physics.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive.h"
-#include "generator/emit/c_text.h"
+#include "generator/target/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 #include "generator/run/run.h"

@@ -7,7 +7,7 @@
 
 #include "generator/command/commands.h"
 #include "generator/command/templates.h"
-#include "generator/emit/c_text.h"
+#include "generator/target/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
 

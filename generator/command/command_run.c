@@ -7,6 +7,7 @@
 #include "generator/command/commands.h"
 #include "generator/command/run_options.h"
 #include "generator/drive/drive.h"
+#include "generator/emit/plan_dump.h"
 #include "generator/ir/interval.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"

@@ -7,6 +7,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "dsl/semantics/law_limits.h"
 #include "generator/check/physics.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"

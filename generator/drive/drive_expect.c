@@ -244,14 +244,6 @@ static int form_output(const closed_forms *f, int k) {
   return -1;
 }
 
-static dimension dimension_of(const char *text) {
-  unit u = {.dim = DIMENSIONLESS};
-  const char *bad;
-  size_t length;
-  (void)unit_parse(text, strlen(text), &u, &bad, &length);
-  return u.dim;
-}
-
 static bool units_agree(const judge *j, const drive_expect *e, dimension form,
                         const char *column_unit) {
   dimension wanted = dimension_of(column_unit);

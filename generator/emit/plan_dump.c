@@ -1,12 +1,14 @@
-/* Plans as text: --dump=passes, --dump=ir. */
+#include "generator/emit/plan_dump.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "generator/emit/emit.h"
+#include "generator/emit/plan_dump_family.h"
+#include "generator/emit/strip.h"
 #include "generator/plan/plan_parts.h"
 
-/* --- printing --------------------------------------------------------------------------------- */
+/* --- passes --------------------------------------------------------------------------------- */
 
 static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
   static const char *const planes[] = {"force x", "force y", "end moment i", "end moment j"};
@@ -65,7 +67,7 @@ static void dump_pass(const kernel_plan *p, const pass *a, FILE *out) {
           "%d functions; %d bytes\n",
           c.additions, c.multiplications, c.selects, c.divisions, c.functions,
           8 * (read_count + a->root_count));
-  emit_describe_loops(p, a->kind, out);
+  strip_describe_loops(p, a->kind, out);
 }
 
 void plan_dump(const kernel_plan *p, FILE *out) {

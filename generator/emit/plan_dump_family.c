@@ -1,10 +1,10 @@
-/* Programs of families as text: --dump=passes, --dump=ir. */
+#include "generator/emit/plan_dump_family.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
 #include "generator/lower/kinematics.h"
-#include "generator/plan/plan_parts.h"
 
 static const char *const segment_names[] = {[OVER_PARTICLES] = "particle by particle",
                                             [OVER_NEIGHBOURS] = "neighbour by neighbour",

@@ -4,6 +4,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_limits.h"
 #include "generator/check/physics_parts.h"
 #include "generator/intervals/interval_parts.h"
 #include "generator/ir/random_values.h"

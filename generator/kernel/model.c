@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/document.h"

@@ -17,7 +17,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/sha256.h"
-#include "generator/emit/kernel_parts.h"
+#include "generator/target/kernel_parts.h"
 
 extern char **environ;
 

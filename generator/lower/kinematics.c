@@ -100,7 +100,7 @@ static ir_node end_rotation(ir *g, const chord_motion *m, ir_node small, ir_node
 }
 
 /* Up to half a turn wrapping changes nothing. The chord of a bond that is near turns by little, so that one question about
-   both ends is left; emit_strip.c asks for sizes of 2 or more of many bonds at once. */
+   both ends is left; loops over strips ask for sizes of 2 or more of many bonds at once. */
 static void end_rotations(ir *g, bond_kinematics *k, const chord_motion *m) {
   const ir_node of_chord = chord_rotation(g, k, m);
   const ir_node i = kinematics_input(g, ENDS_PHI_I), j = kinematics_input(g, ENDS_PHI_J);

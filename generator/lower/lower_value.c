@@ -406,34 +406,15 @@ static ir_node soft_sign(ir *g, ir_node x) {
   return ir_div(g, x, ir_add(g, ir_constant(g, 1), unary(g, IR_ABS, x)));
 }
 
-/* Functions of one argument that are one operation. A bending quantity has one component in a
-   plane: its norm is the absolute value. */
+/* A function of one argument that is one operation bears its name. A bending quantity has one component
+   in a plane: its norm is the absolute value. */
 static ir_op simple_operation(builtin_function f) {
-  switch (f) {
-  case FUNCTION_ABS:
-  case FUNCTION_NORM:
-    return IR_ABS;
-  case FUNCTION_SQRT:
-    return IR_SQRT;
-  case FUNCTION_CBRT:
-    return IR_CBRT;
-  case FUNCTION_EXP:
-    return IR_EXP;
-  case FUNCTION_LOG:
-    return IR_LOG;
-  case FUNCTION_SIN:
-    return IR_SIN;
-  case FUNCTION_COS:
-    return IR_COS;
-  case FUNCTION_TAN:
-    return IR_TAN;
-  case FUNCTION_TANH:
-    return IR_TANH;
-  case FUNCTION_SIGN:
-    return IR_SIGN;
-  default:
-    return IR_OP_COUNT;
-  }
+  if (f == FUNCTION_NORM) return IR_ABS;
+  ir_op op = 0;
+  while (op < IR_OP_COUNT &&
+         (ir_arity(op) != 1 || strcmp(ir_op_name(op), builtin_functions[f].name) != 0))
+    op++;
+  return op;
 }
 
 static ir_node lower_builtin_call(lowering *c, const expr *e) {

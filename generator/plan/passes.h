@@ -107,9 +107,6 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
 /* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond evaluate it. */
 kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
 void plan_free(kernel_plan *p);
-void plan_dump(const kernel_plan *p, FILE *out); /* --dump=passes */
-/* --dump=ir: the nodes of every pass, with their names and lines. */
-void plan_dump_ir(const kernel_plan *p, FILE *out);
 
 /* The plan on the interpreter, behind the same interface as a compiled kernel, for any number of
    threads. The plan must outlive it. */

@@ -1,5 +1,5 @@
 /* Inside of the planning of kernels, shared by its parts: passes.c plans strips of bonds, plan_family.c programs of
-   families, plan_dump.c and plan_dump_family.c print. */
+   families. */
 #ifndef PERILAT_GENERATOR_PLAN_PARTS_H
 #define PERILAT_GENERATOR_PLAN_PARTS_H
 
@@ -21,9 +21,5 @@ program_motion plan_motion(const kernel_plan *plan, bool along_reference);
 
 /* What the roots of a pass cost for each bond. */
 ir_cost plan_cost(const kernel_plan *p, const pass *a);
-
-/* The programs of families, as text: what each segment reads, writes and costs; its nodes. */
-void plan_dump_programs(const kernel_plan *p, FILE *out);
-void plan_dump_programs_ir(const kernel_plan *p, FILE *out);
 
 #endif

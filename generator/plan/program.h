@@ -12,7 +12,7 @@
 #include "dsl/base/arena.h"
 #include "generator/ir/ir.h"
 
-/* Particles that the segments of a pass take at a time on the interpreter; in C it may be more (emit_family.c). */
+/* Particles that the segments of a pass take at a time on the interpreter; in C it may be more (programs.c). */
 enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind {

@@ -100,15 +100,6 @@ bool deck_keys_fit(const namelist_group *g, const deck_key_use *uses, int count,
 
 /* --- quantities ------------------------------------------------------------------------------- */
 
-static dimension dimension_of(const char *text) {
-  unit u;
-  const char *bad;
-  size_t bad_length;
-  bool good = unit_parse(text, strlen(text), &u, &bad, &bad_length);
-  assert(good);
-  return good ? u.dim : DIMENSIONLESS;
-}
-
 /* A part of a text value as a span; the whole value where doubled quotes have shifted it. */
 static span part(const namelist_value *v, const char *from, size_t length) {
   uint32_t size = v->text_where.end - v->text_where.begin;

@@ -50,6 +50,7 @@ static long band_end(const plot_beside *b, long from) {
 
 static void trace_band(canvas *c, const plot_beside *b, long from, long to, const axis *x,
                        const axis *y) {
+  cairo_new_sub_path(c->cr); /* else a line leads here from where the part before began */
   for (long k = from; k < to; k++)
     cairo_line_to(c->cr, axis_along_x(x, b->x[k]), axis_along_y(y, b->low[k]));
   for (long k = to; k-- > from;)

@@ -9,6 +9,7 @@
 #include "dsl/base/diagnostics_json.h"
 #include "dsl/print/explain.h"
 #include "dsl/print/format.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/check/physics.h"
 #include "generator/emit/emit.h"

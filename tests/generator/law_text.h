@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/plan/passes.h"
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Holds the sources to the list of rooms: every file stands in one, includes only its own room and those above it, and no room
-# is too full. Arguments: the source folder.
+# is too full; and that some test includes each header of the runtime, but for those in untested.txt. Arguments: the source folder.
 set -euo pipefail
-list=$(dirname "$0")/rooms.txt
+list=$(cd "$(dirname "$0")" && pwd)/rooms.txt
 
 # One line for each fault of the sources in folder $1.
 faults() {
@@ -32,8 +32,18 @@ faults() {
     awk '$1 > 20 { print $2 ": " $1 " modules; a room holds 20" }'
 }
 
-sources=$1
-found=$(faults "$sources")
+# One line for each header of the runtime of folder $1 that no test includes and the list $2 does not name, and for each that
+# it names in vain.
+untested() {
+  (cd "$1" && comm -3 <(find runtime -name '*.h' | LC_ALL=C sort | comm -23 - <(grep -rhoE '^#include "runtime/[^"]*"' \
+    tests --include='*.[ch]' --exclude-dir=fuzz --exclude-dir=benchmark | cut -d'"' -f2 | LC_ALL=C sort -u)) \
+    <(grep -v '^#' "$2" | LC_ALL=C sort)) |
+    awk -F'\t' '$1 { print $1 ": no test includes it: write one in tests/" }
+      $2 { print "untested.txt: `" $2 "` has a test, or is no more: take it out" }'
+}
+
+sources=$(cd "$1" && pwd) here=$(cd "$(dirname "$0")" && pwd)
+found=$(faults "$sources"; untested "$sources" "$here/untested.txt")
 [ -z "$found" ] || { echo "$found"; exit 1; }
 
 # The check sees what it is for.
@@ -47,4 +57,11 @@ for k in $(seq 21); do : >"$work/runtime/deck/m$k.c"; done
 planted=$(faults "$work")
 [ "$(echo "$planted" | wc -l)" = 3 ] && grep -q 'dsl/base/arena.c:1: .*below' <<<"$planted" && grep -q attic <<<"$planted" &&
   grep -q 'runtime/deck: 22 modules' <<<"$planted" || { echo "planted faults are not seen:"; echo "$planted"; exit 1; }
+mkdir -p "$work/tests/runtime/deck"
+touch "$work/runtime/deck/"{one,two,three}.h
+echo '#include "runtime/deck/one.h"' >"$work/tests/runtime/deck/test_one.c"
+printf 'runtime/deck/one.h\nruntime/deck/two.h\n' >"$work/list"
+planted=$(untested "$work" "$work/list")
+[ "$(wc -l <<<"$planted")" = 2 ] && grep -q '^runtime/deck/three.h: no test' <<<"$planted" && grep -q 'one.h. has a test' <<<"$planted" ||
+  { echo "planted faults are not seen:"; echo "$planted"; exit 1; }
 echo "all files stand in their rooms"

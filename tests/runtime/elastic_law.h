@@ -104,7 +104,7 @@ static elastic_bond elastic_kinematics(const pl_law *law, const double *u, const
   return b;
 }
 
-static void elastic_strip(const pl_law *law, const double *u, const pl_strip *s, int ledger) {
+static void elastic_strip(const pl_law *law, const double *u, const pl_strip *s, int with_losses) {
   for (long q = 0; q < s->count; q++) {
     if (!(s->flags[q] & PL_PRESENT(s->direction))) {
       for (int p = 0; p < law->force_planes; p++)
@@ -122,7 +122,7 @@ static void elastic_strip(const pl_law *law, const double *u, const pl_strip *s,
       s->force[2][q] = b.M_i;
       s->force[3][q] = b.M_j;
     }
-    if (!ledger) continue;
+    if (!with_losses) continue;
     s->dissipated_state[q] += (b.omega - before) * elastic_energy(u, &b);
     s->dissipated_rate[q] += (1 - b.omega) * u[UNIFORM_EA] * u[UNIFORM_TAU] * u[UNIFORM_S] *
                              b.rate * b.rate * s->time_step;

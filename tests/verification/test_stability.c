@@ -410,12 +410,25 @@ static void odd_laws_do_no_harm(void **unused) {
   m.values[E_] = NAN;
   l = limit_of(&micropolar, &m, 0);
   assert_true(l.limit == 0);
+}
+
+/* Standing translations of a central law have neither stiffness nor damping, and no ratio of the two; the fastest wave rules
+   all the same, with the frequency and the ratio of the closed form. */
+static void modes_without_stiffness_do_not_rule(void **unused) {
+  (void)unused;
+  const double nu = 1.0 / 3, zeta = 0.2;
   pl_law central = micropolar;
   central.kind = PL_CENTRAL;
   central.dof = 2;
-  m = damped(1.0 / 3, VISCOUS, 0.2); /* K = C = 0 for standing translations: no mode to speak of */
-  l = limit_of(&central, &m, 0);
-  assert_true(l.limit > 0 && l.limit < 2 / l.omega_max);
+  const material m = damped(nu, VISCOUS, zeta);
+  const step_limit l = limit_of(&central, &m, 0);
+  const double mass = density * sqrt(3) / 2 * spacing * spacing * thickness;
+  const double bond = axial_rigidity(modulus, nu, spacing, thickness) / spacing;
+  const double omega = sqrt(6 * bond / mass), xi = zeta * m.values[OMEGA_N] * omega * mass / bond;
+  assert_true(fabs(l.omega_max / omega - 1) < 1e-9);
+  assert_true(fabs(l.damping_ratio / xi - 1) < 1e-9);
+  assert_true(fabs(l.limit / (2 / omega * (sqrt(1 + xi * xi) - xi)) - 1) < 1e-9);
+  assert_string_equal(l.mode, "translation");
 }
 
 int main(void) {
@@ -430,6 +443,7 @@ int main(void) {
       cmocka_unit_test(friction_is_exempt),
       cmocka_unit_test(constant_damper_counts),
       cmocka_unit_test(odd_laws_do_no_harm),
+      cmocka_unit_test(modes_without_stiffness_do_not_rule),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

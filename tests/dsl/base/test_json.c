@@ -10,7 +10,7 @@
 #include <math.h>
 
 #include "dsl/base/diagnostics_json.h"
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/dsl/text_files.h"

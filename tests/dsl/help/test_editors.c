@@ -1,4 +1,6 @@
-/* The editor grammars know exactly the words that the lexer and the checker know. */
+/* Lists of words outside of the program, the editors' grammars and the fuzzers' dictionary, hold
+   exactly the words that the lexer and the checker know. With PERILAT_BLESS=1 they are written anew
+   from the language's own tables. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,7 +9,7 @@
 #include <cmocka.h>
 
 #include "dsl/semantics/builtins.h"
-#include "dsl/syntax/parsing.h"
+#include "dsl/syntax/words.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/dsl/text_files.h"
 
@@ -25,48 +27,112 @@ static const char *const quantity_list[] = {BUILTIN_QUANTITIES(X)}, *const funct
 typedef struct word_list {
   const char *const *words;
   size_t count;
-  const char *vim, *vim_end, *code,
-      *code_end; /* what stands around the words in the two grammars */
 } word_list;
 
-#define LIST(name) name, sizeof name / sizeof name[0]
-static const word_list lists[] = {
-    {LIST(line_word_list), "\nsyntax keyword perilatStatement contained ", "\n",
-     "\"match\": \"^\\\\s*(", ")\\\\b\""},
-    {LIST(reserved_list), "\nsyntax keyword perilatReserved ", "\n",
-     "\"name\": \"keyword.control.perilat\",\n      \"match\": \"\\\\b(", ")\\\\b\""},
-    {LIST(quantity_list), "\nsyntax keyword perilatQuantity ", "\n",
-     "\"name\": \"variable.language.perilat\",\n      \"match\": \"\\\\b(", ")\\\\b\""},
-    {LIST(function_list), "\nsyntax keyword perilatFunction ", "\n",
-     "\"name\": \"support.function.perilat\",\n      \"match\": \"\\\\b(",
-     ")\\\\b(?=\\\\s*\\\\()\""},
+enum { LINE, RESERVED, QUANTITY, FUNCTION, LISTS };
+#define LIST(name)                                                                                 \
+  { name, sizeof name / sizeof name[0] }
+static const word_list lists[LISTS] = {
+    [LINE] = LIST(line_word_list),
+    [RESERVED] = LIST(reserved_list),
+    [QUANTITY] = LIST(quantity_list),
+    [FUNCTION] = LIST(function_list),
 };
 
-static void assert_lists(const char *path, bool vim) {
+/* A file that holds the lists: each stands between its head and the tail, with the separator
+   between words. */
+typedef struct holder {
+  const char *path, *heads[LISTS], *separator, *tail;
+} holder;
+
+static const holder vim_grammar = {
+    .path = EDITORS "vim/syntax/perilat.vim",
+    .heads = {[LINE] = "\nsyntax keyword perilatStatement contained ",
+              [RESERVED] = "\nsyntax keyword perilatReserved ",
+              [QUANTITY] = "\nsyntax keyword perilatQuantity ",
+              [FUNCTION] = "\nsyntax keyword perilatFunction "},
+    .separator = " ",
+    .tail = "\n",
+};
+static const holder code_grammar = {
+    .path = EDITORS "vscode/syntaxes/perilat.tmLanguage.json",
+    .heads = {[LINE] = "\"match\": \"^\\\\s*(",
+              [RESERVED] = "\"name\": \"keyword.control.perilat\",\n      \"match\": \"\\\\b(",
+              [QUANTITY] = "\"name\": \"variable.language.perilat\",\n      \"match\": \"\\\\b(",
+              [FUNCTION] = "\"name\": \"support.function.perilat\",\n      \"match\": \"\\\\b("},
+    .separator = "|",
+    .tail = ")\\\\b",
+};
+static const holder dictionary = {
+    .path = SOURCE_DIR "/tests/fuzz/model.dict",
+    .heads = {[LINE] = "# Words that begin a line\n\"",
+              [RESERVED] = "# Words that are never names\n\"",
+              [QUANTITY] = "# Quantities\n\"",
+              [FUNCTION] = "# Functions\n\""},
+    .separator = "\"\n\"",
+    .tail = "\"\n\n",
+};
+
+/* The text of a holder's file with its list of that number as it should be. */
+static char *with_list(const holder *h, int list, const char *text) {
+  const char *from = strstr(text, h->heads[list]);
+  if (!from) fail_msg("%s has no line that begins with %s", h->path, h->heads[list]);
+  from += strlen(h->heads[list]);
+  const char *to = strstr(from, h->tail);
+  if (!to) fail_msg("%s: the list after %s has no end", h->path, h->heads[list]);
+  char *right;
   size_t length;
-  char *grammar = read_file(path, &length), line[4096];
-  assert_non_null(grammar);
-  for (size_t k = 0; k < sizeof lists / sizeof lists[0]; k++) {
-    const word_list *l = &lists[k];
-    size_t at = (size_t)snprintf(line, sizeof line, "%s", vim ? l->vim : l->code);
-    for (size_t i = 0; i < l->count; i++)
-      at += (size_t)snprintf(line + at, sizeof line - at, "%s%s", i ? (vim ? " " : "|") : "",
-                             l->words[i]);
-    snprintf(line + at, sizeof line - at, "%s", vim ? l->vim_end : l->code_end);
-    if (!strstr(grammar, line))
-      fail_msg("%s has not this line, with these words and no others:\n%s", path, line);
+  FILE *out = open_memstream(&right, &length);
+  assert_non_null(out);
+  fprintf(out, "%.*s", (int)(from - text), text);
+  for (size_t i = 0; i < lists[list].count; i++)
+    fprintf(out, "%s%s", i ? h->separator : "", lists[list].words[i]);
+  fputs(to, out);
+  fclose(out);
+  return right;
+}
+
+static void assert_lists(const holder *h) {
+  size_t length;
+  char *text = read_file(h->path, &length);
+  assert_non_null(text);
+  for (int list = 0; list < LISTS; list++) {
+    char *right = with_list(h, list, text);
+    free(text);
+    text = right;
   }
-  free(grammar);
+  assert_golden(h->path, text);
+  free(text);
 }
 
 static void vim_knows_the_words(void **state) {
   (void)state;
-  assert_lists(EDITORS "vim/syntax/perilat.vim", true);
+  assert_lists(&vim_grammar);
 }
 
 static void vs_code_knows_the_words(void **state) {
   (void)state;
-  assert_lists(EDITORS "vscode/syntaxes/perilat.tmLanguage.json", false);
+  assert_lists(&code_grammar);
+}
+
+static void fuzzers_know_the_words(void **state) {
+  (void)state;
+  assert_lists(&dictionary);
+}
+
+/* Each function of numbers stands in a template of the laws that fuzz_law.c writes. */
+static void fuzzers_call_the_functions(void **state) {
+  (void)state;
+  size_t length;
+  char *fuzzer = read_file(SOURCE_DIR "/tests/fuzz/fuzz_law.c", &length), call[80];
+  assert_non_null(fuzzer);
+  for (int f = 0; f < FUNCTION_COUNT; f++) {
+    const builtin_function_info *b = &builtin_functions[f];
+    snprintf(call, sizeof call, "\"%s(#", b->name);
+    if ((b->of_one || b->of_many || f == FUNCTION_ATAN2) && !strstr(fuzzer, call))
+      fail_msg("tests/fuzz/fuzz_law.c has no template %s)\"", call);
+  }
+  free(fuzzer);
 }
 
 static void files_of_vs_code_are_json(void **state) {
@@ -105,10 +171,9 @@ static void units_need_no_list(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(vim_knows_the_words),
-      cmocka_unit_test(vs_code_knows_the_words),
-      cmocka_unit_test(files_of_vs_code_are_json),
-      cmocka_unit_test(units_need_no_list),
+      cmocka_unit_test(vim_knows_the_words),       cmocka_unit_test(vs_code_knows_the_words),
+      cmocka_unit_test(fuzzers_know_the_words),    cmocka_unit_test(fuzzers_call_the_functions),
+      cmocka_unit_test(files_of_vs_code_are_json), cmocka_unit_test(units_need_no_list),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -12,9 +12,9 @@
 #include "dsl/base/diagnostics.h"
 #include "dsl/help/help.h"
 #include "dsl/semantics/builtins.h"
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
-#include "dsl/syntax/parsing.h"
+#include "dsl/syntax/words.h"
 #include "runtime/deck/deck_table.h"
 #include "tests/dsl/text_files.h"
 
@@ -178,9 +178,9 @@ static void examples_of_built_ins_are_right(void **state) {
   (void)state;
   assert_false(line_is_right("x", "x = strech", false));
   for (int q = 0; q < QUANTITY_COUNT; q++)
-    assert_example(builtin_quantities[q].name, help_quantity_example(q));
+    assert_example(builtin_quantities[q].name, builtin_quantities[q].example);
   for (int f = 0; f < FUNCTION_COUNT; f++)
-    assert_example(builtin_functions[f].name, help_function_example(f));
+    assert_example(builtin_functions[f].name, builtin_functions[f].example);
 }
 
 /* --- the command ------------------------------------------------------------------------------ */

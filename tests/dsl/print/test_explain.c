@@ -9,6 +9,7 @@
 
 #include "dsl/print/explain.h"
 #include "dsl/print/explain_math.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "tests/dsl/text_files.h"
 

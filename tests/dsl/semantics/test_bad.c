@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/semantics/law.h"
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 
 #define FOLDER SOURCE_DIR "/tests/dsl/bad/"

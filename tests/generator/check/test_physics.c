@@ -13,6 +13,8 @@
 #include <string.h>
 #include <time.h>
 
+#include "dsl/semantics/law_check.h"
+#include "dsl/semantics/law_limits.h"
 #include "dsl/syntax/parse.h"
 #include "generator/check/physics_parts.h"
 #include "generator/ir/interval.h"

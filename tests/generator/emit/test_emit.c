@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "generator/emit/c_text.h"
+#include "generator/target/c_text.h"
 #include "generator/emit/emit.h"
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"

@@ -1,15 +1,19 @@
 /* A law's text reaches the C compiler as checked names, numbers and escaped texts only, whatever it
    is made of: the C holds nothing else, compiles, computes what the interpreter does and gives
    every text back as it was written. */
+#include <ctype.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
 #include <stdint.h>
+#include <strings.h>
 
 #include <cmocka.h>
 
+#include "dsl/semantics/law_check.h"
 #include "generator/emit/emit.h"
 #include "generator/kernel/toolchain.h"
+#include "generator/target/words_c.h"
 #include "tests/fuzz/c_alphabet.h"
 #include "tests/generator/law_text.h"
 
@@ -196,6 +200,106 @@ static void names_stay_names(void **state) {
   }
 }
 
+/* --- names that the words of the target use --------------------------------------------------- */
+
+static const char *const words[] = {
+#define X(name, text) text,
+    C_WORDS(X)
+#undef X
+};
+
+enum { MOST_WORDS = 500 };
+typedef struct name_list {
+  char name[MOST_WORDS][64];
+  int count;
+} name_list;
+
+static void add_name(name_list *all, const char *name) {
+  for (int k = 0; k < all->count; k++)
+    if (strcasecmp(all->name[k], name) == 0) return;
+  if (!is_taken(name)) return;
+  assert_true(all->count < MOST_WORDS);
+  strcpy(all->name[all->count++], name);
+}
+
+/* Adds the identifiers of a piece of C, but members and comments; what stands in a hole is 0:
+   slot_$1 gives slot_0. */
+static void add_identifiers(name_list *all, const char *c) {
+  while (*c) {
+    char name[64];
+    size_t n = 0;
+    const bool member = c[0] == '-' && c[1] == '>';
+    if (c[0] == '/' && c[1] == '*') c = strstr(c, "*/");
+    for (c += 2 * member; isalnum((unsigned char)*c) || *c == '_' || (n && *c == '$'); c++) {
+      assert_true(n + 1 < sizeof name);
+      name[n++] = *c == '$' ? '0' : *c;
+      if (*c == '$') c++;
+    }
+    name[n] = 0;
+    if (n && !member && isalpha((unsigned char)*name)) add_name(all, name);
+    if (!n) c++;
+  }
+}
+
+/* Some of the names as parameters that the innermost loop reads. */
+static char *law_of_names(const name_list *names, int first, int end, bool damaged) {
+  char *text = NULL;
+  size_t length = 0;
+  FILE *out = open_memstream(&text, &length);
+  fprintf(out, "model m\n  law state\n  parameter rho = 2323 [kg/m^3]\n");
+  for (int k = first; k < end; k++)
+    fprintf(out, "  parameter %s = 0.1\n", names->name[k]);
+  if (damaged)
+    fprintf(out, "  damage broken on bond\n  broken[j] = | 1 when stretch[j] >= 0.01 jump\n"
+                 "              | 0 otherwise\n");
+  fprintf(out, "  force state T[j] = 1 [N/m^6]*%s((0", damaged ? "(1 - broken[j])*" : "");
+  for (int k = first; k < end; k++)
+    fprintf(out, "%s + min(stretch[j], %s)", k % 50 ? k % 4 ? "" : " &\n    " : ") &\n    + (0",
+            names->name[k]);
+  fprintf(out, "))\nend model\n");
+  fclose(out);
+  return text;
+}
+
+static void compiles_for(const char *text, int neighbours, family_form form) {
+  char error[2000] = "";
+  loaded_kernel kernel = {0};
+  tested_law *t = open_law(text);
+  assert_non_null(t->law);
+  kernel_plan *of_text = t->plan;
+  t->law->neighbours = neighbours;
+  t->plan = plan_kernel(t->law, &t->said);
+  assert_int_equal(t->plan->form, form);
+  char *key, *c = emitted(t, &key);
+  if (!toolchain_load(c, key, &kernel, error, sizeof error))
+    fail_msg("the C does not compile: %s", error);
+  toolchain_unload(&kernel);
+  free(c);
+  free(key);
+  plan_free(t->plan);
+  t->plan = of_text;
+  close_law(t);
+}
+
+/* In every form that the passes of a law of families have. */
+static void the_loops_own_names_may_be_a_laws(void **state) {
+  (void)state;
+  static name_list names;
+  for (size_t k = 0; k < sizeof words / sizeof *words; k++)
+    add_identifiers(&names, words[k]);
+  assert_true(names.count > 50);
+  char *elastic = law_of_names(&names, 0, names.count, false);
+  compiles_for(elastic, 0, FAMILY_LOOPS);
+  compiles_for(elastic, 6, FAMILY_WRITTEN_OUT);
+  free(elastic);
+  for (int first = 0; first < names.count; first += 24) {
+    const int end = first + 24 < names.count ? first + 24 : names.count;
+    char *damaged = law_of_names(&names, first, end, true);
+    compiles_for(damaged, 18, FAMILY_PAIRS);
+    free(damaged);
+  }
+}
+
 /* --- texts
  * ------------------------------------------------------------------------------------------ */
 
@@ -372,7 +476,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(names_stay_names),       cmocka_unit_test(texts_stay_texts),
       cmocka_unit_test(long_texts_and_numbers), cmocka_unit_test(the_head_is_fixed),
-      cmocka_unit_test(strays_are_found),
+      cmocka_unit_test(strays_are_found),       cmocka_unit_test(the_loops_own_names_may_be_a_laws),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -10,6 +10,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/ir/interpret.h"
 #include "generator/ir/interval.h"

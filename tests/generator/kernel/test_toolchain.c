@@ -20,7 +20,7 @@
 #include <unistd.h>
 
 #include "dsl/base/sha256.h"
-#include "generator/emit/prelude.h"
+#include "generator/target/prelude.h"
 #include "generator/kernel/toolchain.h"
 
 #define ERROR_SIZE 2000

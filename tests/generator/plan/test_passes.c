@@ -8,6 +8,7 @@
 #include <cmocka.h>
 #include <float.h>
 
+#include "generator/emit/plan_dump.h"
 #include "generator/ir/interpret.h"
 #include "generator/ir/rewrite.h"
 #include "tests/generator/law_text.h"

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/pairwise.h"
+#include "runtime/simulation/bad_state.h"
 #include "tests/runtime/small_run.h"
 
 /* A body with ragged rows: disc, rotated lattice, a notch. */

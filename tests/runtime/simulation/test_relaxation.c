@@ -8,6 +8,8 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
+#include "runtime/lattice/lattice.h"
+#include "runtime/simulation/relaxation.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
@@ -182,7 +184,7 @@ static void forces_and_gravity_grow_together(void **state) {
 }
 
 /* Two particles side by side that only their inertia holds in y: bonds do not answer, and the unbalance is that of the loads. */
-static double unbalance_under(const char *loads) {
+static double unbalance_under(const char *groups) {
   char text[2048];
   snprintf(text, sizeof text,
            "&simulation end_time = 1 /\n"
@@ -193,7 +195,7 @@ static double unbalance_under(const char *loads) {
            "&region name = 'both' shape = 'rectangle' corner = -1, -1 size = 2, 2 /\n"
            "&support region = 'both' fix = 'x', 'rotation' /\n%s"
            "&output frames = 0 /\n",
-           loads);
+           groups);
   small_run r;
   small_open(&r, &elastic_beam, text);
   if (!r.simulation) small_print(&r);
@@ -208,12 +210,12 @@ static double unbalance_under(const char *loads) {
 static void weight_is_a_load(void **state) {
   (void)state;
   const double weight = 2323 * sqrt(3) / 2 * 0.01 * 0.01 * 0.1 * 1e-3;
-  char loads[256];
-  snprintf(loads, sizeof loads,
+  char groups[256];
+  snprintf(groups, sizeof groups,
            "&gravity acceleration = 0, -1e-3 /\n"
            "&force region = 'both' component = 'y' force = %.17g /\n",
            2 * 3 * weight);
-  assert_true(fabs(unbalance_under(loads) - 2 / sqrt(10)) < 1e-9);
+  assert_true(fabs(unbalance_under(groups) - 2 / sqrt(10)) < 1e-9);
 }
 
 /* A moment of twice the force's size times the spacing, held: 1 of sqrt(1 + 4) is left. */
@@ -336,6 +338,116 @@ static void threads_and_resuming_change_no_bit(void **state) {
   small_close(&straight);
 }
 
+/* --- by itself -------------------------------------------------------------------------------- */
+
+#define PAIR                                                                                       \
+  "&simulation end_time = 0.4 step_safety = 0.5 /\n&relaxation increments = 4 tolerance = 0.01 "   \
+  "most_steps = 100 /\n&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"  \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, -0.001 size = 0.01, 0.002 /\n"              \
+  "&material lattice = 'c' model = 'm' /\n"                                                        \
+  "&region name = 'left' shape = 'point' at = 0, 0 /\n"                                            \
+  "&region name = 'right' shape = 'point' at = 0.01, 0 /\n"                                        \
+  "&support region = 'left' fix = 'x', 'y' /\n&force region = 'right' component = 'x' total = "    \
+  "100 "                                                                                           \
+  "/\n&output frames = 0 /\n"
+
+typedef struct pair {
+  small_run run;
+  rows *lattice;
+  loads *loads;
+  sweep *sweep;
+  relaxation *relaxation;
+  long left, right;
+} pair;
+
+static pair relax_pair(void) {
+  pair p;
+  small_open(&p.run, &elastic_bar, PAIR);
+  if (!p.run.simulation) small_print(&p.run);
+  assert_non_null(p.run.simulation);
+  p.sweep = simulation_state(p.run.simulation);
+  p.lattice = lattice_build(p.run.deck, 0, &p.run.said);
+  p.loads = loads_new(p.run.deck, 0, p.lattice, "m", 2, &p.run.said);
+  p.relaxation = relaxation_new(p.run.deck, p.sweep->body, p.loads, 0.5);
+  p.left = p.lattice->particle_site[0];
+  p.right = p.lattice->particle_site[1];
+  relaxation_begin(p.relaxation);
+  return p;
+}
+
+static void relax_no_more(pair *p) {
+  relaxation_free(p->relaxation);
+  loads_free(p->loads);
+  rows_free(p->lattice);
+  small_close(&p->run);
+}
+
+/* Two spacings there and back at half the stable step, half a spacing a step at most: sixteen steps of a period. While the
+   loads move there is a tenth of the critical damping. */
+static void an_increment_begins_with_a_ramp(void **state) {
+  (void)state;
+  pair p = relax_pair();
+  assert_int_equal(p.relaxation->ramp, 16);
+  assert_true(fabs(p.relaxation->interval - 0.1) < 1e-16);
+  assert_true(fabs(p.sweep->body->decay - exp(-0.1 * 2 * acos(-1) / 16)) < 1e-15);
+  p.relaxation->state.done = 2;
+  const load_clock clock = relaxation_clock(p.relaxation, 333);
+  assert_true(fabs(clock.from - 0.2) < 1e-16 && fabs(clock.to - 0.3) < 1e-16);
+  assert_int_equal(clock.first, 333);
+  assert_int_equal(clock.ramp, 16);
+  assert_true(relaxation_due(p.relaxation, 0) && relaxation_due(p.relaxation, 50));
+  assert_false(relaxation_due(p.relaxation, 1) || relaxation_due(p.relaxation, 49));
+  relax_no_more(&p);
+}
+
+/* Moved by u with forces that fall by k u, the right particle is an oscillator: critical is 2 sqrt(k/m). */
+static void damping_is_critical_for_the_motion_seen(void **state) {
+  (void)state;
+  pair p = relax_pair();
+  const double k = 3e7, u = 1e-6;
+  p.sweep->body->displacement[0][p.right] = u;
+  p.sweep->body->force[0][p.right] = -k * u;
+  assert_false(relaxation_look(p.relaxation, 25));
+  const double rate = 2 * sqrt(k / p.sweep->body->mass[0]);
+  assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
+  assert_true(fabs(p.sweep->body->decay - exp(-rate * p.sweep->body->time_step)) < 1e-14);
+  p.sweep->body->displacement[0][p.right] = 2 * u; /* forces that help the motion say nothing */
+  p.sweep->body->force[0][p.right] = 0;
+  relaxation_look(p.relaxation, 50);
+  assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
+  relax_no_more(&p);
+}
+
+/* 100 N are applied, bonds carry 90 of them: a tenth is unbalanced. */
+static void an_increment_ends_in_balance_or_after_most_steps(void **state) {
+  (void)state;
+  pair p = relax_pair();
+  assert_int_equal(p.loads->force_count, 1);
+  p.loads->forces[0].now = 100;
+  p.sweep->body->force[0][p.right] = -90;
+  p.sweep->body->force[0][p.left] = 90;
+  assert_false(relaxation_look(p.relaxation, 25));
+  assert_true(fabs(p.relaxation->state.unbalance - 0.1) < 1e-15);
+  assert_true(relaxation_look(p.relaxation, 100)); /* it was given up */
+  assert_int_equal(p.relaxation->state.done, 1);
+  assert_int_equal(p.relaxation->state.unbalanced, 1);
+  relaxation_next(p.relaxation, 100);
+  p.loads->forces[0].now = 100;
+  p.sweep->body->force[0][p.right] = -99.5;
+  assert_false(relaxation_look(p.relaxation, 115)); /* the loads still move */
+  assert_true(relaxation_look(p.relaxation, 125));
+  assert_true(fabs(p.relaxation->state.unbalance - 0.005) < 1e-14);
+  assert_int_equal(p.relaxation->state.done, 2);
+  assert_int_equal(p.relaxation->state.unbalanced, 1);
+  assert_int_equal(p.relaxation->state.steps, 25);
+  p.loads->forces[0].now = 0; /* broken: what was needed once, 100 N, counts a hundredth */
+  p.sweep->body->force[0][p.right] = 0.5;
+  p.sweep->body->force[0][p.left] = 0;
+  relaxation_look(p.relaxation, 150);
+  assert_true(fabs(p.relaxation->state.unbalance - 0.5) < 1e-14);
+  relax_no_more(&p);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(every_increment_ends_in_balance),
@@ -349,6 +461,9 @@ int main(void) {
       cmocka_unit_test(a_plate_breaks_at_rest),
       cmocka_unit_test(impatience_is_counted),
       cmocka_unit_test(threads_and_resuming_change_no_bit),
+      cmocka_unit_test(an_increment_begins_with_a_ramp),
+      cmocka_unit_test(damping_is_critical_for_the_motion_seen),
+      cmocka_unit_test(an_increment_ends_in_balance_or_after_most_steps),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,121 @@
+#include "dsl/semantics/agreement.h"
+
+#include <string.h>
+
+const value BROKEN = {.broken = true};
+
+value scalar_of(dimension dim, placement where) {
+  return (value){.dim = dim, .shape = SHAPE_SCALAR, .place = where};
+}
+
+const char *describe(checker *ck, dimension dim) {
+  char text[160];
+  dim_describe(dim, text, sizeof(text));
+  return arena_text(ck->memory, text, strlen(text));
+}
+
+const char *shape_words(shape s) {
+  switch (s) {
+  case SHAPE_SCALAR:
+    return "a scalar";
+  case SHAPE_LOGICAL:
+    return "true or false";
+  case SHAPE_BENDING:
+    return "a bending quantity";
+  case SHAPE_VECTOR:
+    return "a vector";
+  case SHAPE_TENSOR:
+    return "a tensor";
+  }
+  return "";
+}
+
+/* What a bond and a particle have in common is the particle's view of the bond: directed. */
+placement place_join(const checker *ck, placement a, placement b) {
+  placement low = a < b ? a : b, high = a < b ? b : a;
+  if (!is_pairwise(ck) && low == ON_PARTICLE && high == ON_BOND) return ON_NEIGHBOUR;
+  return high;
+}
+
+value joined(const checker *ck, value v, value other) {
+  v.place = place_join(ck, v.place, other.place);
+  return v;
+}
+
+/* --- agreement of two values ------------------------------------------------------------------ */
+
+static void hint_magnitude(checker *ck, expr *a, value va, expr *b, value vb) {
+  if (va.shape != SHAPE_SCALAR && vb.shape != SHAPE_SCALAR) return;
+  const expr *other = va.shape == SHAPE_SCALAR ? b : a;
+  shape s = va.shape == SHAPE_SCALAR ? vb.shape : va.shape;
+  if (s == SHAPE_BENDING || s == SHAPE_VECTOR)
+    diag_hint(ck->d, "take its magnitude: `norm(%s)`", written(ck, other, "..."));
+}
+
+static bool is_bare_number(const expr *e) {
+  return e->kind == EXPR_NUMBER && !e->unit_text;
+}
+
+static void hint_unit(checker *ck, const expr *a, const expr *b, value va, value vb) {
+  char text[128];
+  const expr *bare = is_bare_number(a) ? a : is_bare_number(b) ? b : NULL;
+  if (!bare) return;
+  dim_unit(bare == a ? vb.dim : va.dim, text, sizeof(text));
+  diag_hint(ck->d, "give the number its unit: `%g [%s]`", bare->number, text);
+}
+
+const char *quoted(checker *ck, const expr *e, const char *otherwise) {
+  const char *text = written(ck, e, NULL);
+  return text ? arena_printf(ck->memory, "`%s`", text) : otherwise;
+}
+
+value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
+  if (va.broken || vb.broken) return BROKEN;
+  if (va.zero || va.unknown) {
+    vb.unknown |= va.unknown && vb.zero;
+    vb.zero &= va.zero;
+    return joined(ck, vb, va);
+  }
+  if (vb.zero || vb.unknown) return joined(ck, va, vb);
+  bool listed = where.begin == b->where.begin && where.end == b->where.end; /* a line of cases */
+  const char *first = quoted(ck, a, listed ? "a value above" : "the left side");
+  const char *second = quoted(ck, b, listed ? "this value" : "the right side");
+  if (va.shape != vb.shape) {
+    complain(ck, DIAG_SHAPE, where, "%s is %s but %s is %s, so they cannot be %s", first,
+             shape_words(va.shape), second, shape_words(vb.shape), deed);
+    hint_magnitude(ck, a, va, b, vb);
+    return BROKEN;
+  }
+  if (va.shape != SHAPE_LOGICAL && !dim_equal(va.dim, vb.dim)) {
+    complain(ck, DIAG_UNITS, where, "%s is %s but %s is %s, so they cannot be %s", first,
+             describe(ck, va.dim), second, describe(ck, vb.dim), deed);
+    hint_unit(ck, a, b, va, vb);
+    return BROKEN;
+  }
+  return joined(ck, va, vb);
+}
+
+bool expect(checker *ck, expr *e, value v, dimension dim, shape s, const char *what) {
+  if (v.broken) return false;
+  if (v.zero || v.unknown) {
+    e->dim = dim;
+    e->shape = s;
+    return true;
+  }
+  if (v.shape != s) {
+    complain(ck, DIAG_SHAPE, e->where, "%s must be %s, but this is %s", what, shape_words(s),
+             shape_words(v.shape));
+    if (s == SHAPE_SCALAR && (v.shape == SHAPE_BENDING || v.shape == SHAPE_VECTOR))
+      diag_hint(ck->d, "take its magnitude: `norm(...)`");
+    return false;
+  }
+  if (dim_equal(v.dim, dim)) return true;
+  complain(ck, DIAG_UNITS, e->where, "%s must be %s, but this is %s", what, describe(ck, dim),
+           describe(ck, v.dim));
+  if (is_bare_number(e)) hint_unit(ck, e, e, (value){.dim = dim}, (value){.dim = dim});
+  return false;
+}
+
+bool expect_scalar(checker *ck, expr *e, value v, const char *what) {
+  return expect(ck, e, v, v.dim, SHAPE_SCALAR, what);
+}

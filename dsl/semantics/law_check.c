@@ -1,0 +1,522 @@
+#include "dsl/semantics/law_check.h"
+
+#include <string.h>
+
+#include "dsl/semantics/calls.h"
+#include "dsl/semantics/declarations.h"
+#include "dsl/semantics/names.h"
+#include "dsl/semantics/order.h"
+#include "dsl/semantics/parameters.h"
+#include "dsl/semantics/types.h"
+
+/* --- fields ----------------------------------------------------------------------------------- */
+
+static void check_field_place(checker *ck, const stmt *s, symbol *field) {
+  span where = s->place == ON_NOTHING ? s->name_where : s->place_where;
+  const char *kind = stmt_kind_name(s->kind);
+  field->place = s->place;
+  if (is_pairwise(ck)) {
+    field->place = ON_BOND;
+    if (s->place == ON_NOTHING || s->place == ON_BOND) return;
+    complain(ck, DIAG_PLACEMENT, where, "a bond law keeps its %s on bonds", kind);
+    diag_hint(ck->d, "write `on bond`; a state law may have it %s",
+              "on particles and on neighbours");
+  } else if (s->place < ON_PARTICLE) {
+    field->place = ON_PARTICLE;
+    complain(ck, DIAG_PLACEMENT, where, "where does the %s `%s` live?", kind, s->name);
+    diag_hint(ck->d, "write `on particle`, `on bond` or `on neighbour` after its name");
+  }
+}
+
+static void check_fields(checker *ck) {
+  for (int i = 0; i < ck->law->fields.count; i++) {
+    symbol *field = ck->law->fields.items[i];
+    entry *e = entry_of(field);
+    stmt *s = ck->statements[e->declared_at];
+    check_field_place(ck, s, field);
+    if (field->kind == SYMBOL_DAMAGE) {
+      e->type = scalar_of(DIMENSIONLESS, field->place);
+      e->known = true;
+    } else {
+      check_initial_value(ck, s);
+    }
+  }
+}
+
+/* A product or sum in which the bond's length is the only thing that differs from neighbour to
+   neighbour. */
+static bool is_made_of_length(const expr *e) {
+  if (!e || e->place <= ON_PARTICLE) return false;
+  if (e->kind == EXPR_NAME) return strcmp(e->name, "s") == 0;
+  if (e->kind != EXPR_BINARY && e->kind != EXPR_UNARY) return false;
+  const bool left = e->left && e->left->place > ON_PARTICLE;
+  const bool right = e->kind == EXPR_BINARY && e->right && e->right->place > ON_PARTICLE;
+  return (left || right) && (!left || is_made_of_length(e->left)) &&
+         (!right || is_made_of_length(e->right));
+}
+
+/* In a state law the [j] on the left says whether there is one value or one for each neighbour. */
+static bool check_family_rule(checker *ck, const stmt *s, value *v) {
+  if (is_pairwise(ck)) {
+    if (!s->indexed) return true;
+    complain(ck, DIAG_PLACEMENT, s->name_where, "a bond law has no neighbours to give `%s` to",
+             s->name);
+    diag_hint(ck->d, "write `%s`; only a state law has a family", s->name);
+    return false;
+  }
+  bool varies = v->place == ON_BOND || v->place == ON_NEIGHBOUR;
+  if (varies && !s->indexed) {
+    complain(ck, DIAG_PLACEMENT, s->name_where,
+             "the rule of `%s` has one value for each neighbour, but `%s` has only one", s->name,
+             s->name);
+    if (is_made_of_length(s->value))
+      diag_hint(ck->d,
+                "`s` is the length of one bond: write `spacing` for that of the lattice, or put "
+                "`s` inside the sum");
+    else
+      diag_hint(ck->d, "write `%s[j] = ...`, or take the sum, mean or max over the family",
+                s->name);
+    return false;
+  }
+  if (s->indexed && !varies) v->place = v->place == ON_PARTICLE ? ON_NEIGHBOUR : ON_BOND;
+  return true;
+}
+
+static void check_field_rule(checker *ck, stmt *s, entry *field, value v) {
+  const char *what = arena_printf(ck->memory, "the %s `%s`",
+                                  field->symbol.kind == SYMBOL_STATE ? "state" : "damage", s->name);
+  bool directed = field->symbol.place == ON_BOND || field->symbol.place == ON_NEIGHBOUR;
+  if (v.broken) return;
+  if (is_pairwise(ck) || s->kind != STMT_DAMAGE) {
+    if (!check_family_rule(ck, s, &v)) return;
+    if (!is_pairwise(ck) && s->indexed != directed) {
+      complain(ck, DIAG_PLACEMENT, s->name_where, "%s lives on the %s", what,
+               directed ? "bonds" : "particle");
+      diag_hint(ck->d, directed ? "write `%s[j] = ...`" : "write `%s = ...`", s->name);
+      return;
+    }
+  }
+  if (!field->known) {
+    if (v.unknown) return; /* perhaps in the next pass */
+    v.zero = false;
+    v.place = field->symbol.place;
+    field->type = v;
+    field->known = true;
+  }
+  if (field->type.broken || s->kind == STMT_FLOW) return;
+  if (!expect(ck, s->value, v, field->type.dim, field->type.shape, what)) return;
+}
+
+/* --- statements ------------------------------------------------------------------------------- */
+
+static void set_type(const stmt *s, value v) {
+  if (!s->symbol) return;
+  entry *e = entry_of(s->symbol);
+  v.zero = v.unknown = v.whole = false; /* a name for a bare 0 is a pure number */
+  if (v.place == ON_NOTHING) v.place = ON_BODY;
+  e->type = v;
+  e->known = true;
+}
+
+static void check_definition(checker *ck, stmt *s) {
+  entry *e = s->symbol ? entry_of(s->symbol) : NULL;
+  bool field = e && (e->symbol.kind == SYMBOL_STATE || e->symbol.kind == SYMBOL_DAMAGE);
+  value v = check_value(ck, s->value);
+  if (field)
+    check_field_rule(ck, s, e, v);
+  else
+    set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
+}
+
+static void check_constant(checker *ck, stmt *s) {
+  ck->context = IN_CONSTANT;
+  value v = check_value(ck, s->value);
+  ck->context = IN_RULE;
+  set_type(s, v);
+}
+
+static void check_damage(checker *ck, stmt *s) {
+  if (!s->value || !s->symbol) return;
+  check_field_rule(ck, s, entry_of(s->symbol), check_value(ck, s->value));
+}
+
+static void check_function(checker *ck, stmt *s) {
+  if (!s->symbol) return;
+  entry *e = entry_of(s->symbol);
+  for (int i = 0; i < s->word_count; i++)
+    e->arguments[i].known = false;
+  e->type = check_function_body(ck, e);
+  e->known = true;
+}
+
+static const struct {
+  const char *unit;
+  shape shape;
+} results[RESULT_COUNT] = {[RESULT_N] = {"N", SHAPE_SCALAR},
+                           [RESULT_V] = {"N", SHAPE_BENDING},
+                           [RESULT_M_I] = {"N*m", SHAPE_BENDING},
+                           [RESULT_M_J] = {"N*m", SHAPE_BENDING},
+                           [RESULT_W] = {"J", SHAPE_SCALAR}};
+
+static void check_result(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  if (!v.broken && !check_family_rule(ck, s, &v)) v = BROKEN;
+  int which = s->symbol && s->symbol->kind == SYMBOL_RESULT ? s->symbol->index : RESULT_COUNT;
+  if (which < RESULT_COUNT) {
+    const char *what = arena_printf(ck->memory, "`%s %s`", stmt_kind_name(s->kind), s->name);
+    dimension dim = dimension_of(results[which].unit);
+    if (!expect(ck, s->value, v, dim, results[which].shape, what)) v = BROKEN;
+    v.dim = dim;
+    v.shape = results[which].shape;
+  }
+  set_type(s, v);
+}
+
+static void check_force_state(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  if (!v.broken && !s->indexed && !is_pairwise(ck)) {
+    complain(ck, DIAG_PLACEMENT, s->name_where, "a force state has one value for each neighbour");
+    diag_hint(ck->d, "write `force state %s[j] = ...`", s->name);
+    v = BROKEN;
+  }
+  if (!v.broken && !check_family_rule(ck, s, &v)) v = BROKEN;
+  bool per_volumes = !v.broken && dim_equal(v.dim, dimension_of("N/m^6"));
+  const char *what = "a force state in N (or N/m^6)";
+  dimension dim = dimension_of(per_volumes ? "N/m^6" : "N");
+  if (!expect(ck, s->value, v, dim, SHAPE_SCALAR, what)) v = BROKEN;
+  v.dim = dim;
+  v.place = ON_NEIGHBOUR;
+  set_type(s, v);
+}
+
+static void check_tensor(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  dimension dim = s->kind == STMT_STRESS ? dimension_of("Pa") : DIMENSIONLESS;
+  const char *what = s->kind == STMT_STRESS ? "a stress" : "a strain";
+  if (!expect(ck, s->value, v, dim, SHAPE_TENSOR, what)) v = BROKEN;
+  set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
+}
+
+static void check_yield(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  if (!expect_scalar(ck, s->value, v, "a yield function")) v = BROKEN;
+  set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
+}
+
+/* `by` adds the value itself; `along` gives a direction, whose size the yield function decides. */
+static void check_flow(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  if (s->when) check_guard(ck, s->when);
+  entry *field = s->symbol ? entry_of(s->symbol) : NULL;
+  if (!field || v.broken) return;
+  check_field_rule(ck, s, field, v);
+  if (s->returned || !field->known || field->type.broken) return;
+  const char *what = arena_printf(ck->memory, "the flow of `%s`", s->name);
+  expect(ck, s->value, v, field->type.dim, field->type.shape, what);
+}
+
+static void check_output(checker *ck, stmt *s) {
+  value v = check_number(ck, s->value);
+  if (!v.broken && !is_pairwise(ck) && !s->indexed && v.place > ON_PARTICLE) {
+    set_type(s, v); /* results may hold values of bonds */
+    return;
+  }
+  set_type(s, v.broken || check_family_rule(ck, s, &v) ? v : BROKEN);
+}
+
+static void check_statement(checker *ck, stmt *s) {
+  ck->context = IN_RULE;
+  if (s->symbol && entry_of(s->symbol)->refused) {
+    check_family(ck, s->value); /* for the names in it */
+    set_type(s, BROKEN);
+    return;
+  }
+  switch (s->kind) {
+  case STMT_PARAMETER:
+    check_parameter(ck, s);
+    break;
+  case STMT_CONSTANT:
+    check_constant(ck, s);
+    break;
+  case STMT_DEFINITION:
+    check_definition(ck, s);
+    break;
+  case STMT_DAMAGE:
+    check_damage(ck, s);
+    break;
+  case STMT_FUNCTION:
+    check_function(ck, s);
+    break;
+  case STMT_FORCE:
+  case STMT_MOMENT:
+  case STMT_ENERGY:
+    check_result(ck, s);
+    break;
+  case STMT_FORCE_STATE:
+    check_force_state(ck, s);
+    break;
+  case STMT_STRESS:
+  case STMT_STRAIN:
+    check_tensor(ck, s);
+    break;
+  case STMT_YIELD:
+    check_yield(ck, s);
+    break;
+  case STMT_FLOW:
+    check_flow(ck, s);
+    break;
+  case STMT_OUTPUT:
+    check_output(ck, s);
+    break;
+  case STMT_STATE:
+  case STMT_OPTION:
+  case STMT_NONCONSERVATIVE:
+  case STMT_INCLUDE:
+  case STMT_COUNT:
+    break;
+  }
+}
+
+static void forget_types(checker *ck) {
+  for (int i = 0; i < ck->entry_count; i++) {
+    entry *e = ck->entries[i];
+    e->in_cycle = false;
+    if (e->declared_at < 0 || e->infer) continue;
+    e->known = false;
+    e->type = (value){0};
+  }
+}
+
+static void check_statements(checker *ck) {
+  forget_types(ck);
+  ck->expansions = 0;
+  ck->too_deep = false;
+  ck->now = ck->statement_count;
+  check_fields(ck);
+  for (int i = 0; i < ck->statement_count; i++) {
+    ck->now = i;
+    check_statement(ck, ck->statements[i]);
+  }
+  ck->now = ck->statement_count;
+  check_bounds(ck);
+}
+
+/* --- units of states that start from a bare 0 ------------------------------------------------- */
+
+static int count_open_states(const checker *ck) {
+  int open = 0;
+  for (int i = 0; i < ck->law->fields.count; i++)
+    open += !entry_of(ck->law->fields.items[i])->known;
+  return open;
+}
+
+/* Passes over the law without reporting, until every rule has told what its state is. */
+static void infer_states(checker *ck) {
+  diagnostics *reported = ck->d, silent;
+  diag_begin(&silent, reported->sources);
+  ck->d = &silent;
+  int open = ck->law->fields.count + 1;
+  for (long looked_at = 0; looked_at < MOST_INFERENCE; looked_at += ck->statement_count) {
+    check_statements(ck);
+    diag_clear(&silent);
+    int still_open = count_open_states(ck);
+    if (still_open == 0 || still_open == open) break;
+    open = still_open;
+  }
+  ck->d = reported;
+  ck->searches = 0;
+  for (int i = 0; i < ck->law->fields.count; i++) {
+    entry *e = entry_of(ck->law->fields.items[i]);
+    if (e->known) continue;
+    e->type = scalar_of(DIMENSIONLESS, e->symbol.place);
+    e->known = true;
+  }
+}
+
+static bool has_state(const checker *ck) {
+  for (int i = 0; i < ck->law->fields.count; i++)
+    if (ck->law->fields.items[i]->kind == SYMBOL_STATE) return true;
+  return false;
+}
+
+/* --- what a law must give --------------------------------------------------------------------- */
+
+static void check_rules_of_fields(checker *ck) {
+  for (int i = 0; i < ck->law->fields.count; i++) {
+    const symbol *s = ck->law->fields.items[i];
+    if (s->rule) continue;
+    const entry *e = entry_of(s);
+    const char *index = e->symbol.place > ON_PARTICLE && !is_pairwise(ck) ? "[j]" : "";
+    complain(ck, DIAG_UNDEFINED, s->where, "the %s `%s` has no rule",
+             s->kind == SYMBOL_STATE ? "state" : "damage", s->name);
+    diag_hint(ck->d, "say what it becomes in each step: `%s%s = ...`", s->name, index);
+  }
+}
+
+static void report_missing(checker *ck, const char *what, const char *name) {
+  complain(ck, DIAG_LAW_KIND, ck->tree->law_where, "this law gives no %s", what);
+  const entry *found = names_find(ck, SPACE_QUANTITIES, name);
+  if (found && found->symbol.kind == SYMBOL_DEFINED) {
+    diag_note(ck->d, found->symbol.where, "`%s` is only a name here", name);
+    diag_hint(ck->d, "write `%s = ...`", what);
+  } else {
+    diag_hint(ck->d,
+              ck->tree->law == LAW_STATE ? "write `force state F[j] = ...`"
+                                         : "write `%s = ...`, or give the `energy W`",
+              what);
+  }
+}
+
+static void check_results_given(checker *ck) {
+  const symbol *const *r = ck->law->results;
+  if (r[RESULT_V] && (r[RESULT_M_I] || r[RESULT_M_J])) {
+    const symbol *moment = r[RESULT_M_I] ? r[RESULT_M_I] : r[RESULT_M_J];
+    complain(ck, DIAG_LAW_KIND, r[RESULT_V]->where, "a law gives either `force V` or moments");
+    diag_note(ck->d, moment->where, "a moment is given here");
+    diag_hint(ck->d, "with `force V` both moments are V*length/2; remove the one or the other");
+  }
+  if (r[RESULT_W] || ck->result_refused) return;
+  if (!r[RESULT_N]) report_missing(ck, "force N", "N");
+  if (ck->tree->law == LAW_CENTRAL_BOND || r[RESULT_V]) return;
+  if (!r[RESULT_M_I]) report_missing(ck, "moment M_i", "M_i");
+  if (!r[RESULT_M_J]) report_missing(ck, "moment M_j", "M_j");
+}
+
+static void check_force_state_given(checker *ck) {
+  const stmt *first = NULL;
+  for (int i = 0; i < ck->statement_count; i++) {
+    const stmt *s = ck->statements[i];
+    if (s->kind != STMT_FORCE_STATE) continue;
+    if (first) {
+      complain(ck, DIAG_DUPLICATE_NAME, s->name_where, "a law gives one force state");
+      diag_note(ck->d, first->name_where, "the first one is here");
+      return;
+    }
+    first = s;
+  }
+  if (!first && !ck->law->results[RESULT_W] && !ck->result_refused)
+    report_missing(ck, "force state", "F");
+}
+
+/* --- options ---------------------------------------------------------------------------------- */
+
+static void choose(checker *ck, const law_choice *wanted) {
+  const symbol_list *options = &ck->law->options;
+  for (int i = 0; i < options->count; i++) {
+    const stmt *s = options->items[i]->declared;
+    if (strcmp(s->name, wanted->option) != 0) continue;
+    for (int k = 0; k < s->word_count; k++)
+      if (strcmp(s->words[k], wanted->choice) == 0) {
+        ck->law->chosen[i] = s->words[k];
+        return;
+      }
+    complain(ck, DIAG_OPTION, s->name_where, "option `%s` has no choice `%s`", s->name,
+             wanted->choice);
+    diag_suggest(ck->d, wanted->choice, s->words, s->word_count);
+    return;
+  }
+  complain(ck, DIAG_OPTION, ck->tree->name_where, "this law has no option `%s`", wanted->option);
+}
+
+static void check_choices(checker *ck, const law_choice *choices, int count) {
+  const symbol_list *options = &ck->law->options;
+  ck->law->chosen = arena_alloc(ck->memory, (size_t)options->count * sizeof(char *));
+  for (int i = 0; i < options->count; i++) {
+    const stmt *s = options->items[i]->declared;
+    ck->law->chosen[i] = s->word_count ? s->words[0] : "";
+  }
+  for (int i = 0; i < count; i++)
+    choose(ck, &choices[i]);
+}
+
+/* --- the whole -------------------------------------------------------------------------------- */
+
+static bool is_rule(const stmt *s) {
+  switch (s->kind) {
+  case STMT_PARAMETER:
+  case STMT_OPTION:
+  case STMT_STATE:
+  case STMT_FUNCTION:
+  case STMT_NONCONSERVATIVE:
+  case STMT_INCLUDE:
+  case STMT_COUNT:
+    return false;
+  case STMT_DAMAGE:
+    return s->value != NULL;
+  default:
+    return true;
+  }
+}
+
+/* Every name stands above its use, so the order written is an order of evaluation. */
+static void list_rules(checker *ck) {
+  law *l = ck->law;
+  l->rules = arena_alloc(ck->memory, (size_t)ck->statement_count * sizeof(stmt *));
+  for (int constants = 1; constants >= 0; constants--)
+    for (int i = 0; i < ck->statement_count; i++) {
+      const stmt *s = ck->statements[i];
+      if (is_rule(s) && (s->kind == STMT_CONSTANT) == (constants == 1))
+        l->rules[l->rule_count++] = s;
+    }
+}
+
+static void list_statements(checker *ck) {
+  for (stmt *s = ck->tree->first; s; s = s->next)
+    ck->statement_count++;
+  ck->statements = arena_alloc(ck->memory, (size_t)ck->statement_count * sizeof(stmt *));
+  int i = 0;
+  for (stmt *s = ck->tree->first; s; s = s->next) {
+    s->symbol = NULL;
+    ck->statements[i++] = s;
+  }
+}
+
+static void publish_types(checker *ck) {
+  for (int i = 0; i < ck->entry_count; i++) {
+    entry *e = ck->entries[i];
+    if (e->declared_at < 0 || !e->known) continue;
+    e->symbol.dim = e->type.dim;
+    e->symbol.shape = e->type.shape;
+    e->symbol.place = e->type.place;
+  }
+  for (int i = 0; i < RESULT_COUNT; i++) {
+    if (!ck->law->results[i]) continue;
+    entry *e = entry_of(ck->law->results[i]);
+    e->symbol.dim = e->type.dim;
+    e->symbol.shape = e->type.shape;
+    e->symbol.place = e->type.place;
+  }
+}
+
+static void check_all(checker *ck, const law_choice *choices, int choice_count) {
+  declare_names(ck);
+  ck->now = ck->statement_count;
+  check_choices(ck, choices, choice_count);
+  if (has_state(ck)) infer_states(ck);
+  check_statements(ck);
+  check_rules_of_fields(ck);
+  if (is_pairwise(ck))
+    check_results_given(ck);
+  else
+    check_force_state_given(ck);
+  publish_types(ck);
+}
+
+law *law_check(arena *memory, tree *t, const source_set *sources, const law_choice *choices,
+               int choice_count, diagnostics *d) {
+  int errors = d->errors;
+  law *l = arena_alloc(memory, sizeof(law));
+  *l = (law){.tree = t, .memory = memory, .sources = sources};
+  l->setting = law_first_setting(l);
+  checker ck = {.memory = memory, .tree = t, .sources = sources, .d = d, .law = l};
+  list_statements(&ck);
+  names_begin(&ck);
+  check_all(&ck, choices, choice_count);
+  if (d->errors == errors) {
+    mark_used(&ck);
+    report_unused(&ck);
+    list_rules(&ck);
+  }
+  names_end(&ck);
+  return d->errors == errors ? l : NULL;
+}

@@ -1,0 +1,25 @@
+/* Nodes of the tree with their spans, as the grammar makes them; checks depth and index. */
+#ifndef PERILAT_DSL_TREE_BUILD_H
+#define PERILAT_DSL_TREE_BUILD_H
+
+#include "dsl/syntax/parsing.h"
+
+expr *build_number(parsing *p, double number, word written_unit, span where);
+expr *build_name(parsing *p, word name, bool primed, word index, span where);
+expr *build_unary(parsing *p, unary_op op, expr *operand, span where);
+expr *build_binary(parsing *p, binary_op op, expr *left, expr *right, span where);
+expr *build_call(parsing *p, word name);
+expr *build_argument(parsing *p, expr *call, word keyword, expr *value);
+expr *build_cases(parsing *p, span where);
+expr *build_case(parsing *p, expr *cases, expr *value, expr *guard, bool jump, span where);
+words *build_words(parsing *p);
+words *build_word(parsing *p, words *list, word item);
+bounds build_bounds(parsing *p, bool lower_open, expr *lower, expr *upper, bool upper_open,
+                    span where);
+/* index.text is NULL for a name without [j]. */
+stmt *build_stmt(parsing *p, stmt_kind kind, word name, word index, expr *value, span where);
+void build_placement(parsing *p, stmt *s, word on);
+void build_words_of(stmt *s, const words *list);
+void build_force_state(parsing *p, word state, stmt *s, word direction);
+
+#endif

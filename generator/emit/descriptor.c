@@ -1,0 +1,126 @@
+#include "generator/emit/descriptor.h"
+
+static void write_symbol(c_text *out, const symbol *s) {
+  char si[64];
+  dim_unit(s->dim, si, sizeof si);
+  c_text_add(out, "    {");
+  c_text_string(out, s->name);
+  c_text_add(out, ", ");
+  c_text_string(out, si);
+  c_text_add(out, ", ");
+  c_text_string(out, s->doc);
+  c_text_add(out, ", ");
+  c_text_number(out, s->initial);
+}
+
+static void write_parameters(c_text *out, const kernel_plan *p) {
+  const symbol_list *list = &p->law->parameters;
+  if (!list->count) return;
+  c_text_add(out, "static const pl_parameter law_parameters[] = {\n");
+  for (int k = 0; k < list->count; k++) {
+    write_symbol(out, list->items[k]);
+    c_text_add(out, ", %d},\n", list->items[k]->has_default);
+  }
+  c_text_add(out, "};\n\n");
+}
+
+static void write_varying(c_text *out, const kernel_plan *p) {
+  if (!p->varying_count) return;
+  c_text_add(out, "static const int law_varying[] = {");
+  for (int k = 0; k < p->varying_count; k++)
+    c_text_add(out, "%s%d", k ? ", " : "", p->varying[k]);
+  c_text_add(out, "};\n\n");
+}
+
+static const char *place_of_field(const symbol *s) {
+  return s->place <= ON_PARTICLE ? "PL_ON_PARTICLE"
+         : s->place == ON_BOND   ? "PL_ON_BOND"
+                                 : "PL_ON_NEIGHBOUR";
+}
+
+static void write_fields(c_text *out, const symbol_list *list, const char *name) {
+  if (!list->count) return;
+  c_text_add(out, "static const pl_field %s[] = {\n", name);
+  for (int k = 0; k < list->count; k++) {
+    const symbol *s = list->items[k];
+    write_symbol(out, s);
+    c_text_add(out, ", %s, %s},\n",
+               s->kind == SYMBOL_DAMAGE  ? "PL_FIELD_DAMAGE"
+               : s->kind == SYMBOL_STATE ? "PL_FIELD_STATE"
+                                         : "PL_FIELD_OUTPUT",
+               place_of_field(s));
+  }
+  c_text_add(out, "};\n\n");
+}
+
+static void write_table(c_text *out, const char *member, const char *array, int count) {
+  c_text_add(out, "    .%s_count = %d,\n    .%ss = %s,\n", member, count, member,
+             count ? array : "0");
+}
+
+static void write_law(c_text *out, const kernel_plan *p, const char *key) {
+  c_text_add(out,
+             "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .kind = %d,\n"
+             "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
+             p->kind, p->dimensions, p->dof, p->force_planes);
+  c_text_string(out, p->law->tree->name);
+  c_text_add(out, ",\n    .key = ");
+  c_text_string(out, key);
+  c_text_add(out, ",\n");
+  write_table(out, "parameter", "law_parameters", p->law->parameters.count);
+  c_text_add(out, "    .density = %d,\n", p->law->rho ? p->law->rho->index : -1);
+  if (p->varying_count)
+    c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
+  write_table(out, "field", "law_fields", p->law->fields.count);
+  write_table(out, "output", "law_outputs", p->law->outputs.count);
+  c_text_add(out,
+             "    .stores = %d,\n    .reads_rates = %d,\n    .uniform_count = %d,\n"
+             "    .flops_per_bond = ",
+             p->stores, p->reads_rates, p->uniform_count);
+  c_text_number(out, p->flops_per_bond);
+  c_text_add(out, ",\n    .divisions_per_bond = ");
+  c_text_number(out, p->divisions_per_bond);
+  c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
+}
+
+static void write_program(c_text *out, const kernel_plan *of, const family_program *p) {
+  c_text_add(out, "    .%s = {%d, %s_passes, %u, %u, %d, %s_shared},\n", p->name, p->pass_count,
+             p->name, program_at_hand(of->graph, p), program_upward(of->graph, p),
+             program_reaches_spared(of->graph, p), p->name);
+}
+
+static void write_programs(c_text *out, const kernel_plan *p) {
+  c_text_add(out,
+             "    .topology = %s,\n    .neighbours = %d,\n    .link_count = %d,\n    "
+             ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
+             ".reads_shape = %d,\n    .pairwise = %d,\n",
+             p->law->irregular ? "PL_LIST" : "PL_ROWS",
+             p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
+             p->links.of_bonds, program_sum_count(&p->step),
+             program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
+             p->law->tree->law == LAW_CENTRAL_BOND);
+  write_program(out, p, &p->step);
+  write_program(out, p, &p->observe);
+}
+
+void descriptor_entry(const kernel_plan *p, const char *key, c_text *out) {
+  c_text_add(out, "#if PL_IN_PART(0)\n");
+  write_law(out, p, key);
+  if (p->kind == PL_STATE) {
+    write_programs(out, p);
+  } else {
+#define X(pass, member, task) c_text_add(out, "    .%s = %s,\n", #member, #member);
+    STRIP_PASSES(X)
+#undef X
+    c_text_add(out, "    .states = states,\n    .tangent = tangent,\n");
+  }
+  c_text_add(out, "};\n\nconst pl_law *perilat_kernel(void);\n"
+                  "const pl_law *perilat_kernel(void) { return &the_law; }\n#endif\n");
+}
+
+void descriptor_lists(const kernel_plan *p, c_text *out) {
+  write_parameters(out, p);
+  write_varying(out, p);
+  write_fields(out, &p->law->fields, "law_fields");
+  write_fields(out, &p->law->outputs, "law_outputs");
+}

@@ -1,0 +1,54 @@
+#include "generator/emit/family_segment.h"
+
+#include <stdlib.h>
+
+void family_segment_open(emitter *e, const segment *a, const scope *in) {
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  expression_open(e, in, nodes, segment_nodes(e->graph, a, nodes));
+  free(nodes);
+}
+
+bool family_segment_asks(const segment *a) {
+  for (int k = 0; k < a->root_count; k++)
+    if (segment_asks(&a->roots[k])) return true;
+  return false;
+}
+
+bool family_root_is_reduction(const segment_root *r) {
+  return r->target >= TO_SUM && r->target <= TO_SMALLEST;
+}
+
+const char *family_reduction_start(const emitter *e, const segment_root *r) {
+  return r->target == TO_SUM ? "0.0"
+                             : spell(e, r->target == TO_LARGEST ? SAY_BELOW_ALL : SAY_ABOVE_ALL);
+}
+
+static void store_if_present(emitter *e, const segment_root *r, word store, const char *to,
+                             const char *value, const char *otherwise) {
+  if (segment_asks(r)) value = spell(e, SAY_CHOICE, "present", value, otherwise);
+  say(e, store, "        ", to, value);
+}
+
+static void store_sum(emitter *e, const segment_root *r, const char *to, bool in_register) {
+  if (segment_fuses(e->graph, r)) {
+    const char *first = expression_value(e, ir_operand(e->graph, r->node, 0)),
+               *second = expression_value(e, ir_operand(e->graph, r->node, 1));
+    store_if_present(e, r, SAY_STORE, to, spell(e, SAY_FUSED, first, second, to), to);
+    return;
+  }
+  const char *value = expression_value(e, r->node);
+  if (in_register)
+    store_if_present(e, r, SAY_STORE, to, spell(e, SAY_SUM, to, value), to);
+  else
+    store_if_present(e, r, SAY_ADD, to, value, "0.0");
+}
+
+void family_store(emitter *e, const segment_root *r, const char *to, bool in_register) {
+  const word extreme = r->target == TO_LARGEST ? SAY_LARGER : SAY_SMALLER;
+  if (r->target == TO_SUM)
+    store_sum(e, r, to, in_register);
+  else if (family_root_is_reduction(r))
+    store_if_present(e, r, SAY_STORE, to, spell(e, extreme, to, expression_value(e, r->node)), to);
+  else
+    store_if_present(e, r, SAY_STORE, to, expression_value(e, r->node), "0.0");
+}

@@ -1,0 +1,126 @@
+#include "generator/emit/law_functions.h"
+
+#include <assert.h>
+#include <stdlib.h>
+
+#include "generator/lower/law_inputs.h"
+
+/* --- the law alone ---------------------------------------------------------------------------- */
+
+/* What differs from bond to bond and is no class's is of its motion. */
+static int motion_plane(int quantity) {
+  const int plane = law_motion_place((builtin_quantity)quantity);
+  assert(plane >= 0);
+  return plane;
+}
+
+static void declare_state(emitter *e, ir_node n) {
+  const int index = ir_input_index(e->graph, n);
+  const bool field = ir_input_source(e->graph, n) == IR_FROM_FIELD;
+  const int plane = field ? PL_STATE_INPUTS + index : motion_plane(index);
+  say(e, SAY_DECLARE, "  ", spell(e, SAY_READ), spell(e, SAY_INPUT_ARRAY, e->name[n]),
+      spell(e, SAY_STATE_INPUT, numeral(e, plane)));
+}
+
+static const char *state(emitter *e, ir_node n) {
+  return spell(e, SAY_HERE, spell(e, SAY_INPUT_ARRAY, e->name[n]));
+}
+
+static const scope of_states = {.before = "  ",
+                                .indent = "    ",
+                                .uniform = SAY_UNIFORM,
+                                .declare = declare_state,
+                                .input = state};
+
+/* Planes without a root (moments of a central law) are zero. */
+static void write_states(emitter *e, const pass *p, const char *name, int planes) {
+  expression_open_roots(e, &of_states, p->roots, p->root_count);
+  kernel_function_begin(&e->parts, e->out, "PL_RARE PL_PASS", name, spell(e, SAY_OVER_STATES));
+  say(e, SAY_STATES_HEAD);
+  expression_declare(e);
+  for (int k = 0; k < planes; k++) {
+    const char *plane = numeral(e, k);
+    say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, plane),
+        spell(e, SAY_STATE_RESULT, plane));
+  }
+  say(e, SAY_OVER_BONDS);
+  expression_lines(e);
+  for (int k = 0; k < planes; k++) {
+    const pass_root *r = expression_find_root(e, TO_OUT, k);
+    say(e, SAY_STORE, "    ", spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
+        r ? expression_whole(e, r->node) : "0.0");
+  }
+  say(e, SAY_END, "  ");
+  kernel_function_end(&e->parts, e->out);
+  expression_close(e);
+}
+
+void law_functions_of_states(emitter *e) {
+  const pass *passes = e->plan->passes;
+  write_states(e, &passes[PASS_STATES], "states", PL_STATE_RESULTS + e->plan->law->fields.count);
+  write_states(e, &passes[PASS_TANGENT], "tangent", PL_TANGENTS);
+}
+
+/* --- parameters ------------------------------------------------------------------------------- */
+
+/* Values of a bond class, as C. */
+static const char *const class_values[QUANTITY_COUNT] = {
+#define X(code, value) [QUANTITY_##code] = #value,
+    CLASS_QUANTITIES(X)
+#undef X
+};
+
+static const char *parameter(emitter *e, ir_node n) {
+  const int index = ir_input_index(e->graph, n);
+  switch (ir_input_source(e->graph, n)) {
+  case IR_FROM_PARAMETER:
+    return spell(e, SAY_PARAMETER, numeral(e, index));
+  case IR_FROM_ENDS:
+    return spell(e, SAY_CLASS_CHORD, numeral(e, ends_origins[index].component));
+  default:
+    return class_values[index];
+  }
+}
+
+static const scope of_parameters = {.indent = "  ", .input = parameter};
+
+static void write_prepare(emitter *e) {
+  const int count = e->plan->uniform_count;
+  const ir_node *uniforms = e->plan->uniforms;
+  expression_open(e, &of_parameters, uniforms, count);
+  say(e, SAY_PREPARE);
+  expression_lines(e);
+  for (int k = 0; k < count; k++)
+    say(e, SAY_STORE, "  ", spell(e, SAY_UNIFORM, numeral(e, k)), expression_whole(e, uniforms[k]));
+  say(e, SAY_LAST_END);
+  expression_close(e);
+}
+
+/* `lower[3] = 0.0, low_open[3] = 1;` */
+static void write_bound(emitter *e, int number, pass_target target, bool is_open) {
+  const pass_root *r = expression_find_root(e, target, number);
+  const bool lower = target == TO_LOWER;
+  const char *nowhere = spell(e, lower ? SAY_BELOW_ALL : SAY_ABOVE_ALL);
+  say(e, lower ? SAY_LOWER_BOUND : SAY_UPPER_BOUND, numeral(e, number),
+      r ? expression_whole(e, r->node) : nowhere, numeral(e, !r || is_open));
+}
+
+static void write_bounds(emitter *e) {
+  const pass *p = &e->plan->passes[PASS_BOUNDS];
+  const symbol_list *parameters = &e->plan->law->parameters;
+  expression_open_roots(e, &of_parameters, p->roots, p->root_count);
+  say(e, SAY_BOUNDS);
+  expression_lines(e);
+  for (int k = 0; k < parameters->count; k++) {
+    const bounds *in = &parameters->items[k]->declared->in;
+    write_bound(e, k, TO_LOWER, in->lower_open);
+    write_bound(e, k, TO_UPPER, in->upper_open);
+  }
+  say(e, SAY_LAST_END);
+  expression_close(e);
+}
+
+void law_functions_of_parameters(emitter *e) {
+  write_prepare(e);
+  write_bounds(e);
+}

@@ -1,0 +1,107 @@
+/* Nodes of the graph as C: which of them get a line and a name, and the text of each, with the
+   parentheses that keep the graph's order of operations. Where inputs come from is the business of
+   the loop's form (scope).
+
+       law                              C
+       e = stretch - strain_0           const double e = stretch - strain_0; (line 7)
+       N = E*A*e when e < e_max         N = e < e_max ? EA*e : 0.0
+           0 otherwise
+
+   A node has a line if it has a name in the law, if two others use it, or if what stands in its
+   place would be long; E*A is the same for all bonds: `prepare` computes it, and the loop finds it
+   among its `uniforms`. */
+#ifndef PERILAT_GENERATOR_EXPRESSION_H
+#define PERILAT_GENERATOR_EXPRESSION_H
+
+#include "generator/plan/passes.h"
+#include "generator/target/c_text.h"
+#include "generator/target/kernel_parts.h"
+#include "generator/target/words.h"
+
+typedef struct emitter emitter;
+
+/* What the lines of a function depend on, beside the graph. */
+typedef struct scope {
+  const char *before, *indent; /* indentation before the loop and in it */
+  word uniform;                /* where values are that `prepare` has computed; SAY_NOTHING: here */
+  bool strip; /* each case of a chain has its line, and what is expected is asked by sizes */
+  /* Writes what stands before the loop for an input; may be NULL. */
+  void (*declare)(emitter *e, ir_node input);
+  /* What the line of an input says. */
+  const char *(*input)(emitter *e, ir_node input);
+} scope;
+
+/* What a loop over bonds relies on: of choices by it only what it says is computed. */
+typedef enum reliance {
+  RELIES_ON_NOTHING = 0,
+  RELIES_ON_EXPECTED = 1,   /* conditions that are expected to hold do */
+  RELIES_ON_UNPROTECTED = 2 /* no bond is protected */
+} reliance;
+
+struct emitter {
+  const kernel_plan *plan;
+  const ir *graph;
+  c_text *out;
+  arena *memory; /* of texts */
+  int node_count;
+  int *uniform_of; /* [node_count] index in `uniforms`, or -1 */
+  kernel_parts parts;
+
+  /* the function or the segment that is written */
+  const scope *scope;
+  void *form;             /* the form's own; forms cast it back */
+  const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
+  int root_count;
+  unsigned relies; /* reliance, together */
+  c_names names;
+  unsigned char *needed;  /* [node_count] */
+  unsigned char *dropped; /* [node_count] lines that are 0 where the bond is absent; or NULL */
+  int *uses;              /* [node_count] by needed nodes and roots */
+  ir_node *user;          /* [node_count] the last of them; IR_NONE: a root */
+  int *size;              /* [node_count] operations written in place of the node */
+  const char **name;      /* [node_count] NULL: written in place */
+};
+
+/* Adds a word with its pieces to the text; the same as a text that lives as long as the emitter. */
+#define say(e, ...)   words_add((e)->out, WORDS_OF(__VA_ARGS__))
+#define spell(e, ...) words_text((e)->memory, WORDS_OF(__VA_ARGS__))
+/* A number as a piece. */
+const char *numeral(const emitter *e, int number);
+
+void emitter_begin(emitter *e, const kernel_plan *plan, c_text *out);
+void emitter_end(emitter *e);
+
+/* Begins and ends a function or a segment that computes these nodes: decides which get a line and a
+   name. */
+void expression_open(emitter *e, const scope *in, const ir_node *nodes, int count);
+void expression_open_roots(emitter *e, const scope *in, const pass_root *roots, int root_count);
+void expression_close(emitter *e);
+
+/* A value loaded from `uniforms`; in `prepare` the same node is computed. */
+bool expression_is_uniform(const emitter *e, ir_node n);
+bool expression_is_input(const emitter *e, ir_node n);
+bool expression_is_ends_input(const emitter *e, ir_node n, ends_input which);
+/* Whether the function needs an input from there. */
+bool expression_reads(const emitter *e, ir_source from);
+/* Whether node n, a condition, is that a bond of a strip is protected. */
+bool expression_asks_protected(const emitter *e, ir_node n);
+
+/* Node n as an operand of a choice, as all of a statement's value, as a condition. */
+const char *expression_value(const emitter *e, ir_node n);
+const char *expression_whole(const emitter *e, ir_node n);
+const char *expression_condition(const emitter *e, ir_node n);
+/* `; / * line 12 * /` and the end of the line. */
+const char *expression_line_end(const emitter *e, ir_node n);
+
+/* What stands before the loop: values that are the same for all bonds, and the arrays of the
+   others. */
+void expression_declare(emitter *e);
+/* `const double x = ...;` for a node that has a name here; for each of them, in the order of the
+   graph. */
+void expression_line(emitter *e, ir_node n);
+void expression_lines(emitter *e);
+
+/* NULL without such a root. */
+const pass_root *expression_find_root(const emitter *e, pass_target target, int index);
+
+#endif
