@@ -1,20 +1,35 @@
-/* Where a compiled law and the runtime meet; nothing else crosses. A kernel is a table of facts about a law
-   and a few functions over strips of bonds. It knows nothing of lattices, loads or files.
+/* Where a compiled law and its host meet; nothing else crosses. A kernel is a table of facts about
+   a law (pl_law) and a few functions over strips of bonds or runs of particles. It knows nothing of
+   lattices, loads or files, keeps no state and allocates nothing. All arrays that it is handed are
+   the host's, who keeps them while the call lasts; what pl_law points to is the kernel's and stays
+   as long as that is loaded. Values are in SI. Of a shape [a][b] b is the inner index.
 
-   A strip is a run of bonds of one direction on lattice rows: bond k joins particle k of the near ends to particle k of
-   the far ends. Arrays hold, per degree of freedom, displacement (m) and velocity (m/s) components first, then rotations
-   (rad, rad/s).
-   Strips are of the plane; dof = 2 (central) or 3 (micropolar).
+   A host opens the kernel (PL_KERNEL_ENTRY) and compares `abi`, reads `parameters`, checks their
+   values with `bounds`, and calls `prepare` once for each class of bonds. Step by step it calls
+   `rows` for its strips (or the passes of `step` for its particles), adds up the forces, and moves
+   the particles.
 
-   A law that reads a particle's whole family comes as programs instead: passes over runs of particles, one after the
-   other over the whole body. A pass reads what neighbours had at the beginning of the step, and what earlier passes of
-   the program left in links. In the plane or in space; dof = dimensions. */
+   A strip is a run of bonds of one direction on lattice rows: bond k joins particle k of the near
+   ends to particle k of the far ends. With rows of 16 sites, of the bonds up and to the right:
+
+     row r + 1         17     18     19          displacement_j[d] = u[d] + 17
+                      /      /      /
+     row r          0      1      2              displacement_i[d] = u[d] + 0
+
+   and count = 8: five absent bonds fill the vector. Arrays hold, per degree of freedom,
+   displacement (m) and velocity (m/s) components first, then rotations (rad, rad/s). Strips are of
+   the plane; dof = 2 (central) or 3 (micropolar).
+
+   A law that reads a particle's whole family comes as programs instead: passes over runs of
+   particles, one after the other over the whole body. A pass reads what neighbours had at the
+   beginning of the step, and what earlier passes of the program left in links. In the plane or in
+   space; dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 12
+#define PL_KERNEL_ABI 13
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -22,15 +37,16 @@
 #define PL_STATE_RESULTS 3 /* N, M_i, M_j */
 #define PL_STATE_RATES   4 /* inputs that the tangent is by: the first ones */
 #define PL_TANGENTS      (PL_STATE_RESULTS * PL_STATE_RATES)
-#define PL_LANES         8 /* strips on rows are multiples of this; arrays are aligned to PL_ALIGNMENT */
-#define PL_ALIGNMENT     64
+#define PL_LANES         8  /* strips on rows are multiples of this */
+#define PL_ALIGNMENT     64 /* B, of arrays */
 
 enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
 /* Where a field lives: one value a bond; one a particle; one for each neighbour of a particle. */
 enum pl_place { PL_ON_BOND = 0, PL_ON_PARTICLE = 1, PL_ON_NEIGHBOUR = 2 };
 
-/* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists each has its own. */
+/* Where a particle's neighbours stand: on rows at offsets that are the same along a row; on lists
+   each has its own. */
 enum pl_topology { PL_ROWS = 0, PL_LIST = 1 };
 
 /* Bits of a strip's flags. */
@@ -47,152 +63,188 @@ typedef struct pl_bond_class {
   double area;           /* m^2, bars */
   double shell;          /* 1, 2, ... */
   double n;              /* bonds of a full family */
-  double chord[3]; /* reference chord from i to j, m; |chord| = s (rows only; lists of families carry their own) */
+  /* Reference chord from i to j, m; |chord| = s (rows only; lists of families carry their own). */
+  double chord[3];
   double horizon; /* m: how far neighbours may be */
-  double weight; /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
+  double weight;  /* part of the volume of j that counts; 1 unless the lattice corrects volumes */
 } pl_bond_class;
 
 typedef struct pl_parameter {
-  const char *name, *unit, *doc;
-  double initial; /* default, SI */
-  int has_default;
+  const char *name; /* "E"; upper and lower case differ */
+  const char *unit; /* "GPa", "1": as the law writes it; values are in SI all the same */
+  const char *doc;  /* "Young's modulus" */
+  double initial;   /* default, SI */
+  int has_default;  /* 0: a value must be given */
 } pl_parameter;
 
+/* A state or a damage, which steps change and the host keeps; or an output, computed when asked
+   for. */
 typedef struct pl_field {
-  const char *name, *unit, *doc;
-  double initial;
-  int kind;  /* pl_field_kind */
-  int place; /* pl_place */
+  const char *name, *unit, *doc; /* "omega", "1", "damage of the bond" */
+  double initial;                /* SI, when a run begins */
+  int kind;                      /* pl_field_kind */
+  int place;                     /* pl_place */
 } pl_field;
 
 typedef struct pl_strip {
-  long count;           /* bonds, a multiple of PL_LANES */
+  long count;           /* bonds, a multiple of PL_LANES; those that fill it up are absent */
   long direction;       /* which bits of `flags` are meant */
   const int64_t *flags; /* [count] of the sites i */
   int unheld;           /* not 0: no bond of the strip is protected */
+  /* [dof][count] at the ends i and j: m, rad; m/s, rad/s */
   const double *displacement_i[PL_MAX_DOF], *displacement_j[PL_MAX_DOF];
   const double *velocity_i[PL_MAX_DOF], *velocity_j[PL_MAX_DOF];
-  const double *const
-      *parameter; /* [varying][count] values of the parameters that differ from bond to bond */
-  double *const *field; /* [fields][count] read and written in place */
-  double *const *force; /* [force_planes][count] written; 0 where the bond is absent */
-  double *
-      dissipated_state; /* [count] J, added to: energy lost to damage and plasticity in this step */
-  double *dissipated_rate; /* [count] J, added to: energy lost to rate terms in this step */
-  double *const *observed; /* [1 + outputs][count]: stored energy (J), then each output */
-  double time_step;        /* s */
+  /* [varying_count][count] SI: the parameters that differ from bond to bond */
+  const double *const *parameter;
+  double *const *field; /* [field_count][count] SI, read and written in place */
+  double *const *force; /* [force_planes][count] N, N m, written; 0 where the bond is absent */
+  /* Of rows_ledger: [count] J, added to: what is lost in this step to damage and plasticity, and to
+     rate terms. */
+  double *dissipated_state, *dissipated_rate;
+  /* Of rows_observe: [1 + output_count][count], written: stored energy (J), then each output. */
+  double *const *observed;
+  double time_step; /* s */
 } pl_strip;
 
 struct pl_law;
+/* uniforms: [uniform_count], as `prepare` wrote them for the bonds of this direction */
 typedef void (*pl_strip_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_strip *strip);
 
-#define PL_MAX_DIRECTIONS 64 /* pairs of opposite neighbours of a family */
+#define PL_MAX_DIRECTIONS           64 /* pairs of opposite neighbours of a family */
 #define PL_SHAPE_VALUES(dimensions) ((dimensions) == 2 ? 6 : 21)
 #define PL_SHAPE_PLANES(dimensions) (PL_SHAPE_VALUES(dimensions) + 1)
 
-/* A run of particles: a row, or some that go on in memory with absent sites between; of laws with `neighbours` also rows
-   whose neighbours stand alike, `row_stride` sites apart in all arrays. Arrays begin at the run's first site. On rows neighbour k of site q is site
-   q + offset[k], on lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
-   neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. In a law of families a bond's field, too,
-   has a value on either side. Fields on particles have one plane, all others one for each neighbour, `plane` doubles
-   apart: that of particle q toward neighbour k is old_field[f][k * plane + q]; what is written stands `new_plane` apart.
-   Links may stand in a window of rows: on rows the neighbour's are at q + link_offset[k], and their planes `link_plane`
-   apart. */
+/* A run of particles: a row, or some that go on in memory with absent sites between; of laws with
+   `neighbours` also rows whose neighbours stand alike, `row_stride` sites apart in all arrays.
+   Arrays begin at the run's first site. On rows neighbour k of site q is site q + offset[k], on
+   lists site q + neighbour[k * plane + q]. A bond has opposite numbers at its two ends: when b is
+   neighbour k of a, a is neighbour k + neighbours/2 of b, or k - neighbours/2. On a square lattice,
+   rows of 16 sites, neighbours of site 20:
+
+                 site 36, k = 1
+                      |
+     site 19, k = 2 --20-- site 21, k = 0        offset = {1, 16, -1, -16}
+                      |
+                 site 4, k = 3
+
+   In a law of families a bond's field, too, has a value on either side. Fields on particles have
+   one plane, all others one for each neighbour, `plane` doubles apart: that of particle q toward
+   neighbour k is old_field[f][k * plane + q]; what is written stands `new_plane` apart. Links may
+   stand in a window of rows: on rows the neighbour's are at q + link_offset[k], and their planes
+   `link_plane` apart. */
 typedef struct pl_family {
   long count;            /* sites of a row, a multiple of PL_LANES */
   long rows, row_stride; /* 1 where pl_law.neighbours is 0 */
   long neighbours;       /* of a full family; even */
-  long plane;            /* doubles between planes of a field, or of what lists know of bonds */
-  long new_plane, link_plane;        /* the same of new fields and what is observed; of links of bonds */
-  const long *offset, *link_offset;  /* [neighbours] rows */
-  const uint64_t *bonds; /* bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit there */
-  const uint64_t *held;  /* not 0: the damage of this particle, and of its bonds, stays as it is */
-  const double *displacement[3], *velocity[3]; /* [dimensions] */
-  /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord is some vector that is
-     not 0. */
-  const int32_t *neighbour; /* [neighbours][plane] */
-  const uint64_t *incoming; /* bit k: the bond to neighbour k + neighbours/2 exists */
-  const double *length;     /* [neighbours][plane] m */
-  const double *chord[3];   /* [neighbours][plane] reference chord to the neighbour, m */
-  const double *volume, *mass; /* of the particles: m^3, kg */
-  /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T) on rows, on lists
-     sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2, z^2, x y, y z, x z) of the bond's reference
-     direction: upper triangle, row by row; shear counts twice. Behind it a plane that is 1 where the bonds resolve all
-     strains (condition of the matrix at most 1e3), else 0. */
-  const double *const *shape;     /* [PL_SHAPE_PLANES] */
-  const double *const *old_field; /* [fields] at the beginning of the step */
-  double *const *new_field;       /* [fields] written by the pass that finds them; never the same memory */
-  double *const *link;            /* [links] values of particles, written by one pass and read by later ones */
-  double *const *bond_link;       /* [bond_links] the same of values toward each neighbour, in planes like a field's */
-  double *const *force;           /* [dimensions] N: sum over the bonds, written by the last pass of the step */
-  double *const *observed; /* [1 + outputs]: stored energy (J), then each output; one plane on particles, else planes */
-  double time_step;        /* s */
-  /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a part of it that begins at
-     its start or where the last run ended, and runs go from lower to higher sites; neighbours k < neighbours/2 stand at
-     higher sites. sum[s] is what earlier runs have added to these particles; a run adds to particles ahead, and what it has
-     used is 0 again. With `ahead_only` it writes nothing else, and passes without such bonds nothing at all: whoever begins in the middle of a body begins with the
-     rows from which bonds reach its own. */
+  /* doubles between planes of a field, or of what lists know of bonds */
+  long plane;
+  long new_plane, link_plane; /* the same of new fields and what is observed; of links of bonds */
+  const long *offset, *link_offset; /* [neighbours] sites; of rows only */
+  /* [count] bit k: the bond to neighbour k < neighbours/2 exists; that to its opposite is a bit
+     there. */
+  const uint64_t *bonds;
+  /* [count] not 0: the damage of this particle, and of its bonds, stays as it is. */
+  const uint64_t *held;
+  const double *displacement[3], *velocity[3]; /* [dimensions][count] m, m/s */
+  /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
+     is some vector that is not 0. */
+  const int32_t *neighbour;    /* [neighbours][plane] sites from here to the neighbour */
+  const uint64_t *incoming;    /* [count] bit k: the bond to neighbour k + neighbours/2 exists */
+  const double *length;        /* [neighbours][plane] m */
+  const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
+  const double *volume, *mass; /* [count] of the particles: m^3, kg */
+  /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T)
+     on rows, on lists sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2,
+     z^2, x y, y z, x z) of the bond's reference direction: upper triangle, row by row; shear counts
+     twice. Behind it a plane that is 1 where the bonds resolve all strains (condition of the matrix
+     at most 1e3), else 0. */
+  const double *const *shape;     /* [PL_SHAPE_PLANES][count] */
+  const double *const *old_field; /* [field_count] at the beginning of the step */
+  /* [field_count] written by the pass that finds them; never the same memory as old_field */
+  double *const *new_field;
+  /* [link_count][count] values of particles, written by one pass and read by later ones */
+  double *const *link;
+  /* [bond_link_count] the same of values toward each neighbour, in planes like a field's */
+  double *const *bond_link;
+  /* [dimensions][count] N: sum over the bonds, written by the last pass of the step */
+  double *const *force;
+  /* [1 + output_count]: stored energy (J), then each output; on particles one plane, else planes */
+  double *const *observed;
+  double time_step; /* s */
+  /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a
+     part of it that begins at its start or where the last run ended, and runs go from lower to
+     higher sites; neighbours k < neighbours/2 stand at higher sites. sum[s] is what earlier runs
+     have added to these particles; a run adds to particles ahead, and what it has used is 0 again.
+     With `ahead_only` it writes nothing else, and passes without such bonds nothing at all: whoever
+     begins in the middle of a body begins with the rows from which bonds reach its own. */
   int ahead_only;
-  int held_near; /* of the same laws: one of these particles, or one that their bonds reach, is held */
+  /* of the same laws: one of these particles, or one that their bonds reach, is held */
+  int held_near;
   double *const *sum; /* [sum_count] */
-  /* Of the same laws: sums of what is the same for all bonds of a class, which are the same in every step. A pass writes
-     them, unless NULL, and once they are known reads them instead of adding up. */
-  double *const *constant_sum; /* [constant_sum_count] */
+  /* Of the same laws: sums of what is the same for all bonds of a class, which are the same in
+     every step. A pass writes them, unless NULL, and once they are known reads them instead of
+     adding up. */
+  double *const *constant_sum; /* [constant_sum_count][count] */
   int constants_known;
-  /* Of the same laws, unless NULL: word q/PL_LANES of the first of some particles that a pass takes together, bit k <
-     neighbours/2: toward neighbour k not all is as is expected. The first pass that asks writes it, later ones read it; what
-     stands there before, 0 or the last step's, only says what to try first. */
+  /* Of the same laws, unless NULL: word q/PL_LANES of the first of some particles that a pass takes
+     together, bit k < neighbours/2: toward neighbour k not all is as is expected. The first pass
+     that asks writes it, later ones read it; what stands there before, 0 or the last step's, only
+     says what to try first. */
   uint64_t *unusual;
-  /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles toward neighbour k some
-     may be other than 0 (filled), and old and new ones are the same (settled). Only for fields that such a bond writes;
-     else NULL. */
-  const uint64_t *const *old_filled; /* [fields] of old_field */
-  uint64_t *const *new_filled;       /* [fields] of new_field; written with it */
-  uint64_t *const *settled;          /* [fields] read, and written with new_field */
+  /* Of the same laws: word q/PL_LANES, bit k < neighbours/2: of the values of PL_LANES particles
+     toward neighbour k some may be other than 0 (filled), and old and new ones are the same
+     (settled). Only for fields that such a bond writes; else NULL. */
+  const uint64_t *const *old_filled; /* [field_count] of old_field */
+  uint64_t *const *new_filled;       /* [field_count] of new_field; written with it */
+  uint64_t *const *settled;          /* [field_count] read, and written with new_field */
 } pl_family;
 
-/* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each neighbour; lists:
-   [uniform_count] */
+/* uniforms: rows: [neighbours][uniform_count], as `prepare` wrote them for the bond class of each
+   neighbour; lists: [uniform_count] */
 typedef void (*pl_family_function)(const struct pl_law *law, const double *uniforms,
                                    const pl_family *family);
 typedef struct pl_program {
   int pass_count;
   const pl_family_function *pass; /* [pass_count] */
-  /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's owner shares; so
-     they must have done its row and those below, not those above. */
+  /* On rows. Bit p: of neighbours pass p reads nothing that earlier passes left but what the bond's
+     owner shares; so they must have done its row and those below, not those above. */
   unsigned at_hand;
   /* On rows. Bit p: pass p reads links of higher rows and of the particle's own only. */
   unsigned upward;
-  /* On rows. While passes follow each other, each that is not at hand one reach of rows behind the one before, links must be
-     kept of one reach more than the last is behind the first; or of so many reaches less. */
+  /* On rows. While passes follow each other, each that is not at hand one reach of rows behind the
+     one before, links must be kept of one reach more than the last is behind the first; or of so
+     many reaches less. */
   int spared;
-  /* On rows, unless NULL. [pass_count] bit s: pass p leaves plane k, or k + neighbours/2 for odd s, of bond_link[s/2] for both
-     ends of its particles' bonds k < neighbours/2. Whoever runs the passes keeps these planes 0 where no run has come. */
+  /* On rows, unless NULL. [pass_count] bit s: pass p leaves plane k, or k + neighbours/2 for odd s,
+     of bond_link[s/2] for both ends of its particles' bonds k < neighbours/2. Whoever runs the
+     passes keeps these planes 0 where no run has come. */
   const uint64_t *shared;
 } pl_program;
 
-/* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end moments M_i, M_j of the
-   bond (on the particles the opposite). */
+/* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
+   moments M_i, M_j of the bond (on the particles the opposite). */
 typedef struct pl_law {
-  int abi;        /* PL_KERNEL_ABI; checked at load */
-  int kind;       /* pl_law_kind */
-  int topology;   /* pl_topology; laws of bonds: PL_ROWS */
-  int dimensions; /* 2 */
-  int dof;        /* per particle */
-  int force_planes;
-  const char *name;
-  const char *key; /* hash of law, options, compiler and flags */
+  int abi;          /* PL_KERNEL_ABI; checked at load */
+  int kind;         /* pl_law_kind */
+  int topology;     /* pl_topology; laws of bonds: PL_ROWS */
+  int dimensions;   /* 2, or 3 */
+  int dof;          /* per particle */
+  int force_planes; /* 2 central, 4 micropolar */
+  const char *name; /* "mplm_bilinear" */
+  const char *key;  /* hash of law, options, compiler and flags */
   int parameter_count;
-  const pl_parameter *parameters;
-  int varying_count; /* parameters that strips read bond by bond; all else takes them as given to `prepare` */
+  const pl_parameter *parameters; /* [parameter_count] */
+  int density; /* place in `parameters` of the mass density (kg/m^3) of particles, or -1 */
+  /* Parameters that strips read bond by bond; all else takes them as given to `prepare`. */
+  int varying_count;
   const int *varying; /* [varying_count] their places in `parameters` */
   int field_count;
-  const pl_field *fields;
+  const pl_field *fields; /* [field_count] */
   int output_count;
-  const pl_field *outputs;
-  int stores;      /* what is observed as stored is all energy that the bonds hold */
-  int reads_rates; /* forces or new fields depend on velocities */
+  const pl_field *outputs;   /* [output_count] */
+  int stores;                /* what is observed as stored is all energy that the bonds hold */
+  int reads_rates;           /* forces or new fields depend on velocities */
   int uniform_count;         /* doubles that `prepare` writes */
   double flops_per_bond;     /* of `rows`: additions, multiplications, selections */
   double divisions_per_bond; /* of `rows`: divisions and roots */
@@ -200,7 +252,8 @@ typedef struct pl_law {
   /* Values that depend on parameters and bond class only. */
   void (*prepare)(const struct pl_law *law, const double *parameters, const pl_bond_class *bonds,
                   double *uniforms);
-  /* lower[p] and upper[p] of every parameter given all values (open ends: low_open, high_open = 1). */
+  /* lower[p] and upper[p] of every parameter given all values (open ends: low_open, high_open = 1).
+     */
   void (*bounds)(const struct pl_law *law, const double *parameters, double *lower, double *upper,
                  unsigned char *low_open, unsigned char *high_open);
 
@@ -208,23 +261,29 @@ typedef struct pl_law {
   pl_strip_function rows_ledger;  /* the same and dissipated energies */
   pl_strip_function rows_observe; /* stored energy and outputs; changes nothing */
 
-  /* The law alone, state by state. in: [PL_STATE_INPUTS + fields][count] stretch, stretch_rate, theta_i, theta_j,
-     length (m), then fields; out: [PL_STATE_RESULTS + fields][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */
+  /* The law alone, state by state. in: [PL_STATE_INPUTS + field_count][count] stretch, stretch_rate
+     (1/s), theta_i, theta_j (rad), length (m), then fields; out: [PL_STATE_RESULTS +
+     field_count][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */
   void (*states)(const struct pl_law *law, const double *uniforms, long count,
                  const double *const *in, double *const *out);
-  /* Symbolic tangent at such states: out[PL_TANGENTS][count] = dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
+  /* Symbolic tangent at such states: out[PL_TANGENTS][count] =
+     dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
   void (*tangent)(const struct pl_law *law, const double *uniforms, long count,
                   const double *const *in, double *const *out);
 
-  /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are 0. */
+  /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are
+     0. */
   int neighbours; /* of the full families that the passes are written for; 0: of any */
   int link_count, bond_link_count;
-  int sum_count;      /* bonds add to both ends: so many sums; 0: either end computes its bonds */
-  int constant_sum_count; /* sums that the passes may keep from step to step; 0 where they keep none */
-  int reads_shape;    /* the passes read `shape` */
-  int pairwise; /* a law of bonds in this form: the force of a bond depends on its ends alone */
-  pl_program step;    /* new fields and the forces */
-  pl_program observe; /* stored energy and outputs with the fields at hand (as old_field); changes nothing */
+  /* bonds add to both ends: so many sums; 0: either end computes its bonds */
+  int sum_count;
+  int constant_sum_count; /* sums that the passes may keep from step to step; 0: none */
+  int reads_shape;        /* the passes read `shape` */
+  /* a law of bonds in this form: its force depends on the bond's ends alone */
+  int pairwise;
+  pl_program step; /* new fields and the forces */
+  /* Stored energy and outputs with the fields at hand (as old_field); changes nothing. */
+  pl_program observe;
 
   const void *context; /* the interpreter's; NULL in compiled kernels */
 } pl_law;

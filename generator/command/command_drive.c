@@ -16,11 +16,13 @@
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_table.h"
 #include "generator/drive/drive_write.h"
+#include "generator/drive/drive_draw.h"
 #include "generator/drive/explain_bad.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/settings.h"
 #include "generator/run/run.h"
+#include "runtime/simulation/material.h"
 
 #define PATH_LIMIT_BYTES ((size_t)16 << 20)
 enum { INPUT_WRONG = 1, DRIVE_FAILED = 2, ERROR_LENGTH = 4096 };

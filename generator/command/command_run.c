@@ -1,15 +1,12 @@
-/* perilat run, perilat check: the options, then run.h or the front end. */
-#include "generator/command/command_run.h"
-
-#include <signal.h>
+/* perilat run, perilat check: run.h or the front end. */
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/base/terminal.h"
 #include "generator/check/physics.h"
 #include "generator/command/command_drive.h"
 #include "generator/command/commands.h"
+#include "generator/command/run_options.h"
 #include "generator/drive/drive_grammar.h"
 #include "generator/emit/plan_dump.h"
 #include "generator/interpreter/interpreted.h"
@@ -23,93 +20,19 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/simulation/simulation.h"
 
-/* Who reads options. A solver has its kernel built in: there is nothing to interpret or compare. */
-typedef enum option_reader { RUN, CHECK, SOLVER } option_reader;
-
-/* What only `perilat check` is asked. */
-typedef struct check_options {
-  const char *dump, *diagnostics; /* NULL where not given */
-} check_options;
-
-static bool read_threads(const char *text, int *threads) {
-  char *end;
-  long value = strtol(text, &end, 10);
-  *threads = (int)value;
-  if (!*end && end != text && value >= 1 && value <= 1024) return true;
-  say_error("--threads needs a whole number from 1 to 1024, not `%s`", text);
-  return false;
-}
-
-/* False after a message. */
-static bool read_run_options(option_reader reader, const char *program, int argc, char **argv,
-                             run_options *o, check_options *check) {
-  static const char *const names[] = {"run", "check", "solver"};
-  o->overrides = must_calloc((size_t)argc + 1, sizeof *o->overrides);
-  int bad = 0;
-  for (int at = 0; at < argc && !bad;) {
-    const char *value;
-    if (reader != CHECK && option_flag(argv, &at, "--resume"))
-      o->resume = true;
-    else if (reader == RUN && option_flag(argv, &at, "--check-kernel"))
-      o->check_kernel = true;
-    else if (reader == RUN && option_flag(argv, &at, "--interpret"))
-      o->interpret = true;
-    else if (reader != SOLVER && option_flag(argv, &at, "--no-physics"))
-      o->no_physics = true;
-    else if ((value = option_value(argc, argv, &at, "--set", &bad)))
-      o->overrides[o->override_count++].text = value;
-    else if (reader != CHECK && option_flag(argv, &at, "--profile"))
-      o->profile = true;
-    else if (reader != CHECK && option_flag(argv, &at, "--json"))
-      o->json = true;
-    else if (reader != CHECK && (value = option_value(argc, argv, &at, "--threads", &bad)))
-      bad = bad || !read_threads(value, &o->threads);
-    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--dump", &bad)))
-      check->dump = value;
-    else if (reader == CHECK && (value = option_value(argc, argv, &at, "--diagnostics", &bad)))
-      check->diagnostics = value;
-    else if (reader == CHECK ? is_option_like(argv[at]) : argv[at][0] == '-')
-      bad = option_unknown_in(program, names[reader], argv[at]);
-    else if (reader == SOLVER) {
-      say_error("`%s` runs the deck that it was built from; it takes no file", program);
-      bad = 1;
-    } else if (o->deck_path) {
-      say_error("`%s` takes one file; `%s` is a second one", program, argv[at]);
-      bad = 1;
-    } else
-      o->deck_path = argv[at++];
-  }
-  return !bad;
-}
-
-/* A solver's deck has been looked at. */
 static bool is_runnable(const run_options *o) {
-  return o->deck_text || (file_suits(o->deck_path, FILES(DECK), "perilat run", "a deck") &&
-                          !drive_refuse_path("run", o->deck_path));
-}
-
-/* The run, and with --json its document. */
-static int run_as_asked(run_options *o) {
-  if (!o->json) return is_runnable(o) ? run_deck(o) : 1;
-  document d;
-  diag_json report;
-  document_begin(&d);
-  diag_json_begin(&report, &d.writer, o->deck_path);
-  o->report = &report;
-  if (is_runnable(o)) return document_end(&d, run_deck(o));
-  diag_json_end(&report, false);
-  json_put_text(&d.writer, "status", "failed");
-  return document_end(&d, 1);
+  return file_suits(o->deck_path, FILES(DECK), "perilat run", "a deck") &&
+         !drive_refuse_path("run", o->deck_path);
 }
 
 int command_run(int argc, char **argv) {
   run_options o = {.program = "perilat run"};
-  bool good = read_run_options(RUN, "perilat run", argc, argv, &o, NULL);
+  bool good = read_run_options(OF_RUN, "perilat run", argc, argv, &o, NULL);
   int status = 1;
   if (good && !o.deck_path)
     say_error("`perilat run` needs a deck\n  perilat run deck.nml");
   else if (good)
-    status = run_as_asked(&o);
+    status = run_as_asked(&o, is_runnable);
   free(o.overrides);
   return status;
 }
@@ -299,7 +222,7 @@ static int check_as_asked(run_options *o, const check_options *asked) {
 int command_check(int argc, char **argv) {
   run_options o = {.check_only = true};
   check_options asked = {NULL, NULL};
-  bool good = read_run_options(CHECK, "perilat check", argc, argv, &o, &asked);
+  bool good = read_run_options(OF_CHECK, "perilat check", argc, argv, &o, &asked);
   int status = 1;
   if (good && !o.deck_path)
     say_error("`perilat check` needs a law or a deck\n  perilat check law.plm");
@@ -307,29 +230,4 @@ int command_check(int argc, char **argv) {
     status = check_as_asked(&o, &asked);
   free(o.overrides);
   return status;
-}
-
-int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,
-                        const built_in_law *laws, int law_count, const built_in_file *files,
-                        int file_count) {
-  run_options o = {.program = argv[0],
-                   .deck_path = deck_name,
-                   .deck_text = deck_text,
-                   .laws = laws,
-                   .law_count = law_count,
-                   .files = files,
-                   .file_count = file_count};
-  signal(SIGXFSZ, SIG_IGN); /* as in perilat itself */
-  terminal_begin();
-  for (int a = 1; a < argc; a++)
-    if (!strcmp(argv[a], "--help") || !strcmp(argv[a], "-h")) {
-      printf("usage: %s [options]\n  runs the deck `%s` that it was built from\n\noptions:\n",
-             argv[0], deck_name);
-      options_print("solver", stdout);
-      return end_output(0);
-    }
-  bool good = read_run_options(SOLVER, argv[0], argc - 1, argv + 1, &o, NULL);
-  int status = good ? run_as_asked(&o) : 1;
-  free(o.overrides);
-  return end_output(status);
 }

@@ -1,4 +1,4 @@
-/* What a drive leaves: table, CSV, HDF5, picture. */
+/* What a drive leaves: table, CSV, HDF5. */
 #include "generator/drive/drive_write.h"
 
 #include <ctype.h>
@@ -13,7 +13,6 @@
 #include "generator/drive/drive_table.h"
 #include "generator/kernel/version.h"
 #include "runtime/base/whole_file.h"
-#include "runtime/plot/plot.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/sealed_file.h"
 
@@ -264,19 +263,4 @@ bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *p
   bool good = file >= 0 && write_file(in, t, file);
   good = file >= 0 && sealed_file_close(file, whole.working) && good;
   return whole_file_end(&whole, good) || cannot_write(path, error, size);
-}
-
-bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
-                size_t size) {
-  const drive_output *o = &in->output;
-  const char *along = o->x ? o->x : t->columns[t->way].name;
-  const char *up = o->y ? o->y : t->columns[t->force].name;
-  int x = drive_column_find(t, along), y = drive_column_find(t, up);
-  if (x < 0 || y < 0) {
-    snprintf(error, size, "the table has no column `%s` to draw", x < 0 ? along : up);
-    return false;
-  }
-  plot_curve_options options = {.output = path, .x = along, .y = up, .title = in->simulation.title};
-  return plot_values(t->columns[x].values, t->columns[y].values, t->rows, t->columns[x].unit,
-                     t->columns[y].unit, &options, error, size);
 }

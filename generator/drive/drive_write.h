@@ -1,4 +1,4 @@
-/* The table of a drive as text, file and picture. */
+/* The table of a drive as text and file. */
 #ifndef PERILAT_GENERATOR_DRIVE_WRITE_H
 #define PERILAT_GENERATOR_DRIVE_WRITE_H
 
@@ -13,7 +13,5 @@ bool drive_write_csv(const drive_table *t, const char *path, char *error, size_t
 /* As a result file of two particles: `perilat plot` and `perilat info` read it. */
 bool drive_write_hdf5(const drive_input *in, const drive_table *t, const char *path, char *error,
                       size_t size);
-bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
-                size_t size);
 
 #endif

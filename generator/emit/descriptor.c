@@ -71,6 +71,7 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_string(out, p->law->tree->name);
   c_text_add(out, "," KEY_LINE(""));
   write_table(out, "parameter", "law_parameters", p->law->parameters.count);
+  c_text_add(out, "    .density = %d,\n", p->law->rho ? p->law->rho->index : -1);
   if (p->varying_count)
     c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
   write_table(out, "field", "law_fields", p->law->fields.count);

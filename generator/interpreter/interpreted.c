@@ -362,6 +362,7 @@ static void describe(interpreted *p, const char *key) {
       .key = arena_text(p->memory, key, strlen(key)),
       .parameter_count = l->parameters.count,
       .parameters = describe_parameters(p->memory, &l->parameters),
+      .density = l->rho ? l->rho->index : -1,
       .varying_count = plan->varying_count,
       .varying = plan->varying,
       .field_count = l->fields.count,

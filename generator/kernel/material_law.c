@@ -165,7 +165,7 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
     diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field],
                 "the law `%s` has no parameter `%s`", l->tree->name, wanted);
     diag_suggest(said, wanted, names, l->parameters.count);
-  } else if (strcmp(names[found], "rho") == 0) {
+  } else if (l->rho && found == l->rho->index) {
     diag_report(
         said, DIAG_NOT_SUPPORTED, m->varying_where[field],
         "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");

@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/base/clock.h"
+#include "runtime/interaction/sweep.h"
 
 /* --- the machine ------------------------------------------------------------------------------ */
 
@@ -43,7 +44,7 @@ static double triad(int threads) {
 static double bytes_of_step(const run *r) {
   const pl_law *kernel = r->laws[0].law;
   const sweep *w = simulation_state(r->simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   const double one = sizeof(double);
   double both = 2.0 * kernel->dof, read = 0;
   for (int k = 0; k < kernel->field_count; k++)
@@ -86,7 +87,7 @@ static void print_parts(const run *r, double seconds) {
       continue;
     }
     double between = p->part[PROFILE_LAW];
-    for (int number = 0; number < passes && number < SWEEP_TIMED_PASSES; number++) {
+    for (int number = 0; number < passes && number < BODY_TIMED_PASSES; number++) {
       char name[40];
       snprintf(name, sizeof name, "law, pass %d of %d", number + 1, passes);
       print_part(name, p->pass[number], seconds);

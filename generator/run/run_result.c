@@ -16,6 +16,7 @@
 #include "runtime/base/whole_file.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/shape_matrix.h"
+#include "runtime/simulation/simulation_save.h"
 
 /* --- paths and fingerprint -------------------------------------------------------------------- */
 
@@ -163,14 +164,14 @@ static void particle_table(run *r, const rows *w, result_header *h) {
   const size_t dimensions = (size_t)w->dimensions;
   double *reference = arena_alloc(r->memory, dimensions * n * sizeof *reference);
   double *volume = arena_alloc(r->memory, n * sizeof *volume);
-  int32_t *body = arena_alloc(r->memory, n * sizeof *body);
+  int32_t *bodies = arena_alloc(r->memory, n * sizeof *bodies);
   for (size_t p = 0; p < n; p++) {
     double at[3];
     rows_place(w, w->particle_site[p], at);
     memcpy(reference + dimensions * p, at, dimensions * sizeof *at);
     volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
   }
-  rows_bodies(w, r->deck, 0, body);
+  rows_bodies(w, r->deck, 0, bodies);
   if (w->list) {
     int32_t *resolved = arena_alloc(r->memory, n * sizeof *resolved);
     shape_unresolved(w, resolved);
@@ -180,7 +181,7 @@ static void particle_table(run *r, const rows *w, result_header *h) {
   h->particle_count = w->particle_count;
   h->reference = reference;
   h->volume = volume;
-  h->body = body;
+  h->body = bodies;
   rows_bond *bonds = rows_bonds(w);
   int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
   for (long m = 0; m < w->bond_count; m++) {

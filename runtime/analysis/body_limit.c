@@ -8,7 +8,8 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/stencil.h"
-#include "runtime/interaction/sweep_parts.h"
+#include "runtime/base/lane_sum.h"
+#include "runtime/interaction/interaction.h"
 
 /* LAPACK: eigenvalues and vectors of a symmetric tridiagonal matrix, ascending. */
 void dstev_(const char *job, const int *n, double *diagonal, double *beside, double *vectors,
@@ -24,34 +25,37 @@ enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
-typedef struct body {
+typedef struct
+    stiffness { /* of a body, over the masses of its particles: what a vector is multiplied with */
   sweep *sweep;
+  body *body;
   long size, length; /* of an array over sites; of a vector: dof of these */
   double *scale;     /* [length] 1/sqrt(mass), 0 at absent sites */
   double *probe;     /* [length] */
   double stiffer;    /* one side of a kink at rest than the mean of both; 1 without a kink */
-} body;
+} stiffness;
 
-static double *vector_of(const body *b) {
+static double *vector_of(const stiffness *b) {
   return must_calloc((size_t)b->length, sizeof(double));
 }
 
-static body body_new(const pl_law *law, const double *parameters, double *const *varying,
-                     const rows *w) {
+static stiffness stiffness_new(const pl_law *law, const double *parameters, double *const *varying,
+                               const rows *w) {
   const long offered = omp_get_max_threads(), sensible = 1 + w->bond_count / BONDS_A_THREAD;
   const int threads = (int)(offered < sensible ? offered : sensible);
-  body b = {.size = w->size, .length = law->dof * w->size, .stiffer = 1};
-  b.sweep = sweep_new(w, law, parameters, nominal_step, threads, false, true);
+  stiffness b = {.size = w->size, .length = law->dof * w->size, .stiffer = 1};
+  b.sweep = interaction_new(w, law, parameters, nominal_step, threads, false, true);
+  b.body = b.sweep->body;
   b.sweep->parameter = varying;
   b.scale = vector_of(&b);
   b.probe = vector_of(&b);
   for (int d = 0; d < law->dof; d++)
     for (long q = 0; q < w->size; q++)
-      if (w->present[q]) b.scale[d * w->size + q] = 1 / sqrt(sweep_mass(b.sweep, d, q));
+      if (w->present[q]) b.scale[d * w->size + q] = 1 / sqrt(body_mass(b.body, d, q));
   return b;
 }
 
-static void body_free(body *b) {
+static void stiffness_free(stiffness *b) {
   sweep_free(b->sweep);
   free(b->scale);
   free(b->probe);
@@ -64,49 +68,50 @@ static double largest_of(const double *x, long count) {
   return most;
 }
 
-static void move(const body *b, double *const *moving, double factor) {
-  for (int d = 0; d < b->sweep->dof; d++)
+static void move(const stiffness *b, double *const *moving, double factor) {
+  for (int d = 0; d < b->body->dof; d++)
     for (long q = 0; q < b->size; q++)
       moving[d][q] = factor * b->probe[d * b->size + q];
 }
 
-static void add_forces(const body *b, double factor, double *result) {
-  for (int d = 0; d < b->sweep->dof; d++)
+static void add_forces(const stiffness *b, double factor, double *result) {
+  for (int d = 0; d < b->body->dof; d++)
     for (long q = 0; q < b->size; q++) {
       const long k = d * b->size + q;
-      if (b->scale[k] > 0) result[k] += factor * b->scale[k] * b->sweep->force[d][q];
+      if (b->scale[k] > 0) result[k] += factor * b->scale[k] * b->body->force[d][q];
     }
 }
 
 /* Of the start vector, which pushes and pulls all bonds: forces that do not change their sign with
    the motion. */
-static void find_kink(body *b, const double *x) {
+static void find_kink(stiffness *b, const double *x) {
   double *sum = vector_of(b), *difference = vector_of(b);
   for (long k = 0; k < b->length; k++)
     b->probe[k] = b->scale[k] * x[k];
-  const double size = tiny * b->sweep->lattice->spacing / largest_of(b->probe, b->length);
+  const double size = tiny * b->body->lattice->spacing / largest_of(b->probe, b->length);
   for (int side = 1; side >= -1; side -= 2) {
-    move(b, b->sweep->displacement, side * size);
+    move(b, b->body->displacement, side * size);
     sweep_find_forces(b->sweep);
     add_forces(b, 1, sum);
     add_forces(b, side, difference);
   }
-  move(b, b->sweep->displacement, 0);
-  const double even = sweep_dot(b->length, sum, sum),
-               odd = sweep_dot(b->length, difference, difference);
+  move(b, b->body->displacement, 0);
+  const double even = lane_dot(b->length, NULL, sum, sum),
+               odd = lane_dot(b->length, NULL, difference, difference);
   if (even > STENCIL_KINK * STENCIL_KINK * odd) b->stiffer = 1 + sqrt(even / odd);
   free(sum);
   free(difference);
 }
 
-/* result += factor M^-1/2 K M^-1/2 x, or C for K: central differences of the forces by displacements or velocities. */
-static void add_product(body *b, bool rates, double factor, const double *x, double *result) {
-  double *const *moving = rates ? b->sweep->velocity : b->sweep->displacement;
+/* result += factor M^-1/2 K M^-1/2 x, or C for K: central differences of the forces by
+   displacements or velocities. */
+static void add_product(stiffness *b, bool rates, double factor, const double *x, double *result) {
+  double *const *moving = rates ? b->body->velocity : b->body->displacement;
   for (long k = 0; k < b->length; k++)
     b->probe[k] = b->scale[k] * x[k];
   const double largest = largest_of(b->probe, b->length);
   if (!(largest > 0)) return;
-  const double size = (rates ? tiny_rate : tiny) * b->sweep->lattice->spacing / largest;
+  const double size = (rates ? tiny_rate : tiny) * b->body->lattice->spacing / largest;
   if (!rates) factor *= b->stiffer;
   for (int side = 1; side >= -1; side -= 2) {
     move(b, moving, side * size);
@@ -119,7 +124,7 @@ static void add_product(body *b, bool rates, double factor, const double *x, dou
 /* --- ends of the spectrum --------------------------------------------------------------------- */
 
 typedef struct lanczos {
-  body *body;
+  stiffness *matrix;
   double rate; /* 1/s: of K + rate C */
   double *now, *before, *next;
   double diagonal[MOST_STEPS], beside[MOST_STEPS];
@@ -129,23 +134,23 @@ typedef struct lanczos {
   double least;        /* smallest eigenvalue, or a little more than that */
 } lanczos;
 
-static double dot(const body *b, const double *x, const double *y) {
-  return sweep_dot(b->length, x, y);
+static double dot(const stiffness *b, const double *x, const double *y) {
+  return lane_dot(b->length, NULL, x, y);
 }
 
-static void add(const body *b, double factor, const double *x, double *y) {
+static void add(const stiffness *b, double factor, const double *x, double *y) {
   for (long k = 0; k < b->length; k++)
     y[k] += factor * x[k];
 }
 
-static void normalise(const body *b, double *x) {
+static void normalise(const stiffness *b, double *x) {
   const double size = sqrt(dot(b, x, x));
   for (long k = 0; size > 0 && k < b->length; k++)
     x[k] /= size;
 }
 
 /* Nothing that a mode could be at right angles to. */
-static void start_vector(const body *b, double *x) {
+static void start_vector(const stiffness *b, double *x) {
   uint64_t bits = UINT64_C(0x9e3779b97f4a7c15);
   for (long k = 0; k < b->length; k++) {
     bits ^= bits << 13;
@@ -157,13 +162,13 @@ static void start_vector(const body *b, double *x) {
 }
 
 static void begin(lanczos *l) {
-  start_vector(l->body, l->now);
-  memset(l->before, 0, (size_t)l->body->length * sizeof(double));
+  start_vector(l->matrix, l->now);
+  memset(l->before, 0, (size_t)l->matrix->length * sizeof(double));
 }
 
 /* One vector more; `beside` is 0 when there is none. */
 static void extend(lanczos *l, int step) {
-  body *b = l->body;
+  stiffness *b = l->matrix;
   memset(l->next, 0, (size_t)b->length * sizeof(double));
   add_product(b, false, 1, l->now, l->next);
   if (l->rate > 0) add_product(b, true, l->rate, l->now, l->next);
@@ -222,18 +227,18 @@ static void find_vector(lanczos *l, double *x) {
   const int steps = l->steps;
   double part[MOST_STEPS];
   memcpy(part, l->part, sizeof part);
-  memset(x, 0, (size_t)l->body->length * sizeof *x);
+  memset(x, 0, (size_t)l->matrix->length * sizeof *x);
   begin(l);
   for (int k = 0; k < steps; k++) {
-    add(l->body, part[k], l->now, x);
+    add(l->matrix, part[k], l->now, x);
     extend(l, k);
   }
-  normalise(l->body, x);
+  normalise(l->matrix, x);
 }
 
 /* --- the step --------------------------------------------------------------------------------- */
 
-static double quotient(body *b, bool rates, const double *x) {
+static double quotient(stiffness *b, bool rates, const double *x) {
   double *y = vector_of(b);
   add_product(b, rates, 1, x, y);
   const double value = dot(b, x, y);
@@ -242,7 +247,7 @@ static double quotient(body *b, bool rates, const double *x) {
 }
 
 /* Some of all there is. */
-static bool is_damped(body *b, double omega) {
+static bool is_damped(stiffness *b, double omega) {
   const double nothing = 1e-12;
   double *x = vector_of(b);
   start_vector(b, x);
@@ -255,7 +260,7 @@ static bool is_damped(body *b, double omega) {
    is where the largest eigenvalue of K + p C is p^2; each round begins with the p of the last one's
    mode, the first with one that waves have. */
 static bool find_damped(lanczos *l, double omega, double known, step_limit *out) {
-  double p = known > 0 ? pl_fmax(omega, 2 / known) : omega, *x = vector_of(l->body);
+  double p = known > 0 ? pl_fmax(omega, 2 / known) : omega, *x = vector_of(l->matrix);
   bool good = true;
   for (int round = 0; round < MOST_ROUNDS && good; round++) {
     const double last = p;
@@ -263,7 +268,7 @@ static bool find_damped(lanczos *l, double omega, double known, step_limit *out)
     good = find_largest(l);
     if (!good || (known > 0 && l->value <= p * p)) break;
     find_vector(l, x);
-    const double k = pl_fmax(quotient(l->body, false, x), 0), c = quotient(l->body, true, x);
+    const double k = pl_fmax(quotient(l->matrix, false, x), 0), c = quotient(l->matrix, true, x);
     p = pl_fmax(p, 0.5 * (c + sqrt(c * c + 4 * k)));
     out->damping_ratio = k > 0 ? c / (2 * sqrt(k)) : INFINITY;
     if (p <= last * (1 + accuracy / 4)) break;
@@ -275,33 +280,33 @@ static bool find_damped(lanczos *l, double omega, double known, step_limit *out)
 
 /* The mode's share of the kinetic energy that turns. */
 static double turning_share(lanczos *l) {
-  const long moving = l->body->sweep->dimensions * l->body->size;
-  double *x = vector_of(l->body), turning = 0;
+  const long moving = l->matrix->body->dimensions * l->matrix->size;
+  double *x = vector_of(l->matrix), turning = 0;
   find_vector(l, x);
-  for (long k = moving; k < l->body->length; k++)
+  for (long k = moving; k < l->matrix->length; k++)
     turning += x[k] * x[k];
   free(x);
   return turning;
 }
 
 static bool find_limit(lanczos *l, step_limit *out) {
-  start_vector(l->body, l->now);
-  find_kink(l->body, l->now);
+  start_vector(l->matrix, l->now);
+  find_kink(l->matrix, l->now);
   const double known = out->limit;
   if (!find_largest(l)) return false;
   const double size = size_of(l);
   out->least = size > 0 ? l->least / size : 0;
   out->omega_max = l->value > 0 ? sqrt(l->value + pl_fmin(l->error, accuracy * l->value)) : 0;
   out->limit = out->omega_max > 0 ? 2 / out->omega_max : INFINITY;
-  if (l->body->sweep->dof > l->body->sweep->dimensions && turning_share(l) > 0.5)
+  if (l->matrix->body->dof > l->matrix->body->dimensions && turning_share(l) > 0.5)
     out->mode = "rotation";
-  return !is_damped(l->body, out->omega_max) || find_damped(l, out->omega_max, known, out);
+  return !is_damped(l->matrix, out->omega_max) || find_damped(l, out->omega_max, known, out);
 }
 
 void body_limit(const pl_law *law, const double *parameters, double *const *varying, const rows *w,
                 step_limit *out) {
-  body b = body_new(law, parameters, varying, w);
-  lanczos l = {.body = &b, .now = vector_of(&b), .before = vector_of(&b), .next = vector_of(&b)};
+  stiffness b = stiffness_new(law, parameters, varying, w);
+  lanczos l = {.matrix = &b, .now = vector_of(&b), .before = vector_of(&b), .next = vector_of(&b)};
   out->omega_max = NAN;
   out->damping_ratio = out->least = 0;
   out->mode = "translation";
@@ -309,5 +314,5 @@ void body_limit(const pl_law *law, const double *parameters, double *const *vary
   free(l.now);
   free(l.before);
   free(l.next);
-  body_free(&b);
+  stiffness_free(&b);
 }

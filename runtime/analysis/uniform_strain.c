@@ -6,7 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
-#include "runtime/interaction/sweep_parts.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/shape_matrix.h"
 
 /* LAPACK: solves a system of linear equations. */
@@ -25,6 +25,7 @@ static const int second_of[2][MOST_STRAINS] = {{0, 1, 1}, {0, 1, 2, 1, 2, 2}};
 
 typedef struct probe {
   sweep *sweep;
+  body *body;
   const rows *lattice;
   int dimensions, strains;
   const int *first, *second;
@@ -48,9 +49,9 @@ static void displace(probe *p, int strain, double size) {
     double at[3];
     rows_place(p->lattice, q, at);
     for (int d = 0; d < p->dimensions; d++)
-      p->sweep->displacement[d][q] = 0;
-    p->sweep->displacement[a][q] = a == b ? size * at[a] : size / 2 * at[b];
-    if (a != b) p->sweep->displacement[b][q] = size / 2 * at[a];
+      p->body->displacement[d][q] = 0;
+    p->body->displacement[a][q] = a == b ? size * at[a] : size / 2 * at[b];
+    if (a != b) p->body->displacement[b][q] = size / 2 * at[a];
   }
 }
 
@@ -61,7 +62,7 @@ static void find_slopes(probe *p, int strain) {
     for (int d = 0; d < p->dimensions; d++)
       for (long q = 0; q < p->lattice->size; q++) {
         const double before = side > 0 ? 0 : p->force[d][q];
-        p->force[d][q] = before + side * p->sweep->force[d][q] / (2 * strain_size);
+        p->force[d][q] = before + side * p->body->force[d][q] / (2 * strain_size);
       }
   }
 }
@@ -153,7 +154,8 @@ static probe probe_new(const pl_law *law, const double *parameters, const rows *
              .strains = space ? 6 : 3,
              .first = first_of[space],
              .second = second_of[space]};
-  p.sweep = sweep_new(w, law, parameters, nominal_step, omp_get_max_threads(), false, true);
+  p.sweep = interaction_new(w, law, parameters, nominal_step, omp_get_max_threads(), false, true);
+  p.body = p.sweep->body;
   for (int d = 0; d < p.dimensions; d++)
     p.force[d] = must_calloc((size_t)w->size, sizeof(double));
   for (long n = 0; n < w->particle_count; n++)

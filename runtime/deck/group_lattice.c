@@ -7,6 +7,7 @@
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
+#include "runtime/deck/output_fields.h"
 
 /* --- lattices */
 
@@ -237,8 +238,9 @@ static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice 
 
 static void check_lattice(deck_reader *r, const namelist_group *from, void *into) {
   deck_lattice *item = into;
-  static const char *const taken[] = {"time",  "dissipated", "displacement", "velocity",
-                                      "force", "damage",     "rotation",     "."};
+#define X(name, unit, components, exists, kind, words) #name,
+  static const char *const taken[] = {"time", ".", OUTPUT_FIELDS(X)};
+#undef X
   check_kind(r, from, item);
   deck_refuse_both(r, from, "horizon", "shells");
   if (namelist_find(from, "shells") && item->shells == 0)
@@ -247,7 +249,7 @@ static void check_lattice(deck_reader *r, const namelist_group *from, void *into
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
   span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, 8))
+  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a lattice cannot be called `%s`: the result has a field of that name", item->name);
   else if (strchr(item->name, '/'))

@@ -52,7 +52,7 @@ const double *damage_of_all_bonds(const sweep *w) {
 }
 
 static void mean_over_bonds(const sweep *w, const rows_bond *bonds, double *values) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   int32_t *count = must_calloc((size_t)g->particle_count, sizeof *count);
   memset(values, 0, (size_t)g->particle_count * sizeof *values);
   for (long b = 0; b < g->bond_count; b++) {
@@ -73,6 +73,6 @@ void damage_of_particles(const sweep *w, const rows_bond *bonds, double *values)
     mean_over_bonds(w, bonds, values);
     return;
   }
-  for (long p = 0; p < w->lattice->particle_count; p++)
-    values[p] = damage_of_site(w, w->lattice->particle_site[p]);
+  for (long p = 0; p < w->body->lattice->particle_count; p++)
+    values[p] = damage_of_site(w, w->body->lattice->particle_site[p]);
 }

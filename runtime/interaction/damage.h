@@ -1,7 +1,7 @@
-/* Damage of bonds and particles in the state observed, from the law's fields of that kind, wherever they stand. A bond's
-   damage is the largest of those on it (laws of families: of their means over both sides). A
-   particle's is the largest of those on it; where the law has none there, the mean over the bonds
-   that it began with. */
+/* Damage of bonds and particles in the state observed, from the law's fields of that kind, wherever
+   they stand. A bond's damage is the largest of those on it (laws of families: of their means over
+   both sides). A particle's is the largest of those on it; where the law has none there, the mean
+   over the bonds that it began with. */
 #ifndef PERILAT_RUNTIME_DAMAGE_H
 #define PERILAT_RUNTIME_DAMAGE_H
 
@@ -13,7 +13,8 @@ bool damage_on_particles(const pl_law *law);
 
 /* 0 without. */
 double damage_of_bond(const sweep *w, const rows_bond *bond);
-/* [directions][size] that of every bond, at its owner, where one damage is all and the same from either end; NULL otherwise. */
+/* [directions][size] that of every bond, at its owner, where one damage is all and the same from
+   either end; NULL otherwise. */
 const double *damage_of_all_bonds(const sweep *w);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);

@@ -1,8 +1,9 @@
+#include "runtime/interaction/family_pairs.h"
+
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/interaction/family_parts.h"
 #include "runtime/interaction/pair_sums.h"
 
 typedef struct pairs_block { /* pointers to the run at hand, and sums of the block's own */
@@ -48,9 +49,9 @@ static void point_at_constants(const sweep *w, const family_pairs *p, pairs_bloc
 static void run_row(const sweep *w, int pass, int block, int row, bool ahead_only, pl_family *run) {
   const family *f = family_of(w);
   pairs_block *b = &f->pairs->blocks[block];
-  const long start = sweep_start(w, row);
-  if (w->count[row] == 0) return;
-  family_turn_with_links(w, block, row, run);
+  const long start = body_start(w->body, row);
+  if (w->body->count[row] == 0) return;
+  family_run_row_with_links(w, block, row, run);
   point_at_marks(w, f->pairs, b, start, run);
   point_at_constants(w, f->pairs, b, start, run);
   run->sum = pair_sums_at(w, &b->sums, start);
@@ -59,18 +60,18 @@ static void run_row(const sweep *w, int pass, int block, int row, bool ahead_onl
   w->law->step.pass[pass](w->law, f->uniforms, run);
 }
 
-/* Bonds of the rows before reach the block's own: they are done once more here, for these ends only, so that sums have the
-   same terms in the same order whatever the blocks. */
+/* Bonds of the rows before reach the block's own: they are done once more here, for these ends
+   only, so that sums have the same terms in the same order whatever the blocks. */
 void family_pairs_stage(const sweep *w, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   pair_sums *s = &family_of(w)->pairs->blocks[block].sums;
-  const double begun = family_pass_begins(w);
+  const double begun = family_run_pass_begins(w);
   pl_family run;
-  family_begin_runs(w, &w->law->step, block, &run);
+  family_run_begin(w, &w->law->step, block, &run);
   for (int row = s->before; row < b->last; row++)
     run_row(w, pass, block, row, row < b->first, &run);
   pair_sums_clear_ahead(w, s);
-  family_pass_ends(w, block, pass, begun);
+  family_run_pass_ends(w, block, pass, begun);
 }
 
 void family_pairs_turn(family_pairs *p) {
@@ -94,12 +95,12 @@ void family_pairs_fields_set(const sweep *w) {
 
 /* Rows from which bonds reach a held particle, or that have one. */
 static unsigned char *rows_near_held(const sweep *w, int reach) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   unsigned char *near = must_calloc((size_t)g->row_count + 1, sizeof *near);
   for (int row = 0; row < g->row_count; row++) {
     const int first = row > reach ? row - reach : 0;
     bool held = false;
-    for (long q = sweep_start(w, row); q < sweep_start(w, row) + w->count[row]; q++)
+    for (long q = body_start(w->body, row); q < body_start(w->body, row) + w->body->count[row]; q++)
       held = held || g->held[q];
     if (held) memset(near + first, 1, (size_t)(row - first) + 1);
   }
@@ -114,18 +115,18 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
   p->old_filled = pair_marks_new(w);
   p->new_filled = pair_marks_new(w);
   p->settled = pair_marks_new(w);
-  p->unusual = must_calloc((size_t)(w->lattice->size / PL_LANES) + 1, sizeof *p->unusual);
+  p->unusual = must_calloc((size_t)(w->body->lattice->size / PL_LANES) + 1, sizeof *p->unusual);
   p->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *p->constant_sum);
   for (int k = 0; k < w->law->constant_sum_count; k++)
-    p->constant_sum[k] = sweep_doubles(w, w->lattice->size);
-  p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
-  for (int k = 0; k < w->block_count; k++) {
+    p->constant_sum[k] = body_doubles(w->body, w->body->lattice->size);
+  p->blocks = must_calloc((size_t)w->body->block_count, sizeof *p->blocks);
+  for (int k = 0; k < w->body->block_count; k++) {
     pairs_block *b = &p->blocks[k];
     b->old_filled = must_calloc(fields, sizeof *b->old_filled);
     b->new_filled = must_calloc(fields, sizeof *b->new_filled);
     b->settled = must_calloc(fields, sizeof *b->settled);
     b->constant_sum = must_calloc((size_t)w->law->constant_sum_count + 1, sizeof *b->constant_sum);
-    b->sums = pair_sums_new(w, &w->blocks[k], f->reach);
+    b->sums = pair_sums_new(w, &w->body->blocks[k], f->reach);
   }
   find_marks(w, p);
   return p;
@@ -133,7 +134,7 @@ family_pairs *family_pairs_new(sweep *w, const family *f) {
 
 void family_pairs_free(const sweep *w, family_pairs *p) {
   if (!p) return;
-  for (int k = 0; k < w->block_count; k++) {
+  for (int k = 0; k < w->body->block_count; k++) {
     free(p->blocks[k].old_filled);
     free(p->blocks[k].new_filled);
     free(p->blocks[k].settled);

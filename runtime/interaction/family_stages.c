@@ -1,29 +1,13 @@
+#include "runtime/interaction/family_stages.h"
+
 #include <stdlib.h>
 
-#include "runtime/interaction/family_parts.h"
-
-static void point_at_links(const sweep *w, int block, int row) {
-  const family *f = family_of(w);
-  const long start = sweep_start(w, row);
-  for (int k = 0; k < w->law->link_count; k++)
-    f->blocks[block].link[k] = f->link[k] + start;
-  for (int k = 0; k < w->law->bond_link_count; k++)
-    f->blocks[block].bond_link[k] = f->bond_link[k] + start;
-}
-
-void family_turn_with_links(const sweep *w, int block, int row, pl_family *run) {
-  family_turn_to_row(w, block, row, run);
-  point_at_links(w, block, row);
-  run->link_plane = run->plane;
-  run->link_offset = run->offset;
-}
-
-/* The row after the last that goes on in memory as this one begins, with neighbours at the same offsets: together they are one
-   long row, with absent sites in between. */
+/* The row after the last that goes on in memory as this one begins, with neighbours at the same
+   offsets: together they are one long row, with absent sites in between. */
 static int end_of_alike(const sweep *w, int row, int last) {
-  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
+  const unsigned char *kind = w->body->lattice->row_class + w->body->lattice->margin;
   int end = row + 1;
-  while (end < last && w->count[row] > 0 && w->count[end] > 0 && kind[end] == kind[row])
+  while (end < last && w->body->count[row] > 0 && w->body->count[end] > 0 && kind[end] == kind[row])
     end++;
   return end;
 }
@@ -32,32 +16,34 @@ static int end_of_alike(const sweep *w, int row, int last) {
 static void run_rows(const sweep *w, const pl_program *program, int pass, int block, int first,
                      int last) {
   pl_family run;
-  family_begin_runs(w, program, block, &run);
+  family_run_begin(w, program, block, &run);
   for (int row = first, end; row < last; row = end) {
     end = end_of_alike(w, row, last);
-    if (w->count[row] == 0) continue;
-    family_turn_with_links(w, block, row, &run);
-    run.count = sweep_start(w, end - 1) + w->count[end - 1] - sweep_start(w, row);
+    if (w->body->count[row] == 0) continue;
+    family_run_row_with_links(w, block, row, &run);
+    run.count = body_start(w->body, end - 1) + w->body->count[end - 1] - body_start(w->body, row);
     program->pass[pass](w->law, family_of(w)->uniforms, &run);
   }
 }
 
-/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs the pass before on all
-   rows in reach, so each loses as many at either end, but at the ends of the body. */
+/* Rows of a block that a pass can do without what other blocks do at the same time: a pass needs
+   the pass before on all rows in reach, so each loses as many at either end, but at the ends of the
+   body. */
 static void inner_rows(const sweep *w, int block, int pass, int *first, int *last) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   const int lost = pass * family_of(w)->reach;
   *first = b->first == 0 ? 0 : b->first + lost;
-  *last = b->last == w->lattice->row_count ? b->last : b->last - lost;
+  *last = b->last == w->body->lattice->row_count ? b->last : b->last - lost;
   if (*last < *first) *last = *first = b->last;
 }
 
-/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far enough ahead: what one
-   leaves the next finds in a cache. */
+/* All passes on the inner rows, some rows at a time, each pass as soon as the one before is far
+   enough ahead: what one leaves the next finds in a cache. */
 static void run_inner(const sweep *w, const pl_program *program, int block) {
   enum { ROWS_AT_A_TIME = 16 };
   enum { FARTHEST = 100 }; /* rows between passes that a cache may still hold */
-  const int at_a_time = family_of(w)->reach > FARTHEST ? w->lattice->row_count : ROWS_AT_A_TIME;
+  const int at_a_time =
+      family_of(w)->reach > FARTHEST ? w->body->lattice->row_count : ROWS_AT_A_TIME;
   int next[FAMILY_MOST_PASSES], last[FAMILY_MOST_PASSES];
   const int passes = program->pass_count;
   for (int p = 0; p < passes; p++)
@@ -65,9 +51,9 @@ static void run_inner(const sweep *w, const pl_program *program, int block) {
   while (next[0] < last[0]) { /* when the first is done, all follow */
     int end = least(next[0] + at_a_time, last[0]);
     for (int p = 0; p < passes; p++) {
-      const double begun = family_pass_begins(w);
+      const double begun = family_run_pass_begins(w);
       run_rows(w, program, p, block, next[p], end);
-      family_pass_ends(w, block, p, begun);
+      family_run_pass_ends(w, block, p, begun);
       next[p] = end > next[p] ? end : next[p];
       if (p + 1 < passes) end = next[p] == last[p] ? last[p + 1] : next[p] - family_of(w)->reach;
     }
@@ -76,13 +62,13 @@ static void run_inner(const sweep *w, const pl_program *program, int block) {
 
 /* A pass on the rows that the inner rows leave. */
 static void run_outer(const sweep *w, const pl_program *program, int pass, int block) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   int first, last;
   inner_rows(w, block, pass, &first, &last);
-  const double begun = family_pass_begins(w);
+  const double begun = family_run_pass_begins(w);
   run_rows(w, program, pass, block, b->first, first);
   run_rows(w, program, pass, block, last, b->last);
-  family_pass_ends(w, block, pass, begun);
+  family_run_pass_ends(w, block, pass, begun);
 }
 
 void family_stage(const sweep *w, const pl_program *program, int stage, int block) {

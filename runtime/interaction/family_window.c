@@ -1,13 +1,33 @@
+#include "runtime/interaction/family_window.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/interaction/family_parts.h"
 
-/* Each pass follows the one before as soon as that has done all rows in reach, some rows at a time; so links are needed
-   of few rows, and stay in a cache. A block does the first passes on rows of its neighbours, too, as far as its own need
-   them: that costs a few rows, and blocks wait for each other but once a step. */
+/* Each pass follows the one before as soon as that has done all rows in reach, some rows at a time;
+   so links are needed of few rows, and stay in a cache. Two passes with a reach of one row, four
+   rows at a time, in a block of rows 0 .. 9 that is the whole body (`behind` is 0 and 1, window of
+   4 + 2 rows):
+
+              row  0  1  2  3  4  5  6  7  8  9
+     round 1       A  A  A  A                       pass A
+                   B  B  B                          pass B: its row 3 needs A on row 4
+                   m  m                             move: row 2 is still to be read by B on row 3
+     round 2                   A  A  A  A
+                            B  B  B  B
+                         m  m  m  m
+     round 3                               A  A
+                                        B  B  B
+                                     m  m  m  m
+
+   Row r has its links in place r mod 6. In round 2 pass A writes rows 4 .. 7 to places 4, 5, 0, 1;
+   pass B reads rows 2 .. 7, which are all six places.
+
+   A block does the first passes on rows of its neighbours, too, as far as its own need them: that
+   costs a few rows, and blocks wait for each other but once a step. Those rows stay where they are
+   until then, and so do the block's own that the others read (`inner` are the rest). */
 
 typedef struct sites {
   long begin, end;
@@ -27,7 +47,8 @@ struct family_window { /* row r stands in place r mod rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */
   sites *
-      left; /* [passes of a step][rows] sites of a place where the pass has left what both ends share */
+      /* [passes of a step][rows] sites of a place where the pass has left what both ends share */
+      left;
   int *straight; /* [rows] places from here on before a row, or one of a neighbour, is at place 0 */
 };
 
@@ -78,14 +99,15 @@ static bool suits(const sweep *w, const family *f) {
   enum {
     MOST_NEIGHBOURS = 39
   }; /* of more, links fill no cache, and later passes may read new fields */
-  const int least = w->lattice->row_count / w->block_count;
-  return !w->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
-         (w->block_count == 1 ||
+  const int least = w->body->lattice->row_count / w->body->block_count;
+  return !w->body->lattice->list && f->neighbours <= MOST_NEIGHBOURS &&
+         (w->body->block_count == 1 ||
           least >= ROWS_TO_HALO * most(halo(f, &w->law->step), halo(f, &w->law->observe)));
 }
 
-/* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much as some vectors take. Of long
-   rows the next one finds more in the first cache than the next one alike. */
+/* Short rows are done many at a time, and as many as are alike in one run: a call sets up as much
+   as some vectors take. Of long rows the next one finds more in the first cache than the next one
+   alike. */
 static void choose_runs(family_window *v, const pl_law *law, long pitch) {
   enum { SITES = 1024, FEW = 8, MANY = 32 };
   const int rows_here = (int)(SITES / pitch);
@@ -93,8 +115,9 @@ static void choose_runs(family_window *v, const pl_law *law, long pitch) {
   v->step = law->neighbours && rows_here >= FEW ? FAMILY_ROWS_ALIKE : 1;
 }
 
-/* Room for a row before and one after, and an odd number of cache lines: the same places of no two of 64 planes are a
-   multiple of a page apart, where a load would wait for the store to such a place. */
+/* Room for a row before and one after, and an odd number of cache lines: the same places of no two
+   of 64 planes are a multiple of a page apart, where a load would wait for the store to such a
+   place. */
 static long distance_of_planes(const family_window *v, long pitch) {
   const long lines = (v->rows + 2) * pitch / PL_LANES;
   return (lines | 1) * PL_LANES;
@@ -102,13 +125,13 @@ static long distance_of_planes(const family_window *v, long pitch) {
 
 static void open_planes(sweep *w, const family *f, family_window *v) {
   const pl_law *law = w->law;
-  const int forces = w->forces ? 0 : w->dof;
+  const int forces = w->body->forces ? 0 : w->body->dof;
   const long planes = law->link_count + (long)law->bond_link_count * f->neighbours + forces;
-  v->plane = distance_of_planes(v, w->lattice->pitch);
-  v->memory = sweep_doubles(w, planes * v->plane);
+  v->plane = distance_of_planes(v, w->body->lattice->pitch);
+  v->memory = body_doubles(w->body, planes * v->plane);
   v->link = must_calloc((size_t)law->link_count + 1, sizeof *v->link);
   v->bond_link = must_calloc((size_t)law->bond_link_count + 1, sizeof *v->bond_link);
-  double *next = v->memory + w->lattice->pitch;
+  double *next = v->memory + w->body->lattice->pitch;
   for (int k = 0; k < law->link_count; k++, next += v->plane)
     v->link[k] = next;
   for (int k = 0; k < law->bond_link_count; k++, next += f->neighbours * v->plane)
@@ -120,8 +143,8 @@ static void open_planes(sweep *w, const family *f, family_window *v) {
 static double **scratch_rows(sweep *w, const pl_field *fields, int count, int more) {
   double **rows_of = must_calloc((size_t)(more + count) + 1, sizeof *rows_of);
   for (int k = 0; k < more + count; k++)
-    rows_of[k] = sweep_doubles(w, (k < more ? 1 : sweep_planes(w, fields[k - more].place)) *
-                                      w->lattice->pitch);
+    rows_of[k] = body_doubles(w->body, (k < more ? 1 : sweep_planes(w, fields[k - more].place)) *
+                                           w->body->lattice->pitch);
   return rows_of;
 }
 
@@ -139,15 +162,15 @@ static void find_straight(family_window *v, int neighbours) {
   free(turns);
 }
 
-static void find_inner(const sweep *w, const family *f, const sweep_block *b, family_window *v) {
+static void find_inner(const sweep *w, const family *f, const body_block *b, family_window *v) {
   const int lost = halo(f, &w->law->step);
   v->inner = b->first == 0 ? 0 : b->first + lost;
-  v->inner_end = b->last == w->lattice->row_count ? b->last : b->last - lost;
+  v->inner_end = b->last == w->body->lattice->row_count ? b->last : b->last - lost;
 }
 
-static void open_window(sweep *w, const family *f, const sweep_block *b, family_window *v) {
+static void open_window(sweep *w, const family *f, const body_block *b, family_window *v) {
   const pl_law *law = w->law;
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   find_inner(w, f, b, v);
   choose_runs(v, law, g->pitch);
   v->rows = v->at_a_time + most(rows_kept(f, &law->step), rows_kept(f, &law->observe));
@@ -164,14 +187,14 @@ static void open_window(sweep *w, const family *f, const sweep_block *b, family_
 
 family_window *family_windows(sweep *w, const family *f) {
   if (!suits(w, f)) return NULL;
-  family_window *v = must_calloc((size_t)w->block_count, sizeof *v);
-  for (int k = 0; k < w->block_count; k++)
-    open_window(w, f, &w->blocks[k], &v[k]);
+  family_window *v = must_calloc((size_t)w->body->block_count, sizeof *v);
+  for (int k = 0; k < w->body->block_count; k++)
+    open_window(w, f, &w->body->blocks[k], &v[k]);
   return v;
 }
 
 void family_windows_free(const sweep *w, family_window *v) {
-  for (int k = 0; v && k < w->block_count; k++) {
+  for (int k = 0; v && k < w->body->block_count; k++) {
     free(v[k].field);
     free(v[k].observed);
     free(v[k].link);
@@ -184,7 +207,8 @@ void family_windows_free(const sweep *w, family_window *v) {
   free(v);
 }
 
-/* --- what stands where no run has come ----------------------------------------------------------- */
+/* --- what stands where no run has come -----------------------------------------------------------
+   */
 
 /* The values of shared bit s. */
 static double *shared_planes(const sweep *w, const family_window *v, int s) {
@@ -193,7 +217,7 @@ static double *shared_planes(const sweep *w, const family_window *v, int s) {
 
 static void clear_sites(const sweep *w, const family_window *v, uint64_t shared, int here,
                         sites of) {
-  const long first = here * w->lattice->pitch + of.begin;
+  const long first = here * w->body->lattice->pitch + of.begin;
   if (of.begin >= of.end) return;
   for (int s = 0; s < 64; s++)
     for (int k = 0; k < family_of(w)->neighbours / 2 && (shared >> s & 1); k++)
@@ -201,8 +225,8 @@ static void clear_sites(const sweep *w, const family_window *v, uint64_t shared,
              (size_t)(of.end - of.begin) * sizeof(double));
 }
 
-/* Rows first .. last-1 take their places before a pass of a step does them: beside their sites what it leaves for both ends is
-   0. Rows below the body have no sites; observing shares nothing. */
+/* Rows first .. last-1 take their places before a pass of a step does them: beside their sites what
+   it leaves for both ends is 0. Rows below the body have no sites; observing shares nothing. */
 static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
                         int last) {
   const family_window *v = &family_of(w)->windows[block];
@@ -210,7 +234,8 @@ static void take_places(const sweep *w, const pl_program *program, int pass, int
   for (int row = first; row < last && shared; row++) {
     const int here = (row % v->rows + v->rows) % v->rows;
     sites *left = &v->left[pass * v->rows + here], was = *left;
-    *left = row < 0 ? (sites){0, 0} : (sites){w->begin[row], w->begin[row] + w->count[row]};
+    *left = row < 0 ? (sites){0, 0}
+                    : (sites){w->body->begin[row], w->body->begin[row] + w->body->count[row]};
     clear_sites(w, v, shared, here, (sites){was.begin, shorter(was.end, left->begin)});
     clear_sites(w, v, shared, here, (sites){longer(was.begin, left->end), was.end});
   }
@@ -222,7 +247,7 @@ static void point_at_links(const sweep *w, int block, int row, pl_family *run) {
   family_block *b = &family_of(w)->blocks[block];
   family_window *v = &family_of(w)->windows[block];
   const int here = row % v->rows;
-  const long pitch = w->lattice->pitch, start = here * pitch + w->begin[row];
+  const long pitch = w->body->lattice->pitch, start = here * pitch + w->body->begin[row];
   for (int k = 0; k < w->law->link_count; k++)
     b->link[k] = v->link[k] + start;
   for (int k = 0; k < w->law->bond_link_count; k++)
@@ -241,10 +266,10 @@ static void write_nowhere(const sweep *w, int block, int row, pl_family *run) {
   family_block *b = &family_of(w)->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
   for (int k = 0; k < w->law->field_count; k++)
-    b->new_field[k] = v->field[k] + w->begin[row];
+    b->new_field[k] = v->field[k] + w->body->begin[row];
   for (int k = 0; k <= w->law->output_count; k++)
-    b->observed[k] = v->observed[k] + w->begin[row];
-  run->new_plane = w->lattice->pitch;
+    b->observed[k] = v->observed[k] + w->body->begin[row];
+  run->new_plane = w->body->lattice->pitch;
 }
 
 static bool moves_at_once(const family_window *v, int row) {
@@ -252,28 +277,29 @@ static bool moves_at_once(const family_window *v, int row) {
 }
 
 static double *force_place(const sweep *w, const family_window *v, int row, int component) {
-  return v->force[component] + (row % v->rows) * w->lattice->pitch + w->begin[row];
+  return v->force[component] + (row % v->rows) * w->body->lattice->pitch + w->body->begin[row];
 }
 
 const double *family_window_force(const sweep *w, int block, int row, int component) {
   const family_window *v = &family_of(w)->windows[block];
-  return w->forces || !moves_at_once(v, row) ? w->force[component] + sweep_start(w, row)
-                                             : force_place(w, v, row, component);
+  return w->body->forces || !moves_at_once(v, row)
+             ? w->body->force[component] + body_start(w->body, row)
+             : force_place(w, v, row, component);
 }
 
-/* The end of the rows that a run may take from `row` on, step by step: as many as need no other links, fields or forces than
-   the first, and whose neighbours stand alike. */
+/* The end of the rows that a run may take from `row` on, step by step: as many as need no other
+   links, fields or forces than the first, and whose neighbours stand alike. */
 static int end_of_run(const sweep *w, int block, int row, int last) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
-  const unsigned char *kind = w->lattice->row_class + w->lattice->margin;
+  const unsigned char *kind = w->body->lattice->row_class + w->body->lattice->margin;
   int next = row + v->step;
   if (v->step == 1 || row < b->first || row >= b->last) return next;
   const int edges[] = {b->last, v->inner, v->inner_end, row + v->straight[row % v->rows]};
   for (int k = 0; k < 4; k++)
     if (edges[k] > row) last = least(last, edges[k]);
-  while (next < last && w->begin[next] == w->begin[row] && w->count[next] == w->count[row] &&
-         kind[next] == kind[row])
+  while (next < last && w->body->begin[next] == w->body->begin[row] &&
+         w->body->count[next] == w->body->count[row] && kind[next] == kind[row])
     next += v->step;
   return next;
 }
@@ -281,13 +307,13 @@ static int end_of_run(const sweep *w, int block, int row, int last) {
 /* With `passing` forces are needed until the particles have moved. */
 static void run_until(const sweep *w, pl_family_function pass, int block, int row, int end,
                       bool passing, pl_family *run) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   const family_window *v = &family_of(w)->windows[block];
-  family_turn_to_row(w, block, row, run);
+  family_run_row(w, block, row, run);
   run->rows = (end - row) / v->step;
   point_at_links(w, block, row, run);
   if (row < b->first || row >= b->last) write_nowhere(w, block, row, run);
-  for (int d = 0; d < w->dof && passing && !w->forces && moves_at_once(v, row); d++)
+  for (int d = 0; d < w->body->dof && passing && !w->body->forces && moves_at_once(v, row); d++)
     family_of(w)->blocks[block].force[d] = force_place(w, v, row, d);
   pass(w->law, family_of(w)->uniforms, run);
 }
@@ -296,11 +322,12 @@ static void run_until(const sweep *w, pl_family_function pass, int block, int ro
 static void run_rows(const sweep *w, const pl_program *program, int pass, int block, int first,
                      int last, bool passing) {
   pl_family run;
-  family_begin_runs(w, program, block, &run);
+  family_run_begin(w, program, block, &run);
   for (int of_kind = first; of_kind < first + family_of(w)->windows[block].step; of_kind++)
     for (int row = of_kind, end; row < last; row = end) {
       end = end_of_run(w, block, row, last);
-      if (w->count[row] > 0) run_until(w, program->pass[pass], block, row, end, passing, &run);
+      if (w->body->count[row] > 0)
+        run_until(w, program->pass[pass], block, row, end, passing, &run);
     }
 }
 
@@ -311,12 +338,12 @@ void family_window_inner(const sweep *w, int block, int *first, int *last) {
 
 /* Where each pass begins and ends: where those after it need what it finds. */
 static void find_spans(const sweep *w, const pl_program *program, int block, int *next, int *last) {
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   const family *f = family_of(w);
   const int passes = program->pass_count, behind = rows_behind(f, program, passes - 1);
   for (int p = 0; p < passes; p++) {
     next[p] = most(b->first - rows_before(f, program, p), 0);
-    last[p] = least(b->last + behind - rows_behind(f, program, p), w->lattice->row_count);
+    last[p] = least(b->last + behind - rows_behind(f, program, p), w->body->lattice->row_count);
   }
 }
 
@@ -335,9 +362,9 @@ void family_window_run(sweep *w, const pl_program *program, int block,
       end = least(ahead - rows_behind(f, program, p), last[p]);
       if (end <= next[p]) continue;
       take_places(w, program, p, block, next[p], end);
-      const double begun = family_pass_begins(w);
+      const double begun = family_run_pass_begins(w);
       run_rows(w, program, p, block, next[p], end, move != NULL);
-      family_pass_ends(w, block, p, begun);
+      family_run_pass_ends(w, block, p, begun);
       next[p] = end;
     }
     end = least(ahead - rows_behind(f, program, passes - 1) - f->reach, last_moved);

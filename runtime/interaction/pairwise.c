@@ -6,8 +6,9 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/base/clock.h"
+#include "runtime/base/lane_sum.h"
 #include "runtime/base/team.h"
-#include "runtime/interaction/sweep_parts.h"
+#include "runtime/body/motion.h"
 
 enum {
   DIRECTIONS = 3,       /* of a law of bonds */
@@ -29,7 +30,7 @@ typedef struct pairwise_block { /* what one thread works with */
   double *observed;          /* [1 + outputs][pitch] */
   double **pointers;         /* of fields and observed values, for strips */
   const double **parameters; /* [varying] for strips */
-  char apart[SWEEP_APART];
+  char apart[BODY_APART];
 } pairwise_block;
 
 typedef struct pairwise {
@@ -38,8 +39,8 @@ typedef struct pairwise {
   int64_t *some;    /* [row_count] the flags of all these bonds together */
   long stride;      /* doubles of a direction in a buffer */
   long buffer;      /* doubles of a buffer */
-  /* What a row is the first to read, by its sites: states of its bonds, motions of the row above. None where a body fits into
-     caches. */
+  /* What a row is the first to read, by its sites: states of its bonds, motions of the row above.
+     None where a body fits into caches. */
   const double **streams;
   int stream_count;
   long steps;             /* done */
@@ -53,16 +54,16 @@ static pairwise *own(const sweep *w) {
 /* --- bonds of a row --------------------------------------------------------------------------- */
 
 static double *plane(const sweep *w, const row_forces *buffer, int p, int direction) {
-  return buffer->values + ((long)p * w->lattice->directions + direction) * own(w)->stride +
+  return buffer->values + ((long)p * w->body->lattice->directions + direction) * own(w)->stride +
          PL_LANES;
 }
 
-/* Prepares a buffer for another row: what an earlier row left outside the span of this one counts as absent bonds. Most
-   rows are as long as the one before, and nothing is to be done. */
+/* Prepares a buffer for another row: what an earlier row left outside the span of this one counts
+   as absent bonds. Most rows are as long as the one before, and nothing is to be done. */
 static void take_buffer(const sweep *w, row_forces *buffer, long begin, long end) {
   const long low = begin - buffer->begin, high = buffer->end - end;
   for (int p = 0; p < w->law->force_planes && (low > 0 || high > 0); p++)
-    for (int k = 0; k < w->lattice->directions; k++) {
+    for (int k = 0; k < w->body->lattice->directions; k++) {
       double *values = plane(w, buffer, p, k);
       if (low > 0) memset(values + buffer->begin, 0, (size_t)low * sizeof *values);
       if (high > 0) memset(values + end, 0, (size_t)high * sizeof *values);
@@ -72,7 +73,7 @@ static void take_buffer(const sweep *w, row_forces *buffer, long begin, long end
 }
 
 static void take_buffer_for_row(const sweep *w, row_forces *buffer, int row) {
-  take_buffer(w, buffer, w->begin[row], w->begin[row] + w->count[row]);
+  take_buffer(w, buffer, w->body->begin[row], w->body->begin[row] + w->body->count[row]);
 }
 
 static void clear_buffer(const sweep *w, row_forces *buffer) {
@@ -82,23 +83,23 @@ static void clear_buffer(const sweep *w, row_forces *buffer) {
 /* Bonds that a row owns in one direction, from place `first` of its span on. */
 static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction, long first,
                        long count, pl_strip *s) {
-  const rows *g = w->lattice;
-  const long near = sweep_start(w, row) + first, far = near + rows_offset(g, row, direction);
+  const rows *g = w->body->lattice;
+  const long near = body_start(w->body, row) + first, far = near + rows_offset(g, row, direction);
   s->count = count;
   s->direction = direction;
   s->flags = own(w)->flags[row] + first;
   s->unheld = (own(w)->some[row] & PL_PROTECTED(direction)) == 0;
-  s->time_step = w->time_step;
+  s->time_step = w->body->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
     b->parameters[k] = w->parameter[k] + direction * g->size + near;
-  for (int d = 0; d < w->dof; d++) {
-    s->displacement_i[d] = w->displacement[d] + near;
-    s->displacement_j[d] = w->displacement[d] + far;
-    s->velocity_i[d] = w->velocity[d] + near;
-    s->velocity_j[d] = w->velocity[d] + far;
+  for (int d = 0; d < w->body->dof; d++) {
+    s->displacement_i[d] = w->body->displacement[d] + near;
+    s->displacement_j[d] = w->body->displacement[d] + far;
+    s->velocity_i[d] = w->body->velocity[d] + near;
+    s->velocity_j[d] = w->body->velocity[d] + far;
   }
-  if (w->ledger) {
+  if (w->body->ledger) {
     s->dissipated_state = w->dissipated_state + near;
     s->dissipated_rate = w->dissipated_rate + near;
   }
@@ -108,24 +109,25 @@ const double *pairwise_uniforms(const sweep *w, int direction) {
   return own(w)->uniforms + (long)direction * w->law->uniform_count;
 }
 
-/* Forces of the bonds that a row owns in one direction, from place `first` on, into `buffer`; their fields move on by one
-   step. */
+/* Forces of the bonds that a row owns in one direction, from place `first` on, into `buffer`; their
+   fields move on by one step. */
 static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, long first,
                            long count, const row_forces *buffer) {
   double *force[PL_MAX_PLANES];
-  const long begin = w->begin[row] + first,
-             site = direction * w->lattice->size + rows_start(w->lattice, row) + begin;
+  const long begin = w->body->begin[row] + first,
+             site = direction * w->body->lattice->size + rows_start(w->body->lattice, row) + begin;
   for (int p = 0; p < w->law->force_planes; p++)
     force[p] = plane(w, buffer, p, direction) + begin;
   for (int f = 0; f < w->law->field_count; f++)
     b->pointers[f] = w->field[f] + site;
   pl_strip s = {.field = b->pointers, .force = force};
   strip_ends(w, b, row, direction, first, count, &s);
-  const pl_strip_function kernel = w->ledger ? w->law->rows_ledger : w->law->rows;
+  const pl_strip_function kernel = w->body->ledger ? w->law->rows_ledger : w->law->rows;
   kernel(w->law, pairwise_uniforms(w, direction), &s);
 }
 
-/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that seem to do nothing. */
+/* Asks for `count` doubles, to be read or to be written. Inlined, as compilers leave out calls that
+   seem to do nothing. */
 static inline __attribute__((always_inline)) void fetch(const double *from, long count,
                                                         bool to_write) {
   enum { SECOND_CACHE = 2 };
@@ -137,11 +139,13 @@ static inline __attribute__((always_inline)) void fetch(const double *from, long
   }
 }
 
-/* A third of what the part after this one is the first to read: a processor waits for few lines at a time. */
+/* A third of what the part after this one is the first to read: a processor waits for few lines at
+   a time. */
 static inline __attribute__((always_inline)) void fetch_ahead(const sweep *w, row_part at,
                                                               int direction) {
   const pairwise *p = own(w);
-  const long site = sweep_start(w, at.row) + at.first + LONGEST_PART, count = at.end - at.first;
+  const long site = body_start(w->body, at.row) + at.first + LONGEST_PART,
+             count = at.end - at.first;
   for (int s = direction; s < p->stream_count; s += DIRECTIONS)
     fetch(p->streams[s] + site, count, false);
 }
@@ -156,31 +160,31 @@ static void evaluate_part(sweep *w, pairwise_block *b, row_part at, const row_fo
 
 /* What a row's bonds take in the state observed, to begin with. */
 static void clear_lost(const sweep *w, int row) {
-  const size_t bytes = (size_t)w->count[row] * sizeof(double);
-  memset(w->lost_state + sweep_start(w, row), 0, bytes);
-  memset(w->lost_rate + sweep_start(w, row), 0, bytes);
+  const size_t bytes = (size_t)w->body->count[row] * sizeof(double);
+  memset(w->lost_state + body_start(w->body, row), 0, bytes);
+  memset(w->lost_rate + body_start(w->body, row), 0, bytes);
 }
 
-/* The same on a copy of the fields: forces and new fields of the present state. Of a row of another block, whose first row needs
-   them, only the forces are kept. */
+/* The same on a copy of the fields: forces and new fields of the present state. Of a row of another
+   block, whose first row needs them, only the forces are kept. */
 static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   pairwise_block *b = &own(w)->blocks[block];
-  const bool foreign = row < w->blocks[block].first, ledger = w->ledger && !foreign;
-  const long start = sweep_start(w, row);
+  const bool foreign = row < w->body->blocks[block].first, ledger = w->body->ledger && !foreign;
+  const long start = body_start(w->body, row);
   take_buffer_for_row(w, buffer, row);
   if (ledger) clear_lost(w, row);
-  for (int k = 0; k < g->directions && w->count[row] > 0; k++) {
+  for (int k = 0; k < g->directions && w->body->count[row] > 0; k++) {
     double *force[PL_MAX_PLANES];
     for (int p = 0; p < w->law->force_planes; p++)
-      force[p] = plane(w, buffer, p, k) + w->begin[row];
+      force[p] = plane(w, buffer, p, k) + w->body->begin[row];
     for (int f = 0; f < w->law->field_count; f++) {
       b->pointers[f] = foreign ? b->fields + f * g->pitch : w->new_field[f] + k * g->size + start;
       memcpy(b->pointers[f], w->field[f] + k * g->size + start,
-             (size_t)w->count[row] * sizeof(double));
+             (size_t)w->body->count[row] * sizeof(double));
     }
     pl_strip s = {.field = b->pointers, .force = force};
-    strip_ends(w, b, row, k, 0, w->count[row], &s);
+    strip_ends(w, b, row, k, 0, w->body->count[row], &s);
     if (ledger) {
       s.dissipated_state = w->lost_state + start;
       s.dissipated_rate = w->lost_rate + start;
@@ -195,17 +199,18 @@ const int64_t *pairwise_flags(const sweep *w, int row) {
 
 /* --- particles of a row ----------------------------------------------------------------------- */
 
-/* Where bond forces stand that add up to those on the particles of a row: in plane 0; those of direction k that the row
-   owns k strides further on, the other planes `plane` further on. */
+/* Where bond forces stand that add up to those on the particles of a row: in plane 0; those of
+   direction k that the row owns k strides further on, the other planes `plane` further on. */
 typedef struct gathered {
   const double *own, *incoming[DIRECTIONS];
   long stride, plane;
 } gathered;
 
-/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other. */
+/* Incoming bonds along the row stand in this row's buffer, those from the row below in the other.
+   */
 static gathered gather(const sweep *w, int row, const row_forces *here, const row_forces *below) {
-  const rows *g = w->lattice;
-  const long begin = w->begin[row], stride = own(w)->stride;
+  const rows *g = w->body->lattice;
+  const long begin = w->body->begin[row], stride = own(w)->stride;
   gathered s = {
       .own = plane(w, here, 0, 0) + begin, .stride = stride, .plane = DIRECTIONS * stride};
   for (int k = 0; k < DIRECTIONS; k++) {
@@ -216,7 +221,8 @@ static gathered gather(const sweep *w, int row, const row_forces *here, const ro
   return s;
 }
 
-/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are alike. */
+/* Of what bonds exert on the particle at q: forces on j are the opposite of those on i, moments are
+   alike. */
 static inline __attribute__((always_inline)) double bond_sum(const gathered *s, int component,
                                                              long q) {
   const long near = component * s->plane, far = (component < 2 ? component : 3) * s->plane;
@@ -238,12 +244,13 @@ static inline uint64_t size_bits(double x) {
   return u.bits;
 }
 
-/* next = decay v + part dt/m f (sweep.h) in all components, from place `first` of a row on. Not 0 when a velocity is not below its limit
-   (NaN is not below anything). One loop whose choices are literal: that is what compilers make vectors of. */
+/* next = decay v + part dt/m f (motion.h) in all components, from place `first` of a row on. Not 0
+   when a velocity is not below its limit (NaN is not below anything). One loop whose choices are
+   literal: that is what compilers make vectors of. */
 static inline __attribute__((always_inline)) int64_t
-kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
-  const long start = sweep_start(w, at.row), pitch = w->lattice->pitch;
-  const double decay = w->decay, step = sweep_force_part(w) * w->time_step;
+kick(const body *w, const gathered *from, int dof, bool decays, row_part at, double *next) {
+  const long start = body_start(w, at.row), pitch = w->lattice->pitch;
+  const double decay = w->decay, step = motion_force_part(w) * w->time_step;
   const double factor[] = {step / w->mass[0], step / w->mass[1], -step / w->mass[dof - 1]};
   const gathered s = *from;
   uint64_t largest[] = {0, 0, 0};
@@ -263,7 +270,7 @@ kick(const sweep *w, const gathered *from, int dof, bool decays, row_part at, do
 }
 
 /* Particles receive the opposite of end moments. */
-static int64_t kick_part(const sweep *w, const gathered *from, row_part at, double *next) {
+static int64_t kick_part(const body *w, const gathered *from, row_part at, double *next) {
   const bool decays = w->decay != 1;
   if (w->dof == 2)
     return decays ? kick(w, from, 2, true, at, next) : kick(w, from, 2, false, at, next);
@@ -278,15 +285,15 @@ typedef struct moved_row {
   long moved; /* places that are, from the first on */
 } moved_row;
 
-/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does what follows in its row:
-   the state before the step can be reported. */
-static void move_part(sweep *w, sweep_block *b, moved_row *m, row_part at) {
+/* Moves a part whose forces are known. A part with a bad velocity stays where it is, and so does
+   what follows in its row: the state before the step can be reported. */
+static void move_part(body *w, body_block *b, moved_row *m, row_part at) {
   const double begun = w->timed ? monotonic_seconds() : 0;
   int64_t bad = kick_part(w, &m->from, at, b->next);
   for (int d = 0; d < w->dimensions && w->weight; d++)
-    bad |= sweep_push(w, at, d, b->next + d * w->lattice->pitch);
+    bad |= motion_push(w, at, d, b->next + d * w->lattice->pitch);
   if (!bad && m->moved == at.first) {
-    sweep_drift(w, b, at);
+    motion_drift(w, b, at);
     m->moved = at.end;
   }
   if (w->timed) b->moving += monotonic_seconds() - begun;
@@ -299,45 +306,45 @@ static long part_of(long count) {
 }
 
 /* A row that another processor has been at: all its lines at once, as they come slowly. */
-static inline __attribute__((always_inline)) void fetch_row(const sweep *w, int row,
-                                                            bool to_write) {
+static inline __attribute__((always_inline)) void fetch_row(const body *w, int row, bool to_write) {
   for (int d = 0; d < w->dof; d++) {
-    fetch(w->displacement[d] + sweep_start(w, row), w->count[row], to_write);
-    fetch(w->velocity[d] + sweep_start(w, row), w->count[row], to_write);
+    fetch(w->displacement[d] + body_start(w, row), w->count[row], to_write);
+    fetch(w->velocity[d] + body_start(w, row), w->count[row], to_write);
   }
 }
 
-/* The bonds of a block's last row, before it or the row above moves: the first row of the next block waits for them. */
+/* The bonds of a block's last row, before it or the row above moves: the first row of the next
+   block waits for them. */
 static void need_seam(sweep *w, int block) {
   pairwise_block *p = &own(w)->blocks[block];
-  const int row = w->blocks[block].last - 1;
+  const int row = w->body->blocks[block].last - 1;
   if (!team_is_first(&p->seam_done, own(w)->steps)) return;
-  if (block + 1 < w->block_count) fetch_row(w, row + 1, false);
+  if (block + 1 < w->body->block_count) fetch_row(w->body, row + 1, false);
   take_buffer_for_row(w, &p->seam, row);
-  if (w->count[row] > 0) evaluate_part(w, p, whole_row(w, row), &p->seam);
+  if (w->body->count[row] > 0) evaluate_part(w, p, whole_row(w->body, row), &p->seam);
   team_did(&p->seam_done, own(w)->steps);
 }
 
-/* A row's particles by one step, part by part: what the bonds of one direction have brought into the first cache is there
-   for those of the next, and their forces for the particles. */
+/* A row's particles by one step, part by part: what the bonds of one direction have brought into
+   the first cache is there for those of the next, and their forces for the particles. */
 static void advance_row(sweep *w, int block, moved_row *m, const row_forces *here) {
-  sweep_block *b = &w->blocks[block];
-  const long count = w->count[m->row], part = part_of(count);
+  body_block *b = &w->body->blocks[block];
+  const long count = w->body->count[m->row], part = part_of(count);
   for (long first = 0; first < count; first += part) {
     const row_part at = {m->row, first, first + part < count ? first + part : count};
     if (!m->known) evaluate_part(w, &own(w)->blocks[block], at, here);
     if (m->row == b->first && block > 0 && first == 0) {
       need_seam(w, block - 1);
-      fetch_row(w, m->row, true);
+      fetch_row(w->body, m->row, true);
     }
-    move_part(w, b, m, at);
+    move_part(w->body, b, m, at);
   }
-  if (m->moved < count) sweep_note_bad(w, b, m->row, m->moved);
+  if (m->moved < count) motion_note_bad(w->body, b, m->row, m->moved);
 }
 
 static void step(sweep *w, int stage, int block) {
   (void)stage; /* there is one */
-  sweep_block *b = &w->blocks[block];
+  body_block *b = &w->body->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = block > 0 ? &own(w)->blocks[block - 1].seam : &p->buffer[1];
   if (block == 0) clear_buffer(w, below); /* nothing below the first row */
@@ -361,21 +368,21 @@ static void turn(sweep *w) {
 
 /* Stored energy and outputs of a row's bonds of one direction, into the block's `observed`. */
 static pl_strip observe_strip(sweep *w, pairwise_block *b, int row, int direction) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double **observed = b->pointers + w->law->field_count;
   for (int f = 0; f < w->law->field_count; f++)
-    b->pointers[f] = w->new_field[f] + direction * g->size + sweep_start(w, row);
+    b->pointers[f] = w->new_field[f] + direction * g->size + body_start(w->body, row);
   for (int o = 0; o <= w->law->output_count; o++)
     observed[o] = b->observed + o * g->pitch;
   pl_strip s = {.field = b->pointers, .observed = observed};
-  strip_ends(w, b, row, direction, 0, w->count[row], &s);
+  strip_ends(w, b, row, direction, 0, w->body->count[row], &s);
   w->law->rows_observe(w->law, pairwise_uniforms(w, direction), &s);
   return s;
 }
 
 static double stored_in_row(sweep *w, pairwise_block *b, int row) {
   double sum = 0;
-  for (int k = 0; k < w->lattice->directions && w->count[row] > 0; k++) {
+  for (int k = 0; k < w->body->lattice->directions && w->body->count[row] > 0; k++) {
     const pl_strip s = observe_strip(w, b, row, k);
     for (long q = 0; q < s.count; q++)
       if (s.flags[q] & PL_PRESENT(k)) sum += b->observed[q];
@@ -384,48 +391,49 @@ static double stored_in_row(sweep *w, pairwise_block *b, int row) {
 }
 
 static void output_values(sweep *w, int output, double *values) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   pairwise_block *b = &own(w)->blocks[0];
   for (int r = 0; r < g->row_count; r++)
-    for (int k = 0; k < g->directions && w->count[r] > 0; k++) {
+    for (int k = 0; k < g->directions && w->body->count[r] > 0; k++) {
       const pl_strip s = observe_strip(w, b, r, k);
-      memcpy(values + k * g->size + rows_start(g, r) + w->begin[r],
+      memcpy(values + k * g->size + rows_start(g, r) + w->body->begin[r],
              b->observed + (1 + output) * g->pitch, (size_t)s.count * sizeof *values);
     }
 }
 
-/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other forces, count half a step
-   until the state is reached; they are none of those that a step must be short enough for (sweep_row.free). */
+/* Since the start: all steps, and what the law takes in the present state. Rate terms, like other
+   forces, count half a step until the state is reached; they are none of those that a step must be
+   short enough for (body_row.free). */
 static void sum_lost(sweep *w, int row) {
-  const long start = sweep_start(w, row), count = w->count[row];
-  const double pending = 0.5 * sweep_total(count, w->lost_rate + start);
-  sweep_row *r = &w->observed[row];
+  const long start = body_start(w->body, row), count = w->body->count[row];
+  const double pending = 0.5 * lane_total(count, w->lost_rate + start);
+  body_row *r = &w->body->observed[row];
   r->state =
-      sweep_total(count, w->dissipated_state + start) + sweep_total(count, w->lost_state + start);
-  r->rate = sweep_total(count, w->dissipated_rate + start) + pending;
+      lane_total(count, w->dissipated_state + start) + lane_total(count, w->lost_state + start);
+  r->rate = lane_total(count, w->dissipated_rate + start) + pending;
   r->free += pending;
 }
 
 static void observe_row(sweep *w, int block, int row, const row_forces *here,
                         const row_forces *below) {
-  sweep_block *b = &w->blocks[block];
-  const long start = sweep_start(w, row), count = w->count[row];
+  body_block *b = &w->body->blocks[block];
+  const long start = body_start(w->body, row), count = w->body->count[row];
   const gathered from = gather(w, row, here, below);
-  kick_part(w, &from, whole_row(w, row), b->next);
-  for (int d = 0; d < w->dof; d++) {
-    sweep_push(w, whole_row(w, row), d, b->next + d * w->lattice->pitch);
+  kick_part(w->body, &from, whole_row(w->body, row), b->next);
+  for (int d = 0; d < w->body->dof; d++) {
+    motion_push(w->body, whole_row(w->body, row), d, b->next + d * w->body->lattice->pitch);
     for (long q = 0; q < count; q++)
-      w->force[d][start + q] = d < 2 ? bond_sum(&from, d, q) : -bond_sum(&from, 2, q);
+      w->body->force[d][start + q] = d < 2 ? bond_sum(&from, d, q) : -bond_sum(&from, 2, q);
   }
-  sweep_observe_motion(w, b, row);
-  if (!w->ledger) return;
-  w->observed[row].stored = stored_in_row(w, &own(w)->blocks[block], row);
+  motion_observe(w->body, b, row);
+  if (!w->body->ledger) return;
+  w->body->observed[row].stored = stored_in_row(w, &own(w)->blocks[block], row);
   sum_lost(w, row);
 }
 
 static void observe(sweep *w, int stage, int block) {
   (void)stage; /* there is one */
-  const sweep_block *b = &w->blocks[block];
+  const body_block *b = &w->body->blocks[block];
   pairwise_block *p = &own(w)->blocks[block];
   row_forces *below = &p->buffer[1];
   clear_buffer(w, below);
@@ -442,67 +450,68 @@ static void observe(sweep *w, int stage, int block) {
 
 static void prepare_uniforms(sweep *w, pairwise *p, const double *parameters) {
   const int n = w->law->uniform_count;
-  p->uniforms = sweep_doubles(w, (long)w->lattice->directions * n);
-  for (int k = 0; k < w->lattice->directions; k++) {
-    pl_bond_class c = rows_bond_class(w->lattice, k);
+  p->uniforms = body_doubles(w->body, (long)w->body->lattice->directions * n);
+  for (int k = 0; k < w->body->lattice->directions; k++) {
+    pl_bond_class c = rows_bond_class(w->body->lattice, k);
     w->law->prepare(w->law, parameters, &c, p->uniforms + (long)k * n);
   }
 }
 
 /* Bits of the bonds that a row's sites own. */
 static void read_flags(const sweep *w, int row, int64_t *flags) {
-  const rows *g = w->lattice;
-  const long start = sweep_start(w, row);
-  for (long q = 0; q < w->count[row]; q++)
+  const rows *g = w->body->lattice;
+  const long start = body_start(w->body, row);
+  for (long q = 0; q < w->body->count[row]; q++)
     flags[q] = (int64_t)(g->bonds[start + q] | g->held_bonds[start + q] << 32);
 }
 
-/* Most rows of a body are as the row two below: these share what they have, so that it stays in a cache. */
+/* Most rows of a body are as the row two below: these share what they have, so that it stays in a
+   cache. */
 static void compose_flags(sweep *w, pairwise *p) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   int64_t *read = must_calloc((size_t)g->pitch, sizeof *read);
   p->flags = must_calloc((size_t)g->row_count, sizeof *p->flags);
   p->some = must_calloc((size_t)g->row_count, sizeof *p->some);
   for (int r = 0; r < g->row_count; r++) {
-    const size_t bytes = (size_t)w->count[r] * sizeof *read;
-    int64_t *same = r >= 2 && w->count[r - 2] == w->count[r] ? p->flags[r - 2] : NULL;
+    const size_t bytes = (size_t)w->body->count[r] * sizeof *read;
+    int64_t *same = r >= 2 && w->body->count[r - 2] == w->body->count[r] ? p->flags[r - 2] : NULL;
     read_flags(w, r, read);
-    for (long q = 0; q < w->count[r]; q++)
+    for (long q = 0; q < w->body->count[r]; q++)
       p->some[r] |= read[q];
     if (same && memcmp(same, read, bytes) != 0) same = NULL;
-    p->flags[r] = same ? same : memcpy(sweep_doubles(w, w->count[r]), read, bytes);
+    p->flags[r] = same ? same : memcpy(body_doubles(w->body, w->body->count[r]), read, bytes);
   }
   free(read);
 }
 
 /* In an order in which thirds (fetch_ahead) are alike. */
 static void list_streams(const sweep *w, pairwise *p) {
-  const rows *g = w->lattice;
-  const int most = DIRECTIONS * w->law->field_count + 2 * w->dof + 2;
+  const rows *g = w->body->lattice;
+  const int most = DIRECTIONS * w->law->field_count + 2 * w->body->dof + 2;
   p->streams = must_calloc((size_t)most, sizeof *p->streams);
-  if (w->bytes < (size_t)FAR_BYTES) return;
+  if (w->body->bytes < (size_t)FAR_BYTES) return;
   for (int f = 0; f < w->law->field_count; f++)
     for (int k = 0; k < DIRECTIONS; k++)
       p->streams[p->stream_count++] = w->field[f] + k * g->size;
-  for (int d = 0; d < w->dof; d++)
-    p->streams[p->stream_count++] = w->displacement[d] + g->pitch;
-  for (int d = 0; d < w->dof; d++)
-    p->streams[p->stream_count++] = w->velocity[d] + g->pitch;
-  if (!w->ledger) return;
+  for (int d = 0; d < w->body->dof; d++)
+    p->streams[p->stream_count++] = w->body->displacement[d] + g->pitch;
+  for (int d = 0; d < w->body->dof; d++)
+    p->streams[p->stream_count++] = w->body->velocity[d] + g->pitch;
+  if (!w->body->ledger) return;
   p->streams[p->stream_count++] = w->dissipated_state;
   p->streams[p->stream_count++] = w->dissipated_rate;
 }
 
 static void new_block(sweep *w, const pairwise *p, pairwise_block *b) {
-  const long pitch = w->lattice->pitch;
+  const long pitch = w->body->lattice->pitch;
   const size_t pointers = (size_t)(w->law->field_count + w->law->output_count + 1);
   row_forces *const all[] = {&b->buffer[0], &b->buffer[1], &b->seam};
   for (size_t k = 0; k < sizeof all / sizeof *all; k++)
-    *all[k] = (row_forces){.values = sweep_doubles(w, p->buffer)};
-  b->pointers = sweep_apart(w, pointers * sizeof *b->pointers);
-  b->parameters = sweep_apart(w, (size_t)w->law->varying_count * sizeof *b->parameters);
-  b->fields = sweep_doubles(w, w->law->field_count * pitch);
-  b->observed = sweep_doubles(w, (1 + w->law->output_count) * pitch);
+    *all[k] = (row_forces){.values = body_doubles(w->body, p->buffer)};
+  b->pointers = body_apart(w->body, pointers * sizeof *b->pointers);
+  b->parameters = body_apart(w->body, (size_t)w->law->varying_count * sizeof *b->parameters);
+  b->fields = body_doubles(w->body, w->law->field_count * pitch);
+  b->observed = body_doubles(w->body, (1 + w->law->output_count) * pitch);
 }
 
 static void free_own(sweep *w) {
@@ -516,19 +525,19 @@ static void free_own(sweep *w) {
 
 sweep_engine pairwise_engine(sweep *w, const double *parameters) {
   pairwise *p = must_calloc(1, sizeof *p);
-  assert(w->dimensions == 2 && w->lattice->directions == DIRECTIONS);
+  assert(w->body->dimensions == 2 && w->body->lattice->directions == DIRECTIONS);
   assert(w->law->force_planes <= PL_MAX_PLANES);
-  p->stride = w->lattice->pitch + 2 * PL_LANES;
-  p->buffer = w->law->force_planes * w->lattice->directions * p->stride;
+  p->stride = w->body->lattice->pitch + 2 * PL_LANES;
+  p->buffer = w->law->force_planes * w->body->lattice->directions * p->stride;
   prepare_uniforms(w, p, parameters);
   compose_flags(w, p);
-  p->blocks = must_calloc((size_t)w->block_count, sizeof *p->blocks);
-  for (int k = 0; k < w->block_count; k++)
+  p->blocks = must_calloc((size_t)w->body->block_count, sizeof *p->blocks);
+  for (int k = 0; k < w->body->block_count; k++)
     new_block(w, p, &p->blocks[k]);
   double **const energies[] = {&w->dissipated_state, &w->dissipated_rate, &w->lost_state,
                                &w->lost_rate};
-  for (int k = 0; k < 4 && w->ledger; k++)
-    *energies[k] = sweep_doubles(w, w->lattice->size);
+  for (int k = 0; k < 4 && w->body->ledger; k++)
+    *energies[k] = body_doubles(w->body, w->body->lattice->size);
   list_streams(w, p);
   return (sweep_engine){.step_stages = 1,
                         .force_stages = 1,

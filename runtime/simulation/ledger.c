@@ -25,14 +25,14 @@ const char *ledger_unchecked(const pl_law *law) {
 }
 
 /* What the law has taken by states, damage and, in families, rate terms. */
-static double taken(const ledger *g, const pl_law *law, const sweep_totals *t, double lost) {
+static double taken(const ledger *g, const pl_law *law, const body_totals *t, double lost) {
   if (law->kind != PL_STATE) return t->dissipated_state;
   return ledger_unchecked(law) ? lost - g->lost : 0;
 }
 
-static bool is_sound(const ledger *g, const sweep *state, const sweep_totals *t, double omega) {
+static bool is_sound(const ledger *g, const sweep *state, const body_totals *t, double omega) {
   const pl_law *law = state->law;
-  const double phase = state->time_step * omega, part = pl_fmin(0.5 * phase * phase, 1);
+  const double phase = state->body->time_step * omega, part = pl_fmin(0.5 * phase * phase, 1);
   if (!law->stores || (law->kind == PL_STATE && law->reads_rates)) return true;
   return !(t->free + part * t->stored <
            -1e-6 * g->largest); /* numbers that are none are found by the next step */
@@ -40,8 +40,8 @@ static bool is_sound(const ledger *g, const sweep *state, const sweep_totals *t,
 
 bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_look *look,
                    double omega, double terms[LEDGER_COUNT]) {
-  const sweep_totals t = sweep_sum(state);
-  const load_sums s = loads_total(l);
+  const body_totals t = body_sum(state->body);
+  const load_sums s = load_steps_total(l);
   const double damping = t.dissipated_rate + t.dissipated + s.dissipated + look->dissipated;
   const double kinetic = t.kinetic + look->kinetic, held = kinetic + t.stored;
   const double lost = t.internal + s.internal - t.stored;

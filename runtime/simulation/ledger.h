@@ -9,10 +9,11 @@
    For linear springs they balance to rounding whatever the step (summation by parts of the leapfrog
    scheme).
 
-   A law of families states what it stores, not what it takes. Where it takes nothing (no states, no damage, no rate terms)
-   nothing is dissipated, and the imbalance shows what the steps have lost or won. Where it does, dissipated_damage is the work
-   done against the forces of the bonds, -f (v- + v+)/2 dt for each step and half of it for step n, less the change of the stored
-   energy. It holds all that the law takes, its dampers too, and the error of the steps; the imbalance would be 0 by
+   A law of families states what it stores, not what it takes. Where it takes nothing (no states, no
+   damage, no rate terms) nothing is dissipated, and the imbalance shows what the steps have lost or
+   won. Where it does, dissipated_damage is the work done against the forces of the bonds, -f (v- +
+   v+)/2 dt for each step and half of it for step n, less the change of the stored energy. It holds
+   all that the law takes, its dampers too, and the error of the steps; the imbalance would be 0 by
    definition, and is NaN. */
 #ifndef PERILAT_RUNTIME_LEDGER_H
 #define PERILAT_RUNTIME_LEDGER_H
@@ -20,7 +21,7 @@
 #include <stdbool.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/simulation/load_steps.h"
 
 /* X(code, name, words) in the order of the history; all in J */
 #define LEDGER_TERMS(X)                                                                            \
@@ -49,15 +50,18 @@ typedef struct ledger {
   int64_t begun;
 } ledger;
 
-/* Why the imbalance of a run with this law says nothing, as the end of a sentence; NULL where it does. */
+/* Why the imbalance of a run with this law says nothing, as the end of a sentence; NULL where it
+   does. */
 const char *ledger_unchecked(const pl_law *law);
 
-/* Terms of the state observed last. False where the steps make energy. With the velocity v of the state and the forces f of bonds
-   alone half m v- v+ = half m v^2 - (dt f)^2/(8 m), and bonds that are not stiffer than virgin ones store at least
-   f^2/(2 m omega^2): so the sum of half m v- v+ and (dt omega/2)^2 of what is stored is never negative. (That of both, with a
-   factor of 1, would not tell: leapfrog steps that are too long leave it as it is while kinetic energy falls below 0 without end and
-   stored energy rises.) `omega` (rad/s) is the largest frequency that the step was chosen by. Bonds may become twice as
-   stiff; a millionth of the largest energy so far is rounding. Where the stored energy is not known nothing is said. */
+/* Terms of the state observed last. False where the steps make energy. With the velocity v of the
+   state and the forces f of bonds alone half m v- v+ = half m v^2 - (dt f)^2/(8 m), and bonds that
+   are not stiffer than virgin ones store at least f^2/(2 m omega^2): so the sum of half m v- v+ and
+   (dt omega/2)^2 of what is stored is never negative. (That of both, with a factor of 1, would not
+   tell: leapfrog steps that are too long leave it as it is while kinetic energy falls below 0
+   without end and stored energy rises.) `omega` (rad/s) is the largest frequency that the step was
+   chosen by. Bonds may become twice as stiff; a millionth of the largest energy so far is rounding.
+   Where the stored energy is not known nothing is said. */
 bool ledger_sample(ledger *g, const sweep *state, const loads *l, const load_look *look,
                    double omega, double terms[LEDGER_COUNT]);
 

@@ -1,4 +1,5 @@
-/* Parameter values of a &material against the table of its law. */
+#include "runtime/simulation/material.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -6,17 +7,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/units.h"
-#include "runtime/simulation/simulation.h"
-
-int material_rho(const pl_law *law) {
-  for (int p = 0; p < law->parameter_count; p++)
-    if (strcmp(law->parameters[p].name, "rho") == 0) return p;
-  return -1;
-}
 
 double material_density(const pl_law *law, const double *values) {
-  const int rho = material_rho(law);
-  return rho < 0 ? 0 : values[rho];
+  return law->density < 0 ? 0 : values[law->density];
 }
 
 /* Namelists do not know case, and no two parameters of a law differ in case only. */

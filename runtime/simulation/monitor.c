@@ -8,6 +8,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/interaction/damage.h"
+#include "runtime/simulation/load_steps.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
@@ -45,7 +46,7 @@ static void take_sites(monitor *m, int list, const monitors *all, const char *na
   m->indices[list] = must_calloc((size_t)at->count + 1, sizeof(int32_t));
   m->index_count[list] = at->count;
   for (long p = 0; p < at->count; p++)
-    m->indices[list][p] = all->state->lattice->particle_site[at->particles[p]];
+    m->indices[list][p] = all->state->body->lattice->particle_site[at->particles[p]];
 }
 
 static void take_reactions(monitor *m, int list, const monitors *all, const char *name) {
@@ -132,7 +133,7 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   const pl_law *law = all->state->law;
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
-  m->unit = unit_of(m->deck, all->state->dimensions);
+  m->unit = unit_of(m->deck, all->state->body->dimensions);
   m->window = 1;
   if (!find_steps(m, all, d)) return;
   switch (m->deck->kind) {
@@ -182,7 +183,7 @@ monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_b
     monitors_free(m);
     return NULL;
   }
-  m->values = must_calloc((size_t)state->lattice->size, sizeof(double));
+  m->values = must_calloc((size_t)state->body->lattice->size, sizeof(double));
   m->ring_memory = must_calloc((size_t)m->ring_size + 1, sizeof(double));
   double *at = m->ring_memory;
   for (int i = 0; i < m->count; at += m->items[i].window, i++)
@@ -206,7 +207,7 @@ void monitors_free(monitors *m) {
 
 static char *component_words(const monitors *all, const monitor *m, const char *quantity,
                              arena *a) {
-  const int c = m->deck->component, dimensions = all->state->dimensions;
+  const int c = m->deck->component, dimensions = all->state->body->dimensions;
   return arena_printf(a, "%s %s %s", quantity, c < dimensions ? "along" : "in",
                       deck_component_name(dimensions, c));
 }
@@ -299,7 +300,7 @@ static long count_in_places(const rows *g, const monitor *m, const double *damag
 
 /* Bonds, or particles where the law's damage is on particles alone. */
 static double count_damaged(const monitors *all, const monitor *m) {
-  const rows *g = all->state->lattice;
+  const rows *g = all->state->body->lattice;
   const bool bonds = damage_on_bonds(all->state->law);
   const double *in_places = damage_of_all_bonds(all->state);
   long count = 0;
@@ -322,7 +323,8 @@ static double field_mean(const monitors *all, const monitor *m, double *const *f
 static double velocity_mean(const monitors *all, const monitor *m, long step) {
   double sum = 0;
   for (long p = 0; p < m->index_count[0]; p++)
-    sum += loads_velocity(all->loads, all->state, m->deck->component, m->indices[0][p], step);
+    sum += load_steps_velocity(all->loads, all->state->body, m->deck->component, m->indices[0][p],
+                               step);
   return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
 }
 
@@ -335,12 +337,12 @@ static double value_now(const monitors *all, const monitor *m, long step) {
   case MONITOR_REACTIONS:
     return 0.5 * (reaction_sum(all, m, 1) - reaction_sum(all, m, 0));
   case MONITOR_DISPLACEMENT:
-    return mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+    return mean_at(all->state->body->displacement[c], m->indices[0], m->index_count[0]);
   case MONITOR_VELOCITY:
     return velocity_mean(all, m, step);
   case MONITOR_OPENING:
-    return mean_at(all->state->displacement[c], m->indices[1], m->index_count[1]) -
-           mean_at(all->state->displacement[c], m->indices[0], m->index_count[0]);
+    return mean_at(all->state->body->displacement[c], m->indices[1], m->index_count[1]) -
+           mean_at(all->state->body->displacement[c], m->indices[0], m->index_count[0]);
   case MONITOR_FIELD:
     return field_mean(all, m, all->state->new_field);
   case MONITOR_DAMAGED:
@@ -350,10 +352,12 @@ static double value_now(const monitors *all, const monitor *m, long step) {
   return count_damaged(all, m);
 }
 
-/* What a step has made known for a window: the velocity in it, the field of the state that it left; the same for all else. */
+/* What a step has made known for a window: the velocity in it, the field of the state that it left;
+   the same for all else. */
 static double value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
-    return mean_at(all->state->velocity[m->deck->component], m->indices[0], m->index_count[0]);
+    return mean_at(all->state->body->velocity[m->deck->component], m->indices[0],
+                   m->index_count[0]);
   if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, all->state->field);
   return value_now(all, m, step);
 }
@@ -364,8 +368,8 @@ static void push(monitor *m, double value) {
   m->ring[m->state.filled++ % m->window] = value;
 }
 
-/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the newest, so that a resumed run
-   sums in the same order. */
+/* Of the last `most` values, and of one more that is not in the ring. From the oldest value to the
+   newest, so that a resumed run sums in the same order. */
 static double mean_of_ring(const monitor *m, long most, const double *more) {
   const int64_t count = m->state.filled < most ? m->state.filled : most;
   double sum = 0;

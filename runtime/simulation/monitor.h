@@ -1,10 +1,11 @@
-/* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on particles; their running
-   means, zeros and peaks, and the &stop conditions on them. All values at a sample are of one instant: the state observed
-   (sweep.h).
+/* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on
+   particles; their running means, zeros and peaks, and the &stop conditions on them. All values at
+   a sample are of one instant: the state observed (sweep.h).
 
    A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
-   the states of the last `average` seconds, the present one included, or all there were so far; of velocities the steps that
-   led there, so that their mean is way over time. Counts are taken as they are. */
+   the states of the last `average` seconds, the present one included, or all there were so far; of
+   velocities the steps that led there, so that their mean is way over time. Counts are taken as
+   they are. */
 #ifndef PERILAT_RUNTIME_MONITOR_H
 #define PERILAT_RUNTIME_MONITOR_H
 
@@ -65,7 +66,8 @@ char *monitor_words(const monitors *m, int index, arena *a);
 void monitors_step(monitors *m, long step);
 /* The state after that step is to be observed for a window or a zero. */
 bool monitors_due(const monitors *m, long step);
-/* The state after `step` steps was observed: windows and zeros. `position` counts steps, in quasi-static runs increments. */
+/* The state after `step` steps was observed: windows and zeros. `position` counts steps, in
+   quasi-static runs increments. */
 void monitors_look(monitors *m, long step, long position);
 /* Values of all monitors in the state observed; remembers peaks. */
 void monitors_sample(monitors *m, long step, double time, double *values);

@@ -1,9 +1,10 @@
-/* Where the time of a run goes, a mean over its threads: what they work on, and how long they wait for each other. Parts do
-   not overlap, so that they add up to what the run took but for the little that is in none. */
+/* Where the time of a run goes, a mean over its threads: what they work on, and how long they wait
+   for each other. Parts do not overlap, so that they add up to what the run took but for the little
+   that is in none. */
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
-#include "runtime/interaction/sweep.h"
+#include "runtime/body/body.h"
 
 /* X(code, name) */
 #define PROFILE_PARTS(X)                                                                           \
@@ -23,11 +24,14 @@ typedef enum profile_part {
 
 typedef struct profile {
   double part[PROFILE_PART_COUNT]; /* s */
-  double pass[SWEEP_TIMED_PASSES]; /* s: of a law of families, pass by pass */
+  double pass[BODY_TIMED_PASSES];  /* s: of a law of families, pass by pass */
   double elapsed;                  /* s: of the team, work and waiting */
   double sampled, loaded;          /* s: by one thread for all: samples; loads and monitors */
 } profile;
 
 extern const char *const profile_names[PROFILE_PART_COUNT];
+
+/* From what the blocks of the body have measured so far. */
+void profile_sum(profile *p, const body *w);
 
 #endif

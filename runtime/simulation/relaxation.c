@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/simulation/load_steps.h"
 
 enum { LOOK_EVERY = 25 };                /* steps */
 static const double forgotten = 0.01;    /* part of the largest force that still counts */
@@ -29,11 +30,11 @@ static long ramp_of(const rows *g, double part) {
   return (long)ceil(4 * (longest / g->spacing + 1) / part);
 }
 
-relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part) {
+relaxation *relaxation_new(const deck *k, body *w, loads *l, double part) {
   relaxation *r = must_calloc(1, sizeof *r);
   const size_t size = (size_t)w->lattice->size;
   r->deck = &k->relaxation;
-  r->sweep = w;
+  r->body = w;
   r->loads = l;
   r->interval = k->simulation.end_time / k->relaxation.increments;
   r->ramp = ramp_of(w->lattice, part);
@@ -47,7 +48,7 @@ relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part) {
 
 void relaxation_free(relaxation *r) {
   if (!r) return;
-  for (int d = 0; d < r->sweep->dof; d++) {
+  for (int d = 0; d < r->body->dof; d++) {
     free(r->displacement[d]);
     free(r->force[d]);
   }
@@ -61,7 +62,7 @@ static bool is_loading(const relaxation *r, int64_t step) {
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->sweep->decay = pl_exp(-rate * r->sweep->time_step);
+  r->body->decay = pl_exp(-rate * r->body->time_step);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -72,12 +73,12 @@ load_clock relaxation_clock(const relaxation *r, int64_t first) {
 }
 
 void relaxation_next(relaxation *r, int64_t step) {
-  loads_increment(r->loads, r->sweep, relaxation_clock(r, step));
+  load_steps_increment(r->loads, r->body, relaxation_clock(r, step));
   damp(r, step);
 }
 
 void relaxation_begin(relaxation *r) {
-  r->state.rate = 2 * M_PI / ((double)r->ramp * r->sweep->time_step);
+  r->state.rate = 2 * M_PI / ((double)r->ramp * r->body->time_step);
   relaxation_next(r, 0);
 }
 
@@ -89,14 +90,14 @@ bool relaxation_due(const relaxation *r, int64_t step) {
 
 /* Since the last look: work of the forces, and its motion. */
 static void adapt(relaxation *r) {
-  const sweep *w = r->sweep;
+  const body *w = r->body;
   double work = 0, motion = 0;
   for (int d = 0; d < w->dof; d++)
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
       const double way = w->displacement[d][q] - r->displacement[d][q];
       work -= way * (w->force[d][q] - r->force[d][q]);
-      motion += sweep_mass(w, d, q) * way * way;
+      motion += body_mass(w, d, q) * way * way;
       r->displacement[d][q] = w->displacement[d][q];
       r->force[d][q] = w->force[d][q];
     }
@@ -112,13 +113,13 @@ typedef struct squares { /* N^2 */
 } squares;
 
 static void add_component(const relaxation *r, int d, squares *sum) {
-  const sweep *w = r->sweep;
+  const body *w = r->body;
   const loads *l = r->loads;
   const double arm = d < w->dimensions ? 1 : w->lattice->spacing;
   const double gravity = d < w->dimensions ? w->gravity[d] : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
     const long q = w->lattice->particle_site[p];
-    const double weight = gravity * sweep_mass(w, d, q);
+    const double weight = gravity * body_mass(w, d, q);
     r->total[q] = w->force[d][q] + weight;
     sum->applied += weight * weight;
   }
@@ -139,7 +140,7 @@ static void add_component(const relaxation *r, int d, squares *sum) {
 
 static double unbalance_of(relaxation *r) {
   squares sum = {0, 0, 0};
-  for (int d = 0; d < r->sweep->dof; d++)
+  for (int d = 0; d < r->body->dof; d++)
     add_component(r, d, &sum);
   const double needed = sqrt(pl_fmax(sum.held, sum.applied));
   r->state.largest = pl_fmax(r->state.largest, needed);

@@ -1,21 +1,23 @@
 /* Quasi-static runs by dynamic relaxation: the loads are applied in increments of the deck's time;
-   within one all of them move on evenly for as long as a wave takes through the body and back, then stand
-   still until the body has come to rest. Time steps are those of dynamics; the inertia is a means.
+   within one all of them move on evenly for as long as a wave takes through the body and back, then
+   stand still until the body has come to rest. Time steps are those of dynamics; the inertia is a
+   means.
 
-   Mass damping is chosen as they go (Underwood 1983): critical for the frequency of the motion since
-   the last look, omega^2 = -du df/(du m du) with the displacements u and the forces f of the bonds.
-   While the loads move, there is a tenth of it: the drag of the whole on a bar that is drawn out in
-   this time is pi/2 of the force that the increment needs, and breaks what would have held. The
-   ramp takes about a period, so that a bar without damping comes out of it at rest.
+   Mass damping is chosen as they go (Underwood 1983): critical for the frequency of the motion
+   since the last look, omega^2 = -du df/(du m du) with the displacements u and the forces f of the
+   bonds. While the loads move, there is a tenth of it: the drag of the whole on a bar that is drawn
+   out in this time is pi/2 of the force that the increment needs, and breaks what would have held.
+   The ramp takes about a period, so that a bar without damping comes out of it at rest.
 
-   An increment is done when the unbalanced force, the root of the sum of squares over all components
-   that are not held, is at most `tolerance` times the same of the reactions, or of the forces and
-   weights applied if that is larger. What once was needed does not sink below a hundredth of its
-   largest value, so that a broken body comes to rest, too. Moments count over a spacing. */
+   An increment is done when the unbalanced force, the root of the sum of squares over all
+   components that are not held, is at most `tolerance` times the same of the reactions, or of the
+   forces and weights applied if that is larger. What once was needed does not sink below a
+   hundredth of its largest value, so that a broken body comes to rest, too. Moments count over a
+   spacing. */
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
-#include "runtime/interaction/sweep.h"
+#include "runtime/body/body.h"
 #include "runtime/simulation/loads.h"
 
 typedef struct relaxation_state { /* what a later step depends on */
@@ -31,18 +33,18 @@ typedef struct relaxation {
   relaxation_state state;
   double *displacement[PL_MAX_DOF]; /* [size] at the last look */
   double *force[PL_MAX_DOF];
-  double interval;    /* s of the deck's time in an increment */
-  long ramp;          /* steps */
+  double interval; /* s of the deck's time in an increment */
+  long ramp;       /* steps */
 
   /* own */
   const deck_relaxation *deck;
-  sweep *sweep;
+  body *body;
   loads *loads;
   double *total; /* [size] */
 } relaxation;
 
 /* Forces of the sweep must be kept. `part` of the largest stable step is taken. */
-relaxation *relaxation_new(const deck *k, sweep *w, loads *l, double part);
+relaxation *relaxation_new(const deck *k, body *w, loads *l, double part);
 void relaxation_free(relaxation *r);
 
 /* Before the first step. */

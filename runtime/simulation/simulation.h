@@ -1,8 +1,8 @@
 /* One run: bodies, their laws, loads and the time loop. Setting up allocates and checks everything;
-   a step allocates nothing. Leapfrog steps, v += dt a, u += dt v, with velocities half a step before
-   the places (loads.h), by the sweep in stages that all threads do together (sweep.h). Forces are
-   summed in a fixed order: results do not depend on the number of threads. With a &relaxation the
-   steps lead from one state of balance to the next (relaxation.h).
+   a step allocates nothing. Leapfrog steps, v += dt a, u += dt v, with velocities half a step
+   before the places (loads.h), by the sweep in stages that all threads do together (sweep.h).
+   Forces are summed in a fixed order: results do not depend on the number of threads. With a
+   &relaxation the steps lead from one state of balance to the next (relaxation.h).
 
    The energy ledger is explained in ledger.h, signs of reactions and drives in loads.h, means and
    zeros in monitor.h. */
@@ -16,7 +16,10 @@
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
-#include "runtime/result/frame_file.h"
+#include "runtime/simulation/bad_state.h"
+#include "runtime/simulation/frame_field.h"
+#include "runtime/simulation/material.h"
+#include "runtime/simulation/run_clock.h"
 
 C_LINKAGE_BEGIN
 
@@ -28,28 +31,18 @@ struct sweep;
    its parameters are wrong: then the deck is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;
-  double *parameters; /* [parameter_count] SI, defaults filled in; malloc'ed, owned by the caller. A
+  double
+      *parameters; /* [parameter_count] as of material_parameters; malloc'ed, owned by the caller. A
                          simulation sets those that have a random field to its mean. */
 } simulation_law;
-
-/* Parameter values of a &material: checks names (with suggestions), units and bounds against the
-   law's table and reports at the deck's line. False on errors. values has law->parameter_count
-   entries. */
-bool material_parameters(const deck_material *m, const pl_law *law, double *values, diagnostics *d);
-
-/* Place of `rho` among the law's parameters, the density that masses are made of, or -1. In laws
-   upper and lower case differ. */
-int material_rho(const pl_law *law);
-/* Its value (kg/m^3), or 0. */
-double material_density(const pl_law *law, const double *values);
 
 /* NULL with all diagnostics when the deck does not fit its lattices or the given step is unstable,
    and where `d` has errors already; what items that a deck lacks would have to do with is not said.
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
-/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation from
-   then on; NULL: to be built. */
+/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation
+   from then on; NULL: to be built. */
 simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
                               diagnostics *d);
 void simulation_free(simulation *s);
@@ -67,7 +60,8 @@ long simulation_increments(const simulation *s, long *unbalanced);
 double simulation_time(const simulation *s);   /* s, as the deck's loads count it */
 double simulation_memory(const simulation *s); /* bytes */
 int simulation_threads(const simulation *s);   /* that will work on it */
-/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay. */
+/* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay.
+   */
 void simulation_measure(simulation *s, struct profile *p);
 /* The arrays of the state, for tools and tests; before the first step they may be set (an initial
  * velocity, say). */
@@ -76,43 +70,10 @@ struct sweep *simulation_state(simulation *s);
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);
 
-typedef enum step_status {
-  STEP_OK,
-  STEP_STOPPED /* a &stop */,
-  STEP_END /* end_time */,
-  STEP_BAD /* NaN or runaway */
-} step_status;
-
 /* Advances until `steps` more steps are done, the next frame's time is reached, the run ends, or
  *interrupted (may be NULL) is set. One parallel region. Samples are taken on the way. */
 step_status simulation_advance(simulation *s, long steps, const volatile sig_atomic_t *interrupted);
 
-typedef struct bad_neighbour { /* of a law of families */
-  long particle;
-  double stretch, stretch_rate; /* before the step */
-  const double *fields; /* [law's fields] at its beginning: toward it; those on particles its own */
-} bad_neighbour;
-
-/* When STEP_BAD: `particle` is -1 where only the energies tell (ledger.h). Else it is the lowest particle whose velocity was no number or took it further than a spacing
-   (half a turn) in one step, and its bond that gave such a force, or else the largest. A row was
-   not moved from about the first bad particle on, so that the state there is that before the step; a partner elsewhere
-   is moved back by its velocity. With a law of families there is no such bond, but all neighbours. */
-typedef struct bad_state {
-  long step;
-  double time;
-  long particle;
-  double place[3];                                /* m; in the plane [2] is 0 */
-  long bond_particle;                             /* partner of the first bad bond, or -1 */
-  double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
-  const double
-      *fields; /* of that bond after the step's rules, initial values where these gave no number */
-  int field_count;             /* 0 without a bond; the values are the simulation's */
-  const double *parameters;    /* of the law in that bond; NULL without a bond */
-  const bad_neighbour *family; /* of the particle; the values are the simulation's */
-  int family_count;
-  const double *own_fields; /* [law's fields] those on particles: of the particle */
-  const char *what;         /* "not a number", "runaway velocity", "energy from nothing" */
-} bad_state;
 bad_state simulation_bad(const simulation *s);
 
 /* History so far. Series 0.. are the deck's monitors, then the energy terms; of quasi-static runs
@@ -122,34 +83,19 @@ int simulation_series_count(const simulation *s);
 const char *simulation_series(const simulation *s, int k, const char **unit, const double **values);
 /* What a series is, in words. */
 char *simulation_series_words(const simulation *s, int k, arena *a);
-/* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says nothing (ledger.h), or NULL. */
+/* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says
+   nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
                                double *time); /* value that is largest in size, its sign kept */
 
 /* Fields of the present state in the order of results, for frames. "force" and outputs are
  * evaluated on demand. */
-typedef struct frame_field {
-  const char *name, *unit;
-  bool on_bonds;
-  int components;
-  const char *kind;      /* "state", "damage", "output" of the law; else "other" */
-  const char *long_name; /* in words: the law's, where it is of the law */
-} frame_field;
 int simulation_frame_fields(const simulation *s, const frame_field **fields);
 void simulation_frame_values(simulation *s, int field, double *values);
 bool simulation_frame_due(
     const simulation *s); /* a frame's time has been reached and not yet taken */
 void simulation_frame_taken(simulation *s);
-
-/* Everything that a later step depends on, as a checkpoint file (checkpoint.h). Restore is into a
-   simulation made from the same deck and laws; false with a sentence, and the state untouched, when
-   the file does not fit. `fingerprint` names deck, laws and kernel; `frames` tells of the caller's
-   frames. */
-bool simulation_save(const simulation *s, const char *path, const char *fingerprint,
-                     const frame_mark *frames, char *error, size_t size);
-bool simulation_restore(simulation *s, const char *path, const char *fingerprint,
-                        frame_mark *frames, char *error, size_t size);
 
 C_LINKAGE_END
 

@@ -1,10 +1,12 @@
-/* All that a later step depends on, as a checkpoint. */
+#include "runtime/simulation/simulation_save.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
+#include "dsl/base/arena.h"
 #include "runtime/simulation/checkpoint.h"
-#include "runtime/simulation/simulation_parts.h"
+#include "runtime/simulation/simulation_state.h"
 
 typedef struct part_list {
   checkpoint_part *items;
@@ -19,9 +21,9 @@ static void add_part(part_list *l, const char *name, void *data, size_t bytes) {
 static void add_state(part_list *l, const simulation *s) {
   const sweep *w = s->state;
   const size_t site = (size_t)s->lattice->size * sizeof(double);
-  for (int d = 0; d < w->dof; d++) {
-    add_part(l, "displacement", w->displacement[d], site);
-    add_part(l, "velocity", w->velocity[d], site);
+  for (int d = 0; d < w->body->dof; d++) {
+    add_part(l, "displacement", w->body->displacement[d], site);
+    add_part(l, "velocity", w->body->velocity[d], site);
   }
   for (int f = 0; f < w->law->field_count; f++)
     add_part(l, w->law->fields[f].name, w->field[f],
@@ -30,30 +32,31 @@ static void add_state(part_list *l, const simulation *s) {
     add_part(l, "dissipated_state", w->dissipated_state, site);
     add_part(l, "dissipated_rate", w->dissipated_rate, site);
   }
-  if (w->weight) {
-    add_part(l, "work_of_gravity", w->row_gravity, (size_t)s->lattice->row_count * sizeof(double));
-    add_part(l, "gravity", s->state->gravity, sizeof s->state->gravity);
-    add_part(l, "gravity_work", s->state->gravity_work, sizeof s->state->gravity_work);
+  if (w->body->weight) {
+    add_part(l, "work_of_gravity", w->body->row_gravity,
+             (size_t)s->lattice->row_count * sizeof(double));
+    add_part(l, "gravity", s->body->gravity, sizeof s->body->gravity);
+    add_part(l, "gravity_work", s->body->gravity_work, sizeof s->body->gravity_work);
   }
-  add_part(l, "dissipated_mass", w->row_mass, (size_t)s->lattice->row_count * sizeof(double));
-  add_part(l, "internal", w->row_internal, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "dissipated_mass", w->body->row_mass, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "internal", w->body->row_internal, (size_t)s->lattice->row_count * sizeof(double));
 }
 
 static void add_relaxation(part_list *l, relaxation *r, size_t site) {
   add_part(l, "relaxation", &r->state, sizeof r->state);
-  for (int d = 0; d < r->sweep->dof; d++) {
+  for (int d = 0; d < r->body->dof; d++) {
     add_part(l, "displacement looked at", r->displacement[d], site);
     add_part(l, "force looked at", r->force[d], site);
   }
 }
 
 /* One list serves saving and restoring; `head` comes first. */
-static part_list parts_of(const simulation *s, progress_state *head) {
+static part_list parts_of(const simulation *s, run_progress *head) {
   part_list l = {NULL, 0};
   add_part(&l, "progress", head, sizeof *head);
   const size_t samples = (size_t)head->samples * sizeof(double);
   add_state(&l, s);
-  add_part(&l, "decay", &s->state->decay, sizeof(double));
+  add_part(&l, "decay", &s->body->decay, sizeof(double));
   add_part(&l, "clock", &s->loads->clock, sizeof(load_clock));
   if (s->relaxation) add_relaxation(&l, s->relaxation, (size_t)s->lattice->size * sizeof(double));
   add_part(&l, "constraints", s->loads->constraints,
@@ -63,15 +66,15 @@ static part_list parts_of(const simulation *s, progress_state *head) {
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
   add_part(&l, "rings", s->monitors->ring_memory, (size_t)s->monitors->ring_size * sizeof(double));
   add_part(&l, "ledger", (void *)&s->ledger, sizeof s->ledger);
-  add_part(&l, "time", s->time, samples);
-  for (int k = 0; k < s->series_count; k++)
-    add_part(&l, "history", s->history + k * s->history_capacity, samples);
+  add_part(&l, "time", s->history.time, samples);
+  for (int k = 0; k < s->history.series_count; k++)
+    add_part(&l, "history", s->history.values + k * s->history.capacity, samples);
   return l;
 }
 
 bool simulation_save(const simulation *s, const char *path, const char *fingerprint,
                      const frame_mark *frames, char *error, size_t size) {
-  progress_state head = s->at;
+  run_progress head = s->clock.at;
   head.frames = *frames;
   part_list l = parts_of(s, &head);
   const bool good = checkpoint_write(path, fingerprint, l.items, l.count, error, size);
@@ -79,18 +82,18 @@ bool simulation_save(const simulation *s, const char *path, const char *fingerpr
   return good;
 }
 
-/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at least one multiple of the
-   interval, the one at the end perhaps none. */
-static bool is_reachable(const simulation *s, const progress_state *at) {
+/* Numbers that a run can have reached: array sizes and loops rely on them. Every sample takes at
+   least one multiple of the interval, the one at the end perhaps none. */
+static bool is_reachable(const simulation *s, const run_progress *at) {
   const int64_t frames = s->deck->output.frames > 0 ? s->deck->output.frames : 0;
   if (at->begun != 0 && at->begun != 1) return false;
   if (at->status < STEP_OK || at->status > STEP_BAD) return false;
   if (at->stop < -1 || at->stop >= s->deck->stop_count) return false;
-  if (at->step < 0 || at->step > s->step_count || (!at->begun && at->step > 0)) return false;
-  if (at->next_sample < 0 || at->next_sample > s->history_capacity) return false;
+  if (at->step < 0 || at->step > s->clock.step_count || (!at->begun && at->step > 0)) return false;
+  if (at->next_sample < 0 || at->next_sample > s->history.capacity) return false;
   if (at->samples < (at->step > 0) || at->samples > at->next_sample + 1) return false;
-  if (at->samples > s->history_capacity - (at->step < s->step_count)) return false;
-  if (s->relaxation && at->samples > simulation_end(s) + 1) return false;
+  if (at->samples > s->history.capacity - (at->step < s->clock.step_count)) return false;
+  if (s->relaxation && at->samples > run_clock_end(&s->clock) + 1) return false;
   return at->next_frame >= 0 && at->next_frame <= frames + 1 && at->last_frame_step >= -1 &&
          at->last_frame_step <= at->step && at->frames.count >= 0;
 }
@@ -132,19 +135,21 @@ static void put_places_back(const simulation *s, own_places *own) {
     l->forces[k].velocity = read.velocity;
     l->forces[k].sums = read.sums;
   }
-  if (s->relaxation && s->at.samples > 0) { /* one at the start, and one after each increment */
-    s->relaxation->state.done = s->at.samples - 1;
+  if (s->relaxation &&
+      s->clock.at.samples > 0) { /* one at the start, and one after each increment */
+    s->relaxation->state.done = s->clock.at.samples - 1;
     l->clock = relaxation_clock(s->relaxation, l->clock.first);
   }
-  for (int m = 0; m < s->monitors->count; m++) { /* one push a step, and perhaps one before the first */
+  for (int m = 0; m < s->monitors->count;
+       m++) { /* one push a step, and perhaps one before the first */
     int64_t *filled = &s->monitors->items[m].state.filled;
-    if (*filled < 0 || *filled > simulation_position(s) + 1) *filled = 0;
+    if (*filled < 0 || *filled > run_clock_position(&s->clock) + 1) *filled = 0;
   }
 }
 
 bool simulation_restore(simulation *s, const char *path, const char *fingerprint,
                         frame_mark *frames, char *error, size_t size) {
-  progress_state head;
+  run_progress head;
   if (!checkpoint_peek(path, fingerprint, &head, sizeof head, error, size)) return false;
   if (!is_reachable(s, &head)) {
     snprintf(error, size, "%s: the checkpoint holds a state of another size", path);
@@ -154,7 +159,7 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
   own_places own = keep_places(s->loads);
   const bool good = checkpoint_read(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
-  if (good) s->at = head;
+  if (good) s->clock.at = head;
   if (good) put_places_back(s, &own);
   if (good) sweep_fields_set(s->state);
   if (good && frames) *frames = head.frames;

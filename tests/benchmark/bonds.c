@@ -12,6 +12,8 @@
 
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck_read.h"
+#include "runtime/base/subnormals.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten.h"
 #include "tests/benchmark/measure.h"
@@ -68,22 +70,22 @@ PROGRAMS(X)
 
 static void sweep_set(void *state, const motion *from) {
   sweep *w = state;
-  const size_t site = (size_t)w->lattice->size * sizeof(double);
-  for (int d = 0; d < w->dof; d++) {
-    memcpy(w->displacement[d], from->displacement[d], site);
-    memcpy(w->velocity[d], from->velocity[d], site);
+  const size_t site = (size_t)w->body->lattice->size * sizeof(double);
+  for (int d = 0; d < w->body->dof; d++) {
+    memcpy(w->body->displacement[d], from->displacement[d], site);
+    memcpy(w->body->velocity[d], from->velocity[d], site);
   }
-  memcpy(w->field[0], from->damage, site * (size_t)w->lattice->directions);
+  memcpy(w->field[0], from->damage, site * (size_t)w->body->lattice->directions);
 }
 
 static void sweep_get(const void *state, motion *to) {
   const sweep *w = state;
-  const size_t site = (size_t)w->lattice->size * sizeof(double);
-  for (int d = 0; d < w->dof; d++) {
-    memcpy(to->displacement[d], w->displacement[d], site);
-    memcpy(to->velocity[d], w->velocity[d], site);
+  const size_t site = (size_t)w->body->lattice->size * sizeof(double);
+  for (int d = 0; d < w->body->dof; d++) {
+    memcpy(to->displacement[d], w->body->displacement[d], site);
+    memcpy(to->velocity[d], w->body->velocity[d], site);
   }
-  memcpy(to->damage, w->field[0], site * (size_t)w->lattice->directions);
+  memcpy(to->damage, w->field[0], site * (size_t)w->body->lattice->directions);
 }
 
 static void sweep_advance(void *state, long steps) {
@@ -328,8 +330,10 @@ bool benchmark_bonds(figures *to) {
   const pl_law *kernel = b.law.law;
   naive *plain = naive_new(p);
   handwritten *best = handwritten_new(p), *fused = handwritten_fused_new(p);
-  sweep *lean = sweep_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, false, false);
-  sweep *ledger = sweep_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, true, false);
+  sweep *lean =
+      interaction_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, false, false);
+  sweep *ledger =
+      interaction_new(p->lattice, kernel, b.law.parameters, p->time_step, 1, true, false);
 #define CONTESTANT(prefix, about, state, same)                                                     \
   {#prefix, about, state, prefix##_set_any, prefix##_get_any, prefix##_advance_any, same, 0, 0, 0, \
    {0},     0,     0}
@@ -359,12 +363,12 @@ bool benchmark_bonds(figures *to) {
                         .get = run_get,
                         .advance = run_advance,
                         .same_motion = false}}};
-  const unsigned environment = sweep_enter();
+  const unsigned environment = subnormals_off();
   compare(&f);
   if (handwritten_rare(best) == 0)
     give_up("the turned start does not reach the path of large rotations");
   measure(&f);
-  sweep_leave(environment);
+  subnormals_restore(environment);
   print_table(&f);
   judge_yardstick(&f);
   add_figures(to, &f);

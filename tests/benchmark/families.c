@@ -16,6 +16,8 @@
 #include "generator/kernel/model.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/base/subnormals.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/scattered.h"
 #include "runtime/simulation/simulation.h"
@@ -193,7 +195,8 @@ static void open_contest(contest *c) {
     if (k == 0) set_parameters(c, law_here);
     set_masses(g, c->problem.rho);
     c->problem.time_step = 0.1 * g->spacing / sqrt(c->problem.E / c->problem.rho);
-    c->kernel[k] = sweep_new(g, law_here, c->parameters, c->problem.time_step, 1, false, false);
+    c->kernel[k] =
+        interaction_new(g, law_here, c->parameters, c->problem.time_step, 1, false, false);
   }
   c->problem.lattice = c->rows;
   for (int k = 0; k < PROGRAMS; k++)
@@ -219,24 +222,24 @@ static void close_contest(contest *c) {
 
 /* Particles have the same numbers on the lattice and in the list, but not the same sites. */
 static void set_sweep(sweep *w, const rows *lattice, const motions *from) {
-  for (int d = 0; d < w->dof; d++)
+  for (int d = 0; d < w->body->dof; d++)
     for (long p = 0; p < lattice->particle_count; p++) {
-      const long here = w->lattice->particle_site[p], there = lattice->particle_site[p];
-      w->displacement[d][here] = from->displacement[d][there];
-      w->velocity[d][here] = from->velocity[d][there];
+      const long here = w->body->lattice->particle_site[p], there = lattice->particle_site[p];
+      w->body->displacement[d][here] = from->displacement[d][there];
+      w->body->velocity[d][here] = from->velocity[d][there];
     }
   for (int f = 0; f < w->law->field_count; f++)
-    for (long k = 0; k < sweep_planes(w, w->law->fields[f].place) * w->lattice->size; k++)
+    for (long k = 0; k < sweep_planes(w, w->law->fields[f].place) * w->body->lattice->size; k++)
       w->field[f][k] = w->law->fields[f].initial;
   sweep_fields_set(w);
 }
 
 static void get_sweep(const sweep *w, const rows *lattice, motions *to) {
-  for (int d = 0; d < w->dof; d++)
+  for (int d = 0; d < w->body->dof; d++)
     for (long p = 0; p < lattice->particle_count; p++) {
-      const long here = w->lattice->particle_site[p], there = lattice->particle_site[p];
-      to->displacement[d][there] = w->displacement[d][here];
-      to->velocity[d][there] = w->velocity[d][here];
+      const long here = w->body->lattice->particle_site[p], there = lattice->particle_site[p];
+      to->displacement[d][there] = w->body->displacement[d][here];
+      to->velocity[d][there] = w->body->velocity[d][here];
     }
 }
 
@@ -266,7 +269,7 @@ static void advance(contest *c, int k, long steps) {
 
 /* Share of a field's values that are not 0 any more. */
 static double changed_share(const sweep *w, int f) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double changed = 0, values = 0;
   for (long k = 0; k < sweep_planes(w, w->law->fields[f].place); k++)
     for (long p = 0; p < g->particle_count; p++, values++)
@@ -349,11 +352,11 @@ bool benchmark_families(figures *f) {
          ROUNDS);
   for (int n = 0; n < CASES; n++)
     open_contest(&all[n]);
-  const unsigned environment = sweep_enter();
+  const unsigned environment = subnormals_off();
   for (int n = 0; n < CASES; n++)
     fair = compare(&all[n]) && fair;
   measure();
-  sweep_leave(environment);
+  subnormals_restore(environment);
   for (int n = 0; n < CASES; n++) {
     report(f, &all[n]);
     close_contest(&all[n]);

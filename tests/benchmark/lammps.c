@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/base/subnormals.h"
 #include "tests/benchmark/measure.h"
 #include "tests/benchmark/trial.h"
 
@@ -116,29 +117,29 @@ typedef struct block {
 } block;
 
 static void set_velocities(sweep *w) {
-  for (long q = 0; q < w->lattice->size; q++) {
-    const double part = w->lattice->present[q] ? w->lattice->x[q] / 0.3 : 0;
+  for (long q = 0; q < w->body->lattice->size; q++) {
+    const double part = w->body->lattice->present[q] ? w->body->lattice->x[q] / 0.3 : 0;
     for (int d = 0; d < 3; d++)
-      w->displacement[d][q] = 0;
-    w->velocity[0][q] = 30 * part;
-    w->velocity[1][q] = 15 * part;
-    w->velocity[2][q] = 0;
+      w->body->displacement[d][q] = 0;
+    w->body->velocity[0][q] = 30 * part;
+    w->body->velocity[1][q] = 15 * part;
+    w->body->velocity[2][q] = 0;
   }
 }
 
 static double kinetic_energy(const block *b, const sweep *w) {
   double sum = 0;
   for (int d = 0; d < 3; d++)
-    for (long q = 0; q < w->lattice->size; q++) {
-      const double v = 0.5 * (b->before[d][q] + w->velocity[d][q]);
-      sum += 0.5 * w->mass[d] * v * v;
+    for (long q = 0; q < w->body->lattice->size; q++) {
+      const double v = 0.5 * (b->before[d][q] + w->body->velocity[d][q]);
+      sum += 0.5 * w->body->mass[d] * v * v;
     }
   return sum;
 }
 
 static void keep_velocities(block *b, const sweep *w) {
   for (int d = 0; d < 3; d++)
-    memcpy(b->before[d], w->velocity[d], (size_t)w->lattice->size * sizeof(double));
+    memcpy(b->before[d], w->body->velocity[d], (size_t)w->body->lattice->size * sizeof(double));
 }
 
 static void steps_of(sweep *w, long steps) {
@@ -194,14 +195,14 @@ static bool compare(figures *f, block *b, const char *folder) {
   double theirs[ROUNDS], ours[ROUNDS], difference = 0;
   snprintf(input, sizeof input, "%s/in.lps", folder);
   write_input(input);
-  const unsigned environment = sweep_enter();
+  const unsigned environment = subnormals_off();
   for (int round = 0; round < ROUNDS; round++) {
     const block_result lammps = run_lammps(input), here = run_here(b);
     difference = fmax(difference, fabs(here.lost / lammps.lost - 1));
     theirs[round] = lammps.seconds;
     ours[round] = here.seconds;
   }
-  sweep_leave(environment);
+  subnormals_restore(environment);
   const double particles = SIDE * SIDE * SIDE;
   printf("  LAMMPS %.2f, generated %.2f million particle-steps a second: %.1f times; energy the "
          "bonds took differs by %.1e\n",

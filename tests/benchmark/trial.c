@@ -9,6 +9,7 @@
 #include "generator/kernel/material_law.h"
 #include "generator/run/run.h"
 #include "runtime/deck/deck_read.h"
+#include "runtime/simulation/material.h"
 #include "tests/benchmark/measure.h"
 
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
@@ -40,15 +41,15 @@ void trial_open_model(model *m, const char *name, int neighbours) {
 
 /* Marsaglia's xorshift64 (2003). */
 void trial_shake(sweep *state) {
-  const rows *g = state->lattice;
+  const rows *g = state->body->lattice;
   uint64_t random = UINT64_C(0x9e3779b97f4a7c15);
-  for (int d = 0; d < state->dimensions; d++)
+  for (int d = 0; d < state->body->dimensions; d++)
     for (long q = 0; q < g->size; q++) {
       random ^= random << 13;
       random ^= random >> 7;
       random ^= random << 17;
       if (g->present[q])
-        state->displacement[d][q] = 1e-5 * g->spacing * (double)(int64_t)random * 0x1p-63;
+        state->body->displacement[d][q] = 1e-5 * g->spacing * (double)(int64_t)random * 0x1p-63;
     }
 }
 

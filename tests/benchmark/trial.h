@@ -3,6 +3,7 @@
 #define PERILAT_BENCHMARK_TRIAL_H
 
 #include "generator/kernel/model.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/simulation/simulation.h"
 
 typedef struct trial {

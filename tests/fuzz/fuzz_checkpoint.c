@@ -7,6 +7,7 @@
 
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/checkpoint.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/runtime/small_run.h"
 
@@ -73,7 +74,7 @@ static void restore_right(void) {
 
 static void try_bytes(const uint8_t *bytes, size_t size) {
   const sweep *w = simulation_state(run.simulation);
-  const double before = w->displacement[0][w->lattice->size / 2];
+  const double before = w->body->displacement[0][w->body->lattice->size / 2];
   const long step = simulation_step_done(run.simulation);
   frame_mark frames = {-1, 0};
   *error = 0;
@@ -86,7 +87,8 @@ static void try_bytes(const uint8_t *bytes, size_t size) {
   } else {
     MUST(*error && frames.count == -1);
     MUST(simulation_step_done(run.simulation) == step);
-    MUST(memcmp(&before, &w->displacement[0][w->lattice->size / 2], sizeof before) == 0);
+    MUST(memcmp(&before, &w->body->displacement[0][w->body->lattice->size / 2], sizeof before) ==
+         0);
   }
 }
 

@@ -57,6 +57,7 @@ sed "s/NAME/cohesive/g" "$source/generator/templates/deck.nml" >deck.nml
 "$perilat" build deck.nml -o solver | grep -q 'written solver'
 PATH=/nonexistent ./solver --set "simulation.end_time=0.1 ms" --set output.result=solver.h5 >solver.log 2>&1
 "$perilat" compare run.h5 solver.h5 | grep -q '^same'
+! objdump -p solver | grep -q 'NEEDED.*cairo' || fail "a solver draws nothing, and asks for Cairo"
 "$perilat" new mine >new.log
 "$perilat" drive mine_drive.nml | grep -q '5 of 5 expectations hold'
 
@@ -73,7 +74,7 @@ while IFS= read -r header; do
   [ -z "$cpp" ] || "$cpp" -x c++ -std=c++17 -Wall -Wextra -Werror -fsyntax-only -I"$include" one.c || fail "$header in C++17"
 done < <(cd "$include" && find . -name '*.h' | sed 's/^..//')
 [ "$headers" -gt 20 ] && [ -f "$include/runtime/kernel.h" ] && [ -f "$include/generator/kernel/model.h" ] || fail "$headers headers"
-for inner in runtime/interaction/sweep.h runtime/simulation/simulation_parts.h generator/plan/plan.h generator/run/run_state.h dsl/syntax/parsing.h; do
+for inner in runtime/interaction/sweep.h runtime/simulation/simulation_state.h generator/plan/plan.h generator/run/run_state.h dsl/syntax/parsing.h; do
   [ ! -e "$include/$inner" ] || fail "$inner is installed"
 done
 

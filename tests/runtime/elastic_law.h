@@ -30,7 +30,8 @@ static const pl_parameter elastic_parameters[ELASTIC_PARAMETERS] = {
 };
 
 static const pl_field elastic_fields[] = {{"omega", "1", "damage", 0, PL_FIELD_DAMAGE, PL_ON_BOND}};
-static const pl_field elastic_outputs[] = {{"axial", "N", "axial force", 0, PL_FIELD_OUTPUT, PL_ON_BOND}};
+static const pl_field elastic_outputs[] = {
+    {"axial", "N", "axial force", 0, PL_FIELD_OUTPUT, PL_ON_BOND}};
 
 /* Rigidities of a hexagonal lattice in plane stress (Asadollahi 2014, eq 2.49). */
 static void elastic_prepare(const pl_law *law, const double *p, const pl_bond_class *b,
@@ -181,12 +182,12 @@ static void elastic_tangent(const pl_law *law, const double *u, long count, cons
 
 #define ELASTIC_LAW(law_kind, law_name, law_dof, planes)                                           \
   {                                                                                                \
-    .abi = PL_KERNEL_ABI, .stores = 1, .kind = law_kind, .dimensions = 2, .dof = law_dof,                       \
+    .abi = PL_KERNEL_ABI, .stores = 1, .kind = law_kind, .dimensions = 2, .dof = law_dof,          \
     .force_planes = planes, .name = law_name, .key = law_name,                                     \
-    .parameter_count = ELASTIC_PARAMETERS, .parameters = elastic_parameters, .field_count = 1,     \
-    .fields = elastic_fields, .output_count = 1, .outputs = elastic_outputs,                       \
-    .uniform_count = ELASTIC_UNIFORMS, .prepare = elastic_prepare, .bounds = elastic_bounds,       \
-    .rows = elastic_rows, .rows_ledger = elastic_rows_ledger,                                      \
+    .parameter_count = ELASTIC_PARAMETERS, .parameters = elastic_parameters,                       \
+    .density = ELASTIC_RHO, .field_count = 1, .fields = elastic_fields, .output_count = 1,         \
+    .outputs = elastic_outputs, .uniform_count = ELASTIC_UNIFORMS, .prepare = elastic_prepare,     \
+    .bounds = elastic_bounds, .rows = elastic_rows, .rows_ledger = elastic_rows_ledger,            \
     .rows_observe = elastic_rows_observe, .states = elastic_states, .tangent = elastic_tangent     \
   }
 

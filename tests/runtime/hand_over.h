@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include "runtime/simulation/simulation.h"
+#include "runtime/simulation/simulation_save.h"
 
 /* `first` goes up to step `stop`, `second`, made from the same deck, is then where `first` is. */
 static inline void hand_over(simulation *first, long stop, simulation *second) {

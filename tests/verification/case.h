@@ -185,30 +185,31 @@ static inline long largest_of(const double *values, long count) {
 /* Bond forces of the state, a plane at a time: force[plane][direction * size + site of the owner].
    0 where there is no bond. The fields keep their values. */
 static inline void all_bond_forces(sweep *w, double *force[4]) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   const pl_law *kernel = w->law;
   double *fields = calloc((size_t)(kernel->field_count * g->pitch) + 1, sizeof *fields);
   for (int r = 0; r < g->row_count; r++)
-    for (int k = 0; k < g->directions && w->count[r] > 0; k++) {
-      const long near = rows_start(g, r) + w->begin[r], far = near + rows_offset(g, r, k);
+    for (int k = 0; k < g->directions && w->body->count[r] > 0; k++) {
+      const long near = rows_start(g, r) + w->body->begin[r], far = near + rows_offset(g, r, k);
       double *field[16], *planes[PL_MAX_PLANES];
       for (int f = 0; f < kernel->field_count; f++) {
         field[f] = fields + f * g->pitch;
-        memcpy(field[f], w->field[f] + k * g->size + near, (size_t)w->count[r] * sizeof(double));
+        memcpy(field[f], w->field[f] + k * g->size + near,
+               (size_t)w->body->count[r] * sizeof(double));
       }
       for (int p = 0; p < kernel->force_planes; p++)
         planes[p] = force[p] + k * g->size + near;
-      pl_strip s = {.count = w->count[r],
+      pl_strip s = {.count = w->body->count[r],
                     .direction = k,
                     .flags = pairwise_flags(w, r),
                     .field = field,
                     .force = planes,
-                    .time_step = w->time_step};
-      for (int d = 0; d < w->dof; d++) {
-        s.displacement_i[d] = w->displacement[d] + near;
-        s.displacement_j[d] = w->displacement[d] + far;
-        s.velocity_i[d] = w->velocity[d] + near;
-        s.velocity_j[d] = w->velocity[d] + far;
+                    .time_step = w->body->time_step};
+      for (int d = 0; d < w->body->dof; d++) {
+        s.displacement_i[d] = w->body->displacement[d] + near;
+        s.displacement_j[d] = w->body->displacement[d] + far;
+        s.velocity_i[d] = w->body->velocity[d] + near;
+        s.velocity_j[d] = w->body->velocity[d] + far;
       }
       kernel->rows(kernel, pairwise_uniforms(w, k), &s);
     }

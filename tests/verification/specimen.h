@@ -41,8 +41,9 @@ static inline long *specimen_images(const rows *g) {
 }
 
 static inline double specimen_asymmetry(const sweep *w, const long *image) {
-  const rows *g = w->lattice;
-  const double *ux = w->displacement[0], *uy = w->displacement[1], *w_t = specimen_field(w, "w_t");
+  const rows *g = w->body->lattice;
+  const double *ux = w->body->displacement[0], *uy = w->body->displacement[1],
+               *w_t = specimen_field(w, "w_t");
   double moved = 0, difference = 0, damage = 0;
   for (long p = 0; p < g->particle_count; p++) {
     const long a = g->particle_site[p], b = image[p];
@@ -55,8 +56,8 @@ static inline double specimen_asymmetry(const sweep *w, const long *image) {
 
 static inline double specimen_damage(const sweep *w) {
   double most = 0;
-  for (long p = 0; p < w->lattice->particle_count; p++)
-    most = fmax(most, specimen_field(w, "w_t")[w->lattice->particle_site[p]]);
+  for (long p = 0; p < w->body->lattice->particle_count; p++)
+    most = fmax(most, specimen_field(w, "w_t")[w->body->lattice->particle_site[p]]);
   return most;
 }
 
@@ -82,7 +83,7 @@ static inline outcome specimen_run(const char *deck_name, const char *end_time, 
   deck_case c;
   assert_true(deck_case_run(&c, deck_name, overrides, count));
   const sweep *w = simulation_state(c.simulation);
-  long *image = specimen_images(w->lattice);
+  long *image = specimen_images(w->body->lattice);
   outcome o = {.asymmetry = image ? 0 : NAN};
   step_status status = STEP_OK;
   while (status == STEP_OK) {

@@ -100,7 +100,7 @@ static void the_load_point_moves_as_it_is_driven(void **state) {
 
 /* Largest difference between particles mirrored about midspan, over the largest displacement. */
 static double asymmetry(const sweep *w, double midspan) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double difference = 0, largest = 0;
   for (long p = 0; p < g->particle_count; p++) {
     const long a = g->particle_site[p];
@@ -110,7 +110,8 @@ static double asymmetry(const sweep *w, double midspan) {
       if (fabs(g->x[a] + g->x[b] - 2 * midspan) < 1e-9 && fabs(g->y[a] - g->y[b]) < 1e-9) mate = b;
     }
     assert_true(mate >= 0);
-    const double *ux = w->displacement[0], *uy = w->displacement[1], *turn = w->displacement[2];
+    const double *ux = w->body->displacement[0], *uy = w->body->displacement[1],
+                 *turn = w->body->displacement[2];
     largest = fmax(largest, hypot(ux[a], uy[a]));
     difference = fmax(difference, fabs(ux[a] + ux[mate]));
     difference = fmax(difference, fabs(uy[a] - uy[mate]));

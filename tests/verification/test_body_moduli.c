@@ -14,14 +14,14 @@
 
 static const double E = 30e9;
 
-static void moduli_of(const char *lattice, const char *model_name, const char *body,
+static void moduli_of(const char *lattice, const char *model_name, const char *keys,
                       double out[3]) {
   deck_case c;
   char text[1000];
   snprintf(text, sizeof text,
            "&simulation end_time = 1 /\n&lattice name = 'l' spacing = '10 mm' %s /\n"
            "&material lattice = 'l' model = '%s' E = '30 GPa' /\n&body lattice = 'l' %s /\n",
-           lattice, model_name, body);
+           lattice, model_name, keys);
   assert_true(deck_case_text(&c, text));
   assert_true(uniform_strain_moduli(c.law.law, c.law.parameters, NULL,
                                     simulation_rows(c.simulation, 0), out));

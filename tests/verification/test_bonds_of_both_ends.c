@@ -43,8 +43,8 @@ static const char *const bodies[] = {
 };
 enum { BODIES = sizeof bodies / sizeof *bodies };
 
-static void open_threads(deck_case *c, int body, const char *threads, bool interpreted) {
-  assert_true(deck_case_read(c, "case.nml", bodies[body], &threads, 1));
+static void open_threads(deck_case *c, int which, const char *threads, bool interpreted) {
+  assert_true(deck_case_read(c, "case.nml", bodies[which], &threads, 1));
   assert_true(deck_case_start(c, SOURCE_DIR "/models/case.nml"));
   assert_true(c->law.law->sum_count > 0);
   if (!interpreted) return;
@@ -56,13 +56,14 @@ static void open_threads(deck_case *c, int body, const char *threads, bool inter
 
 static void assert_same(const deck_case *a, const deck_case *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const rows *g = x->lattice;
+  const rows *g = x->body->lattice;
   const size_t site = (size_t)g->size * sizeof(double);
   for (long p = 0; p < g->particle_count; p++)
     for (int d = 0; d < g->dimensions; d++) {
       const long q = g->particle_site[p];
-      assert_memory_equal(&x->displacement[d][q], &y->displacement[d][q], sizeof(double));
-      assert_memory_equal(&x->velocity[d][q], &y->velocity[d][q], sizeof(double));
+      assert_memory_equal(&x->body->displacement[d][q], &y->body->displacement[d][q],
+                          sizeof(double));
+      assert_memory_equal(&x->body->velocity[d][q], &y->body->velocity[d][q], sizeof(double));
     }
   assert_memory_equal(x->field[0], y->field[0], 2 * (size_t)g->directions * site);
 }
@@ -70,7 +71,7 @@ static void assert_same(const deck_case *a, const deck_case *b) {
 /* Share of the bonds' values that are not 0; both ends have the same. */
 static double broken_share(const deck_case *c) {
   const sweep *w = simulation_state(c->simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   long broken = 0, values = 0;
   for (long p = 0; p < g->particle_count; p++)
     for (int k = 0; k < g->directions; k++) {
@@ -85,22 +86,22 @@ static double broken_share(const deck_case *c) {
   return (double)broken / (double)values;
 }
 
-static void check_threads(int body) {
+static void check_threads(int which) {
   static const char *const threads[] = {"simulation.threads=2", "simulation.threads=3",
                                         "simulation.threads=7"};
   deck_case one, more;
-  open_threads(&one, body, "simulation.threads=1", false);
+  open_threads(&one, which, "simulation.threads=1", false);
   assert_int_equal(deck_case_go(&one), STEP_END);
   const double broken = broken_share(&one);
   print_message("%.1f %% of the bonds are broken\n", 100 * broken);
   const double *cracks;
   simulation_series(one.simulation, 0, NULL, &cracks);
-  const rows *g = simulation_state(one.simulation)->lattice;
+  const rows *g = simulation_state(one.simulation)->body->lattice;
   assert_true(cracks[simulation_history(one.simulation, NULL) - 1] ==
               round(broken * (double)g->bond_count));
   assert_true(broken > 0.01 && broken < 0.5);
   for (size_t k = 0; k < sizeof threads / sizeof *threads; k++) {
-    open_threads(&more, body, threads[k], false);
+    open_threads(&more, which, threads[k], false);
     assert_int_equal(deck_case_go(&more), STEP_END);
     assert_same(&one, &more);
     deck_case_close(&more);
@@ -109,15 +110,15 @@ static void check_threads(int body) {
 }
 
 /* After an odd and an even number of steps: old and new fields have changed places or not. */
-static void check_resuming(int body) {
+static void check_resuming(int which) {
   deck_case straight;
-  open_threads(&straight, body, "simulation.threads=1", false);
+  open_threads(&straight, which, "simulation.threads=1", false);
   assert_int_equal(deck_case_go(&straight), STEP_END);
   const long steps = simulation_step_done(straight.simulation);
   for (long stop = steps / 2; stop <= steps / 2 + 1; stop++) {
     deck_case first, second;
-    open_threads(&first, body, "simulation.threads=1", false);
-    open_threads(&second, body, "simulation.threads=2", false);
+    open_threads(&first, which, "simulation.threads=1", false);
+    open_threads(&second, which, "simulation.threads=2", false);
     hand_over(first.simulation, stop, second.simulation);
     assert_true(broken_share(&first) > 0);
     deck_case_close(&first);
@@ -128,10 +129,10 @@ static void check_resuming(int body) {
   deck_case_close(&straight);
 }
 
-static void check_interpreter(int body) {
+static void check_interpreter(int which) {
   deck_case compiled, interpreted;
-  open_threads(&compiled, body, "simulation.threads=1", false);
-  open_threads(&interpreted, body, "simulation.threads=2", true);
+  open_threads(&compiled, which, "simulation.threads=1", false);
+  open_threads(&interpreted, which, "simulation.threads=2", true);
   assert_int_equal(deck_case_go(&compiled), STEP_END);
   assert_int_equal(deck_case_go(&interpreted), STEP_END);
   assert_same(&compiled, &interpreted);
@@ -143,20 +144,20 @@ static void check_interpreter(int body) {
 
 static void any_number_of_threads_gives_the_same_bits(void **state) {
   (void)state;
-  for (int body = 0; body < BODIES; body++)
-    check_threads(body);
+  for (int which = 0; which < BODIES; which++)
+    check_threads(which);
 }
 
 static void a_resumed_run_gives_the_same_bits(void **state) {
   (void)state;
-  for (int body = 0; body < BODIES; body++)
-    check_resuming(body);
+  for (int which = 0; which < BODIES; which++)
+    check_resuming(which);
 }
 
 static void the_interpreter_gives_the_same_bits(void **state) {
   (void)state;
-  for (int body = 0; body < BODIES; body++)
-    check_interpreter(body);
+  for (int which = 0; which < BODIES; which++)
+    check_interpreter(which);
 }
 
 int main(void) {

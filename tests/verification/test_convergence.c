@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/interaction/interaction.h"
 #include "tests/verification/case.h"
 
 /* --- time step -------------------------------------------------------------------------------- */
@@ -111,7 +112,7 @@ static void open_cantilever(cantilever *b, law_case *beam_law, int row_count) {
   assert_int_equal(b->c.lattice->row_count, row_count);
   b->g = b->c.lattice;
   b->length = b->g->width - b->s / 4; /* the loaded columns are half a spacing apart */
-  b->w = sweep_new(b->g, beam_law->compiled, beam_law->parameters, 1e-7, 1, false, true);
+  b->w = interaction_new(b->g, beam_law->compiled, beam_law->parameters, 1e-7, 1, false, true);
   b->unknowns = 3 * b->g->particle_count;
   b->held = calloc((size_t)b->g->particle_count, sizeof *b->held);
   b->load = calloc((size_t)b->unknowns, sizeof *b->load);
@@ -151,11 +152,11 @@ static void stiffness_times(cantilever *b, const double *u, double *product) {
   for (int side = 1; side >= -1; side -= 2) {
     for (long p = 0; p < b->g->particle_count; p++)
       for (int d = 0; d < 3; d++)
-        w->displacement[d][b->g->particle_site[p]] = side * 1e-6 / size * u[3 * p + d];
+        w->body->displacement[d][b->g->particle_site[p]] = side * 1e-6 / size * u[3 * p + d];
     sweep_observe(w);
     for (long p = 0; p < b->g->particle_count; p++)
       for (int d = 0; d < 3; d++) {
-        const double half = -side * w->force[d][b->g->particle_site[p]] * size / 2e-6;
+        const double half = -side * w->body->force[d][b->g->particle_site[p]] * size / 2e-6;
         product[3 * p + d] = side > 0 ? half : product[3 * p + d] + half;
       }
   }

@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/analysis/implied.h"
+#include "runtime/interaction/interaction.h"
 #include "tests/verification/case.h"
 
 static const double rotations[] = {0, 17, 23.7, 90}; /* degrees */
@@ -110,17 +111,18 @@ static void rigidities_have_their_closed_forms(void **state) {
 /* --- bond forces of the compiled kernel ------------------------------------------------------- */
 
 static sweep *patch_of(const rows *w) {
-  return sweep_new(w, law_under_test.compiled, law_under_test.parameters, 1e-7, 1, false, true);
+  return interaction_new(w, law_under_test.compiled, law_under_test.parameters, 1e-7, 1, false,
+                         true);
 }
 
 /* u = H x at every site, the ghosts too; particles turn with the lattice, which for a hexagon
    balances the moments: the mean of the six chords' rotations is that of H. */
 static void deform(sweep *w, const double H[2][2], double factor) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   for (long q = 0; q < g->size; q++) {
-    w->displacement[0][q] = factor * (H[0][0] * g->x[q] + H[0][1] * g->y[q]);
-    w->displacement[1][q] = factor * (H[1][0] * g->x[q] + H[1][1] * g->y[q]);
-    w->displacement[2][q] = factor * 0.5 * (H[1][0] - H[0][1]);
+    w->body->displacement[0][q] = factor * (H[0][0] * g->x[q] + H[0][1] * g->y[q]);
+    w->body->displacement[1][q] = factor * (H[1][0] * g->x[q] + H[1][1] * g->y[q]);
+    w->body->displacement[2][q] = factor * 0.5 * (H[1][0] - H[0][1]);
   }
 }
 
@@ -139,7 +141,7 @@ static long middle_site(const rows *g) {
 static void unit_forces(sweep *w, const double H[2][2], double F[3][4], double *uneven,
                         double *unbalanced) {
   static const double strain = 5e-6;
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   const size_t count = (size_t)(3 * g->size);
   double *plus[4], *minus[4];
   for (int p = 0; p < 4; p++) {

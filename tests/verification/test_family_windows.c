@@ -9,7 +9,8 @@
 #include <cmocka.h>
 
 #include "dsl/semantics/law_variant.h"
-#include "runtime/interaction/family_parts.h"
+#include "runtime/interaction/family_run.h"
+#include "runtime/interaction/interaction.h"
 #include "tests/verification/case.h"
 
 enum { STEPS = 40, LOOKS = 7 /* steps between two samples */ };
@@ -44,10 +45,10 @@ typedef struct round_body {
 
 static sweep *moving_body(const law_case *c, const rows *g, int blocks, bool looks) {
   const double time_step = 2e-7;
-  sweep *w = sweep_new(g, c->compiled, c->parameters, time_step, blocks, false, false);
+  sweep *w = interaction_new(g, c->compiled, c->parameters, time_step, blocks, false, false);
   for (long q = 0; q < g->size; q++)
     for (int d = 0; d < g->dimensions; d++)
-      if (g->present[q]) w->velocity[d][q] = 30 * sin((double)q * (1 + d)) + 20 * g->y[q];
+      if (g->present[q]) w->body->velocity[d][q] = 30 * sin((double)q * (1 + d)) + 20 * g->y[q];
   for (int k = 0; k < STEPS; k++) {
     assert_true(sweep_step(w));
     if (looks && k % LOOKS == 0) sweep_observe(w);
@@ -56,11 +57,12 @@ static sweep *moving_body(const law_case *c, const rows *g, int blocks, bool loo
 }
 
 static void assert_same_motion(const sweep *a, const sweep *b) {
-  for (int d = 0; d < a->dof; d++)
-    for (long q = 0; q < a->lattice->size; q++)
-      if (a->lattice->present[q]) {
-        assert_memory_equal(&a->displacement[d][q], &b->displacement[d][q], sizeof(double));
-        assert_memory_equal(&a->velocity[d][q], &b->velocity[d][q], sizeof(double));
+  for (int d = 0; d < a->body->dof; d++)
+    for (long q = 0; q < a->body->lattice->size; q++)
+      if (a->body->lattice->present[q]) {
+        assert_memory_equal(&a->body->displacement[d][q], &b->body->displacement[d][q],
+                            sizeof(double));
+        assert_memory_equal(&a->body->velocity[d][q], &b->body->velocity[d][q], sizeof(double));
       }
 }
 

@@ -30,19 +30,19 @@ typedef struct totals {
 
 static totals totals_of(const sweep *w) {
   totals t = {0};
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    const double x = w->lattice->x[q] + w->displacement[0][q],
-                 y = w->lattice->y[q] + w->displacement[1][q];
-    const double vx = w->velocity[0][q], vy = w->velocity[1][q];
-    t.mass += w->mass[0];
-    t.momentum[0] += w->mass[0] * vx;
-    t.momentum[1] += w->mass[0] * vy;
-    t.angular += w->mass[0] * (x * vy - y * vx);
-    t.kinetic += 0.5 * w->mass[0] * (vx * vx + vy * vy);
-    if (w->dof < 3) continue;
-    t.angular += w->mass[2] * w->velocity[2][q];
-    t.kinetic += 0.5 * w->mass[2] * w->velocity[2][q] * w->velocity[2][q];
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    const double x = w->body->lattice->x[q] + w->body->displacement[0][q],
+                 y = w->body->lattice->y[q] + w->body->displacement[1][q];
+    const double vx = w->body->velocity[0][q], vy = w->body->velocity[1][q];
+    t.mass += w->body->mass[0];
+    t.momentum[0] += w->body->mass[0] * vx;
+    t.momentum[1] += w->body->mass[0] * vy;
+    t.angular += w->body->mass[0] * (x * vy - y * vx);
+    t.kinetic += 0.5 * w->body->mass[0] * (vx * vx + vy * vy);
+    if (w->body->dof < 3) continue;
+    t.angular += w->body->mass[2] * w->body->velocity[2][q];
+    t.kinetic += 0.5 * w->body->mass[2] * w->body->velocity[2][q] * w->body->velocity[2][q];
   }
   return t;
 }
@@ -60,19 +60,19 @@ static void a_rigid_motion_costs_nothing(void **state) {
     open_patch(&r, &elastic_beam, 17, 0.5);
     sweep *w = simulation_state(r.simulation);
     const double c = cos(angles[k]), s = sin(angles[k]);
-    for (long p = 0; p < w->lattice->particle_count; p++) {
-      const long q = w->lattice->particle_site[p];
-      const double x = w->lattice->x[q], y = w->lattice->y[q];
-      w->displacement[0][q] = c * x - s * y - x + 0.7;
-      w->displacement[1][q] = s * x + c * y - y - 0.2;
-      w->displacement[2][q] = angles[k];
+    for (long p = 0; p < w->body->lattice->particle_count; p++) {
+      const long q = w->body->lattice->particle_site[p];
+      const double x = w->body->lattice->x[q], y = w->body->lattice->y[q];
+      w->body->displacement[0][q] = c * x - s * y - x + 0.7;
+      w->body->displacement[1][q] = s * x + c * y - y - 0.2;
+      w->body->displacement[2][q] = angles[k];
     }
     double largest = 0;
     sweep_observe(w);
-    for (long p = 0; p < w->lattice->particle_count; p++)
+    for (long p = 0; p < w->body->lattice->particle_count; p++)
       for (int d = 0; d < 3; d++)
-        largest =
-            fmax(largest, fabs(w->force[d][w->lattice->particle_site[p]]) / (d < 2 ? 1 : 0.01));
+        largest = fmax(largest, fabs(w->body->force[d][w->body->lattice->particle_site[p]]) /
+                                    (d < 2 ? 1 : 0.01));
     print_message("rigid rotation %g: forces %.1e of EA\n", angles[k], largest / axial_rigidity());
     /* positions of size 1 m carry roundings of 1e-16 m, that is 1e-14 of a spacing */
     assert_true(largest < 3e-13 * axial_rigidity());
@@ -85,15 +85,16 @@ static void a_translation_stays_a_translation(void **state) {
   small_run r;
   open_patch(&r, &elastic_beam, 17, 0.5);
   sweep *w = simulation_state(r.simulation);
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    w->velocity[0][w->lattice->particle_site[p]] = 3;
-    w->velocity[1][w->lattice->particle_site[p]] = -1.7;
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    w->body->velocity[0][w->body->lattice->particle_site[p]] = 3;
+    w->body->velocity[1][w->body->lattice->particle_site[p]] = -1.7;
   }
   simulation_advance(r.simulation, 500, NULL);
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    assert_true(w->velocity[0][q] == 3 && w->velocity[1][q] == -1.7 && w->velocity[2][q] == 0);
-    assert_true(fabs(w->displacement[0][q] - 3 * simulation_time(r.simulation)) < 1e-12);
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    assert_true(w->body->velocity[0][q] == 3 && w->body->velocity[1][q] == -1.7 &&
+                w->body->velocity[2][q] == 0);
+    assert_true(fabs(w->body->displacement[0][q] - 3 * simulation_time(r.simulation)) < 1e-12);
   }
   small_close(&r);
 }
@@ -108,15 +109,15 @@ static void a_spinning_patch_keeps_its_angular_momentum(void **state) {
     open_patch(&r, laws[k], 17, 0.5);
     sweep *w = simulation_state(r.simulation);
     const double spin = 500; /* rad/s: 30 m/s at the rim, a stretch of 4e-5 */
-    for (long p = 0; p < w->lattice->particle_count; p++) {
-      const long q = w->lattice->particle_site[p];
-      w->velocity[0][q] = -spin * (w->lattice->y[q] - 0.03);
-      w->velocity[1][q] = spin * (w->lattice->x[q] - 0.02);
-      if (w->dof > 2) w->velocity[2][q] = spin;
+    for (long p = 0; p < w->body->lattice->particle_count; p++) {
+      const long q = w->body->lattice->particle_site[p];
+      w->body->velocity[0][q] = -spin * (w->body->lattice->y[q] - 0.03);
+      w->body->velocity[1][q] = spin * (w->body->lattice->x[q] - 0.02);
+      if (w->body->dof > 2) w->body->velocity[2][q] = spin;
     }
     const totals before = totals_of(w);
     double drift = 0, energy = 0;
-    const long steps = lround(7 / spin / w->time_step);
+    const long steps = lround(7 / spin / w->body->time_step);
     for (int part = 0; part < 20; part++) {
       simulation_advance(r.simulation, steps / 20, NULL);
       const totals now = totals_of(w);
@@ -129,9 +130,11 @@ static void a_spinning_patch_keeps_its_angular_momentum(void **state) {
                   laws[k]->name, steps, drift, energy);
     assert_true(drift < 1e-11);
     assert_true(energy < 1e-3);
-    if (w->dof > 2) { /* seven radians and a little less: the widened patch turns more slowly */
+    if (w->body->dof >
+        2) { /* seven radians and a little less: the widened patch turns more slowly */
       const double turn =
-          w->displacement[2][w->lattice->particle_site[w->lattice->particle_count / 2]];
+          w->body->displacement[2][w->body->lattice
+                                       ->particle_site[w->body->lattice->particle_count / 2]];
       assert_true(fabs(turn / (spin * simulation_time(r.simulation)) - 1) < 1e-3);
     }
     small_close(&r);
@@ -153,10 +156,10 @@ static double shaken_energy_error(double step_safety) {
   assert_non_null(r.simulation);
   sweep *w = simulation_state(r.simulation);
   uint64_t seed = 5;
-  for (long p = 0; p < w->lattice->particle_count; p++)
+  for (long p = 0; p < w->body->lattice->particle_count; p++)
     for (int d = 0; d < 3; d++) {
       seed = seed * UINT64_C(6364136223846793005) + UINT64_C(1442695040888963407);
-      w->velocity[d][w->lattice->particle_site[p]] =
+      w->body->velocity[d][w->body->lattice->particle_site[p]] =
           ((double)(seed >> 40) / (1 << 23) - 1) * (d < 2 ? 1 : 100);
     }
   const totals before = totals_of(w);
@@ -207,7 +210,7 @@ static void mirror_images_stay_mirror_images(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   assert_true(small_last(&r, "cracks") > 0);
   const sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double difference = 0, largest = 0;
   long pairs = 0;
   for (long p = 0; p < g->particle_count; p++)
@@ -215,10 +218,13 @@ static void mirror_images_stay_mirror_images(void **state) {
       const long a = g->particle_site[p], b = g->particle_site[m];
       if (fabs(g->x[a] + g->x[b]) > 1e-9 || fabs(g->y[a] - g->y[b]) > 1e-9) continue;
       pairs++;
-      largest = fmax(largest, fabs(w->displacement[1][a]));
-      difference = fmax(difference, fabs(w->displacement[0][a] + w->displacement[0][b]));
-      difference = fmax(difference, fabs(w->displacement[1][a] - w->displacement[1][b]));
-      difference = fmax(difference, 0.01 * fabs(w->displacement[2][a] + w->displacement[2][b]));
+      largest = fmax(largest, fabs(w->body->displacement[1][a]));
+      difference =
+          fmax(difference, fabs(w->body->displacement[0][a] + w->body->displacement[0][b]));
+      difference =
+          fmax(difference, fabs(w->body->displacement[1][a] - w->body->displacement[1][b]));
+      difference =
+          fmax(difference, 0.01 * fabs(w->body->displacement[2][a] + w->body->displacement[2][b]));
     }
   print_message("mirror: %.1e of the displacement, %g bonds damaged\n", difference / largest,
                 small_last(&r, "cracks"));

@@ -76,11 +76,11 @@ static void every_family_has_it(void **state) {
   const double strain = 1e-8;
   assert_true(start(&c, "splm_elastic", "plane_stress", 12, ""));
   sweep *w = simulation_state(c.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   for (long p = 0; p < g->particle_count; p++) {
     const long q = g->particle_site[p];
-    w->displacement[0][q] = strain * g->x[q];
-    w->displacement[1][q] = strain * g->y[q];
+    w->body->displacement[0][q] = strain * g->x[q];
+    w->body->displacement[1][q] = strain * g->y[q];
   }
   double *sigma_1 = calloc((size_t)g->size, sizeof *sigma_1),
          *sigma_3 = calloc((size_t)g->size, sizeof *sigma_3);
@@ -102,16 +102,16 @@ static void every_family_has_it(void **state) {
 
 /* Slope of the displacements along y in the middle of the bar, by least squares. */
 static double strain_of(const sweep *w) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double n = 0, y = 0, u = 0, yy = 0, yu = 0;
   for (long p = 0; p < g->particle_count; p++) {
     const long q = g->particle_site[p];
     if (g->y[q] < 0.05 || g->y[q] > 0.15) continue;
     n++;
     y += g->y[q];
-    u += w->displacement[1][q];
+    u += w->body->displacement[1][q];
     yy += g->y[q] * g->y[q];
-    yu += g->y[q] * w->displacement[1][q];
+    yu += g->y[q] * w->body->displacement[1][q];
   }
   return (n * yu - y * u) / (n * yy - y * y);
 }
@@ -170,13 +170,13 @@ static double noise(long particle, int component) {
 static double forces_of(sweep *w, double *force[2]) {
   double most = 0;
   for (int d = 0; d < 2; d++)
-    for (long p = 0; p < w->lattice->particle_count; p++)
-      w->displacement[d][w->lattice->particle_site[p]] = noise(p, d);
+    for (long p = 0; p < w->body->lattice->particle_count; p++)
+      w->body->displacement[d][w->body->lattice->particle_site[p]] = noise(p, d);
   sweep_find_forces(w);
   for (int d = 0; d < 2; d++) {
-    force[d] = calloc((size_t)w->lattice->particle_count, sizeof *force[d]);
-    for (long p = 0; p < w->lattice->particle_count; p++) {
-      force[d][p] = w->force[d][w->lattice->particle_site[p]];
+    force[d] = calloc((size_t)w->body->lattice->particle_count, sizeof *force[d]);
+    for (long p = 0; p < w->body->lattice->particle_count; p++) {
+      force[d][p] = w->body->force[d][w->body->lattice->particle_site[p]];
       most = fmax(most, fabs(force[d][p]));
     }
   }
@@ -241,19 +241,20 @@ static void on_a_lattice_it_is_the_lattice_s_own(void **state) {
 
 static void sum_motion(const sweep *w, double momentum[2], double *spin) {
   momentum[0] = momentum[1] = *spin = 0;
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    const double m = sweep_mass(w, 0, q), x = w->lattice->x[q] + w->displacement[0][q],
-                 y = w->lattice->y[q] + w->displacement[1][q];
-    momentum[0] += m * w->velocity[0][q];
-    momentum[1] += m * w->velocity[1][q];
-    *spin += m * (x * w->velocity[1][q] - y * w->velocity[0][q]);
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    const double m = body_mass(w->body, 0, q),
+                 x = w->body->lattice->x[q] + w->body->displacement[0][q],
+                 y = w->body->lattice->y[q] + w->body->displacement[1][q];
+    momentum[0] += m * w->body->velocity[0][q];
+    momentum[1] += m * w->body->velocity[1][q];
+    *spin += m * (x * w->body->velocity[1][q] - y * w->body->velocity[0][q]);
   }
 }
 
 static double energy_of(sweep *w) {
   sweep_observe(w);
-  const sweep_totals t = sweep_sum(w);
+  const body_totals t = body_sum(w->body);
   return t.kinetic + t.stored;
 }
 
@@ -265,11 +266,11 @@ static void a_free_body_keeps_what_it_has(void **state) {
   double before[2], after[2], spin_before, spin_after, size = 0;
   assert_true(start(&c, "splm_elastic", "plane_stress", 12, ""));
   sweep *w = simulation_state(c.simulation);
-  for (long p = 0; p < w->lattice->particle_count; p++)
+  for (long p = 0; p < w->body->lattice->particle_count; p++)
     for (int d = 0; d < 2; d++) {
-      const long q = w->lattice->particle_site[p];
-      w->velocity[d][q] = 0.1 + sin(12.9898 * (double)p + 78.233 * d);
-      size += sweep_mass(w, d, q) * fabs(w->velocity[d][q]);
+      const long q = w->body->lattice->particle_site[p];
+      w->body->velocity[d][q] = 0.1 + sin(12.9898 * (double)p + 78.233 * d);
+      size += body_mass(w->body, d, q) * fabs(w->body->velocity[d][q]);
     }
   sum_motion(w, before, &spin_before);
   const double energy = energy_of(w);

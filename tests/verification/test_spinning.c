@@ -32,17 +32,17 @@ static void open_patch(deck_case *c, double rotation, double end_time, double ze
 
 static void turn(sweep *w, double angle, const double about[2]) {
   const double cosine = cos(angle), sine = sin(angle);
-  for (long q = 0; q < w->lattice->size; q++) {
-    const double x = w->lattice->x[q] - about[0], y = w->lattice->y[q] - about[1];
-    w->displacement[0][q] = cosine * x - sine * y - x;
-    w->displacement[1][q] = sine * x + cosine * y - y;
-    w->displacement[2][q] = angle;
+  for (long q = 0; q < w->body->lattice->size; q++) {
+    const double x = w->body->lattice->x[q] - about[0], y = w->body->lattice->y[q] - about[1];
+    w->body->displacement[0][q] = cosine * x - sine * y - x;
+    w->body->displacement[1][q] = sine * x + cosine * y - y;
+    w->body->displacement[2][q] = angle;
   }
 }
 
 /* Over EA; moments over EA times the spacing. */
 static double largest_bond_force(sweep *w) {
-  const size_t count = (size_t)(3 * w->lattice->size);
+  const size_t count = (size_t)(3 * w->body->lattice->size);
   double *force[4], largest = 0;
   for (int p = 0; p < 4; p++)
     force[p] = calloc(count, sizeof(double));
@@ -79,8 +79,8 @@ static void a_rigid_rotation_stretches_nothing(void **state) {
         rotations[r], at_14, worst);
     assert_true(worst < 1e-12);
     /* the test can see a deformation: turning the particles alone is felt */
-    for (long q = 0; q < w->lattice->size; q++)
-      w->displacement[2][q] += 1e-9;
+    for (long q = 0; q < w->body->lattice->size; q++)
+      w->body->displacement[2][q] += 1e-9;
     assert_true(largest_bond_force(w) > 1e-11);
     deck_case_close(&c);
   }
@@ -94,16 +94,18 @@ typedef struct motion {
 
 static motion motion_of(const sweep *w) {
   motion t = {0};
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    const double x = w->lattice->x[q] + w->displacement[0][q];
-    const double y = w->lattice->y[q] + w->displacement[1][q];
-    const double vx = w->velocity[0][q], vy = w->velocity[1][q], spin = w->velocity[2][q];
-    t.mass += w->mass[0];
-    t.momentum[0] += w->mass[0] * vx;
-    t.momentum[1] += w->mass[0] * vy;
-    t.angular += w->mass[0] * (x * vy - y * vx) + w->mass[2] * spin;
-    t.kinetic += 0.5 * w->mass[0] * (vx * vx + vy * vy) + 0.5 * w->mass[2] * spin * spin;
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    const double x = w->body->lattice->x[q] + w->body->displacement[0][q];
+    const double y = w->body->lattice->y[q] + w->body->displacement[1][q];
+    const double vx = w->body->velocity[0][q], vy = w->body->velocity[1][q],
+                 spin = w->body->velocity[2][q];
+    t.mass += w->body->mass[0];
+    t.momentum[0] += w->body->mass[0] * vx;
+    t.momentum[1] += w->body->mass[0] * vy;
+    t.angular += w->body->mass[0] * (x * vy - y * vx) + w->body->mass[2] * spin;
+    t.kinetic +=
+        0.5 * w->body->mass[0] * (vx * vx + vy * vy) + 0.5 * w->body->mass[2] * spin * spin;
   }
   return t;
 }
@@ -120,11 +122,11 @@ static drifts spin(double zeta, double safety) {
   deck_case c;
   open_patch(&c, 17, end, zeta, safety);
   sweep *w = simulation_state(c.simulation);
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
-    w->velocity[0][q] = drift[0] - rate * w->lattice->y[q];
-    w->velocity[1][q] = drift[1] + rate * w->lattice->x[q];
-    w->velocity[2][q] = rate;
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
+    w->body->velocity[0][q] = drift[0] - rate * w->body->lattice->y[q];
+    w->body->velocity[1][q] = drift[1] + rate * w->body->lattice->x[q];
+    w->body->velocity[2][q] = rate;
   }
   const motion before = motion_of(w);
   drifts d = {0};
@@ -144,7 +146,9 @@ static drifts spin(double zeta, double safety) {
     d.energy = fmax(d.energy, fabs(imbalance[k]) / before.kinetic);
   d.damping = deck_case_series(&c, "energy/dissipated_damping")[last] / before.kinetic;
   assert_true(deck_case_series(&c, "energy/dissipated_damage")[last] == 0);
-  d.turned = w->displacement[2][w->lattice->particle_site[w->lattice->particle_count / 2]];
+  d.turned =
+      w->body
+          ->displacement[2][w->body->lattice->particle_site[w->body->lattice->particle_count / 2]];
   deck_case_close(&c);
   return d;
 }

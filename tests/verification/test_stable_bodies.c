@@ -12,18 +12,19 @@
 #include "runtime/analysis/body_limit.h"
 #include "runtime/analysis/bond_forms.h"
 #include "runtime/analysis/stability.h"
+#include "runtime/interaction/interaction.h"
 #include "tests/verification/case.h"
 
 /* --- laws of the test ------------------------------------------------------------------------- */
 
-static void write_law(const char *name, const char *kind, const char *body) {
+static void write_law(const char *name, const char *kind, const char *text) {
   FILE *out = fopen(name, "w");
   assert_non_null(out);
   fprintf(out,
           "model test_law\n  law %s\n  parameter E = 30 [GPa] in (0, inf)\n"
           "  parameter nu = 0.2 in [0, 0.5)\n  parameter rho = 2400 [kg/m^3] in (0, inf)\n%s"
           "end model\n",
-          kind, body);
+          kind, text);
   fclose(out);
 }
 
@@ -44,10 +45,10 @@ static double uniform(double low, double high) {
 
 static double largest_velocity(const sweep *w) {
   double most = 0;
-  for (int d = 0; d < w->dof; d++)
-    for (long p = 0; p < w->lattice->particle_count; p++) {
-      const double v = fabs(w->velocity[d][w->lattice->particle_site[p]]);
-      most = fmax(most, v * (d < w->dimensions ? 1 : w->lattice->spacing));
+  for (int d = 0; d < w->body->dof; d++)
+    for (long p = 0; p < w->body->lattice->particle_count; p++) {
+      const double v = fabs(w->body->velocity[d][w->body->lattice->particle_site[p]]);
+      most = fmax(most, v * (d < w->body->dimensions ? 1 : w->body->lattice->spacing));
     }
   return most;
 }
@@ -58,14 +59,15 @@ static double growth(const deck_case *c, double part, int steps) {
   const step_limit *limit = simulation_step_limit(c->simulation);
   const rows *g = simulation_rows(c->simulation, 0);
   const double quiet = 1e-9 * g->spacing * limit->omega_max;
-  sweep *w = sweep_new(g, c->law.law, c->law.parameters, part * limit->limit, 1, false, false);
+  sweep *w =
+      interaction_new(g, c->law.law, c->law.parameters, part * limit->limit, 1, false, false);
   const random_fields *f = simulation_fields(c->simulation);
   if (f) w->parameter = f->value;
   seed = 11;
-  for (int d = 0; d < w->dof; d++)
+  for (int d = 0; d < w->body->dof; d++)
     for (long p = 0; p < g->particle_count; p++)
-      w->velocity[d][g->particle_site[p]] =
-          uniform(-quiet, quiet) / (d < w->dimensions ? 1 : g->spacing);
+      w->body->velocity[d][g->particle_site[p]] =
+          uniform(-quiet, quiet) / (d < w->body->dimensions ? 1 : g->spacing);
   double most = 1;
   for (int step = 0; step < steps && most < 1e5; step++) {
     if (!sweep_step(w)) most = INFINITY;
@@ -187,13 +189,13 @@ static void no_body_of_random_bonds_is_faster(void **state) {
              n);
     open_case(&c, text);
     const step_limit *limit = simulation_step_limit(c.simulation);
-    step_limit body = {0};
+    step_limit whole = {0};
     body_limit(c.law.law, c.law.parameters, simulation_fields(c.simulation)->value,
-               simulation_rows(c.simulation, 0), &body);
+               simulation_rows(c.simulation, 0), &whole);
     print_message("seed %d: limit %.6g us, of the body itself %.6g us\n", n, 1e6 * limit->limit,
-                  1e6 * body.limit);
-    assert_true(limit->limit <= body.limit * (1 + BODY_ACCURACY));
-    assert_true(limit->limit > 0.7 * body.limit);
+                  1e6 * whole.limit);
+    assert_true(limit->limit <= whole.limit * (1 + BODY_ACCURACY));
+    assert_true(limit->limit > 0.7 * whole.limit);
     deck_case_close(&c);
   }
 }
@@ -282,13 +284,13 @@ static void the_most_damped_mode_is_found(void **state) {
       "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = '200 mm', '150 mm' /\n" LAW(
           "damped_beam.plm"));
   const step_limit *lattice = simulation_step_limit(c.simulation);
-  step_limit body = {.limit = 0};
-  body_limit(c.law.law, c.law.parameters, NULL, simulation_rows(c.simulation, 0), &body);
+  step_limit whole = {.limit = 0};
+  body_limit(c.law.law, c.law.parameters, NULL, simulation_rows(c.simulation, 0), &whole);
   print_message("damped beam: lattice %.4g us, body %.4g us, undamped %.4g us\n",
-                1e6 * lattice->limit, 1e6 * body.limit, 2e6 / body.omega_max);
+                1e6 * lattice->limit, 1e6 * whole.limit, 2e6 / whole.omega_max);
   assert_true(lattice->limit < 0.5 * 2 / lattice->omega_max);
-  assert_true(body.limit > (1 - BODY_ACCURACY) * lattice->limit);
-  assert_true(body.limit < 1.01 * lattice->limit);
+  assert_true(whole.limit > (1 - BODY_ACCURACY) * lattice->limit);
+  assert_true(whole.limit < 1.01 * lattice->limit);
   deck_case_close(&c);
 }
 

@@ -18,7 +18,7 @@ static void open_prism(deck_case *c, const char *threads) {
 
 /* Particles whose value of a field is not 0 on any of its planes. */
 static long touched(const sweep *w, int field) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   const int planes = sweep_planes(w, w->law->fields[field].place);
   long count = 0;
   for (long p = 0; p < g->particle_count; p++) {
@@ -31,7 +31,7 @@ static long touched(const sweep *w, int field) {
 }
 
 static long different(const sweep *a, const double *x, const double *y, int planes) {
-  const rows *g = a->lattice;
+  const rows *g = a->body->lattice;
   long count = 0;
   for (int k = 0; k < planes; k++)
     for (long p = 0; p < g->particle_count; p++) {
@@ -43,9 +43,9 @@ static long different(const sweep *a, const double *x, const double *y, int plan
 
 static void assert_same(const deck_case *a, const deck_case *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  for (int d = 0; d < x->dof; d++) {
-    assert_int_equal(different(x, x->displacement[d], y->displacement[d], 1), 0);
-    assert_int_equal(different(x, x->velocity[d], y->velocity[d], 1), 0);
+  for (int d = 0; d < x->body->dof; d++) {
+    assert_int_equal(different(x, x->body->displacement[d], y->body->displacement[d], 1), 0);
+    assert_int_equal(different(x, x->body->velocity[d], y->body->velocity[d], 1), 0);
   }
   for (int f = 0; f < x->law->field_count; f++)
     assert_int_equal(
@@ -68,7 +68,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
   const sweep *w = simulation_state(one.simulation);
   for (int f = 0; f < w->law->field_count; f++) { /* every rule of the law was at work */
     print_message("%s: %ld of %ld particles\n", w->law->fields[f].name, touched(w, f),
-                  w->lattice->particle_count);
+                  w->body->lattice->particle_count);
     assert_true(touched(w, f) > 20);
   }
   for (int threads = 2; threads <= 3; threads++) {

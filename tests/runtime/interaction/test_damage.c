@@ -41,10 +41,10 @@ static void the_largest_damage_of_a_bond_counts(void **state) {
   small_run r;
   open_row(&r, &law);
   sweep *w = simulation_state(r.simulation);
-  rows_bond *bonds = rows_bonds(w->lattice);
+  rows_bond *bonds = rows_bonds(w->body->lattice);
   const double given[2][3] = {{0.3, 0.99, 0.6}, {0.9, 0.99, 0.1}};
   double values[3];
-  assert_int_equal(w->lattice->bond_count, 2);
+  assert_int_equal(w->body->lattice->bond_count, 2);
   for (int b = 0; b < 2; b++)
     for (int f = 0; f < 3; f++)
       w->new_field[f][bonds[b].slot] = given[b][f];
@@ -82,10 +82,10 @@ static void without_damage_all_is_sound(void **state) {
   double values[3] = {-1, -1, -1};
   open_row(&r, &law);
   sweep *w = simulation_state(r.simulation);
-  rows_bond *bonds = rows_bonds(w->lattice);
+  rows_bond *bonds = rows_bonds(w->body->lattice);
   w->new_field[0][bonds[0].slot] = 0.7;
   assert_true(damage_of_bond(w, &bonds[0]) == 0 &&
-              damage_of_site(w, w->lattice->particle_site[0]) == 0);
+              damage_of_site(w, w->body->lattice->particle_site[0]) == 0);
   damage_of_particles(w, bonds, values);
   assert_true(values[0] == 0 && values[1] == 0 && values[2] == 0);
   free(bonds);

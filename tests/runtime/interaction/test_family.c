@@ -15,22 +15,23 @@
 #include "dsl/base/arena.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/family.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "tests/runtime/family_law.h"
 
 static const double spacing = 0.01, thickness = 0.1, step = 1e-7;
 
-typedef struct body {
+typedef struct marching {
   arena *memory;
   source_set sources;
   diagnostics said;
   rows *lattice;
   double parameters[FAMILY_PARAMETERS];
   sweep *w;
-} body;
+} marching;
 
 /* A disc with a notch: ragged rows, families of all kinds. */
-static void open_body(body *b, double rotation, int threads, double tau, double S_t) {
+static void open_body(marching *b, double rotation, int threads, double tau, double S_t) {
   char text[512];
   memset(b, 0, sizeof *b);
   snprintf(text, sizeof text,
@@ -51,10 +52,10 @@ static void open_body(body *b, double rotation, int threads, double tau, double 
   b->parameters[FAMILY_TAU] = tau;
   b->parameters[FAMILY_S_T] = S_t;
   b->lattice->mass = b->parameters[FAMILY_RHO] * b->lattice->volume;
-  b->w = sweep_new(b->lattice, &family_hexagon, b->parameters, step, threads, true, true);
+  b->w = interaction_new(b->lattice, &family_hexagon, b->parameters, step, threads, true, true);
 }
 
-static void close_body(body *b) {
+static void close_body(marching *b) {
   sweep_free(b->w);
   rows_free(b->lattice);
   diag_clear(&b->said);
@@ -73,12 +74,12 @@ static double uniform(uint64_t *state) {
   return (double)(random_bits(state) >> 11) * 0x1p-52 - 1;
 }
 
-static void shake(body *b, uint64_t seed) {
+static void shake(marching *b, uint64_t seed) {
   for (long p = 0; p < b->lattice->particle_count; p++) {
     const long site = b->lattice->particle_site[p];
     for (int d = 0; d < 2; d++) {
-      b->w->displacement[d][site] = 1e-5 * uniform(&seed);
-      b->w->velocity[d][site] = 0.1 * uniform(&seed);
+      b->w->body->displacement[d][site] = 1e-5 * uniform(&seed);
+      b->w->body->velocity[d][site] = 0.1 * uniform(&seed);
     }
     b->w->field[0][site] = 0.5 + 0.5 * uniform(&seed);
   }
@@ -92,7 +93,7 @@ typedef struct neighbour {
 } neighbour;
 
 /* Neighbours of particle p, from positions and the list of bonds. */
-static int neighbours_of(const body *b, const rows_bond *bonds, long p, neighbour *out) {
+static int neighbours_of(const marching *b, const rows_bond *bonds, long p, neighbour *out) {
   const rows *g = b->lattice;
   int count = 0;
   for (long m = 0; m < g->bond_count; m++) {
@@ -110,7 +111,7 @@ typedef struct family_state_of {
   int count;
 } family_state_of;
 
-static family_state_of state_of(const body *b, const rows_bond *bonds, long p) {
+static family_state_of state_of(const marching *b, const rows_bond *bonds, long p) {
   const sweep *w = b->w;
   family_state_of f = {.count = neighbours_of(b, bonds, p, f.to)};
   const long here = b->lattice->particle_site[p];
@@ -120,10 +121,10 @@ static family_state_of state_of(const body *b, const rows_bond *bonds, long p) {
     const double s = hypot(f.to[k].chord[0], f.to[k].chord[1]);
     double c[2], rate = 0;
     for (int a = 0; a < 2; a++)
-      c[a] = f.to[k].chord[a] + w->displacement[a][there] - w->displacement[a][here];
+      c[a] = f.to[k].chord[a] + w->body->displacement[a][there] - w->body->displacement[a][here];
     for (int a = 0; a < 2; a++) {
       f.e[k][a] = c[a] / hypot(c[0], c[1]);
-      rate += f.e[k][a] * (w->velocity[a][there] - w->velocity[a][here]) / s;
+      rate += f.e[k][a] * (w->body->velocity[a][there] - w->body->velocity[a][here]) / s;
     }
     f.stretch[k] = hypot(c[0], c[1]) / s - 1;
     f.rate[k] = rate;
@@ -136,7 +137,7 @@ static family_state_of state_of(const body *b, const rows_bond *bonds, long p) {
   return f;
 }
 
-static double force_state(const body *b, const family_state_of *f, int k) {
+static double force_state(const marching *b, const family_state_of *f, int k) {
   const double E = b->parameters[FAMILY_E], nu = b->parameters[FAMILY_NU];
   const double a = 2 * E * spacing * thickness / (sqrt(3) * (1 + nu));
   const double c = E * spacing * thickness * (1 - 3 * nu) / (6 * sqrt(3) * (nu * nu - 1));
@@ -153,7 +154,7 @@ static void sweep_gives_the_forces_of_a_loop_over_families(void **state) {
   (void)state;
   const double rotations[] = {0, 17, 90};
   for (int k = 0; k < 9; k++) {
-    body b;
+    marching b;
     open_body(&b, rotations[k / 3], 1 + k % 3, 1e-7, 1e-3);
     shake(&b, 7);
     rows_bond *bonds = rows_bonds(b.lattice);
@@ -173,7 +174,7 @@ static void sweep_gives_the_forces_of_a_loop_over_families(void **state) {
       }
       for (int a = 0; a < 2; a++) {
         largest = fmax(largest, fabs(force[a]));
-        worst = fmax(worst, fabs(force[a] - b.w->force[a][b.lattice->particle_site[p]]));
+        worst = fmax(worst, fabs(force[a] - b.w->body->force[a][b.lattice->particle_site[p]]));
       }
     }
     assert_true(worst <= 1e-11 * largest); /* a stretch of 1e-3 by length/s - 1 has 1e-13 */
@@ -189,12 +190,12 @@ static bool is_inside(const rows *g, long q) { /* full family of full families *
   return hypot(g->x[q] - 0.003, g->y[q] - 0.001) < 0.045 && g->y[q] > 0.015;
 }
 
-static void strain_uniformly(const body *b, const double e[3], double size) {
+static void strain_uniformly(const marching *b, const double e[3], double size) {
   const rows *g = b->lattice;
   for (long p = 0; p < g->particle_count; p++) {
     const long q = g->particle_site[p];
-    b->w->displacement[0][q] = size * (e[0] * g->x[q] + 0.5 * e[2] * g->y[q]);
-    b->w->displacement[1][q] = size * (e[1] * g->y[q] + 0.5 * e[2] * g->x[q]);
+    b->w->body->displacement[0][q] = size * (e[0] * g->x[q] + 0.5 * e[2] * g->y[q]);
+    b->w->body->displacement[1][q] = size * (e[1] * g->y[q] + 0.5 * e[2] * g->x[q]);
   }
 }
 
@@ -205,7 +206,7 @@ static void check_strain(double rotation, const double e[3]) {
   const double D[3][3] = {{E / (1 - nu * nu), nu * E / (1 - nu * nu), 0},
                           {nu * E / (1 - nu * nu), E / (1 - nu * nu), 0},
                           {0, 0, E / (2 * (1 + nu))}};
-  body b;
+  marching b;
   open_body(&b, rotation, 2, 0, 1e30);
   const rows *g = b.lattice;
   double *energy = must_calloc((size_t)g->size, sizeof *energy);
@@ -224,7 +225,7 @@ static void check_strain(double rotation, const double e[3]) {
       inside++;
       assert_true(fabs(energy[q] - expected) <= 1e-12 * expected);
       for (int a = 0; a < 2; a++)
-        assert_true(fabs(b.w->force[a][q]) <= 1e-12 * E * size * spacing * thickness);
+        assert_true(fabs(b.w->body->force[a][q]) <= 1e-12 * E * size * spacing * thickness);
     }
     if (__builtin_popcountll(g->bonds[q]) < 3) continue;
     corners += !is_inside(g, q);
@@ -247,29 +248,30 @@ static void uniform_strain_gives_the_stiffness_of_theory(void **state) {
 /* A rigid motion by a large angle leaves no force and no strain. */
 static void rotation_leaves_no_force(void **state) {
   (void)state;
-  body b;
+  marching b;
   open_body(&b, 17, 2, 0, 1e30);
   const rows *g = b.lattice;
   const double c = cos(2.1), s = sin(2.1);
   for (long p = 0; p < g->particle_count; p++) {
     const long q = g->particle_site[p];
-    b.w->displacement[0][q] = c * g->x[q] - s * g->y[q] - g->x[q] + 0.07;
-    b.w->displacement[1][q] = s * g->x[q] + c * g->y[q] - g->y[q] - 0.02;
+    b.w->body->displacement[0][q] = c * g->x[q] - s * g->y[q] - g->x[q] + 0.07;
+    b.w->body->displacement[1][q] = s * g->x[q] + c * g->y[q] - g->y[q] - 0.02;
   }
   sweep_observe(b.w);
   for (long p = 0; p < g->particle_count; p++)
     for (int a = 0; a < 2; a++) /* against the force of a stretch of 1 */
-      assert_true(fabs(b.w->force[a][g->particle_site[p]]) < 1e-13 * 30e9 * spacing * thickness);
+      assert_true(fabs(b.w->body->force[a][g->particle_site[p]]) <
+                  1e-13 * 30e9 * spacing * thickness);
   close_body(&b);
 }
 
 /* --- steps ------------------------------------------------------------------------------------ */
 
-static void momentum(const body *b, double total[2], double *scale) {
+static void momentum(const marching *b, double total[2], double *scale) {
   total[0] = total[1] = *scale = 0;
   for (long p = 0; p < b->lattice->particle_count; p++)
     for (int a = 0; a < 2; a++) {
-      const double v = b->w->velocity[a][b->lattice->particle_site[p]];
+      const double v = b->w->body->velocity[a][b->lattice->particle_site[p]];
       total[a] += v;
       *scale += fabs(v);
     }
@@ -277,7 +279,7 @@ static void momentum(const body *b, double total[2], double *scale) {
 
 static void momentum_stays(void **state) {
   (void)state;
-  body b;
+  marching b;
   double before[2], after[2], scale;
   open_body(&b, 17, 3, 1e-7, 1e-4);
   shake(&b, 5);
@@ -291,11 +293,11 @@ static void momentum_stays(void **state) {
 }
 
 static void same_arrays(const sweep *a, const sweep *b) {
-  const size_t site = (size_t)a->lattice->size * sizeof(double);
-  for (int d = 0; d < a->dof; d++) {
-    assert_memory_equal(a->displacement[d], b->displacement[d], site);
-    assert_memory_equal(a->velocity[d], b->velocity[d], site);
-    assert_memory_equal(a->force[d], b->force[d], site);
+  const size_t site = (size_t)a->body->lattice->size * sizeof(double);
+  for (int d = 0; d < a->body->dof; d++) {
+    assert_memory_equal(a->body->displacement[d], b->body->displacement[d], site);
+    assert_memory_equal(a->body->velocity[d], b->body->velocity[d], site);
+    assert_memory_equal(a->body->force[d], b->body->force[d], site);
   }
   assert_memory_equal(a->field[0], b->field[0], site);
   assert_memory_equal(a->field[1], b->field[1], 6 * site);
@@ -303,7 +305,7 @@ static void same_arrays(const sweep *a, const sweep *b) {
 
 static void threads_do_not_change_a_bit(void **state) {
   (void)state;
-  body one, many;
+  marching one, many;
   open_body(&one, 17, 1, 1e-7, 1e-4);
   shake(&one, 3);
   for (int n = 0; n < 40; n++)
@@ -311,7 +313,7 @@ static void threads_do_not_change_a_bit(void **state) {
   const int threads[] = {2, 3, 1000};
   for (int k = 0; k < 3; k++) {
     open_body(&many, 17, threads[k], 1e-7, 1e-4);
-    assert_true(many.w->block_count > 1);
+    assert_true(many.w->body->block_count > 1);
     shake(&many, 3);
     for (int n = 0; n < 40; n++)
       assert_true(sweep_step(many.w));
@@ -323,7 +325,7 @@ static void threads_do_not_change_a_bit(void **state) {
 
 static void observing_changes_no_state(void **state) {
   (void)state;
-  body a, b;
+  marching a, b;
   open_body(&a, 0, 2, 1e-7, 1e-4);
   open_body(&b, 0, 2, 1e-7, 1e-4);
   shake(&a, 5);
@@ -341,7 +343,7 @@ static void observing_changes_no_state(void **state) {
 static void fields_follow_their_rules(void **state) {
   (void)state;
   for (int held = 0; held < 2; held++) {
-    body b;
+    marching b;
     open_body(&b, 17, 2, 0, 1e-4);
     shake(&b, 9);
     rows *g = b.lattice;
@@ -357,8 +359,9 @@ static void fields_follow_their_rules(void **state) {
       for (long m = 0; m < g->bond_count; m++) {
         const long i = g->particle_site[bonds[m].i], j = g->particle_site[bonds[m].j];
         const double C[2] = {g->x[j] - g->x[i], g->y[j] - g->y[i]};
-        const double now = hypot(C[0] + b.w->displacement[0][j] - b.w->displacement[0][i],
-                                 C[1] + b.w->displacement[1][j] - b.w->displacement[1][i]);
+        const double now =
+            hypot(C[0] + b.w->body->displacement[0][j] - b.w->body->displacement[0][i],
+                  C[1] + b.w->body->displacement[1][j] - b.w->body->displacement[1][i]);
         most[m] = fmax(most[m], now / spacing - 1);
       }
       assert_true(sweep_step(b.w));
@@ -372,7 +375,7 @@ static void fields_follow_their_rules(void **state) {
       assert_true(b.w->field[0][q] >= before[q]);
       grown = fmax(grown, b.w->field[0][q] - before[q]);
       if (g->present[q]) continue;
-      assert_true(b.w->displacement[0][q] == 0 && b.w->velocity[1][q] == 0);
+      assert_true(b.w->body->displacement[0][q] == 0 && b.w->body->velocity[1][q] == 0);
     }
     assert_true(held ? grown == 0 : grown > 0.1);
     free(before);
@@ -384,14 +387,14 @@ static void fields_follow_their_rules(void **state) {
 
 static void a_number_gone_bad_is_caught_before_it_moves(void **state) {
   (void)state;
-  body b;
+  marching b;
   open_body(&b, 0, 3, 0, 1e-4);
   const long site = b.lattice->particle_site[b.lattice->particle_count / 3];
   b.w->field[0][site] = NAN;
   assert_false(sweep_step(b.w));
-  const sweep_block *at = &b.w->blocks[sweep_bad(b.w)];
+  const body_block *at = &b.w->body->blocks[body_bad(b.w->body)];
   assert_true(at->bad_site <= site && isnan(at->bad_velocity));
-  assert_true(b.w->velocity[0][site] == 0 && b.w->displacement[0][site] == 0);
+  assert_true(b.w->body->velocity[0][site] == 0 && b.w->body->displacement[0][site] == 0);
   close_body(&b);
 }
 

@@ -7,7 +7,8 @@
 
 #include <cmocka.h>
 
-#include "runtime/interaction/family_parts.h"
+#include "runtime/interaction/family_run.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/small_run.h"
@@ -24,11 +25,11 @@ static const char plate[] =
 /* Particles in a motion that stretches and breaks. */
 static sweep *moving_plate(const pl_law *law, const small_run *r, const rows *g, int blocks,
                            bool ledger, bool forces) {
-  sweep *w = sweep_new(g, law, r->parameters, 2e-7, blocks, ledger, forces);
+  sweep *w = interaction_new(g, law, r->parameters, 2e-7, blocks, ledger, forces);
   for (long q = 0; q < g->size; q++) {
     if (!g->present[q]) continue;
-    w->velocity[0][q] = 3 * sin(40 * g->y[q]) + 20 * g->x[q];
-    w->velocity[1][q] = 2 * cos(31 * g->x[q] + 11 * g->y[q]);
+    w->body->velocity[0][q] = 3 * sin(40 * g->y[q]) + 20 * g->x[q];
+    w->body->velocity[1][q] = 2 * cos(31 * g->x[q] + 11 * g->y[q]);
   }
   for (int k = 0; k < STEPS; k++)
     assert_true(sweep_step(w));
@@ -41,10 +42,10 @@ static void assert_same_values(const rows *g, const double *a, const double *b) 
 }
 
 static void assert_same_state(const sweep *a, const sweep *b) {
-  const rows *g = a->lattice;
-  for (int d = 0; d < a->dof; d++) {
-    assert_same_values(g, a->displacement[d], b->displacement[d]);
-    assert_same_values(g, a->velocity[d], b->velocity[d]);
+  const rows *g = a->body->lattice;
+  for (int d = 0; d < a->body->dof; d++) {
+    assert_same_values(g, a->body->displacement[d], b->body->displacement[d]);
+    assert_same_values(g, a->body->velocity[d], b->body->velocity[d]);
   }
   for (int f = 0; f < a->law->field_count; f++)
     for (int k = 0; k < sweep_planes(a, a->law->fields[f].place); k++)
@@ -53,8 +54,8 @@ static void assert_same_state(const sweep *a, const sweep *b) {
 
 static long count_broken(const sweep *w) {
   long count = 0;
-  for (long q = 0; q < w->lattice->size; q++)
-    count += w->lattice->present[q] && w->field[0][q] > 0;
+  for (long q = 0; q < w->body->lattice->size; q++)
+    count += w->body->lattice->present[q] && w->field[0][q] > 0;
   return count;
 }
 
@@ -82,9 +83,9 @@ static void windows_and_whole_bodies_give_the_same_bits(void **state) {
       sweep_observe(w);
       sweep_observe(whole);
       assert_same_state(whole, w);
-      for (int d = 0; d < w->dof; d++)
-        assert_same_values(g, whole->force[d], w->force[d]);
-      const sweep_totals a = sweep_sum(whole), b = sweep_sum(w);
+      for (int d = 0; d < w->body->dof; d++)
+        assert_same_values(g, whole->body->force[d], w->body->force[d]);
+      const body_totals a = body_sum(whole->body), b = body_sum(w->body);
       assert_memory_equal(&a.stored, &b.stored, sizeof a.stored);
       sweep_free(w);
     }
@@ -103,16 +104,16 @@ static void the_first_bad_site_is_told_whatever_moves_first(void **state) {
   assert_non_null(g);
   g->mass = simulation_rows(r.simulation, 0)->mass;
   for (int blocks = 1; blocks <= 2; blocks++) {
-    sweep *w = sweep_new(g, &family_hexagon, r.parameters, 2e-7, blocks, false, false);
+    sweep *w = interaction_new(g, &family_hexagon, r.parameters, 2e-7, blocks, false, false);
     const int row = g->row_count / 2 + 1; /* of two blocks the second row of the second one */
     long first = rows_start(g, row), later = rows_start(g, row + 9);
     while (!g->present[first])
       first++;
     while (!g->present[later])
       later++;
-    w->velocity[0][first] = w->velocity[1][later] = NAN;
+    w->body->velocity[0][first] = w->body->velocity[1][later] = NAN;
     assert_false(sweep_step(w));
-    const sweep_block *b = &w->blocks[sweep_bad(w)];
+    const body_block *b = &w->body->blocks[body_bad(w->body)];
     assert_int_equal(rows_row(g, b->bad_site), row - 1); /* by the dampers of its bonds */
     sweep_free(w);
   }
@@ -129,9 +130,9 @@ static void a_window_keeps_the_rows_that_passes_need(void **state) {
   rows *g = lattice_build(r.deck, 0, &r.said);
   pl_law near = family_hexagon;
   near.step.at_hand = 1u << 1;
-  sweep *far = sweep_new(g, &family_hexagon, r.parameters, 2e-7, 1, false, false),
-        *here = sweep_new(g, &near, r.parameters, 2e-7, 1, false, false);
-  assert_true(here->bytes < far->bytes);
+  sweep *far = interaction_new(g, &family_hexagon, r.parameters, 2e-7, 1, false, false),
+        *here = interaction_new(g, &near, r.parameters, 2e-7, 1, false, false);
+  assert_true(here->body->bytes < far->body->bytes);
   sweep_free(far);
   sweep_free(here);
   rows_free(g);

@@ -32,10 +32,10 @@ static void sums_hold_all_rows_that_bonds_reach(void **state) {
   open_block(&r, &law);
   law.sum_count = 3;
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
-  assert_int_equal(w->block_count, 3);
-  for (int b = 0; b < w->block_count; b++) {
-    const sweep_block *block = &w->blocks[b];
+  const rows *g = w->body->lattice;
+  assert_int_equal(w->body->block_count, 3);
+  for (int b = 0; b < w->body->block_count; b++) {
+    const body_block *block = &w->body->blocks[b];
     pair_sums s = pair_sums_new(w, block, REACH);
     assert_int_equal(s.before, block->first > REACH ? block->first - REACH : 0);
     assert_int_equal(s.base, rows_start(g, s.before));
@@ -65,10 +65,10 @@ static void marks_stand_where_fields_are_not_0(void **state) {
   small_run r;
   open_block(&r, &elastic_bar);
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
-  const size_t before = w->bytes;
+  const rows *g = w->body->lattice;
+  const size_t before = w->body->bytes;
   uint64_t **marks = pair_marks_new(w);
-  assert_true(w->bytes > before);
+  assert_true(w->body->bytes > before);
   const long slot = 5 * PL_LANES + 3;
   w->field[0][2 * g->size + slot] = 1e-300;
   w->field[0][0 * g->size + slot] = -0.0; /* not the bits of a 0 that nobody wrote */

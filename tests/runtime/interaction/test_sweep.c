@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/pairwise.h"
+#include "runtime/simulation/bad_state.h"
 #include "tests/runtime/small_run.h"
 
 /* A body with ragged rows: disc, rotated lattice, a notch. */
@@ -45,11 +46,11 @@ static double uniform(uint64_t *state) {
 /* Random displacements and velocities on the particles, random damage on the bonds. */
 static void shake(small_run *r, uint64_t seed) {
   sweep *w = simulation_state(r->simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   for (long p = 0; p < g->particle_count; p++)
-    for (int d = 0; d < w->dof; d++) {
-      w->displacement[d][g->particle_site[p]] = (d < 2 ? 1e-4 : 1e-2) * uniform(&seed);
-      w->velocity[d][g->particle_site[p]] = (d < 2 ? 1 : 10) * uniform(&seed);
+    for (int d = 0; d < w->body->dof; d++) {
+      w->body->displacement[d][g->particle_site[p]] = (d < 2 ? 1e-4 : 1e-2) * uniform(&seed);
+      w->body->velocity[d][g->particle_site[p]] = (d < 2 ? 1 : 10) * uniform(&seed);
     }
   rows_bond *bonds = rows_bonds(g);
   for (long b = 0; b < g->bond_count; b++)
@@ -59,7 +60,7 @@ static void shake(small_run *r, uint64_t seed) {
 
 /* Force and moment on every particle: [particle][3], bond by bond. */
 static double *forces_by_list(const sweep *w) {
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double *force = must_calloc((size_t)g->particle_count * 3, sizeof *force);
   rows_bond *bonds = rows_bonds(g);
   for (long m = 0; m < g->bond_count; m++) {
@@ -69,11 +70,11 @@ static double *forces_by_list(const sweep *w) {
     double field = w->field[0][bonds[m].slot], plane[4] = {0};
     double *fields[] = {&field}, *planes[] = {&plane[0], &plane[1], &plane[2], &plane[3]};
     pl_strip s = {.count = 1, .direction = k, .flags = &flags, .field = fields, .force = planes};
-    for (int d = 0; d < w->dof; d++) {
-      s.displacement_i[d] = &w->displacement[d][i];
-      s.displacement_j[d] = &w->displacement[d][j];
-      s.velocity_i[d] = &w->velocity[d][i];
-      s.velocity_j[d] = &w->velocity[d][j];
+    for (int d = 0; d < w->body->dof; d++) {
+      s.displacement_i[d] = &w->body->displacement[d][i];
+      s.displacement_j[d] = &w->body->displacement[d][j];
+      s.velocity_i[d] = &w->body->velocity[d][i];
+      s.velocity_j[d] = &w->body->velocity[d][j];
     }
     w->law->rows(w->law, pairwise_uniforms(w, k), &s);
     for (int d = 0; d < 2; d++) {
@@ -92,25 +93,26 @@ static void check_against_list(const pl_law *law, double rotation, int threads) 
   open_ragged(&r, law, rotation, threads);
   shake(&r, 7);
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   double *force = forces_by_list(w), *v = must_calloc((size_t)g->particle_count * 3, sizeof *v),
          scale[3] = {0};
   for (long p = 0; p < g->particle_count; p++)
-    for (int d = 0; d < w->dof; d++) {
-      v[3 * p + d] = w->velocity[d][g->particle_site[p]];
+    for (int d = 0; d < w->body->dof; d++) {
+      v[3 * p + d] = w->body->velocity[d][g->particle_site[p]];
       scale[d] = fmax(scale[d], fabs(force[3 * p + d]));
     }
   sweep_observe(w);
   for (long p = 0; p < g->particle_count; p++)
-    for (int d = 0; d < w->dof; d++) /* a few roundings of sums in another order */
-      assert_true(fabs(w->force[d][g->particle_site[p]] - force[3 * p + d]) <= 1e-14 * scale[d]);
+    for (int d = 0; d < w->body->dof; d++) /* a few roundings of sums in another order */
+      assert_true(fabs(w->body->force[d][g->particle_site[p]] - force[3 * p + d]) <=
+                  1e-14 * scale[d]);
   sweep_step(w);
   for (long p = 0; p < g->particle_count; p++)
-    for (int d = 0; d < w->dof; d++) {
-      const double change = w->time_step / w->mass[d] * force[3 * p + d];
-      const double after = w->velocity[d][g->particle_site[p]];
+    for (int d = 0; d < w->body->dof; d++) {
+      const double change = w->body->time_step / w->body->mass[d] * force[3 * p + d];
+      const double after = w->body->velocity[d][g->particle_site[p]];
       assert_true(fabs(after - v[3 * p + d] - change) <=
-                  1e-14 * w->time_step / w->mass[d] * scale[d] + 1e-14);
+                  1e-14 * w->body->time_step / w->body->mass[d] * scale[d] + 1e-14);
     }
   free(force);
   free(v);
@@ -128,12 +130,12 @@ static void sweep_gives_the_forces_of_the_bond_list(void **state) {
 }
 
 static void same_arrays(const sweep *a, const sweep *b) {
-  const size_t site = (size_t)a->lattice->size * sizeof(double);
-  for (int d = 0; d < a->dof; d++) {
-    assert_memory_equal(a->displacement[d], b->displacement[d], site);
-    assert_memory_equal(a->velocity[d], b->velocity[d], site);
+  const size_t site = (size_t)a->body->lattice->size * sizeof(double);
+  for (int d = 0; d < a->body->dof; d++) {
+    assert_memory_equal(a->body->displacement[d], b->body->displacement[d], site);
+    assert_memory_equal(a->body->velocity[d], b->body->velocity[d], site);
   }
-  assert_memory_equal(a->field[0], b->field[0], site * (size_t)a->lattice->directions);
+  assert_memory_equal(a->field[0], b->field[0], site * (size_t)a->body->lattice->directions);
   assert_memory_equal(a->dissipated_state, b->dissipated_state, site);
   assert_memory_equal(a->dissipated_rate, b->dissipated_rate, site);
 }
@@ -146,18 +148,18 @@ static void blocks_are_alike(void **state) {
     open_disc(&r, &elastic_beam, 0.3, 0, threads);
     const sweep *w = simulation_state(r.simulation);
     long all = 0, longest = 0;
-    for (int row = 0; row < w->lattice->row_count; row++) {
-      all += w->count[row];
-      longest = w->count[row] > longest ? w->count[row] : longest;
+    for (int row = 0; row < w->body->lattice->row_count; row++) {
+      all += w->body->count[row];
+      longest = w->body->count[row] > longest ? w->body->count[row] : longest;
     }
-    assert_int_equal(w->block_count, threads);
-    assert_int_equal(w->blocks[0].first, 0);
-    assert_int_equal(w->blocks[threads - 1].last, w->lattice->row_count);
+    assert_int_equal(w->body->block_count, threads);
+    assert_int_equal(w->body->blocks[0].first, 0);
+    assert_int_equal(w->body->blocks[threads - 1].last, w->body->lattice->row_count);
     for (int k = 0; k < threads; k++) {
       long here = 0;
-      if (k > 0) assert_int_equal(w->blocks[k].first, w->blocks[k - 1].last);
-      for (int row = w->blocks[k].first; row < w->blocks[k].last; row++)
-        here += w->count[row];
+      if (k > 0) assert_int_equal(w->body->blocks[k].first, w->body->blocks[k - 1].last);
+      for (int row = w->body->blocks[k].first; row < w->body->blocks[k].last; row++)
+        here += w->body->count[row];
       assert_true(here > 0 && labs(threads * here - all) <= threads * longest);
     }
     small_close(&r);
@@ -210,10 +212,10 @@ static void absent_sites_stay_at_rest(void **state) {
   shake(&r, 9);
   simulation_advance(r.simulation, 20, NULL);
   const sweep *w = simulation_state(r.simulation);
-  for (long site = 0; site < w->lattice->size; site++)
-    for (int d = 0; d < w->dof && !w->lattice->present[site]; d++) {
-      assert_true(w->displacement[d][site] == 0);
-      assert_true(w->velocity[d][site] == 0);
+  for (long site = 0; site < w->body->lattice->size; site++)
+    for (int d = 0; d < w->body->dof && !w->body->lattice->present[site]; d++) {
+      assert_true(w->body->displacement[d][site] == 0);
+      assert_true(w->body->velocity[d][site] == 0);
     }
   small_close(&r);
 }
@@ -226,8 +228,8 @@ static void a_number_gone_bad_is_caught_in_its_step(void **state) {
     shake(&r, 11);
     assert_int_equal(simulation_advance(r.simulation, 3, NULL), STEP_OK);
     sweep *w = simulation_state(r.simulation);
-    rows_bond *bonds = rows_bonds(w->lattice);
-    const rows_bond broken = bonds[w->lattice->bond_count / 2];
+    rows_bond *bonds = rows_bonds(w->body->lattice);
+    const rows_bond broken = bonds[w->body->lattice->bond_count / 2];
     w->field[0][broken.slot] = NAN;
     free(bonds);
     assert_int_equal(simulation_advance(r.simulation, 10, NULL), STEP_BAD);
@@ -251,14 +253,14 @@ static void a_runaway_is_caught(void **state) {
   small_run r;
   open_ragged(&r, &elastic_beam, 0, 2);
   sweep *w = simulation_state(r.simulation);
-  const long site = w->lattice->particle_site[w->lattice->particle_count / 3];
-  w->displacement[2][site] =
+  const long site = w->body->lattice->particle_site[w->body->lattice->particle_count / 3];
+  w->body->displacement[2][site] =
       1; /* a rotation that its neighbours answer with far too large a moment */
-  w->velocity[2][site] = 1e9;
+  w->body->velocity[2][site] = 1e9;
   assert_int_equal(simulation_advance(r.simulation, 10, NULL), STEP_BAD);
   const bad_state bad = simulation_bad(r.simulation);
   assert_int_equal(bad.step, 0);
-  assert_int_equal(bad.particle, w->lattice->particle_count / 3);
+  assert_int_equal(bad.particle, w->body->lattice->particle_count / 3);
   assert_string_equal(bad.what, "runaway rotation");
   assert_true(bad.bond_particle >= 0);
   assert_true(fabs(fabs(bad.theta_i) - 1) < 1e-12 || fabs(fabs(bad.theta_j) - 1) < 1e-12);
@@ -271,14 +273,14 @@ static void rows_alike_share_their_flags(void **state) {
   small_run r;
   open_ragged(&r, &elastic_beam, 0, 1);
   const sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   int shared = 0, own = 0;
   for (int row = 0; row < g->row_count; row++) {
     const int64_t *flags = pairwise_flags(w, row);
-    const long start = rows_start(g, row) + w->begin[row];
-    for (long q = 0; q < w->count[row]; q++)
+    const long start = rows_start(g, row) + w->body->begin[row];
+    for (long q = 0; q < w->body->count[row]; q++)
       assert_int_equal(flags[q], (int64_t)(g->bonds[start + q] | g->held_bonds[start + q] << 32));
-    if (row < 2 || w->count[row] == 0) continue;
+    if (row < 2 || w->body->count[row] == 0) continue;
     if (flags == pairwise_flags(w, row - 2))
       shared++;
     else

@@ -12,6 +12,8 @@
 #include "runtime/analysis/stability.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/deck/deck.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows_select.h"
 #include "runtime/lattice/scattered.h"
@@ -23,12 +25,12 @@ static const double spacing = 0.01, thickness = 0.1, step = 1e-7;
 
 /* --- bodies ----------------------------------------------------------------------------------- */
 
-typedef struct body {
+typedef struct marching {
   rows *rows;
   pl_law law;
   double parameters[FAMILY_PARAMETERS];
   sweep *w;
-} body;
+} marching;
 
 static void set_masses(rows *g, double rho) {
   g->mass = rho * g->volume;
@@ -36,8 +38,8 @@ static void set_masses(rows *g, double rho) {
     g->site_mass[q] = rho * g->site_volume[q];
 }
 
-static body body_of(rows *g, double tau, double S_t) {
-  body b = {.rows = g, .law = g->list ? family_for_lists(&family_hexagon) : family_hexagon};
+static marching body_of(rows *g, double tau, double S_t) {
+  marching b = {.rows = g, .law = g->list ? family_for_lists(&family_hexagon) : family_hexagon};
   assert_non_null(g);
   for (int p = 0; p < FAMILY_PARAMETERS; p++)
     b.parameters[p] = family_parameters[p].initial;
@@ -47,11 +49,11 @@ static body body_of(rows *g, double tau, double S_t) {
   return b;
 }
 
-static void set_going(body *b, int threads) {
-  b->w = sweep_new(b->rows, &b->law, b->parameters, step, threads, true, true);
+static void set_going(marching *b, int threads) {
+  b->w = interaction_new(b->rows, &b->law, b->parameters, step, threads, true, true);
 }
 
-static void close_body(body *b) {
+static void close_body(marching *b) {
   sweep_free(b->w);
   rows_free(b->rows);
 }
@@ -137,18 +139,18 @@ static rows *as_list(const rows *g) {
 }
 
 /* Particle k begins as particle numbers[k] of another body. */
-static void shake(const body *b, const int32_t *numbers, uint64_t seed) {
+static void shake(const marching *b, const int32_t *numbers, uint64_t seed) {
   for (long p = 0; p < b->rows->particle_count; p++) {
     const long site = b->rows->particle_site[numbers ? numbers[p] : p];
     for (int d = 0; d < 2; d++) {
-      b->w->displacement[d][site] = 1e-5 * (2 * points_draw(&seed) - 1);
-      b->w->velocity[d][site] = 0.1 * (2 * points_draw(&seed) - 1);
+      b->w->body->displacement[d][site] = 1e-5 * (2 * points_draw(&seed) - 1);
+      b->w->body->velocity[d][site] = 0.1 * (2 * points_draw(&seed) - 1);
     }
     b->w->field[0][site] = 0.5 * points_draw(&seed);
   }
 }
 
-static void go(const body *b, int steps) {
+static void go(const marching *b, int steps) {
   for (int n = 0; n < steps; n++)
     assert_true(sweep_step(b->w));
 }
@@ -308,15 +310,16 @@ static void protection_reaches_as_far(void **state) {
 
 /* --- sweeps ----------------------------------------------------------------------------------- */
 
-static void assert_same(const body *a, const body *b, const int32_t *numbers, double tolerance) {
+static void assert_same(const marching *a, const marching *b, const int32_t *numbers,
+                        double tolerance) {
   double most = 0, worst = 0;
   for (long p = 0; p < a->rows->particle_count; p++) {
     const long here = a->rows->particle_site[p];
     const long there = b->rows->particle_site[numbers ? numbers[p] : p];
     for (int d = 0; d < 2; d++) {
-      const double u = a->w->displacement[d][here];
+      const double u = a->w->body->displacement[d][here];
       most = fmax(most, fabs(u));
-      worst = fmax(worst, fabs(u - b->w->displacement[d][there]));
+      worst = fmax(worst, fabs(u - b->w->body->displacement[d][there]));
     }
     assert_true(fabs(a->w->field[0][here] - b->w->field[0][there]) <= tolerance);
   }
@@ -327,42 +330,41 @@ static void assert_same(const body *a, const body *b, const int32_t *numbers, do
 /* Damage, dampers, mass damping, gravity: all in the same way on a lattice and on a list. */
 static void a_lattice_as_a_list(void **state) {
   (void)state;
-  body one = body_of(lattice_disc(0.07), 1e-8, 8e-4);
-  body two = body_of(as_list(one.rows), 1e-8, 8e-4);
+  marching one = body_of(lattice_disc(0.07), 1e-8, 8e-4);
+  marching two = body_of(as_list(one.rows), 1e-8, 8e-4);
   assert_int_equal(one.rows->bond_count, two.rows->bond_count);
-  body *both[] = {&one, &two};
-  sweep_totals sum[2];
+  marching *both[] = {&one, &two};
+  body_totals sum[2];
   for (int k = 0; k < 2; k++) {
     sweep *w;
     set_going(both[k], 2);
     w = both[k]->w;
     shake(both[k], NULL, 5);
-    sweep_add_gravity(w);
-    w->decay = 0.999;
-    w->gravity[1] = -1e-4 / w->time_step;
-    w->gravity_work[1] = w->mass[1] * w->time_step * w->gravity[1];
+    body_add_gravity(w->body);
+    w->body->decay = 0.999;
+    w->body->gravity[1] = -1e-4 / w->body->time_step;
+    w->body->gravity_work[1] = w->body->mass[1] * w->body->time_step * w->body->gravity[1];
     go(both[k], 200);
     sweep_observe(w);
-    sum[k] = sweep_sum(w);
+    sum[k] = body_sum(w->body);
   }
   assert_same(&one, &two, NULL, 1e-9);
   assert_true(sum[0].kinetic > 0 && sum[0].stored > 0 && sum[0].dissipated > 0);
   assert_true(fabs(sum[1].kinetic - sum[0].kinetic) <= 1e-9 * sum[0].kinetic);
   assert_true(fabs(sum[1].stored - sum[0].stored) <= 1e-9 * sum[0].stored);
   assert_true(fabs(sum[1].internal - sum[0].internal) <= 1e-9 * fabs(sum[0].internal));
-  assert_true(fabs(sum[1].dissipated - sum[0].dissipated) <=
-              1e-9 * sum[0].dissipated);
+  assert_true(fabs(sum[1].dissipated - sum[0].dissipated) <= 1e-9 * sum[0].dissipated);
   assert_true(fabs(sum[1].gravity - sum[0].gravity) <= 1e-9 * fabs(sum[0].gravity));
   close_body(&one);
   close_body(&two);
 }
 
-static void momentum(const body *b, double total[2], double *scale) {
+static void momentum(const marching *b, double total[2], double *scale) {
   total[0] = total[1] = *scale = 0;
   for (long p = 0; p < b->rows->particle_count; p++)
     for (int a = 0; a < 2; a++) {
       const long q = b->rows->particle_site[p];
-      const double value = b->rows->site_mass[q] * b->w->velocity[a][q];
+      const double value = b->rows->site_mass[q] * b->w->body->velocity[a][q];
       total[a] += value;
       *scale += fabs(value);
     }
@@ -371,7 +373,7 @@ static void momentum(const body *b, double total[2], double *scale) {
 /* Masses differ by three; what is kinetic is the sum of m v^2/2, half a step before and after. */
 static void particles_have_masses_of_their_own(void **state) {
   (void)state;
-  body b = body_of(shaken_list(40, 40, 0.3, 12, NULL), 1e-8, 1e-4);
+  marching b = body_of(shaken_list(40, 40, 0.3, 12, NULL), 1e-8, 1e-4);
   double before[2], after[2], scale;
   set_going(&b, 2);
   shake(&b, NULL, 5);
@@ -381,21 +383,21 @@ static void particles_have_masses_of_their_own(void **state) {
   for (int a = 0; a < 2; a++)
     assert_true(fabs(after[a] - before[a]) <= 1e-12 * scale);
   sweep_observe(b.w);
-  const double kinetic = sweep_sum(b.w).kinetic;
+  const double kinetic = body_sum(b.w->body).kinetic;
   double expected = 0, force[2], most = 0;
   for (long p = 0; p < b.rows->particle_count; p++) {
     const long q = b.rows->particle_site[p];
     for (int d = 0; d < 2; d++) {
-      const double v = b.w->velocity[d][q], m = b.rows->site_mass[q];
-      expected += 0.5 * m * v * (v + step / m * b.w->force[d][q]);
+      const double v = b.w->body->velocity[d][q], m = b.rows->site_mass[q];
+      expected += 0.5 * m * v * (v + step / m * b.w->body->force[d][q]);
     }
   }
   assert_true(fabs(kinetic - expected) <= 1e-13 * expected);
   force[0] = force[1] = 0;
   for (long p = 0; p < b.rows->particle_count; p++)
     for (int d = 0; d < 2; d++) {
-      force[d] += b.w->force[d][b.rows->particle_site[p]];
-      most += fabs(b.w->force[d][b.rows->particle_site[p]]);
+      force[d] += b.w->body->force[d][b.rows->particle_site[p]];
+      most += fabs(b.w->body->force[d][b.rows->particle_site[p]]);
     }
   assert_true(fabs(force[0]) <= 1e-13 * most && fabs(force[1]) <= 1e-13 * most);
   close_body(&b);
@@ -404,16 +406,16 @@ static void particles_have_masses_of_their_own(void **state) {
 /* Springs without damage: what moves and what is stored stays, to the order of the scheme. */
 static void energy_stays(void **state) {
   (void)state;
-  body b = body_of(shaken_list(30, 30, 0.3, 12, NULL), 0, 1e30);
+  marching b = body_of(shaken_list(30, 30, 0.3, 12, NULL), 0, 1e30);
   set_going(&b, 2);
   shake(&b, NULL, 5);
   for (long q = 0; q < b.rows->size; q++)
     b.w->field[0][q] = 0;
   sweep_observe(b.w);
-  const sweep_totals first = sweep_sum(b.w);
+  const body_totals first = body_sum(b.w->body);
   go(&b, 300);
   sweep_observe(b.w);
-  const sweep_totals last = sweep_sum(b.w);
+  const body_totals last = body_sum(b.w->body);
   const double all = first.kinetic + first.stored;
   assert_true(fabs(last.kinetic - first.kinetic) > 1e-2 * all);
   assert_true(fabs(last.kinetic + last.stored - all) <= 2e-4 * all);
@@ -425,8 +427,8 @@ static void energy_stays(void **state) {
 static void numbers_do_not_matter(void **state) {
   (void)state;
   int32_t *numbers = points_shuffle(40 * 31, 3);
-  body one = body_of(shaken_list(40, 31, 0.3, 12, NULL), 1e-8, 1e-4);
-  body two = body_of(shaken_list(40, 31, 0.3, 12, numbers), 1e-8, 1e-4);
+  marching one = body_of(shaken_list(40, 31, 0.3, 12, NULL), 1e-8, 1e-4);
+  marching two = body_of(shaken_list(40, 31, 0.3, 12, numbers), 1e-8, 1e-4);
   set_going(&one, 1);
   set_going(&two, 1);
   shake(&one, NULL, 5);
@@ -441,19 +443,19 @@ static void numbers_do_not_matter(void **state) {
 
 static void threads_do_not_change_a_bit(void **state) {
   (void)state;
-  body one = body_of(shaken_list(60, 50, 0.3, 12, NULL), 1e-8, 1e-4);
+  marching one = body_of(shaken_list(60, 50, 0.3, 12, NULL), 1e-8, 1e-4);
   set_going(&one, 1);
   shake(&one, NULL, 5);
   go(&one, 40);
   for (int threads = 2; threads <= 3; threads++) {
-    body many = body_of(shaken_list(60, 50, 0.3, 12, NULL), 1e-8, 1e-4);
+    marching many = body_of(shaken_list(60, 50, 0.3, 12, NULL), 1e-8, 1e-4);
     set_going(&many, threads);
-    assert_int_equal(many.w->block_count, threads);
+    assert_int_equal(many.w->body->block_count, threads);
     shake(&many, NULL, 5);
     go(&many, 40);
     assert_same(&one, &many, NULL, 0);
     const size_t site = (size_t)one.rows->size * sizeof(double);
-    assert_memory_equal(one.w->velocity[1], many.w->velocity[1], site);
+    assert_memory_equal(one.w->body->velocity[1], many.w->body->velocity[1], site);
     assert_memory_equal(one.w->field[1], many.w->field[1], 2 * (size_t)one.rows->directions * site);
     close_body(&many);
   }
@@ -466,12 +468,12 @@ static void threads_do_not_change_a_bit(void **state) {
 static void strains_are_fitted(void **state) {
   (void)state;
   const double size = 1e-9;
-  body b = body_of(shaken_list(30, 30, 0.3, 12, NULL), 0, 1e30);
+  marching b = body_of(shaken_list(30, 30, 0.3, 12, NULL), 0, 1e30);
   const rows *g = b.rows;
   set_going(&b, 1);
   for (long q = 0; q < g->size; q++) {
-    b.w->displacement[0][q] = size * (0.7 * g->x[q] + 0.4 * g->y[q]);
-    b.w->displacement[1][q] = size * (-0.2 * g->x[q] - 0.3 * g->y[q]);
+    b.w->body->displacement[0][q] = size * (0.7 * g->x[q] + 0.4 * g->y[q]);
+    b.w->body->displacement[1][q] = size * (-0.2 * g->x[q] - 0.3 * g->y[q]);
   }
   double *strain = must_calloc((size_t)g->size, sizeof *strain);
   sweep_observe(b.w);
@@ -521,8 +523,8 @@ static void unresolved_families_are_counted(void **state) {
 static void step_is_that_of_the_lattice(void **state) {
   (void)state;
   for (int damped = 0; damped < 2; damped++) {
-    body one = body_of(lattice_disc(0.3), damped ? 2e-6 : 0, 1e30);
-    body two = body_of(as_list(one.rows), damped ? 2e-6 : 0, 1e30);
+    marching one = body_of(lattice_disc(0.3), damped ? 2e-6 : 0, 1e30);
+    marching two = body_of(as_list(one.rows), damped ? 2e-6 : 0, 1e30);
     step_limit lattice = {0}, list = {0};
     stability_limit(&one.law, one.parameters, NULL, one.rows, &lattice);
     stability_limit(&two.law, two.parameters, NULL, two.rows, &list);
@@ -540,19 +542,19 @@ static void step_is_that_of_the_lattice(void **state) {
 static void step_is_the_largest(void **state) {
   (void)state;
   for (int k = 0; k < 2; k++) {
-    body b = body_of(shaken_list(16, 16, 0.3, 12, NULL), 0, 1e30);
+    marching b = body_of(shaken_list(16, 16, 0.3, 12, NULL), 0, 1e30);
     step_limit limit = {0};
     stability_limit(&b.law, b.parameters, NULL, b.rows, &limit);
     const double dt = limit.limit * (k ? 1.005 : 0.999);
-    b.w = sweep_new(b.rows, &b.law, b.parameters, dt, 2, true, true);
+    b.w = interaction_new(b.rows, &b.law, b.parameters, dt, 2, true, true);
     uint64_t seed = 5;
     for (long p = 0; p < b.rows->particle_count; p++)
-      b.w->velocity[0][b.rows->particle_site[p]] = 1e-6 * (points_draw(&seed) - 0.5);
+      b.w->body->velocity[0][b.rows->particle_site[p]] = 1e-6 * (points_draw(&seed) - 0.5);
     double most = 0;
     for (int n = 0; n < 1000 && most < 1e-2; n++) {
       assert_true(sweep_step(b.w));
       for (long p = 0; n % 100 == 99 && p < b.rows->particle_count; p++)
-        most = fmax(most, fabs(b.w->velocity[0][b.rows->particle_site[p]]));
+        most = fmax(most, fabs(b.w->body->velocity[0][b.rows->particle_site[p]]));
     }
     assert_true(k ? most > 1e-3 : most < 1e-4);
     close_body(&b);

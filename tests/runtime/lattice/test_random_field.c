@@ -11,6 +11,7 @@
 #include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
 #include "runtime/lattice/random_field.h"
+#include "runtime/simulation/material.h"
 #include "tests/runtime/small_run.h"
 
 /* With a probability of 0.001 the Kolmogorov distance of n values is more than 1.95/sqrt(n), and a

@@ -10,6 +10,7 @@
 
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/checkpoint.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/small_run.h"
 
 static const char path[] = "test_checkpoint.state";
@@ -61,11 +62,11 @@ static int go_with_frames(small_run *r, long steps) {
 
 static void same_runs(small_run *a, small_run *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->lattice->size * sizeof(double);
+  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
   assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
   for (int d = 0; d < 3; d++) {
-    assert_memory_equal(x->displacement[d], y->displacement[d], site);
-    assert_memory_equal(x->velocity[d], y->velocity[d], site);
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
+    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], site);
   }
   assert_memory_equal(x->field[0], y->field[0], 3 * site);
   const double *p, *q;

@@ -21,10 +21,10 @@ static double measured_frequency(double step) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  assert_int_equal(w->lattice->particle_count, 2);
-  const double *u = &w->displacement[0][w->lattice->particle_site[1]];
-  w->velocity[0][w->lattice->particle_site[0]] = -1e-3;
-  w->velocity[0][w->lattice->particle_site[1]] = 1e-3;
+  assert_int_equal(w->body->lattice->particle_count, 2);
+  const double *u = &w->body->displacement[0][w->body->lattice->particle_site[1]];
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = -1e-3;
+  w->body->velocity[0][w->body->lattice->particle_site[1]] = 1e-3;
   double last[3] = {0};
   while (simulation_step_done(r.simulation) < 10 || fabs(last[1]) < 0.5 * 1e-3 * 2e-6) {
     simulation_advance(r.simulation, 1, NULL);

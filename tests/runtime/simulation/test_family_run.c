@@ -88,11 +88,11 @@ static void a_breaking_body_takes_energy(void **state) {
 
 static void same_runs(small_run *a, small_run *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->lattice->size * sizeof(double);
+  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
   assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
   for (int d = 0; d < 2; d++) {
-    assert_memory_equal(x->displacement[d], y->displacement[d], site);
-    assert_memory_equal(x->velocity[d], y->velocity[d], site);
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
+    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], site);
   }
   assert_memory_equal(x->field[0], y->field[0], site);
   assert_memory_equal(x->field[1], y->field[1], 6 * site);
@@ -187,7 +187,7 @@ static void frames_hold_fields_where_they_stand(void **state) {
   for (long p = 0; p < g->particle_count; p++) {
     const long site = g->particle_site[p];
     assert_true(damage[p] == w->field[0][site] && omega[p] == damage[p]);
-    assert_true(force[2 * p] == w->force[0][site]);
+    assert_true(force[2 * p] == w->body->force[0][site]);
     stored += energy[p];
     largest = fmax(largest, damage[p]);
   }
@@ -196,8 +196,8 @@ static void frames_hold_fields_where_they_stand(void **state) {
   rows_bond *bonds = rows_bonds(g);
   for (long m = 0; m < g->bond_count; m++) {
     const long i = g->particle_site[bonds[m].i], j = g->particle_site[bonds[m].j];
-    const double dx = g->x[j] - g->x[i] + w->displacement[0][j] - w->displacement[0][i];
-    const double dy = g->y[j] - g->y[i] + w->displacement[1][j] - w->displacement[1][i];
+    const double dx = g->x[j] - g->x[i] + w->body->displacement[0][j] - w->body->displacement[0][i];
+    const double dy = g->y[j] - g->y[i] + w->body->displacement[1][j] - w->body->displacement[1][i];
     assert_true(fabs(stretch[m] - (hypot(dx, dy) / 0.01 - 1)) < 1e-13);
     assert_true(most[m] > -1);
   }
@@ -345,7 +345,7 @@ static void a_state_gone_bad_is_named_with_its_family(void **state) {
     open_busy(&r, threads, broken, "/");
     assert_int_equal(simulation_advance(r.simulation, 20, NULL), STEP_OK);
     sweep *w = simulation_state(r.simulation);
-    const rows *g = w->lattice;
+    const rows *g = w->body->lattice;
     const long particle = g->particle_count / 2, site = g->particle_site[particle];
     w->field[0][site] = NAN;
     assert_int_equal(simulation_advance(r.simulation, 10, NULL), STEP_BAD);
@@ -379,15 +379,15 @@ static double growth(double part) {
              "&output frames = 0 energy = .false. sample = 1 /\n");
   assert_non_null(r.simulation);
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
-  w->time_step = part * simulation_step_limit(r.simulation)->limit;
+  const rows *g = w->body->lattice;
+  w->body->time_step = part * simulation_step_limit(r.simulation)->limit;
   double first = 0, last = 0;
   for (long p = 0; p < g->particle_count; p++)
     for (int d = 0; d < 2; d++) {
       seed ^= seed << 13;
       seed ^= seed >> 7;
       seed ^= seed << 17;
-      w->velocity[d][g->particle_site[p]] = 1e-9 * (double)(int64_t)seed * 0x1p-63;
+      w->body->velocity[d][g->particle_site[p]] = 1e-9 * (double)(int64_t)seed * 0x1p-63;
     }
   for (int n = 0; n < 400; n++) {
     sweep_step(w);
@@ -395,7 +395,7 @@ static double growth(double part) {
       *(n < 10 ? &first : &last) = fmax(n < 10    ? first
                                         : n < 390 ? 0
                                                   : last,
-                                        fabs(w->velocity[0][g->particle_site[p]]));
+                                        fabs(w->body->velocity[0][g->particle_site[p]]));
   }
   small_close(&r);
   return last / first;

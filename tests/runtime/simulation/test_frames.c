@@ -7,7 +7,10 @@
 
 #include <cmocka.h>
 
+#include "runtime/deck/output_fields.h"
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/frame_field.h"
+#include "runtime/simulation/frames.h"
 #include "tests/runtime/simulation/chain.h"
 
 static double pair_step(void) {
@@ -76,7 +79,7 @@ static void the_larger_of_two_damages_counts(void **state) {
   must_open(&r, &law, text);
   sweep *w = simulation_state(r.simulation);
   rows_bond *bonds = rows_bonds(simulation_rows(r.simulation, 0));
-  assert_int_equal(w->lattice->bond_count, 2);
+  assert_int_equal(w->body->lattice->bond_count, 2);
   const double given[2][3] = {{0.3, 0.99, 0.6},
                               {0.9, 0.99, 0.1}}; /* of each bond: omega, alpha, crush */
   int32_t ends[3] = {0};
@@ -113,8 +116,54 @@ static void the_larger_of_two_damages_counts(void **state) {
   small_close(&r);
 }
 
+/* All that the table of fields holds, of a law that has it all, in the table's order and with its unit. */
+static void every_field_of_the_table_can_be_stored(void **state) {
+  (void)state;
+#define X(name, unit, components, exists, kind, words) #name,
+  static const char *const names[] = {OUTPUT_FIELDS(X)};
+#undef X
+#define X(name, unit, components, exists, kind, words) unit,
+  static const char *const units[] = {OUTPUT_FIELDS(X)};
+#undef X
+  enum { COUNT = sizeof names / sizeof *names };
+  char text[2048], fields[512] = "";
+  for (int k = COUNT - 1; k >= 0; k--)
+    snprintf(fields + strlen(fields), sizeof fields - strlen(fields), " '%s',", names[k]);
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-4 step = %.17g /\n" CHAIN
+           "&material lattice = 'c' model = 'm' /\n&output frames = 0 fields = %s 'nothing' /\n",
+           pair_step(), 1.0 * SPACING, fields);
+  small_run r;
+  small_open(&r, &elastic_beam, text);
+  assert_null(r.simulation); /* but for what no run has */
+  assert_int_equal(r.said.items[r.said.count - 1].code, DIAG_BAD_VALUE);
+  diagnostics said;
+  diag_begin(&said, &r.sources);
+  assert_false(frames_check(&r.deck->output, &elastic_beam, &said));
+  deck without = *r.deck;
+  without.output.field_count--;
+  assert_true(frames_check(&without.output, &elastic_beam, &said));
+  assert_int_equal(said.errors, 1);
+  r.said.errors = 0;
+  r.simulation = simulation_new(&without, &r.law, &r.said);
+  assert_non_null(r.simulation);
+  const frame_field *stored;
+  assert_int_equal(simulation_frame_fields(r.simulation, &stored), COUNT + 1); /* and omega */
+  for (int k = 0; k < COUNT; k++) {
+    double values[6];
+    assert_string_equal(stored[k].name, names[k]);
+    assert_string_equal(stored[k].unit, units[k]);
+    simulation_frame_values(r.simulation, k, values);
+    for (int c = 0; c < 2 * stored[k].components; c++)
+      assert_true(values[c] == 0);
+  }
+  diag_clear(&said);
+  small_close(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(every_field_of_the_table_can_be_stored),
       cmocka_unit_test(damage_is_counted_and_protection_kept),
       cmocka_unit_test(the_larger_of_two_damages_counts),
   };

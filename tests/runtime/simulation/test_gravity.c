@@ -49,10 +49,10 @@ static void a_free_body_falls_as_a_whole(void **state) {
   const double n = (double)simulation_step_done(r.simulation);
   const sweep *w = simulation_state(r.simulation);
   const double way = dt * dt * n * n / 2;
-  for (long q = 0; q < w->lattice->size; q++) {
-    const double here = w->lattice->present[q] ? way : 0; /* absent sites stay */
-    assert_true(fabs(w->displacement[0][q] - 2 * here) <= 1e-11 * way);
-    assert_true(fabs(w->displacement[1][q] + 9.81 * here) <= 1e-11 * way);
+  for (long q = 0; q < w->body->lattice->size; q++) {
+    const double here = w->body->lattice->present[q] ? way : 0; /* absent sites stay */
+    assert_true(fabs(w->body->displacement[0][q] - 2 * here) <= 1e-11 * way);
+    assert_true(fabs(w->body->displacement[1][q] + 9.81 * here) <= 1e-11 * way);
   }
   const double work = block_mass(&r) * (4 + 9.81 * 9.81) * way;
   assert_true(fabs(small_last(&r, "energy/external") / work - 1) < 1e-10);
@@ -75,8 +75,8 @@ static void gravity_runs_away_before_it_moves(void **state) {
   assert_int_equal(simulation_bad(r.simulation).step, 0);
   assert_string_equal(simulation_bad(r.simulation).what, "runaway velocity");
   const sweep *w = simulation_state(r.simulation);
-  for (long q = 0; q < w->lattice->size; q++)
-    assert_true(w->displacement[1][q] == 0);
+  for (long q = 0; q < w->body->lattice->size; q++)
+    assert_true(w->body->displacement[1][q] == 0);
   small_close(&r);
 }
 
@@ -171,10 +171,10 @@ static void a_thrown_body_keeps_its_velocity(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   const double t = simulation_time(r.simulation), energy = 0.5 * block_mass(&r) * 0.25;
   const sweep *w = simulation_state(r.simulation);
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const int64_t q = w->lattice->particle_site[p];
-    assert_true(fabs(w->displacement[0][q] / (0.3 * t) - 1) < 1e-10);
-    assert_true(fabs(w->displacement[1][q] / (-0.4 * t) - 1) < 1e-10);
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const int64_t q = w->body->lattice->particle_site[p];
+    assert_true(fabs(w->body->displacement[0][q] / (0.3 * t) - 1) < 1e-10);
+    assert_true(fabs(w->body->displacement[1][q] / (-0.4 * t) - 1) < 1e-10);
   }
   assert_true(fabs(small_last(&r, "energy/kinetic") / energy - 1) < 1e-10);
   assert_true(fabs(small_last(&r, "energy/imbalance")) < 1e-10 * energy);

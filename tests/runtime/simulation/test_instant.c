@@ -199,7 +199,7 @@ static void damage_of_a_family_is_that_of_its_places(void **state) {
   if (!r.simulation) small_print(&r);
   assert_non_null(r.simulation);
   sweep *w = simulation_state(r.simulation);
-  const long size = w->lattice->size;
+  const long size = w->body->lattice->size;
   double *seen = must_calloc((size_t)size, sizeof *seen), grown = 0;
   for (int n = 0; n < 60; n++) {
     simulation_advance(r.simulation, 1, NULL);
@@ -300,7 +300,7 @@ static void energy_from_nothing_stops_a_run(void **state) {
     assert_non_null(r.simulation);
     sweep *w = simulation_state(r.simulation);
     for (int d = 0; d < 3 && side == 1; d++)
-      w->mass[d] /= 4.1;
+      w->body->mass[d] /= 4.1;
     const step_status status = small_go(&r);
     assert_int_equal(status, side == 0 ? STEP_END : STEP_BAD);
     if (side == 1) {

@@ -88,8 +88,8 @@ static void open_swinging_pair(small_run *r, int steps) {
   must_open(r, &elastic_bar, text);
   sweep *w = simulation_state(r->simulation);
   const double speed = 0.5e-3 * SPACING * pair_frequency() / 1e3;
-  w->velocity[0][w->lattice->particle_site[0]] = -speed;
-  w->velocity[0][w->lattice->particle_site[1]] = speed;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = -speed;
+  w->body->velocity[0][w->body->lattice->particle_site[1]] = speed;
 }
 
 static const double *series_of(const small_run *r, ledger_term term) {

@@ -66,11 +66,11 @@ static void energies_add_up(void **state) {
 
 static void same_runs(const small_run *a, const small_run *b) {
   const sweep *one = simulation_state(a->simulation), *two = simulation_state(b->simulation);
-  const size_t site = (size_t)one->lattice->size * sizeof(double);
-  assert_int_equal(one->lattice->size, two->lattice->size);
-  for (int d = 0; d < one->dof; d++) {
-    assert_memory_equal(one->displacement[d], two->displacement[d], site);
-    assert_memory_equal(one->velocity[d], two->velocity[d], site);
+  const size_t site = (size_t)one->body->lattice->size * sizeof(double);
+  assert_int_equal(one->body->lattice->size, two->body->lattice->size);
+  for (int d = 0; d < one->body->dof; d++) {
+    assert_memory_equal(one->body->displacement[d], two->body->displacement[d], site);
+    assert_memory_equal(one->body->velocity[d], two->body->velocity[d], site);
   }
   assert_memory_equal(one->field[0], two->field[0], site);
   const long samples = simulation_history(a->simulation, NULL);

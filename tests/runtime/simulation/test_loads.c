@@ -7,7 +7,10 @@
 
 #include <cmocka.h>
 
+#include "runtime/body/motion.h"
+#include "runtime/interaction/interaction.h"
 #include "runtime/lattice/lattice.h"
+#include "runtime/simulation/load_steps.h"
 #include "runtime/simulation/loads.h"
 #include "tests/runtime/simulation/chain.h"
 
@@ -53,11 +56,11 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   simulation_advance(r.simulation, 200, NULL); /* counter-clockwise: the upper part goes left */
   const sweep *s = simulation_state(r.simulation);
   double low = 0, high = 0;
-  for (long p = 0; p < s->lattice->particle_count; p++) {
-    const long site = s->lattice->particle_site[p];
-    if (s->lattice->x[site] < 0.094) continue;
-    if (s->lattice->y[site] < 0.001) low = s->displacement[0][site];
-    if (s->lattice->y[site] > 0.05) high = s->displacement[0][site];
+  for (long p = 0; p < s->body->lattice->particle_count; p++) {
+    const long site = s->body->lattice->particle_site[p];
+    if (s->body->lattice->x[site] < 0.094) continue;
+    if (s->body->lattice->y[site] < 0.001) low = s->body->displacement[0][site];
+    if (s->body->lattice->y[site] > 0.05) high = s->body->displacement[0][site];
   }
   assert_true(low > 0 && high < 0);
   small_close(&r);
@@ -81,12 +84,12 @@ static void each_end_moment_comes_in_its_own_time(void **state) {
   simulation_advance(r.simulation, TURNS, NULL);
   const sweep *w = simulation_state(r.simulation);
   double momentum = 0;
-  for (long p = 0; p < w->lattice->particle_count; p++) {
-    const long q = w->lattice->particle_site[p];
+  for (long p = 0; p < w->body->lattice->particle_count; p++) {
+    const long q = w->body->lattice->particle_site[p];
     momentum +=
-        w->mass[0] * (w->lattice->x[q] * w->velocity[1][q] - w->lattice->y[q] * w->velocity[0][q]);
+        w->body->mass[0] * (w->body->lattice->x[q] * w->body->velocity[1][q] - w->body->lattice->y[q] * w->body->velocity[0][q]);
   }
-  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->time_step) - 1) < 1e-6);
+  assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->body->time_step) - 1) < 1e-6);
   small_close(&r);
 }
 
@@ -122,19 +125,19 @@ static void a_drive_is_followed_exactly_from_its_start(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  const long left = w->lattice->particle_site[0], right = w->lattice->particle_site[1];
-  w->velocity[0][left] = w->velocity[0][right] = 1; /* free until the start */
+  const long left = w->body->lattice->particle_site[0], right = w->body->lattice->particle_site[1];
+  w->body->velocity[0][left] = w->body->velocity[0][right] = 1; /* free until the start */
   simulation_advance(r.simulation, 100, NULL);
-  const double start = w->displacement[0][left];
+  const double start = w->body->displacement[0][left];
   assert_true(fabs(start - 1e-5) < 1e-15);
   for (int k = 101; k <= 400; k++) {
     simulation_advance(r.simulation, 1, NULL);
     const double t = k * 1e-7 - 1e-5, way = t < 1e-5 ? 0.25 * t * t / 1e-5 : 0.5 * (t - 0.5e-5);
-    assert_true(fabs(w->displacement[0][left] - start - way) < 1e-16 + 1e-12 * way);
+    assert_true(fabs(w->body->displacement[0][left] - start - way) < 1e-16 + 1e-12 * way);
     const double rise = t < 2e-5 ? (1 - cos(acos(-1) * t / 2e-5)) / 2 : 1;
-    assert_true(fabs(w->displacement[1][right] - 2e-6 * rise) < 1e-18 + 1e-12 * 2e-6);
+    assert_true(fabs(w->body->displacement[1][right] - 2e-6 * rise) < 1e-18 + 1e-12 * 2e-6);
   }
-  assert_true(fabs(w->velocity[0][left] - 0.5) < 1e-8);
+  assert_true(fabs(w->body->velocity[0][left] - 0.5) < 1e-8);
   small_close(&r);
 }
 
@@ -159,37 +162,37 @@ static void reactions_balance_the_momentum(void **state) {
   small_run r;
   must_open(&r, &elastic_beam, text);
   sweep *w = simulation_state(r.simulation);
-  const rows *g = w->lattice;
+  const rows *g = w->body->lattice;
   rows *copy = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, copy, "m", 3, &r.said);
   double largest = 0;
   l->lattice = g;
-  loads_begin(l, w);
+  load_steps_begin(l, w->body);
   for (long n = 0; n < 100; n++) {
     double before[2] = {0}, after[2] = {0}, outside[2] = {200, -300};
-    const double drag = sweep_drag(w) / w->time_step;
+    const double drag = motion_drag(w->body) / w->body->time_step;
     for (long p = 0; p < g->particle_count; p++)
       for (int d = 0; d < 2; d++)
-        before[d] += w->mass[d] * w->velocity[d][g->particle_site[p]];
+        before[d] += w->body->mass[d] * w->body->velocity[d][g->particle_site[p]];
     for (long c = 0; c < l->constraint_count;
          c++) { /* what begins to move at once is no reaction */
       const int d = l->constraints[c].component;
       outside[d] +=
-          w->mass[d] * w->decay * l->constraints[c].impulse / (w->time_step * sweep_force_part(w));
+          w->body->mass[d] * w->body->decay * l->constraints[c].impulse / (w->body->time_step * motion_force_part(w->body));
     }
     sweep_step(w);
-    for (int block = 0; block < w->block_count; block++)
-      loads_apply(l, w, block, n);
-    loads_turn(l, w, n);
+    for (int block = 0; block < w->body->block_count; block++)
+      load_steps_apply(l, w->body, block, n);
+    load_steps_turn(l, w->body, n);
     for (long c = 0; c < l->constraint_count; c++)
       outside[l->constraints[c].component] += l->constraints[c].reaction;
     for (long p = 0; p < g->particle_count; p++)
       for (int d = 0; d < 2; d++)
-        after[d] += w->mass[d] * w->velocity[d][g->particle_site[p]];
+        after[d] += w->body->mass[d] * w->body->velocity[d][g->particle_site[p]];
     for (int d = 0; d < 2; d++) {
       outside[d] -= drag * (before[d] + after[d]);
       largest = fmax(largest, fabs(outside[d]));
-      assert_true(fabs((after[d] - before[d]) / w->time_step - outside[d]) < 1e-9 * 1e4);
+      assert_true(fabs((after[d] - before[d]) / w->body->time_step - outside[d]) < 1e-9 * 1e4);
     }
   }
   assert_true(largest > 100);
@@ -271,7 +274,7 @@ static void each_of_many_drives_goes_its_own_way(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   for (int k = 0; k < MANY; k++) {
     const double way = 1e-5 * (k + 1) * 1e-6;
-    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-12);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) < 1e-12);
   }
   small_close(&r);
 }
@@ -287,7 +290,7 @@ static void each_of_many_forces_is_its_own(void **state) {
   for (int k = 0; k < MANY; k++) {
     const double slope = (k + 1) * 1e-6 / 1e-5;
     const double way = slope * 1e-21 * 100 * (100 * 100 - 1) / (6 * particle_mass());
-    assert_true(fabs(w->displacement[1][w->lattice->particle_site[k]] / way - 1) < 1e-9);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) < 1e-9);
   }
   small_close(&r);
 }

@@ -30,7 +30,7 @@ static void means_zeros_and_scales_are_as_defined(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *now, *mean, *zeroed;
   assert_int_equal(simulation_history(r.simulation, &time), 11);
@@ -134,21 +134,21 @@ static void a_window_holds_the_last_steps(void **state) {
   (void)state;
   watched w = watch();
   sweep *s = simulation_state(w.run.simulation);
-  const long left = s->lattice->particle_site[0], right = s->lattice->particle_site[1];
+  const long left = s->body->lattice->particle_site[0], right = s->body->lattice->particle_site[1];
   double values[2], zero = 0;
   assert_int_equal(w.monitors->items[1].window, 3);
   for (long n = 0; n <= 12; n++) {
     double mean = 0;
     const long held = n < 2 ? n + 1 : 3;
-    s->displacement[0][left] = 1e-3 * (double)(n == 7 ? -10 : n);
-    s->displacement[0][right] = 1e-3 * (double)(n * n);
+    s->body->displacement[0][left] = 1e-3 * (double)(n == 7 ? -10 : n);
+    s->body->displacement[0][right] = 1e-3 * (double)(n * n);
     for (long k = n - held + 1; k <= n; k++)
       mean += 1e-3 * (double)(k * k) / (double)held;
     monitors_step(w.monitors, n);
     monitors_look(w.monitors, n, n);
     if (n == 5) zero = mean;
     monitors_sample(w.monitors, n, (double)n * 1e-7, values);
-    assert_true(fabs(values[0] + 2 * s->displacement[0][left]) < 1e-18);
+    assert_true(fabs(values[0] + 2 * s->body->displacement[0][left]) < 1e-18);
     assert_true(fabs(values[1] - (mean - zero)) < 1e-15);
   }
   assert_true(fabs(w.monitors->items[0].state.peak + 2 * 12e-3) < 1e-17); /* 24 is more than 20 */

@@ -292,10 +292,10 @@ static const char keys_of[] = "increments = 12 tolerance = 1e-3";
 
 static void same_runs(small_run *a, small_run *b) {
   const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->lattice->size * sizeof(double);
+  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
   assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
   for (int d = 0; d < 2; d++)
-    assert_memory_equal(x->displacement[d], y->displacement[d], site);
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
   assert_memory_equal(x->field[0], y->field[0], site);
   const double *p, *q;
   const long samples = simulation_history(a->simulation, &p);
@@ -371,7 +371,7 @@ static pair relax_pair(void) {
   p.sweep = simulation_state(p.run.simulation);
   p.lattice = lattice_build(p.run.deck, 0, &p.run.said);
   p.loads = loads_new(p.run.deck, 0, p.lattice, "m", 2, &p.run.said);
-  p.relaxation = relaxation_new(p.run.deck, p.sweep, p.loads, 0.5);
+  p.relaxation = relaxation_new(p.run.deck, p.sweep->body, p.loads, 0.5);
   p.left = p.lattice->particle_site[0];
   p.right = p.lattice->particle_site[1];
   relaxation_begin(p.relaxation);
@@ -392,7 +392,7 @@ static void an_increment_begins_with_a_ramp(void **state) {
   pair p = relax_pair();
   assert_int_equal(p.relaxation->ramp, 16);
   assert_true(fabs(p.relaxation->interval - 0.1) < 1e-16);
-  assert_true(fabs(p.sweep->decay - exp(-0.1 * 2 * acos(-1) / 16)) < 1e-15);
+  assert_true(fabs(p.sweep->body->decay - exp(-0.1 * 2 * acos(-1) / 16)) < 1e-15);
   p.relaxation->state.done = 2;
   const load_clock clock = relaxation_clock(p.relaxation, 333);
   assert_true(fabs(clock.from - 0.2) < 1e-16 && fabs(clock.to - 0.3) < 1e-16);
@@ -409,14 +409,14 @@ static void damping_is_critical_for_the_motion_seen(void **state) {
   (void)state;
   pair p = relax_pair();
   const double k = 3e7, u = 1e-6;
-  p.sweep->displacement[0][p.right] = u;
-  p.sweep->force[0][p.right] = -k * u;
+  p.sweep->body->displacement[0][p.right] = u;
+  p.sweep->body->force[0][p.right] = -k * u;
   assert_false(relaxation_look(p.relaxation, 25));
-  const double rate = 2 * sqrt(k / p.sweep->mass[0]);
+  const double rate = 2 * sqrt(k / p.sweep->body->mass[0]);
   assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
-  assert_true(fabs(p.sweep->decay - exp(-rate * p.sweep->time_step)) < 1e-14);
-  p.sweep->displacement[0][p.right] = 2 * u; /* forces that help the motion say nothing */
-  p.sweep->force[0][p.right] = 0;
+  assert_true(fabs(p.sweep->body->decay - exp(-rate * p.sweep->body->time_step)) < 1e-14);
+  p.sweep->body->displacement[0][p.right] = 2 * u; /* forces that help the motion say nothing */
+  p.sweep->body->force[0][p.right] = 0;
   relaxation_look(p.relaxation, 50);
   assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
   relax_no_more(&p);
@@ -428,8 +428,8 @@ static void an_increment_ends_in_balance_or_after_most_steps(void **state) {
   pair p = relax_pair();
   assert_int_equal(p.loads->force_count, 1);
   p.loads->forces[0].now = 100;
-  p.sweep->force[0][p.right] = -90;
-  p.sweep->force[0][p.left] = 90;
+  p.sweep->body->force[0][p.right] = -90;
+  p.sweep->body->force[0][p.left] = 90;
   assert_false(relaxation_look(p.relaxation, 25));
   assert_true(fabs(p.relaxation->state.unbalance - 0.1) < 1e-15);
   assert_true(relaxation_look(p.relaxation, 100)); /* it was given up */
@@ -437,7 +437,7 @@ static void an_increment_ends_in_balance_or_after_most_steps(void **state) {
   assert_int_equal(p.relaxation->state.unbalanced, 1);
   relaxation_next(p.relaxation, 100);
   p.loads->forces[0].now = 100;
-  p.sweep->force[0][p.right] = -99.5;
+  p.sweep->body->force[0][p.right] = -99.5;
   assert_false(relaxation_look(p.relaxation, 115)); /* the loads still move */
   assert_true(relaxation_look(p.relaxation, 125));
   assert_true(fabs(p.relaxation->state.unbalance - 0.005) < 1e-14);
@@ -445,8 +445,8 @@ static void an_increment_ends_in_balance_or_after_most_steps(void **state) {
   assert_int_equal(p.relaxation->state.unbalanced, 1);
   assert_int_equal(p.relaxation->state.steps, 25);
   p.loads->forces[0].now = 0; /* broken: what was needed once, 100 N, counts a hundredth */
-  p.sweep->force[0][p.right] = 0.5;
-  p.sweep->force[0][p.left] = 0;
+  p.sweep->body->force[0][p.right] = 0.5;
+  p.sweep->body->force[0][p.left] = 0;
   relaxation_look(p.relaxation, 150);
   assert_true(fabs(p.relaxation->state.unbalance - 0.5) < 1e-14);
   relax_no_more(&p);

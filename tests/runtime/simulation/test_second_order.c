@@ -390,15 +390,15 @@ static void ramps_act_as_they_are(void **state) {
       40.3, "u", NULL, 1};
   small_run r = open_run(&m, STEPS);
   const sweep *w = simulation_state(r.simulation);
-  const long right = w->lattice->particle_site[1];
-  const double dt = w->time_step, start = m.start * end_time() / STEPS;
+  const long right = w->body->lattice->particle_site[1];
+  const double dt = w->body->time_step, start = m.start * end_time() / STEPS;
   simulation_advance(r.simulation, 40, NULL);
-  assert_true(w->velocity[0][right] == 0);
+  assert_true(w->body->velocity[0][right] == 0);
   simulation_advance(r.simulation, 1, NULL); /* with the force at step 40: 0 */
-  assert_true(w->velocity[0][right] == 0);
+  assert_true(w->body->velocity[0][right] == 0);
   simulation_advance(r.simulation, 1, NULL);
   const double part = (41 * dt - start) / 1e-5;
-  assert_true(fabs(w->velocity[0][right] / (dt / mass() * 100 * part) - 1) < 1e-9);
+  assert_true(fabs(w->body->velocity[0][right] / (dt / mass() * 100 * part) - 1) < 1e-9);
   small_close(&r);
 }
 

@@ -93,7 +93,7 @@ static void a_face_parts_the_bonds(void **state) {
     if (!w->present[up] || rows_has_bond(w, site, 2)) continue;
     cut++;
     assert_true(w->x[site] < 0.021 && fabs(w->z[site] - 0.035) < 1e-9);
-    assert_true(s->displacement[2][up] - s->displacement[2][site] > 5e-6);
+    assert_true(s->body->displacement[2][up] - s->body->displacement[2][site] > 5e-6);
   }
   assert_int_equal(cut, 2 * 5);
   small_close(&r);
@@ -129,7 +129,7 @@ static void threads_do_not_change_bits(void **state) {
   const sweep *a = simulation_state(one.simulation), *b = simulation_state(three.simulation);
   const size_t bytes = (size_t)simulation_rows(one.simulation, 0)->size * sizeof(double);
   for (int c = 0; c < 3; c++)
-    assert_memory_equal(a->displacement[c], b->displacement[c], bytes);
+    assert_memory_equal(a->body->displacement[c], b->body->displacement[c], bytes);
   assert_true(small_last(&one, "above") == small_last(&three, "above"));
   small_close(&one);
   small_close(&three);

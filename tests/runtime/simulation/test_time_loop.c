@@ -21,7 +21,7 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   int frames = 0;
   step_status status = STEP_OK;
   while (status == STEP_OK) {
@@ -72,7 +72,7 @@ static void a_stop_waits_for_its_time(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_STOPPED);
   assert_int_equal(simulation_step_done(r.simulation), 50);
   small_close(&r);
@@ -94,7 +94,7 @@ static void times_between_steps_are_rounded_to_the_nearest(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->velocity[0][w->lattice->particle_site[0]] = w->velocity[0][w->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *zeroed, *mean;
   static const int steps[] = {0, 3, 5, 8, 11, 14, 16};

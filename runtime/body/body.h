@@ -1,0 +1,120 @@
+/* A body of particles on the rows of a lattice: where they are, how they move, their masses, the
+   forces on them. Knows neither laws nor loads; motion.h moves it, the engines of
+   runtime/interaction find the forces.
+
+   Rows are shared out to threads in contiguous blocks:
+     row 5  . o o o .   block 1 (second thread): rows 3 .. 5
+     row 4  o o o o .
+     row 3  o o o o .
+     row 2  o o o o .   block 0 (first thread): rows 0 .. 2
+     row 1  . o o o .
+     row 0  . o o . .   begin[0], count[0]: the part that holds sites, in whole vectors */
+#ifndef PERILAT_RUNTIME_BODY_H
+#define PERILAT_RUNTIME_BODY_H
+
+#include "runtime/base/pool.h"
+#include "runtime/kernel.h"
+#include "runtime/lattice/rows.h"
+
+enum { BODY_TIMED_PASSES = 8 }; /* of those after it the last one has the time, too */
+/* B: nearer to what another thread writes, reading waits for that thread: pairs of cache lines go
+   together */
+enum { BODY_APART = 128 };
+
+typedef struct body_block { /* what one thread works on */
+  int first, last;          /* rows first .. last-1 */
+  double *next;             /* [dof][pitch] velocities after the kick */
+  long bad_site;            /* first site whose velocity left the limits in this step, or -1 */
+  int bad_component;
+  double bad_velocity;
+  /* s spent by whichever thread, on steps, of these on moving particles and on the passes of a law
+     of families, and on samples; only kept when `timed`. Putting loaded particles right is no part
+     of a step. */
+  double stepping, moving, passes[BODY_TIMED_PASSES], loading, observing;
+  char apart[BODY_APART];
+} body_block;
+
+typedef struct body_row { /* of a row in the state observed, J */
+  double kinetic, stored, free;
+  double state, rate; /* dissipated by the law of bonds since the start */
+  double mass,
+      internal; /* mass damping, work against the bonds: from the middle of the last step on */
+} body_row;
+
+typedef struct body_totals { /* sums over all particles and bonds, J, up to the state observed */
+  double kinetic; /* half m (v before)(v after): what a spring and a mass conserve exactly */
+  double stored;
+  double free;                              /* kinetic, had only bonds acted */
+  double dissipated_state, dissipated_rate; /* laws of bonds: by the law since the start */
+  double internal;   /* laws of families: work done against the forces of the bonds */
+  double dissipated; /* by mass damping since the start */
+  double gravity;    /* work of gravity since the start */
+} body_totals;
+
+typedef struct body {
+  const rows *lattice;
+  int dimensions, dof;
+  double time_step;  /* s */
+  double decay;      /* factor of mass damping on the velocities in the coming step; 1: none */
+  double gravity[3]; /* m/s^2 in the coming step */
+  /* J s/m: work of gravity over the velocity after the coming step, of a particle of mean mass */
+  double gravity_work[3];
+  double *weight;          /* [size] 1 at particles, 0 at absent sites; NULL without gravity */
+  bool ledger;             /* energies are kept */
+  bool forces;             /* somebody looks at the forces of every step */
+  bool works;              /* of the energies, the work against the forces of the bonds is kept */
+  bool timed;              /* blocks keep the times of their parts of a step */
+  double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
+  double *relative_mass;   /* [size] of a particle, over the mean; NULL where all are alike */
+  double *mobility;        /* [size] 1/relative_mass; 0 at absent sites */
+  /* velocity that no particle may reach: one spacing, half a turn a step */
+  double limit[PL_MAX_DOF];
+  double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF]; /* [size] m, rad; m/s, rad/s */
+  double *force[PL_MAX_DOF]; /* [size] N, N m: sums over bonds, as last observed (families: as last
+                                used) */
+  double *row_mass, *row_internal; /* [row_count] J up to the middle of the last step */
+  double *row_gravity; /* [row_count] J: work of gravity since the start; NULL without */
+  body_row *observed;  /* [row_count] */
+  /* [row_count] site from which on a row has not moved, a velocity there was bad; 0: it has */
+  long *row_stuck;
+  /* [row_count] part of the row that holds sites: offset from its start, doubles */
+  long *begin, *count;
+  int block_count;
+  body_block *blocks;
+  pool *memory; /* of the arrays */
+  size_t bytes; /* held altogether */
+} body;
+
+/* How blocks share out rows: as many each, or as many sites each, to the nearest row. */
+typedef enum body_share { BODY_SHARE_ROWS, BODY_SHARE_SITES } body_share;
+
+/* At rest. `threads` at most, each with a block. */
+body *body_new(const rows *lattice, int dof, double time_step, int threads, body_share share);
+void body_free(body *w);
+/* From now on `gravity` counts. */
+void body_add_gravity(body *w);
+
+/* `count` zeros, aligned, counted in w->bytes; they go with the body. */
+double *body_doubles(body *w, long count);
+/* Memory of one block for what is short and often written: zeros, away from all else. */
+void *body_apart(body *w, size_t bytes);
+
+/* First site of the part of a row that holds sites. */
+static inline long body_start(const body *w, int row) {
+  return rows_start(w->lattice, row) + w->begin[row];
+}
+
+/* Mass of a particle (kg), or what turns with that component (kg m^2). */
+static inline double body_mass(const body *w, int component, long site) {
+  return w->relative_mass ? w->mass[component] * w->relative_mass[site] : w->mass[component];
+}
+
+/* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there
+   on. */
+int body_bad(const body *w);
+/* In the last step: false where a bad velocity keeps the site where it was. */
+bool body_has_moved(const body *w, long site);
+/* Sums in row order; call after all was observed. */
+body_totals body_sum(const body *w);
+
+#endif

@@ -1,0 +1,99 @@
+#include "runtime/body/motion.h"
+
+#include <math.h>
+
+#include "runtime/base/lane_sum.h"
+
+/* Absent sites have no weight: they stay where they are. */
+static int64_t add_push(long count, double push, double limit, const double *restrict weight,
+                        double *restrict next) {
+  int64_t bad = 0;
+  INDEPENDENT
+  for (long q = 0; q < count; q++) {
+    const double after = next[q] + push * weight[q];
+    next[q] = after;
+    bad |= __builtin_fabs(after) < limit ? INT64_C(0) : INT64_C(1);
+  }
+  return bad;
+}
+
+int64_t motion_push(const body *w, row_part at, int component, double *next) {
+  if (!w->weight || component >= w->dimensions) return 0;
+  const double push = w->time_step * motion_force_part(w) * w->gravity[component];
+  return add_push(at.end - at.first, push, w->limit[component],
+                  w->weight + body_start(w, at.row) + at.first, next + at.first);
+}
+
+/* All components in one loop, with a literal number of them. */
+static inline __attribute__((always_inline)) void drift(const body *w, int dof, row_part at,
+                                                        const double *next) {
+  const long start = body_start(w, at.row), pitch = w->lattice->pitch;
+  const double step = w->time_step;
+  INDEPENDENT
+  for (long q = at.first; q < at.end; q++)
+    for (int d = 0; d < dof; d++) {
+      const double now = next[d * pitch + q];
+      w->velocity[d][start + q] = now;
+      w->displacement[d][start + q] += step * now;
+    }
+}
+
+/* Masses of a part's particles relative to their mean; NULL where all are alike. */
+static const double *relative_mass(const body *w, row_part at) {
+  return w->relative_mass ? w->relative_mass + body_start(w, at.row) + at.first : NULL;
+}
+
+void motion_note_bad(const body *w, body_block *b, int row, long first) {
+  const long start = body_start(w, row);
+  w->row_stuck[row] = start + first;
+  if (b->bad_site >= 0 && b->bad_site < start) return;
+  for (long q = first; q < w->count[row]; q++)
+    for (int d = 0; d < w->dof; d++) {
+      const double v = b->next[d * w->lattice->pitch + q];
+      if (fabs(v) < w->limit[d]) continue;
+      b->bad_site = start + q;
+      b->bad_component = d;
+      b->bad_velocity = v;
+      return;
+    }
+}
+
+static void keep_ledger(body *w, const body_block *b, row_part at) {
+  const long start = body_start(w, at.row) + at.first, count = at.end - at.first;
+  const double *m = relative_mass(w, at);
+  for (int d = 0; d < w->dof; d++) {
+    const double *next = b->next + d * w->lattice->pitch + at.first;
+    if (w->decay < 1 && w->ledger)
+      w->row_mass[at.row] +=
+          0.5 * w->mass[d] * motion_drag(w) * lane_square(count, m, w->velocity[d] + start, next);
+    if (w->weight && d < w->dimensions)
+      w->row_gravity[at.row] +=
+          w->gravity_work[d] * (m ? lane_dot(count, NULL, m, next) : lane_total(count, next));
+  }
+}
+
+void motion_drift(body *w, body_block *b, row_part at) {
+  if ((w->decay < 1 && w->ledger) || w->weight) keep_ledger(w, b, at);
+  if (w->dof == 2)
+    drift(w, 2, at, b->next);
+  else
+    drift(w, 3, at, b->next);
+}
+
+void motion_observe(body *w, const body_block *b, int row) {
+  const long start = body_start(w, row);
+  const long count = w->count[row];
+  const double *m = relative_mass(w, whole_row(w, row));
+  body_row *r = &w->observed[row];
+  r->kinetic = r->free = r->mass = r->internal = 0;
+  for (int d = 0; d < w->dof; d++) {
+    const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
+    const double half = 0.5 * w->mass[d], square = lane_dot(count, m, v, v),
+                 product = lane_dot(count, m, v, next);
+    r->kinetic += half * product;
+    r->mass += half * motion_drag(w) * (square + product);
+    const double work = -0.5 * w->time_step * lane_dot(count, NULL, w->force[d] + start, v);
+    r->internal += work;
+    r->free += half * square - work;
+  }
+}

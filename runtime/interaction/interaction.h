@@ -1,0 +1,13 @@
+/* Where an engine is picked for a law: the body that a lattice's particles are, and the law at work
+   on it. */
+#ifndef PERILAT_RUNTIME_INTERACTION_H
+#define PERILAT_RUNTIME_INTERACTION_H
+
+#include "runtime/interaction/sweep.h"
+
+/* At rest, fields at their initial values. `ledger`: energies are kept, and so forces; `forces`:
+   somebody looks at the forces of every step. To be freed by sweep_free. */
+sweep *interaction_new(const rows *lattice, const pl_law *law, const double *parameters,
+                       double time_step, int threads, bool ledger, bool forces);
+
+#endif

@@ -1,0 +1,19 @@
+/* The particles of a deck's regions; what is wrong with a region that holds none. */
+#ifndef PERILAT_RUNTIME_REGIONS_H
+#define PERILAT_RUNTIME_REGIONS_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/deck/deck.h"
+#include "runtime/lattice/rows.h"
+
+typedef struct region_sites { /* of a region of the deck */
+  int32_t *particles;
+  long count;
+} region_sites;
+
+/* [deck->region_count], to be freed by regions_free. Diagnostics of those that are empty, warnings
+   of those that nothing names; `lattice` is its name. */
+region_sites *regions_select(const deck *k, const char *lattice, const rows *w, diagnostics *d);
+void regions_free(const deck *k, region_sites *regions);
+
+#endif

@@ -1,0 +1,15 @@
+/* A field of the present state as a frame holds it. */
+#ifndef PERILAT_RUNTIME_FRAME_FIELD_H
+#define PERILAT_RUNTIME_FRAME_FIELD_H
+
+#include <stdbool.h>
+
+typedef struct frame_field {
+  const char *name, *unit;
+  bool on_bonds;
+  int components;
+  const char *kind;      /* "state", "damage", "output" of the law; else "other" */
+  const char *long_name; /* in words: the law's, where it is of the law */
+} frame_field;
+
+#endif

@@ -1,0 +1,45 @@
+/* What is stored in frames, when, and its values in the order of results. */
+#ifndef PERILAT_RUNTIME_FRAMES_H
+#define PERILAT_RUNTIME_FRAMES_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/deck/deck.h"
+#include "runtime/interaction/sweep.h"
+#include "runtime/simulation/frame_field.h"
+#include "runtime/simulation/loads.h"
+#include "runtime/simulation/run_clock.h"
+
+typedef struct frame_set frame_set;
+
+/* Where values come from; all must stay. */
+typedef struct frames_of {
+  const deck_output *asked;
+  sweep *state;
+  const loads *loads;
+  const rows_bond *bonds;   /* [bond_count] */
+  double *const *parameter; /* [varying] of random fields */
+  const run_clock *clock;
+} frames_of;
+
+/* False with a diagnostic when the deck asks for fields that no run has. */
+bool frames_check(const deck_output *asked, const pl_law *law, diagnostics *d);
+/* What the deck asks for and the run has; `damage` is that of particles and all damages of the law.
+   */
+frame_set *frames_new(const frames_of *of);
+void frames_free(frame_set *f);
+
+int frames_fields(const frame_set *f, const frame_field **fields);
+/* Values of a field in the state observed. */
+void frames_values(const frame_set *f, int field, double *values);
+
+/* Position of the first frame after the present one; INT64_MAX without. */
+int64_t frames_next(const frame_set *f);
+/* A frame's time has been reached, and it is not taken yet. */
+bool frames_due(const frame_set *f);
+/* That after a frame was taken at the present step: which one is next. */
+void frames_taken(const frame_set *f, run_progress *at);
+
+#endif

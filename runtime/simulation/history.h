@@ -1,0 +1,34 @@
+/* The history of a run: values of its monitors, energies and, in quasi-static runs, of its
+   increments, sample by sample. */
+#ifndef PERILAT_RUNTIME_HISTORY_H
+#define PERILAT_RUNTIME_HISTORY_H
+
+#include "runtime/simulation/ledger.h"
+#include "runtime/simulation/monitor.h"
+#include "runtime/simulation/relaxation.h"
+
+/* Series: the deck's monitors, then the energy terms, then what an increment took. */
+typedef struct history {
+  const monitors *monitors;
+  const relaxation *relaxation; /* NULL: a dynamic run */
+  int energies;                 /* series of energies, or 0 */
+  int series_count;
+  int64_t capacity;
+  double *time, *values; /* [capacity]; [series][capacity] */
+  double *sampled;       /* [series] at the sample being taken */
+} history;
+
+history history_new(const monitors *m, const relaxation *r, bool energies, int64_t capacity);
+void history_free(history *h);
+/* Where the energies of a sample are to be put: [LEDGER_COUNT]; NULL without. */
+double *history_energies(const history *h);
+/* Sample number `sample` is what stands in `sampled`, and of the increment that has ended. */
+void history_add(history *h, int64_t sample, double time);
+
+const char *history_series(const history *h, int k, const char **unit, const double **values);
+/* What a series is, in words. */
+char *history_words(const history *h, int k, arena *a);
+/* The series that judges the run, the imbalance of its energies, or -1. */
+int history_imbalance(const history *h);
+
+#endif

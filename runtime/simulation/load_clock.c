@@ -1,0 +1,47 @@
+#include "runtime/simulation/load_clock.h"
+
+#include "dsl/base/elementary.h"
+
+/* Part of the increment's loads that is there after `step` steps of a quasi-static run. */
+static double part_of(const load_clock *c, long step) {
+  return pl_fmin(1, (double)(step - c->first) / (double)c->ramp);
+}
+
+double load_clock_time(const load_clock *c, const body *w, long step) {
+  if (c->ramp == 0) return (double)step * w->time_step;
+  return c->from + (c->to - c->from) * part_of(c, step);
+}
+
+/* A time later than t by what rounding may do to the ends of increments. */
+double load_clock_just_after(const load_clock *c, double t) {
+  return t + 1e-9 * (c->to - c->from);
+}
+
+/* When an increment has ended: a load that begins at that time comes in the next one. */
+static double settled(const load_clock *c, const time_function *f, in_time *value, double t) {
+  return t <= load_clock_just_after(c, f->start) ? 0 : value(f, t);
+}
+
+/* After a number of steps; within an increment evenly from its beginning to its end, so that no
+   load comes all at once. */
+double load_clock_value(const load_clock *c, const body *w, const time_function *f, in_time *value,
+                        long step) {
+  if (c->ramp == 0) return value(f, load_clock_time(c, w, step));
+  const double part = part_of(c, step);
+  return (1 - part) * settled(c, f, value, c->from) + part * settled(c, f, value, c->to);
+}
+
+/* Part of the time within half a step of t that comes after `start`. The run itself begins with
+   what begins at 0. */
+double load_clock_part_after(const body *w, double start, double t) {
+  return start <= 0 ? 1 : pl_fmin(pl_fmax((t - start) / w->time_step + 0.5, 0), 1);
+}
+
+/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. */
+double load_clock_acting(const load_clock *c, const body *w, const time_function *f, long step) {
+  const double value = load_clock_value(c, w, f, time_function_at, step),
+               jump = time_function_jump(f);
+  if (c->ramp > 0 || jump == 0) return value;
+  const double t = load_clock_time(c, w, step);
+  return value + jump * (load_clock_part_after(w, f->start, t) - (t >= f->start));
+}

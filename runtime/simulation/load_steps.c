@@ -1,0 +1,427 @@
+#include "runtime/simulation/load_steps.h"
+
+#include "dsl/base/elementary.h"
+#include "runtime/body/motion.h"
+
+/* Of which a cause's forces are shares. */
+static const time_function *cause_of(const loads *l, int cause) {
+  const int forces = l->deck->force_count;
+  return cause < forces ? &l->deck->forces[cause].force
+                        : &l->deck->end_moments[cause - forces].moment;
+}
+
+static double factor_at(const loads *l, const body *w, int cause, long step) {
+  return load_clock_acting(&l->clock, w, cause_of(l, cause), step);
+}
+
+/* --- in time ---------------------------------------------------------------------------------- */
+
+static double decay_with(const body *w, double rate) {
+  return rate > 0 ? pl_exp(-rate * w->time_step) : 1;
+}
+
+/* Factor of the step that begins at step * time_step. */
+static double decay_of(const loads *l, const body *w, long step) {
+  const double t = load_clock_time(&l->clock, w, step);
+  double rate = 0;
+  for (int i = 0; i < l->deck->damping_count; i++) {
+    const deck_damping *k = &l->deck->dampings[i];
+    rate +=
+        k->rate * (load_clock_part_after(w, k->from, t) - load_clock_part_after(w, k->until, t));
+  }
+  return decay_with(w, rate);
+}
+
+/* Motion prescribed after `step` steps since the drive's start: m, rad. */
+static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
+  if (c->drive < 0) return 0;
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  return load_clock_value(&l->clock, w, &drive->motion,
+                          drive->is_displacement ? time_function_at : time_function_integral, step);
+}
+
+static double start_of(const loads *l, const constraint *c) {
+  return c->drive < 0 ? 0 : l->deck->drives[c->drive].motion.start;
+}
+
+/* What of the time of a step is rounding. */
+static double hardly(const body *w) {
+  return 1e-6 * w->time_step;
+}
+
+/* A drive holds its particles from the step on that begins with it, to rounding; in a quasi-static
+   run from the beginning of the increment that it begins in. */
+static bool is_held(const loads *l, const body *w, const constraint *c, long step) {
+  if (c->drive < 0) return true;
+  if (l->clock.ramp > 0) return l->clock.to > load_clock_just_after(&l->clock, start_of(l, c));
+  return load_clock_time(&l->clock, w, step) >= start_of(l, c) - hardly(w);
+}
+
+/* Velocity prescribed just after the instant of a step, which rounding may have put before the
+   start. */
+static double velocity_at(const loads *l, const body *w, const constraint *c, long step) {
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  const double t = pl_fmax(load_clock_time(&l->clock, w, step), drive->motion.start);
+  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
+}
+
+/* A motion that begins moves on as if it had always gone so: its velocity half a step before is
+   that after, mirrored at the velocity prescribed now. A place that is prescribed at once has no
+   velocity. */
+static double impulse_of(const loads *l, const body *w, const constraint *c, long step) {
+  if (c->drive < 0 || l->clock.ramp > 0) return 0;
+  const deck_drive *drive = &l->deck->drives[c->drive];
+  if (drive->is_displacement && time_function_jump(&drive->motion) != 0) return 0;
+  const double after = (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
+  return 2 * velocity_at(l, w, c, step) - after - c->velocity;
+}
+
+/* The motion takes up a particle that was free and stands where it is. */
+static void take_up(const loads *l, const body *w, constraint *c, long step) {
+  if (c->active || !is_held(l, w, c, step)) return;
+  const bool placed = c->drive >= 0 && l->deck->drives[c->drive].is_displacement;
+  c->active = 1;
+  c->held = w->displacement[c->component][c->site];
+  c->anchor = placed ? c->held : c->held - motion_at(l, w, c, step);
+  c->impulse = impulse_of(l, w, c, step);
+}
+
+/* Weight of the step that begins at step * time_step, and its work for a velocity after that step;
+   as for forces the mean of both ends of the way works. */
+static void set_gravity(const loads *l, body *w, long step) {
+  for (int c = 0; c < w->dimensions; c++) {
+    double here = 0, next = 0;
+    for (int i = 0; i < l->deck->gravity_count; i++) {
+      const deck_gravity *g = &l->deck->gravitys[i];
+      here += g->acceleration[c] * load_clock_acting(&l->clock, w, &g->factor, step);
+      next += g->acceleration[c] * load_clock_acting(&l->clock, w, &g->factor, step + 1);
+    }
+    w->gravity[c] = here;
+    w->gravity_work[c] = 0.5 * w->time_step * w->mass[c] * (here + next);
+  }
+}
+
+void load_steps_increment(loads *l, const body *w, load_clock clock) {
+  l->clock = clock;
+  for (long i = 0; i < l->constraint_count; i++)
+    take_up(l, w, &l->constraints[i], (long)clock.first);
+}
+
+void load_steps_begin(loads *l, body *w) {
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    c->velocity = w->velocity[c->component][c->site];
+    take_up(l, w, c, 0);
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    l->forces[i].now = l->forces[i].share * factor_at(l, w, l->forces[i].cause, 0);
+    l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
+  }
+  if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
+  if (w->weight) set_gravity(l, w, 0);
+}
+
+/* Acceleration by what acts at once when the run begins; a step near it may have only part of that.
+   */
+static double weight_at_once(const loads *l, int component) {
+  double sum = 0;
+  for (int i = 0; i < l->deck->gravity_count; i++)
+    sum += l->deck->gravitys[i].acceleration[component] *
+           time_function_at(&l->deck->gravitys[i].factor, 0);
+  return sum;
+}
+
+static double damping_at_once(const loads *l) {
+  double rate = 0;
+  for (int i = 0; i < l->deck->damping_count; i++)
+    if (l->deck->dampings[i].from <= 0) rate += l->deck->dampings[i].rate;
+  return rate;
+}
+
+/* With v- = 2/(1 + decay) v - dt/2 a the step (motion.h) goes to v+ with (v- + v+)/2 = v. */
+void load_steps_set_back(loads *l, body *w) {
+  const double half = 0.5 * w->time_step, back = 2 / (1 + decay_with(w, damping_at_once(l)));
+  for (int d = 0; d < w->dof; d++) {
+    const double weight = d < w->dimensions ? weight_at_once(l, d) : 0;
+    for (long p = 0; p < l->lattice->particle_count; p++) {
+      const int64_t q = l->lattice->particle_site[p];
+      double *v = &w->velocity[d][q];
+      *v = back * *v - half * (w->force[d][q] / body_mass(w, d, q) + weight);
+    }
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    applied *f = &l->forces[i];
+    const double force = f->share * time_function_at(cause_of(l, f->cause), 0);
+    w->velocity[f->component][f->site] -= half * force / body_mass(w, f->component, f->site);
+  }
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    double *v = &w->velocity[c->component][c->site];
+    if (c->active)
+      *v = c->velocity;
+    else
+      c->velocity = *v;
+  }
+  for (long i = 0; i < l->force_count; i++)
+    l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
+}
+
+/* The first item of an order by site that stands at `site` or further on; items begin with their
+   site. */
+static long first_at(const void *items, long count, size_t size, int64_t site) {
+  long low = 0, high = count;
+  while (low < high) {
+    const long middle = low + (high - low) / 2;
+    const int64_t *here = (const void *)((const char *)items + (size_t)middle * size);
+    if (*here < site)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  return low;
+}
+
+/* The loads on the rows of a block in a step. */
+typedef struct load_run {
+  loads *l;
+  body *w;
+  long step;
+  bool stuck; /* some rows have not moved */
+  long first_constraint, last_constraint, first_force, last_force;
+} load_run;
+
+static load_run run_of(loads *l, body *w, int block, long step) {
+  const body_block *b = &w->blocks[block];
+  const int64_t from = rows_start(l->lattice, b->first), to = rows_start(l->lattice, b->last);
+  load_run r = {.l = l, .w = w, .step = step, .stuck = b->bad_site >= 0};
+  r.first_constraint = first_at(l->constraints, l->constraint_count, sizeof *l->constraints, from);
+  r.last_constraint = first_at(l->constraints, l->constraint_count, sizeof *l->constraints, to);
+  r.first_force = first_at(l->forces, l->force_count, sizeof *l->forces, from);
+  r.last_force = first_at(l->forces, l->force_count, sizeof *l->forces, to);
+  return r;
+}
+
+static bool has_moved(const load_run *r, int64_t site) {
+  return !r->stuck || body_has_moved(r->w, site);
+}
+
+/* The sweep has counted the loss to mass damping, the work of gravity and that against the bonds
+   over the way of a free particle, whose velocity was `before` and is `after`; it turns out to be
+   larger by `change`. */
+static void correct_free_way(const body *w, int component, int64_t site, double before,
+                             double after, double change, load_sums *sums) {
+  const double mass = body_mass(w, component, site);
+  if (component < w->dimensions)
+    sums->work += w->gravity_work[component] * (mass / w->mass[component]) * change;
+  sums->dissipated += 0.5 * mass * motion_drag(w) * change * (2 * (before + after) + change);
+  if (w->works) sums->internal -= 0.5 * w->time_step * w->force[component][site] * change;
+}
+
+/* Velocity that a force gives in a step. */
+static double given_by(const body *w, int component, int64_t site, double force) {
+  return w->time_step / body_mass(w, component, site) * (motion_force_part(w) * force);
+}
+
+static void apply_forces(const load_run *r) {
+  const body *w = r->w;
+  for (long i = r->first_force; i < r->last_force; i++) {
+    applied *f = &r->l->forces[i];
+    if (!has_moved(r, f->site)) continue;
+    double *v = &w->velocity[f->component][f->site];
+    const double change = given_by(w, f->component, f->site, f->now);
+    correct_free_way(w, f->component, f->site, f->velocity, *v, change, &f->sums);
+    *v += change;
+    w->displacement[f->component][f->site] += w->time_step * change;
+  }
+}
+
+/* Values of the deck's functions after the step: few of them serve many particles. */
+typedef struct remembered {
+  int32_t index[8]; /* of a function, + 1; 0: none */
+  double value[8];
+} remembered;
+
+/* True: *value is that of the function; else it is to be set now. */
+static bool is_remembered(remembered *m, int32_t index, double **value) {
+  const int slot = index % 8;
+  *value = &m->value[slot];
+  if (m->index[slot] == index + 1) return true;
+  m->index[slot] = index + 1;
+  return false;
+}
+
+static double motion_after(const load_run *r, const constraint *c, remembered *m) {
+  double *motion;
+  if (c->drive < 0) return 0;
+  if (!is_remembered(m, c->drive, &motion)) *motion = motion_at(r->l, r->w, c, r->step + 1);
+  return *motion;
+}
+
+static double force_after(const load_run *r, const applied *f, remembered *m) {
+  double *factor;
+  if (!is_remembered(m, f->cause, &factor)) *factor = factor_at(r->l, r->w, f->cause, r->step + 1);
+  return f->share * *factor;
+}
+
+/* Force that gives a particle one velocity instead of another after a step. */
+static double force_for(const body *w, const constraint *c, double change) {
+  return body_mass(w, c->component, c->site) * change / (w->time_step * motion_force_part(w));
+}
+
+/* Moves the particle to `target` instead of where it would go. What this takes works with the mean
+   of the velocities before and after. */
+static double pull(const body *w, constraint *c, double target) {
+  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
+  const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
+  const double force = force_for(w, c, prescribed - *v);
+  correct_free_way(w, c->component, c->site, before, *v, prescribed - *v, &c->sums);
+  c->sums.work += 0.5 * w->time_step * force * (before + prescribed);
+  c->held = target;
+  *v = prescribed;
+  *u = target;
+  return force;
+}
+
+/* Part of the force in the step that a motion begins with: its impulse. */
+static double impulsive(const body *w, const constraint *c) {
+  return c->impulse == 0 ? 0 : force_for(w, c, w->decay * c->impulse);
+}
+
+/* A motion that begins between the ends of the step: until then the particle was free. */
+static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
+  const body *w = r->w;
+  const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
+  if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
+  const double v = w->velocity[c->component][c->site],
+               here = w->displacement[c->component][c->site];
+  c->active = 1;
+  c->anchor = here - rest * v;
+  c->held = here - w->time_step * v;
+  pull(w, c, c->anchor + motion_after(r, c, after));
+}
+
+static void apply_motion(const load_run *r, constraint *c, remembered *after) {
+  const body *w = r->w;
+  const bool held = c->active;
+  c->reaction = 0;
+  if (held)
+    c->reaction = pull(w, c, c->anchor + motion_after(r, c, after)) - impulsive(w, c);
+  else
+    begin_on_the_way(r, c, after);
+  c->velocity = w->velocity[c->component][c->site];
+  c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
+}
+
+static void apply_motions(const load_run *r) {
+  remembered after = {{0}, {0}};
+  for (long i = r->first_constraint; i < r->last_constraint; i++)
+    if (has_moved(r, r->l->constraints[i].site)) apply_motion(r, &r->l->constraints[i], &after);
+}
+
+/* A force works with the mean of its values at both ends of the way. */
+static void next_forces(const load_run *r) {
+  remembered after = {{0}, {0}};
+  for (long i = r->first_force; i < r->last_force; i++) {
+    applied *f = &r->l->forces[i];
+    const double next = force_after(r, f, &after);
+    f->velocity = r->w->velocity[f->component][f->site];
+    f->sums.work += 0.5 * r->w->time_step * (f->now + next) * f->velocity;
+    f->now = next;
+  }
+}
+
+void load_steps_apply(loads *l, body *w, int block, long step) {
+  const load_run r = run_of(l, w, block, step);
+  apply_forces(&r);
+  apply_motions(&r);
+  next_forces(&r);
+  for (long i = r.first_constraint; i < r.last_constraint; i++)
+    take_up(l, w, &l->constraints[i], step + 1);
+}
+
+void load_steps_turn(const loads *l, body *w, long step) {
+  if (l->clock.ramp == 0) w->decay = decay_of(l, w, step + 1);
+  if (w->weight) set_gravity(l, w, step + 1);
+}
+
+static void add_sums(load_sums *to, const load_sums *more) {
+  to->work += more->work;
+  to->dissipated += more->dissipated;
+  to->internal += more->internal;
+}
+
+load_sums load_steps_total(const loads *l) {
+  load_sums total = {0, 0, 0};
+  for (long i = 0; i < l->force_count; i++)
+    add_sums(&total, &l->forces[i].sums);
+  for (long i = 0; i < l->constraint_count; i++)
+    add_sums(&total, &l->constraints[i].sums);
+  return total;
+}
+
+/* Velocity after the coming step if nothing but bonds, damping and gravity acted on a particle. */
+static double free_velocity(const body *w, int component, int64_t site) {
+  const double weight = component < w->dimensions ? w->gravity[component] : 0;
+  return w->decay * w->velocity[component][site] +
+         given_by(w, component, site, w->force[component][site]) +
+         w->time_step * motion_force_part(w) * weight;
+}
+
+/* The same when a motion is prescribed. */
+static double prescribed_velocity(const loads *l, const body *w, const constraint *c, long step) {
+  return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
+}
+
+/* In quasi-static runs inertia is but a means: a reaction is what balances bonds and weight. */
+static double force_at_rest(const body *w, const constraint *c) {
+  const double weight = c->component < w->dimensions ? w->gravity[c->component] : 0;
+  return w->force[c->component][c->site] + body_mass(w, c->component, c->site) * weight;
+}
+
+load_look load_steps_observe(loads *l, const body *w, long step) {
+  load_look sum = {0, 0, 0};
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    c->reaction = 0;
+    if (!c->active) continue;
+    const double mass = body_mass(w, c->component, c->site);
+    const double change =
+        prescribed_velocity(l, w, c, step) - free_velocity(w, c->component, c->site);
+    const double force = force_for(w, c, change);
+    c->reaction = l->clock.ramp > 0 ? -force_at_rest(w, c) : force - impulsive(w, c);
+    sum.kinetic += 0.5 * mass * c->velocity * change;
+    sum.dissipated += 0.5 * mass * motion_drag(w) * c->velocity * change;
+    sum.work += 0.5 * w->time_step * c->velocity * force;
+  }
+  for (long i = 0; i < l->force_count; i++) {
+    const applied *f = &l->forces[i];
+    constraint *holder = f->holder >= 0 ? &l->constraints[f->holder] : NULL;
+    const double power = 0.5 * w->time_step * f->now * f->velocity;
+    if (holder && holder->active) { /* what holds the particle takes the force up */
+      holder->reaction -= f->now;
+      sum.work -= power;
+      continue;
+    }
+    sum.kinetic += motion_force_part(w) * power;
+    sum.dissipated += motion_force_part(w) * motion_drag(w) * power;
+  }
+  return sum;
+}
+
+static double mean_velocity(const loads *l, const body *w, const constraint *c, long step) {
+  return 0.5 * (c->velocity + c->impulse + prescribed_velocity(l, w, c, step));
+}
+
+double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {
+  const long count = l->constraint_count;
+  long i = first_at(l->constraints, count, sizeof *l->constraints, site);
+  for (; i < count && l->constraints[i].site == site; i++)
+    if (l->constraints[i].component == component && l->constraints[i].active)
+      return mean_velocity(l, w, &l->constraints[i], step);
+  double after = free_velocity(w, component, site);
+  i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
+  for (; i < l->force_count && l->forces[i].site == site; i++)
+    if (l->forces[i].component == component)
+      after += given_by(w, component, site, l->forces[i].now);
+  return 0.5 * (w->velocity[component][site] + after);
+}

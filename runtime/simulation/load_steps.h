@@ -1,0 +1,53 @@
+/* What loads do in a step. The sweep moves every particle as if it were free; afterwards the loaded
+   ones are put right.
+
+   Steps are of the second order. Places and forces are of the instants t_n = n dt, velocities of
+   the middles between them, the first of them half a step before the run:
+     v(-1/2) = v(0) - dt/2 a(0)                                   (load_steps_set_back)
+   A load that begins at once within half a step of t_n counts there with the part of t_n - dt/2 ..
+   t_n + dt/2 that it covers:
+     t_(n-1)      t_n       t_(n+1)
+        |----.-----|-----.-----|   here with three quarters of its value at t_n; damping likewise
+               #################
+
+   Signs: a reaction is what the support or drive exerts on the body,
+     reaction = mass times prescribed acceleration - bond forces - mass damping - applied force,
+   so that the sum of reactions, applied forces and damping is the rate of the momentum, to
+   rounding. A drive leaves its particles free before its start; then their displacement follows
+   time_function_integral (or the prescribed displacement) exactly, counted from where each particle
+   is at the start. One that begins with a velocity changes the momentum at once: the impulse does
+   work, but is no part of any reaction. */
+#ifndef PERILAT_RUNTIME_LOAD_STEPS_H
+#define PERILAT_RUNTIME_LOAD_STEPS_H
+
+#include "runtime/simulation/loads.h"
+
+/* At the state observed: what loaded particles add to the sums over the body, J. */
+typedef struct load_look {
+  double kinetic;    /* they are not free */
+  double work;       /* of reactions, from the last half step on */
+  double dissipated; /* by mass damping, likewise */
+} load_look;
+
+/* Before the first step of each increment of a quasi-static run: its loads, and what they hold. */
+void load_steps_increment(loads *l, const body *w, load_clock clock);
+/* To be called once, before the first step: forces at time 0, places of the supports. */
+void load_steps_begin(loads *l, body *w);
+/* Then, in dynamic runs, when the state at time 0 was observed: velocities from there to half a
+   step before. */
+void load_steps_set_back(loads *l, body *w);
+/* When step n -> n+1 has moved the rows of a block: applied forces, prescribed motions, reactions,
+   work. What has not moved, as its row has a bad velocity, is left alone. */
+void load_steps_apply(loads *l, body *w, int block, long step);
+/* When all blocks have, alone: gravity and damping of the coming step (with a clock of its own that
+   stays as it is). */
+void load_steps_turn(const loads *l, body *w, long step);
+load_sums load_steps_total(const loads *l);
+
+/* When the state after `step` steps was observed: reactions in it. */
+load_look load_steps_observe(loads *l, const body *w, long step);
+/* Then: velocity (m/s, rad/s) of a particle at this instant, the mean of those half a step before
+   and after. */
+double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step);
+
+#endif

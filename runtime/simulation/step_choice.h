@@ -1,0 +1,26 @@
+/* How long a step is, how many there are, and at which of them samples are taken. */
+#ifndef PERILAT_RUNTIME_STEP_CHOICE_H
+#define PERILAT_RUNTIME_STEP_CHOICE_H
+
+#include "dsl/base/diagnostics.h"
+#include "runtime/analysis/step_limit.h"
+#include "runtime/deck/deck.h"
+#include "runtime/kernel.h"
+#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/rows.h"
+
+typedef struct step_plan {
+  int64_t step_count;
+  double sample_interval;   /* s */
+  int64_t history_capacity; /* samples, at most */
+} step_plan;
+
+/* The stable step of the virgin body, and the deck's part of it. False with a diagnostic where none
+   is stable. */
+bool step_choose(const deck *k, const pl_law *law, const double *parameters,
+                 const random_fields *fields, const rows *lattice, step_limit *limit,
+                 diagnostics *d);
+/* False with a diagnostic where there are too many steps. */
+bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, diagnostics *d);
+
+#endif

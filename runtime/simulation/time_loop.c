@@ -1,0 +1,212 @@
+#include "runtime/simulation/time_loop.h"
+
+#include <math.h>
+
+#include "runtime/base/clock.h"
+#include "runtime/base/subnormals.h"
+#include "runtime/simulation/load_steps.h"
+
+/* --- samples ---------------------------------------------------------------------------------- */
+
+/* Steps of samples follow from whole numbers, so that a resumed run samples where the unbroken one
+ * does. */
+static int64_t sample_step(const simulation *s, int64_t k) {
+  return llround((double)k * s->plan.sample_interval / s->limit.step);
+}
+
+static bool sample_due(const simulation *s) {
+  return s->clock.at.step >= sample_step(s, s->clock.at.next_sample) ||
+         s->clock.at.step == s->clock.step_count;
+}
+
+static int64_t next_sample(const simulation *s) {
+  int64_t k = s->clock.at.next_sample;
+  while (sample_step(s, k) <= s->clock.at.step)
+    k++;
+  return k;
+}
+
+static void end_badly(simulation *s, const char *what) {
+  bad_search_energy(s->bad, what);
+  s->clock.at.status = STEP_BAD;
+}
+
+/* Energies of the state observed; they tell of a run that has gone wrong. */
+static void sample_energies(simulation *s, const load_look *look) {
+  double *terms = history_energies(&s->history);
+  const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
+  if (!ledger_sample(&s->ledger, s->state, s->loads, look, s->limit.omega_max, terms))
+    end_badly(s, "energy from nothing");
+  if (last && !isfinite(terms[LEDGER_KINETIC] + terms[LEDGER_STORED]))
+    end_badly(s, "energies that are not finite");
+}
+
+/* Values of the state observed into the history. The end is sampled also when it lies between two
+ * samples. */
+static void take_sample(simulation *s, const load_look *look) {
+  run_progress *at = &s->clock.at;
+  const double time = run_clock_time(&s->clock);
+  monitors_sample(s->monitors, (long)at->step, time, s->history.sampled);
+  at->stop = monitors_stop(s->monitors, time, s->history.sampled);
+  if (at->stop >= 0) at->status = STEP_STOPPED;
+  if (s->deck->output.energy) sample_energies(s, look);
+  history_add(&s->history, at->samples++, time);
+  at->next_sample = s->relaxation ? at->samples : next_sample(s);
+  if (at->status != STEP_OK) s->go_on = false;
+}
+
+static void record_sample(simulation *s, const load_look *look) {
+  const double begun = s->profile ? monotonic_seconds() : 0;
+  take_sample(s, look);
+  if (s->profile) s->profile->sampled += monotonic_seconds() - begun;
+}
+
+/* --- time loop -------------------------------------------------------------------------------- */
+
+/* What one thread does after all have moved their rows and what is loaded in them. */
+static void after_step(simulation *s) {
+  if (body_bad(s->body) >= 0) {
+    bad_search_velocity(s->bad);
+    s->clock.at.status = STEP_BAD;
+    s->go_on = s->observe = false;
+    return;
+  }
+  sweep_turn(s->state);
+  load_steps_turn(s->loads, s->body, (long)s->clock.at.step);
+  s->clock.at.step++;
+  s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
+  if (s->relaxation) {
+    s->observe = relaxation_due(s->relaxation, s->clock.at.step);
+    return;
+  }
+  monitors_step(s->monitors, (long)s->clock.at.step);
+  s->observe = sample_due(s) || monitors_due(s->monitors, (long)s->clock.at.step);
+}
+
+/* Quasi-static runs observe to see whether the body has come to rest. */
+static void end_increment(simulation *s, const load_look *look) {
+  if (!relaxation_look(s->relaxation, s->clock.at.step)) return;
+  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  record_sample(s, look);
+  if (run_clock_position(&s->clock) == run_clock_end(&s->clock))
+    s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
+  else
+    relaxation_next(s->relaxation, s->clock.at.step);
+  if (s->clock.at.status != STEP_OK || frames_due(s->frames)) s->go_on = false;
+}
+
+static void after_observing(simulation *s) {
+  const load_look look = load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
+  s->observe = false;
+  s->observed_step = s->clock.at.step;
+  if (s->relaxation && s->clock.at.step > 0) {
+    end_increment(s, &look);
+    return;
+  }
+  monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
+  if (sample_due(s)) record_sample(s, &look);
+}
+
+/* Adds the time from `begun` to now, and returns now; nothing where nothing is measured. */
+static double add_time(const simulation *s, double begun, double *sum) {
+  if (!s->profile) return 0;
+  const double now = monotonic_seconds();
+  *sum += now - begun;
+  return now;
+}
+
+/* Tasks of the team: the stages of a step, then those of observing. */
+static void do_stage(void *of, int task, int block) {
+  simulation *s = of;
+  const sweep_engine *engine = &s->state->engine;
+  body_block *b = &s->body->blocks[block];
+  double now = s->profile ? monotonic_seconds() : 0;
+  if (task >= engine->step_stages) {
+    engine->observe(s->state, task - engine->step_stages, block);
+    add_time(s, now, &b->observing);
+    return;
+  }
+  engine->step(s->state, task, block);
+  now = add_time(s, now, &b->stepping);
+  if (task < engine->step_stages - 1) return;
+  load_steps_apply(s->loads, s->body, block, (long)s->clock.at.step);
+  add_time(s, now, &b->loading);
+}
+
+/* Blocks keep the times of what they do in steps only. */
+static int next_task(simulation *s) {
+  s->body->timed = s->profile && !s->observe;
+  return s->observe ? s->state->engine.step_stages : s->go_on ? 0 : TEAM_END;
+}
+
+/* What one thread does between stages; sampling counts its time for itself (record_sample). */
+static int after_stage(void *of, int task) {
+  simulation *s = of;
+  profile *p = s->profile;
+  const sweep_engine *engine = &s->state->engine;
+  const bool stepped = task == engine->step_stages - 1,
+             observed = task == engine->step_stages + engine->observe_stages - 1;
+  if (!stepped && !observed) return task + 1;
+  const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->sampled : 0;
+  (stepped ? after_step : after_observing)(s);
+  if (p) p->loaded += monotonic_seconds() - begun - (p->sampled - sampled);
+  return next_task(s);
+}
+
+/* First frame after the present step bounds an advance; one that is due but not taken does not. */
+static int64_t next_stop(const simulation *s, long steps) {
+  const int64_t step = s->clock.at.step, end = s->clock.step_count;
+  const int64_t until = steps < end - step ? step + steps : end;
+  if (s->relaxation) return until;
+  const int64_t frame = frames_next(s->frames);
+  return frame < until ? frame : until;
+}
+
+static void begin(simulation *s) {
+  if (s->clock.at.begun) return;
+  s->clock.at.begun = 1;
+  if (s->relaxation) relaxation_begin(s->relaxation);
+  load_steps_begin(s->loads, s->body);
+  if (!s->relaxation) {
+    sweep_observe(s->state);
+    load_steps_set_back(s->loads, s->body);
+    monitors_step(s->monitors, 0);
+  }
+}
+
+void time_loop_observe(simulation *s) {
+  begin(s);
+  if (s->observed_step == s->clock.at.step) return;
+  sweep_observe(s->state);
+  load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
+  s->observed_step = s->clock.at.step;
+}
+
+static void run_team(simulation *s) {
+  const team_work work = {.of = s, .block = do_stage, .next = after_stage};
+  team_begin(s->team, next_task(s));
+#pragma omp parallel num_threads(s->body->block_count)
+  {
+    const unsigned environment = subnormals_off();
+    team_join(s->team, &work);
+    subnormals_restore(environment);
+  }
+}
+
+step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t *interrupted) {
+  if (s->clock.at.status != STEP_OK) return (step_status)s->clock.at.status;
+  s->until = next_stop(s, steps);
+  s->interrupted = interrupted;
+  s->go_on = s->clock.at.step < s->until && !(interrupted && *interrupted);
+  const double begun = s->profile ? monotonic_seconds() : 0;
+  begin(s);
+  s->observe = s->clock.at.samples == 0;
+  run_team(s);
+  if (s->profile) {
+    s->profile->elapsed += monotonic_seconds() - begun;
+    profile_sum(s->profile, s->body);
+  }
+  if (s->clock.at.status == STEP_OK && s->clock.at.step == s->clock.step_count)
+    s->clock.at.status = STEP_END;
+  return (step_status)s->clock.at.status;
+}

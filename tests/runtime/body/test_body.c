@@ -1,0 +1,178 @@
+/* A body of particles on rows: who works on which rows, and how a row moves, against the leapfrog
+   step written out. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/base/lane_sum.h"
+#include "runtime/body/body.h"
+#include "runtime/body/motion.h"
+#include "tests/runtime/small_run.h"
+
+enum { DOF = 2 };
+static const double step = 1e-7;
+
+#define WEDGE                                                                                      \
+  "&simulation end_time = 1e-5 step = 1e-7 /\n"                                                    \
+  "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"                      \
+  "&body lattice = 'c' shape = 'polygon' points = 0, 0, 0.4, 0, 0, 0.3 /\n"                        \
+  "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n"
+
+static const rows *open_wedge(small_run *r) {
+  small_open(r, &elastic_bar, WEDGE);
+  if (!r->simulation) small_print(r);
+  assert_non_null(r->simulation);
+  return simulation_rows(r->simulation, 0);
+}
+
+static long sites_of(const body *w, const body_block *b) {
+  long sum = 0;
+  for (int row = b->first; row < b->last; row++)
+    sum += w->count[row];
+  return sum;
+}
+
+/* Rows are shared out in one piece each, whatever is shared evenly: rows, or what stands on them.
+   */
+static void blocks_share_out_all_rows(void **state) {
+  (void)state;
+  enum { THREADS = 4 };
+  small_run r;
+  const rows *g = open_wedge(&r);
+  long most[2] = {0, 0};
+  for (int share = BODY_SHARE_ROWS; share <= BODY_SHARE_SITES; share++) {
+    body *w = body_new(g, DOF, step, THREADS, (body_share)share);
+    assert_int_equal(w->block_count, THREADS);
+    for (int k = 0; k < THREADS; k++) {
+      const body_block *b = &w->blocks[k];
+      assert_int_equal(b->first, k ? w->blocks[k - 1].last : 0);
+      assert_true(b->last > b->first);
+      if (share == BODY_SHARE_ROWS)
+        assert_true(labs((b->last - b->first) * (long)THREADS - g->row_count) < THREADS);
+      if (sites_of(w, b) > most[share]) most[share] = sites_of(w, b);
+    }
+    assert_int_equal(w->blocks[THREADS - 1].last, g->row_count);
+    body_free(w);
+  }
+  assert_true(most[BODY_SHARE_SITES] < most[BODY_SHARE_ROWS]); /* a wedge has long rows below */
+  small_close(&r);
+}
+
+static void set_motion(body *w, int row, double *next) {
+  const long start = body_start(w, row), pitch = w->lattice->pitch;
+  for (int d = 0; d < DOF; d++)
+    for (long q = 0; q < w->count[row]; q++) {
+      const bool there = w->lattice->present[start + q];
+      w->velocity[d][start + q] = there ? 0.1 * (double)(q + 1) + d : 0;
+      w->force[d][start + q] = there ? 3.0 * (double)q - 7 : 0;
+      next[d * pitch + q] = there ? 0.2 * (double)(q + 1) - d : 0;
+    }
+}
+
+/* v+ becomes v, u grows by dt v+; gravity adds dt g to v+ where there are particles. */
+static void a_row_drifts_by_its_new_velocities(void **state) {
+  (void)state;
+  enum { ROW = 3 };
+  small_run r;
+  const rows *g = open_wedge(&r);
+  body *w = body_new(g, DOF, step, 1, BODY_SHARE_ROWS);
+  double *next = w->blocks[0].next;
+  body_add_gravity(w);
+  w->gravity[1] = -9.81;
+  set_motion(w, ROW, next);
+  for (int d = 0; d < DOF; d++)
+    assert_true(!motion_push(w, whole_row(w, ROW), d, next + d * g->pitch));
+  motion_drift(w, &w->blocks[0], whole_row(w, ROW));
+  const long start = body_start(w, ROW);
+  for (int d = 0; d < DOF; d++)
+    for (long q = 0; q < w->count[ROW]; q++) {
+      const double v = g->present[start + q] ? 0.2 * (double)(q + 1) - d + step * w->gravity[d] : 0;
+      assert_true(w->velocity[d][start + q] == v);
+      assert_true(w->displacement[d][start + q] == step * v);
+    }
+  body_free(w);
+  small_close(&r);
+}
+
+/* From a particle on that would move a spacing in a step, or by what is no number, its row stays.
+   */
+static void a_row_stays_from_a_bad_velocity_on(void **state) {
+  (void)state;
+  enum { ROW = 2, PLACE = 9 };
+  const double bad[] = {1.001 * 0.01 / 1e-7, NAN};
+  small_run r;
+  const rows *g = open_wedge(&r);
+  for (int k = 0; k < 2; k++) {
+    body *w = body_new(g, DOF, step, 1, BODY_SHARE_ROWS);
+    body_block *b = &w->blocks[0];
+    const long start = body_start(w, ROW);
+    assert_int_equal(body_bad(w), -1);
+    b->next[g->pitch + PLACE] = bad[k];
+    motion_note_bad(w, b, ROW, PL_LANES);
+    assert_int_equal(body_bad(w), 0);
+    assert_int_equal(b->bad_site, start + PLACE);
+    assert_int_equal(b->bad_component, 1);
+    assert_true(body_has_moved(w, start + PL_LANES - 1));
+    assert_false(body_has_moved(w, start + PL_LANES));
+    assert_true(body_has_moved(w, body_start(w, ROW + 1)));
+    body_free(w);
+  }
+  small_close(&r);
+}
+
+/* Kinetic energy is half m v- v+, the work against the bonds half a step of -f v. */
+static void a_row_tells_its_energies(void **state) {
+  (void)state;
+  enum { ROW = 1 };
+  small_run r;
+  const rows *g = open_wedge(&r);
+  body *w = body_new(g, DOF, step, 1, BODY_SHARE_ROWS);
+  const long start = body_start(w, ROW);
+  double kinetic = 0, internal = 0;
+  set_motion(w, ROW, w->blocks[0].next);
+  motion_observe(w, &w->blocks[0], ROW);
+  for (int d = 0; d < DOF; d++)
+    for (long q = 0; q < w->count[ROW]; q++) {
+      const double v = w->velocity[d][start + q];
+      kinetic += 0.5 * body_mass(w, d, start + q) * v * w->blocks[0].next[d * g->pitch + q];
+      internal -= 0.5 * step * w->force[d][start + q] * v;
+    }
+  const body_totals sum = body_sum(w);
+  assert_true(kinetic != 0 && fabs(sum.kinetic / kinetic - 1) < 1e-14);
+  assert_true(internal != 0 && fabs(sum.internal / internal - 1) < 1e-12);
+  body_free(w);
+  small_close(&r);
+}
+
+/* Eight lanes, then their sum from the first to the last. */
+static void sums_have_an_order_of_their_own(void **state) {
+  (void)state;
+  double a[3 * PL_LANES], b[3 * PL_LANES], weight[3 * PL_LANES], lane[4][PL_LANES] = {{0}};
+  double sum[4] = {0};
+  for (int q = 0; q < 3 * PL_LANES; q++) {
+    a[q] = sin(q) * 1e3, b[q] = cos(3 * q) / 7, weight[q] = 1 + 0.1 * q;
+    const double term[] = {a[q], a[q] * b[q], weight[q] * (a[q] * b[q]),
+                           weight[q] * ((a[q] + b[q]) * (a[q] + b[q]))};
+    for (int k = 0; k < 4; k++)
+      lane[k][q % PL_LANES] += term[k];
+  }
+  for (int k = 0; k < 4; k++)
+    for (int l = 0; l < PL_LANES; l++)
+      sum[k] += lane[k][l];
+  assert_true(lane_total(3 * PL_LANES, a) == sum[0]);
+  assert_true(lane_dot(3 * PL_LANES, NULL, a, b) == sum[1]);
+  assert_true(lane_dot(3 * PL_LANES, weight, a, b) == sum[2]);
+  assert_true(lane_square(3 * PL_LANES, weight, a, b) == sum[3]);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_share_out_all_rows),
+                                     cmocka_unit_test(a_row_drifts_by_its_new_velocities),
+                                     cmocka_unit_test(a_row_stays_from_a_bad_velocity_on),
+                                     cmocka_unit_test(a_row_tells_its_energies),
+                                     cmocka_unit_test(sums_have_an_order_of_their_own)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,50 @@
+/* The particles of regions, and what is said of those that hold none or are not named. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/lattice/lattice.h"
+#include "runtime/lattice/regions.h"
+#include "tests/runtime/small_run.h"
+
+static void regions_hold_the_particles_inside(void **state) {
+  (void)state;
+  small_run r;
+  small_open(&r, &elastic_bar,
+             "&simulation end_time = 1e-5 step = 1e-7 /\n"
+             "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.1 /\n"
+             "&material lattice = 'c' model = 'm' /\n"
+             "&region name = 'edge' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.001 /\n"
+             "&region name = 'idle' shape = 'disc' centre = 0.05, 0.05 radius = 0.0101 /\n"
+             "&region name = 'void' shape = 'disc' centre = 1, 1 radius = 0.01 /\n"
+             "&support region = 'edge' fix = 'y' /\n&output frames = 0 /\n");
+  if (r.simulation) small_print(&r);
+  assert_null(r.simulation);
+  diagnostics said;
+  diag_begin(&said, &r.sources);
+  rows *g = lattice_build(r.deck, 0, &said);
+  region_sites *regions = regions_select(r.deck, "c", g, &said);
+  assert_int_equal(regions[0].count, 11); /* 0, 10 mm, ..., 100 mm */
+  for (long p = 0; p < regions[0].count; p++)
+    assert_true(fabs(g->y[g->particle_site[regions[0].particles[p]]]) < 1e-9);
+  assert_true(regions[1].count > 0 && regions[1].count <= 7);
+  assert_int_equal(regions[2].count, 0);
+  assert_int_equal(said.count, 2);
+  assert_int_equal(said.items[0].code, DIAG_DECK_WARNING);
+  assert_non_null(strstr(said.items[0].message, "region `idle` is never used"));
+  assert_int_equal(said.items[1].code, DIAG_EMPTY_REGION);
+  assert_non_null(strstr(said.items[1].message, "region `void` holds no particle"));
+  regions_free(r.deck, regions);
+  rows_free(g);
+  diag_clear(&said);
+  small_close(&r);
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {cmocka_unit_test(regions_hold_the_particles_inside)};
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
