@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Holds the sources to the list of rooms: every file stands in one, includes only its own room and
 # those above it, and no room is too full; and that some test includes each header of the runtime,
-# but for those in untested.txt. Arguments: the source folder.
+# but for those in untested.txt; and that what the map names is there. Arguments: the source folder.
 set -euo pipefail
 list=$(cd "$(dirname "$0")" && pwd)/rooms.txt
 
@@ -43,8 +43,16 @@ untested() {
       $2 { print "untested.txt: `" $2 "` has a test, or is no more: take it out" }'
 }
 
+# One line for each file that the map in $2 names by its folder and that is not in folder $1.
+misnamed() {
+  grep -oE '`(dsl|runtime|generator|models)/[^` ]*`' "$2" | tr -d '`' | sort -u | while IFS= read -r name; do
+    case $name in *NAME*) continue ;; esac
+    (cd "$1" && compgen -G "$name" >/dev/null) || echo "tests/rooms/README.md: there is no \`$name\`"
+  done
+}
+
 sources=$(cd "$1" && pwd) here=$(cd "$(dirname "$0")" && pwd)
-found=$(faults "$sources"; untested "$sources" "$here/untested.txt")
+found=$(faults "$sources"; untested "$sources" "$here/untested.txt"; misnamed "$sources" "$here/README.md")
 [ -z "$found" ] || { echo "$found"; exit 1; }
 
 # The check sees what it is for.
@@ -65,4 +73,7 @@ printf 'runtime/deck/one.h\nruntime/deck/two.h\n' >"$work/list"
 planted=$(untested "$work" "$work/list")
 [ "$(wc -l <<<"$planted")" = 2 ] && grep -q '^runtime/deck/three.h: no test' <<<"$planted" && grep -q 'one.h. has a test' <<<"$planted" ||
   { echo "planted faults are not seen:"; echo "$planted"; exit 1; }
+printf '`runtime/deck/one.h`, `runtime/deck/t*.h`, `runtime/deck`, `runtime/deck/four.h`\n' >"$work/map"
+[ "$(misnamed "$work" "$work/map")" = 'tests/rooms/README.md: there is no `runtime/deck/four.h`' ] ||
+  { echo "a name in vain is not seen"; exit 1; }
 echo "all files stand in their rooms"
