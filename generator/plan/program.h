@@ -16,7 +16,7 @@
 
        pass 0  neighbour by neighbour  slot 0 += 1
                particle by particle    link 1 = 1/slot 0 (1 for no bonds), link 2 = its divisor
-               bond by bond            shared 0 = 1/length           dear, and the same for both ends
+               bond by bond            shared 0 = 1/length           dear, the same for both ends
        pass 1  neighbour by neighbour  slot 0 += stretch             made of shared 0
                particle by particle    link 0 = theta                of slot 0 and links 1, 2
        pass 2  neighbour by neighbour  slots 0, 1 += F e_x, F e_y    of theta, theta_j and shared 0

@@ -16,7 +16,8 @@ void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int 
 void dpotri_(const char *triangle, const int *n, double *a, const int *lda, int *info,
              size_t triangle_length);
 
-/* Volume of lattice that stress is counted on: in the plane a site's area times the stiffness thickness. */
+/* Volume of lattice that stress is counted on: in the plane a site's area times the stiffness
+   thickness. */
 static double site_volume(const rows *w) {
   return w->dimensions == 3 ? w->volume : w->site_area * w->stiffness_thickness;
 }
@@ -249,7 +250,8 @@ static double curve_stretch(int k) {
   return first_stretch * pl_pow(last_stretch / first_stretch, (double)k / (CURVE_POINTS - 1));
 }
 
-/* Stretch of a bond whose far end has gone `way` lengths along the unit vector e; *turn: of its chord. */
+/* Stretch of a bond whose far end has gone `way` lengths along the unit vector e; *turn: of its
+   chord. */
 static double drawn_stretch(const lattice_bond *b, const double e[2], double way, double *turn) {
   double along = b->n[0] * e[0] + b->n[1] * e[1], across = b->n[0] * e[1] - b->n[1] * e[0];
   double length = pl_hypot(1 + way * along, way * across);
@@ -288,8 +290,8 @@ typedef struct curve {
   bool separates;       /* all forces fall to nothing */
 } curve;
 
-/* Draws the bond's ends apart along e; the particles do not turn. Trapezoids; the points are close enough for 1e-6 at a
-   kink. */
+/* Draws the bond's ends apart along e; the particles do not turn. Trapezoids; the points are close
+   enough for 1e-6 at a kink. */
 static curve trace_curve(lattice_bond *b, const double e[2]) {
   const double nothing = 1e-9; /* of the peak */
   curve c = {0};

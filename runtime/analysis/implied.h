@@ -1,6 +1,7 @@
 /* What a law implies for a perfect lattice made of it: elastic constants and strength under uniform
-   strain, from the law's own functions (laws of families: elastic constants alone, from long waves). Small strain; particle rotation in moment balance for the
-   elastic constants, zero for strength. */
+   strain, from the law's own functions (laws of families: elastic constants alone, from long
+   waves). Small strain; particle rotation in moment balance for the elastic constants, zero for
+   strength. */
 #ifndef PERILAT_RUNTIME_IMPLIED_H
 #define PERILAT_RUNTIME_IMPLIED_H
 
@@ -26,8 +27,9 @@ bool implied_elastic(const pl_law *law, const double *parameters, const rows *w,
 double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
                         double *strain);
 
-/* A piece of a perfect lattice to ask about: kind, spacing, horizon or shells, rotation, thicknesses and setting of `l`;
-   masses from rho (kg/m^3; 0: none). NULL when there is no such lattice. Freed with rows_free. */
+/* A piece of a perfect lattice to ask about: kind, spacing, horizon or shells, rotation,
+   thicknesses and setting of `l`; masses from rho (kg/m^3; 0: none). NULL when there is no such
+   lattice. Freed with rows_free. */
 rows *implied_lattice_like(const deck_lattice *l, double rho);
 
 /* The hexagonal one in plane stress with rows along x; spacing and thickness in m. */
@@ -39,16 +41,17 @@ typedef struct implied_bond {
   double stretch_at_peak; /* NaN then */
   bool separates;         /* the force falls to nothing */
   double energy;          /* J: work until then; infinite when it does not separate */
-  double row_energy; /* N/m: energy over the bond's share of a crack straight across it, s t times
-                        sqrt(3)/2 on the hexagon: what the literature counts by aligned bonds alone */
+  /* N/m: energy over the bond's share of a crack straight across it, s t times sqrt(3)/2 on the
+     hexagon: what the literature counts by aligned bonds alone */
+  double row_energy;
 } implied_bond;
 void implied_bond_curve(const pl_law *law, const double *parameters, const rows *w, int direction,
                         implied_bond *out);
 
-/* N/m: work per area of a straight crack that opens along `component` (0 x, 1 y): both halves of the
-   lattice are drawn apart without turning, and every bond that the crack cuts counts. Of central
-   bonds of energy g each: 2 g/(sqrt(3)/2 s t) across the rows, 2 g/(s t) along them. Infinite when
-   a bond does not separate. */
+/* N/m: work per area of a straight crack that opens along `component` (0 x, 1 y): both halves of
+   the lattice are drawn apart without turning, and every bond that the crack cuts counts. Of
+   central bonds of energy g each: 2 g/(sqrt(3)/2 s t) across the rows, 2 g/(s t) along them.
+   Infinite when a bond does not separate. */
 double implied_crack_energy(const pl_law *law, const double *parameters, const rows *w,
                             int component);
 

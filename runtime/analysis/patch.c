@@ -74,8 +74,8 @@ static void find_cells(const pl_law *law, const rows *w, double a[3][3], long (*
   find_coordinates(w, a, cell);
   if (law->sum_count == 0 || leads_ahead(w, cell)) return;
   const bool found = find_ahead(w, a, cell);
-  assert(
-      found); /* a large family has a neighbour on the row, one on the next and one on the next layer */
+  /* a large family has a neighbour on the row, one on the next and one on the next layer */
+  assert(found);
   (void)found;
 }
 

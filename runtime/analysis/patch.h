@@ -1,10 +1,10 @@
-/* A small periodic piece of a lattice, and a law of families on it: the particles are moved at will, and the law's passes
-   give forces, new fields and what is observed. Without loads, time or files: for force constants, checks of laws and
-   single particles.
+/* A small periodic piece of a lattice, and a law of families on it: the particles are moved at
+   will, and the law's passes give forces, new fields and what is observed. Without loads, time or
+   files: for force constants, checks of laws and single particles.
 
-   Sites stand in one array, whole multiples of the primitive vectors; a margin on all sides repeats what is inside, so that
-   neighbour k is an offset away everywhere. Arrays begin at the first site; values toward neighbours have a plane of
-   `size` for each. */
+   Sites stand in one array, whole multiples of the primitive vectors; a margin on all sides repeats
+   what is inside, so that neighbour k is an offset away everywhere. Arrays begin at the first site;
+   values toward neighbours have a plane of `size` for each. */
 #ifndef PERILAT_RUNTIME_PATCH_H
 #define PERILAT_RUNTIME_PATCH_H
 
@@ -37,8 +37,8 @@ typedef struct patch {
 /* Margins that the law's patch of the lattice has: how far its chords reach. */
 void patch_margins(const pl_law *law, const rows *w, long margin[3]);
 
-/* All bonds there, nothing held, fields as they begin, nothing displaced. `more` planes of particles and `wide` of
-   neighbours are kept for values observed beyond the law's own outputs. */
+/* All bonds there, nothing held, fields as they begin, nothing displaced. `more` planes of
+   particles and `wide` of neighbours are kept for values observed beyond the law's own outputs. */
 patch *patch_new(const pl_law *law, const double *parameters, const rows *w, const long period[3],
                  int more, int wide);
 void patch_free(patch *p);
@@ -58,8 +58,8 @@ void patch_cut(patch *p, long site, int k);
 
 /* A value, or one plane, of all images as inside. */
 void patch_repeat(const patch *p, double *values);
-/* values[d] becomes the gradient (per m of reference) times position, and `part` (at the sites inside; NULL: nothing)
-   repeated. For displacements and velocities. */
+/* values[d] becomes the gradient (per m of reference) times position, and `part` (at the sites
+   inside; NULL: nothing) repeated. For displacements and velocities. */
 void patch_deform(const patch *p, const double gradient[3][3], double *const *part,
                   double *const *values);
 

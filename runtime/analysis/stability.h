@@ -31,7 +31,8 @@ void stability_limit(const pl_law *law, const double *parameters, const random_f
    decimal number. */
 double stability_rounded(double x);
 
-/* Largest frequency (rad/s) of all branches at wave vector k (1/m), undamped; NaN when the tangent is not finite. */
+/* Largest frequency (rad/s) of all branches at wave vector k (1/m), undamped; NaN when the tangent
+   is not finite. */
 double stability_omega(const pl_law *law, const double *parameters, const rows *w, double kx,
                        double ky);
 

@@ -1,8 +1,7 @@
-/* Force constants of the virgin infinite lattice of a law of families, from the law's own step: in a
-   small periodic lattice one particle is displaced, or moved, a little, and the forces on all others
-   are read. The force on a particle is
-     f(0) = - sum over R of K(R) u(R) + C(R) v(R)
-   R reaches as many chords far as the step has passes. */
+/* Force constants of the virgin infinite lattice of a law of families, from the law's own step: in
+   a small periodic lattice one particle is displaced, or moved, a little, and the forces on all
+   others are read. The force on a particle is f(0) = - sum over R of K(R) u(R) + C(R) v(R) R
+   reaches as many chords far as the step has passes. */
 #ifndef PERILAT_RUNTIME_STENCIL_H
 #define PERILAT_RUNTIME_STENCIL_H
 
@@ -29,8 +28,8 @@ typedef struct stencil {
 /* What geometry and rounding leave of it is less. */
 #define STENCIL_KINK 1e-5
 
-/* K(R) and K(-R) are made each other's transpose: laws whose virgin forces have a stored energy give
-   them so. */
+/* K(R) and K(-R) are made each other's transpose: laws whose virgin forces have a stored energy
+   give them so. */
 stencil stencil_new(const pl_law *law, const double *parameters, const rows *w);
 void stencil_free(stencil *s);
 

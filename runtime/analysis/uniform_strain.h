@@ -1,7 +1,8 @@
-/* What particles that stand on no lattice make of a uniform strain, before anything has happened to them. The mean stress of a
-   free body follows from the forces on its particles alone, -sum(f x)/V (virial theorem); a body with exact families has that of
-   the material, whatever its shape. The forces themselves should be 0 inside; how far they are from it is what a particle feels
-   of the irregularity of its surroundings. */
+/* What particles that stand on no lattice make of a uniform strain, before anything has happened to
+   them. The mean stress of a free body follows from the forces on its particles alone, -sum(f x)/V
+   (virial theorem); a body with exact families has that of the material, whatever its shape. The
+   forces themselves should be 0 inside; how far they are from it is what a particle feels of the
+   irregularity of its surroundings. */
 #ifndef PERILAT_RUNTIME_UNIFORM_STRAIN_H
 #define PERILAT_RUNTIME_UNIFORM_STRAIN_H
 
@@ -9,14 +10,16 @@
 #include "runtime/lattice/rows.h"
 
 typedef struct uniform_response {
-  double E, nu;      /* Pa, 1: of the isotropic solid whose stresses are nearest (Voigt's mean of the stiffness) */
-  double left_force; /* median over particles and strains of the force left, over stress times the face of a particle */
+  /* Pa, 1: of the isotropic solid whose stresses are nearest (Voigt's mean of the stiffness) */
+  double E, nu;
+  /* median over particles and strains of the force left, over stress times the face of a particle */
+  double left_force;
   double momentum;   /* largest |sum of forces| over sum of |forces| */
   long unresolved;   /* particles whose bonds do not resolve all strains */
 } uniform_response;
 
-/* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart. False where the law gives no
-   finite forces or no stiffness. */
+/* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart.
+   False where the law gives no finite forces or no stiffness. */
 bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
                              bool plane_strain, uniform_response *out);
 

@@ -39,14 +39,15 @@ void crystal_free(crystal *c);
 /* Vectors that all chords of the lattice are whole multiples of: primitive[dimensions], m. */
 void lattice_primitive(const rows *w, double primitive[3][3]);
 
-/* Fills limit, omega_max, damping_ratio, mode (step stays as it is). limit is exact for the coupled,
-   damped lattice: the largest step with dt^2 K(k) + 2 dt C(k) <= 4 M at every k. omega_max is
-   undamped; damping_ratio and mode are of the wave that rules the limit. Negative stiffness counts
-   as none. Without stiffness and damping the limit is infinite; of a lattice that is not finite it
-   is 0. */
+/* Fills limit, omega_max, damping_ratio, mode (step stays as it is). limit is exact for the
+   coupled, damped lattice: the largest step with dt^2 K(k) + 2 dt C(k) <= 4 M at every k. omega_max
+   is undamped; damping_ratio and mode are of the wave that rules the limit. Negative stiffness
+   counts as none. Without stiffness and damping the limit is infinite; of a lattice that is not
+   finite it is 0. */
 void waves_limit(const crystal *c, step_limit *out);
 
-/* Largest frequency (rad/s) of all branches at wave vector k (1/m), undamped; NaN when not finite. */
+/* Largest frequency (rad/s) of all branches at wave vector k (1/m), undamped; NaN when not finite.
+   */
 double waves_omega(const crystal *c, const double k[3]);
 
 #endif

@@ -55,8 +55,8 @@ void pool_free(pool *p) {
   free(p);
 }
 
-/* From one long array to the next the way is never nearly a multiple of a small page: a load would wait for the store to such
-   a place. */
+/* From one long array to the next the way is never nearly a multiple of a small page: a load would
+   wait for the store to such a place. */
 static size_t distance_of(size_t bytes) {
   enum { PAGE = 4096, STAGGER = 11 * 64 };
   return bytes < PAGE || !least_piece ? bytes : round_up(bytes, PAGE) + STAGGER;

@@ -1,6 +1,6 @@
-/* Functions of distributions and random fields beyond dsl/base/elementary.h, with the same bits on every
-   processor. Largest errors measured, in ulp of the result: expm1 1.8, log1p 1.9, log_gamma 3.7,
-   gamma 6.2, normal_above 5.0; cosine_of_turns 2.7e-16. */
+/* Functions of distributions and random fields beyond dsl/base/elementary.h, with the same bits on
+   every processor. Largest errors measured, in ulp of the result: expm1 1.8, log1p 1.9, log_gamma
+   3.7, gamma 6.2, normal_above 5.0; cosine_of_turns 2.7e-16. */
 #ifndef PERILAT_RUNTIME_SPECIAL_FUNCTIONS_H
 #define PERILAT_RUNTIME_SPECIAL_FUNCTIONS_H
 

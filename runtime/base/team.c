@@ -74,8 +74,8 @@ static bool is_over(team *t, long round) {
   return atomic_load(&t->round) != round;
 }
 
-/* Rounds are short, so that waiting is first a look at a number. Then what others have not begun is done for them, and at
-   last the processor is left to them. */
+/* Rounds are short, so that waiting is first a look at a number. Then what others have not begun is
+   done for them, and at last the processor is left to them. */
 static void see_to_end(team *t, const team_work *work, long round, int task, int me) {
   for (int looks = 0; looks < PATIENCE; looks++)
     if (is_over(t, round)) return;

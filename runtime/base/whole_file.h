@@ -18,7 +18,8 @@ typedef struct whole_file {
 bool whole_file_begin(whole_file *f, const char *path);
 /* The same, and the working file is open for writing; NULL with errno, and nothing left. */
 FILE *whole_file_open(whole_file *f, const char *path);
-/* Puts the file, which is closed, in its place when it is `good`; else, or when that fails, removes it and keeps errno. */
+/* Puts the file, which is closed, in its place when it is `good`; else, or when that fails, removes
+   it and keeps errno. */
 bool whole_file_end(const whole_file *f, bool good);
 /* The same, and the file stands on the disk then. */
 bool whole_file_end_on_disk(const whole_file *f, bool good);

@@ -6,9 +6,9 @@
 
 typedef struct outline {
   const double *points; /* [count][2] corners, in order; counter-clockwise where there are arcs */
-  const double *
-      bulge; /* [count] of the edge that begins at each corner: how far the arc rises above its chord, outward
-                           positive; NULL: all straight */
+  /* [count] of the edge that begins at each corner: how far the arc rises above its chord, outward
+     positive; NULL: all straight */
+  const double *bulge;
   int count;
 } outline;
 

@@ -37,9 +37,9 @@ typedef struct deck_shape { /* m */
   double z[2];                /* extrusion: from, to */
   const double *points;       /* polygon, extrusion: x1, y1, x2, y2, ...; face: x1, y1, z1, ... */
   int point_count;            /* pairs or triples, at least 3 */
-  const double *
-      bulge; /* polygon, extrusion: rise of the arc above the edge that begins at each point, outward
-                          positive, points counter-clockwise; NULL: straight edges */
+  /* polygon, extrusion: rise of the arc above the edge that begins at each point, outward positive,
+     points counter-clockwise; NULL: straight edges */
+  const double *bulge;
   int bulge_count;
 } deck_shape;
 

@@ -1,4 +1,5 @@
-/* Pictures through Cairo: curves of histories and maps of a frame, as PNG, SVG or PDF by the path's ending. */
+/* Pictures through Cairo: curves of histories and maps of a frame, as PNG, SVG or PDF by the path's
+   ending. */
 #ifndef PERILAT_RUNTIME_PLOT_H
 #define PERILAT_RUNTIME_PLOT_H
 
@@ -33,11 +34,12 @@ typedef struct plot_curve_options {
 typedef struct plot_map_options {
   const char *output;
   long frame; /* from 0; negative: from the end (-1 the last) */
-  const char *
-      field; /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
+  /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
+  const char *field;
   int component; /* of a vector field; -1: magnitude */
   double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
-  int slice_axis; /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
+  /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
+  int slice_axis;
   double slice_at; /* m */
   /* "yielded", "S_p > 1e-6": dots where a field is above 0, above or below a value; NULL: none */
   const char *mark;
@@ -62,7 +64,8 @@ typedef struct plot_histories {
 } plot_histories;
 bool plot_histories_read(plot_histories *h, const char *path, const char *x, const char *y,
                          char *error, size_t size);
-/* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI units. */
+/* One curve of values at hand; o->x and o->y name the axes, x_unit and y_unit are the values' SI
+   units. */
 bool plot_values(const double *x, const double *y, long count, const char *x_unit,
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size);
 /* Particles and bonds of one frame, or of several beside each other, deformed, with a legend and a

@@ -219,7 +219,8 @@ typedef struct curve_set {
   size_t group;                            /* length of what all names begin with: "energy/" */
 } curve_set;
 
-/* Keeps what both titles begin with, up to a comma or colon: "Prism" of "Prism, 0 degrees" and "Prism, 15 degrees". */
+/* Keeps what both titles begin with, up to a comma or colon: "Prism" of "Prism, 0 degrees" and
+   "Prism, 15 degrees". */
 static void common_title(char *title, const char *other) {
   size_t same = 0, whole = 0;
   for (;; same++) {

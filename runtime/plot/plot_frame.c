@@ -47,7 +47,8 @@ static double spacing_of(const plot_frame *m) {
   return count ? sum / (double)count : 0;
 }
 
-/* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of the body. */
+/* Displacements times factor; a factor is chosen so that the largest relative one is a twentieth of
+   the body. */
 static void move_particles(plot_frame *m, const double *displacement, double wanted) {
   const int n = m->dimensions;
   double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
@@ -187,8 +188,8 @@ static bool read_damage_of_particles(result_file *f, plot_frame *m, const plot_m
   return m->values && m->value_count == m->particles && m->components == 1;
 }
 
-/* Maps of other fields show separated bonds, too, where the result knows them and they are few enough to be seen: with a
-   larger horizon they would cover what the map is about. */
+/* Maps of other fields show separated bonds, too, where the result knows them and they are few
+   enough to be seen: with a larger horizon they would cover what the map is about. */
 static bool bonds_would_cover(const plot_frame *m) {
   enum { MOST_BONDS = 5 }; /* a particle: ten neighbours */
   return m->bonds > MOST_BONDS * m->particles;
@@ -341,7 +342,8 @@ static void project(plot_frame *m, const double across[3], const double up[3]) {
     }
 }
 
-/* Particles up to half a spacing from the plane; on the far side that distance itself counts, too. */
+/* Particles up to half a spacing from the plane; on the far side that distance itself counts, too.
+   */
 static bool take_slice(plot_frame *m, const plot_map_options *o, char *error, size_t size) {
   static const double unit_vectors[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   static const int sides[3][2] = {{1, 2}, {0, 2}, {0, 1}};

@@ -1,5 +1,5 @@
-/* A frame of a result as a map shows it: places in the plane of the picture. A body in the plane is shown as it is; of
-   a body in space a slice, or what is seen of its surface. */
+/* A frame of a result as a map shows it: places in the plane of the picture. A body in the plane is
+   shown as it is; of a body in space a slice, or what is seen of its surface. */
 #ifndef PERILAT_RUNTIME_PLOT_FRAME_H
 #define PERILAT_RUNTIME_PLOT_FRAME_H
 
@@ -19,8 +19,8 @@ typedef struct plot_frame {
   /* Of the particles, or of the bonds: 1 where there is a mark, else 0; NULL without marks. */
   double *marked;
   bool marks_on_bonds;
-  bool
-      of_damage; /* damages, to be shown in their classes: of bonds, or the values as means on particles */
+  /* damages, to be shown in their classes: of bonds, or the values as means on particles */
+  bool of_damage;
   bool surface; /* particles alone, from the farthest to the nearest */
   int components;
   char unit_text[64], title[512];

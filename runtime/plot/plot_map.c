@@ -207,7 +207,8 @@ static void draw_particle(canvas *c, const map *m, long p, colour ink, double ra
   cairo_new_path(c->cr);
 }
 
-/* In the plane the more damaged above the less damaged; in a view of a surface those in front above those behind. */
+/* In the plane the more damaged above the less damaged; in a view of a surface those in front above
+   those behind. */
 static void draw_particles(canvas *c, const map *m, int component, double low, double high) {
   const bool coloured = m->frame.values && !m->frame.of_bonds;
   const bool by_class = coloured && m->frame.of_damage && !m->frame.surface;
@@ -230,7 +231,8 @@ static int shade_of(double value, double low, double high) {
   return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
 }
 
-/* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their crack. */
+/* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their
+   crack. */
 static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
   const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);

@@ -7,8 +7,8 @@
 
 #include "dsl/base/arena.h"
 
-/* A file that could not be closed (full disk) makes the library's own clearing up at exit crash; all that this program
-   opens it closes itself. */
+/* A file that could not be closed (full disk) makes the library's own clearing up at exit crash;
+   all that this program opens it closes itself. */
 void h5_quiet(void) {
   H5dont_atexit();
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);

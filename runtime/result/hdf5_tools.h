@@ -1,5 +1,5 @@
-/* Short forms of the HDF5 calls that result files need. All return false (or a negative id) on failure; nothing is
-   printed by the library. */
+/* Short forms of the HDF5 calls that result files need. All return false (or a negative id) on
+   failure; nothing is printed by the library. */
 #ifndef PERILAT_RUNTIME_HDF5_TOOLS_H
 #define PERILAT_RUNTIME_HDF5_TOOLS_H
 
@@ -66,7 +66,8 @@ bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape, 
 
 /* Text attribute of fixed or variable length, cut to size; false (and "") when there is none. */
 bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size);
-/* Text of a data set that holds one, fixed or variable; malloc'ed, NULL when it holds something else. */
+/* Text of a data set that holds one, fixed or variable; malloc'ed, NULL when it holds something
+   else. */
 char *h5_read_text(hid_t set);
 
 /* Calls `visit` for each data set, by each of its names. False when a call says so, or when the

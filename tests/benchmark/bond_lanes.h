@@ -1,5 +1,5 @@
-/* Stretches of bonds and columns of rows for the hand-written loops of families. Lengths in spacings or in the bond's
-   own length, velocities in spacings a step. */
+/* Stretches of bonds and columns of rows for the hand-written loops of families. Lengths in
+   spacings or in the bond's own length, velocities in spacings a step. */
 #ifndef PERILAT_BENCHMARK_BOND_LANES_H
 #define PERILAT_BENCHMARK_BOND_LANES_H
 
@@ -21,8 +21,8 @@ typedef struct bond_lanes {
   lanes twice;   /* 2 stretch */
 } bond_lanes;
 
-/* From growth = (length/reference length)^2 - 1. With r = sqrt(1 + growth) - 1: 2 r = growth - r^2, which forgives the
-   cancellation in the r on the right. */
+/* From growth = (length/reference length)^2 - 1. With r = sqrt(1 + growth) - 1: 2 r = growth - r^2,
+   which forgives the cancellation in the r on the right. */
 LANES_FUNCTION bond_lanes bond_of_growth(lanes growth) {
   const lanes square = 1 + growth, inverse = lanes_inverse_root(square);
   const lanes rough = square * inverse - 1;
@@ -36,8 +36,8 @@ static inline double *lanes_zeros(long count) {
   return memset(p, 0, bytes + PL_ALIGNMENT);
 }
 
-/* Arrays of `count` zeros each in one piece of memory, which the first owns. The same places of no two of a dozen are
-   a multiple of 4 KiB apart: a load would wait for the store to such a place. */
+/* Arrays of `count` zeros each in one piece of memory, which the first owns. The same places of no
+   two of a dozen are a multiple of 4 KiB apart: a load would wait for the store to such a place. */
 enum { LANES_PAGE = 4096 / sizeof(double), LANES_STAGGER = 88 };
 
 static inline void lanes_share(double **const *arrays, int how_many, long count) {

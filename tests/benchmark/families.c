@@ -1,12 +1,13 @@
-/* How fast laws of families are: state-based lattices on the hexagon and on the face-centred cubic lattice with 18
-   neighbours, the linear peridynamic solid with 122, each on about 100 000 particles, moved by a naive program, by a
-   hand-written loop and by the generated kernel, in one process on one core.
+/* How fast laws of families are: state-based lattices on the hexagon and on the face-centred cubic
+   lattice with 18 neighbours, the linear peridynamic solid with 122, each on about 100 000
+   particles, moved by a naive program, by a hand-written loop and by the generated kernel, in one
+   process on one core.
 
-   All must reach the same motion from the same start before anything is timed. Each is then timed in turn, round after
-   round, by the thread's processor time.
+   All must reach the same motion from the same start before anything is timed. Each is then timed
+   in turn, round after round, by the thread's processor time.
 
-   The generated kernel takes part a second time, compiled for explicit neighbours, with the same particles as a list. Laws
-   may have another operator there: what it moves otherwise is named. */
+   The generated kernel takes part a second time, compiled for explicit neighbours, with the same
+   particles as a list. Laws may have another operator there: what it moves otherwise is named. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
-/* What every contestant of the benchmark of families is given: a body on rows, the constants of the state-based laws
-   that come along, a time step, and states of motion to start from. */
+/* What every contestant of the benchmark of families is given: a body on rows, the constants of the
+   state-based laws that come along, a time step, and states of motion to start from. */
 #ifndef PERILAT_BENCHMARK_FAMILY_PROBLEM_H
 #define PERILAT_BENCHMARK_FAMILY_PROBLEM_H
 
@@ -26,8 +26,9 @@ typedef struct motions {
 motions motions_new(const rows *lattice);
 void motions_free(motions *m);
 
-/* Each particle is moved at random by up to `stretch` spacings in each direction, and flies at a random velocity that
-   takes it as far within some steps. The same numbers whenever and wherever it is called. */
+/* Each particle is moved at random by up to `stretch` spacings in each direction, and flies at a
+   random velocity that takes it as far within some steps. The same numbers whenever and wherever it
+   is called. */
 void motions_start(motions *m, const family_problem *p, double stretch);
 
 /* To and from displacements in spacings and velocities in spacings a step. */
@@ -35,9 +36,10 @@ void motions_scale(double *const *u, double *const *v, const motions *from,
                    const family_problem *p);
 void motions_unscale(motions *to, double *const *u, double *const *v, const family_problem *p);
 
-/* Largest difference of two displacements, relative to the largest displacement of `a`; of velocities likewise; the larger
-   of the two. Of particles that are further than `margin` spacings from the outline of a body that is a rectangle or box. NaN
-   counts as infinite; without particles 0. */
+/* Largest difference of two displacements, relative to the largest displacement of `a`; of
+   velocities likewise; the larger of the two. Of particles that are further than `margin` spacings
+   from the outline of a body that is a rectangle or box. NaN counts as infinite; without particles
+   0. */
 double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin);
 
 /* A program that moves such a body: memory is its own; `set` starts with virgin fields. */

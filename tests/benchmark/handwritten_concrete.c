@@ -4,15 +4,17 @@
 #include "tests/benchmark/bond_lanes.h"
 #include "tests/benchmark/handwritten_families.h"
 
-/* As handwritten_elastic.c, in three turns: the bonds of a row, with the damage of the last step; what its particles
-   become; then forces and flow in the bonds of the row below, which moves.
+/* As handwritten_elastic.c, in three turns: the bonds of a row, with the damage of the last step;
+   what its particles become; then forces and flow in the bonds of the row below, which moves.
 
-   Where the law keeps a plastic stretch on either side of a bond, only their mean is ever read, and kept here. Damage
-   stands as the part that is left, which the springs in series want: 2 x y/(x + y). */
+   Where the law keeps a plastic stretch on either side of a bond, only their mean is ever read, and
+   kept here. Damage stands as the part that is left, which the springs in series want: 2 x y/(x +
+   y). */
 
 enum { ALONG, RIGHT, LEFT, DIRECTIONS };
 
-/* What depends on the bonds that a particle has: [FACTS][LANES], shared by all blocks of LANES sites that are alike. */
+/* What depends on the bonds that a particle has: [FACTS][LANES], shared by all blocks of LANES
+   sites that are alike. */
 enum { SHAPE, PAIRS = SHAPE + 6, SHARE = PAIRS + DIRECTIONS, FACTS };
 
 typedef struct row_buffer {

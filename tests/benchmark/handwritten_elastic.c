@@ -3,9 +3,10 @@
 #include "tests/benchmark/bond_lanes.h"
 #include "tests/benchmark/handwritten_families.h"
 
-/* A row's bonds are found, with the sums of stretches of its particles; then the forces of the row below are known, and
-   it moves. Buffers hold two rows, by parity; column c of a row stands at place LANES + c. Whole rows are done, with the
-   columns beside the particles: what is no bond has no stretch, no direction, and so no force. */
+/* A row's bonds are found, with the sums of stretches of its particles; then the forces of the row
+   below are known, and it moves. Buffers hold two rows, by parity; column c of a row stands at
+   place LANES + c. Whole rows are done, with the columns beside the particles: what is no bond has
+   no stretch, no direction, and so no force. */
 
 enum { ALONG, RIGHT, LEFT, DIRECTIONS };
 

@@ -1,9 +1,11 @@
-/* Laws of families as a specialist would program each for its one lattice: no neighbour list, structure of arrays, eight
-   bonds at once, every bond found once a step, one sweep over the rows in which a row moves as soon as its forces are
-   known. What a compiler of laws should come near to.
+/* Laws of families as a specialist would program each for its one lattice: no neighbour list,
+   structure of arrays, eight bonds at once, every bond found once a step, one sweep over the rows
+   in which a row moves as soon as its forces are known. What a compiler of laws should come near
+   to.
 
-   They exist twice, compiled without and with contraction to fused multiply-adds. Rounding differs from that of the
-   generated kernels, which keep to the order of the law's equations: agreement is to a part in 1e9, not to the bit. */
+   They exist twice, compiled without and with contraction to fused multiply-adds. Rounding differs
+   from that of the generated kernels, which keep to the order of the law's equations: agreement is
+   to a part in 1e9, not to the bit. */
 #ifndef PERILAT_BENCHMARK_HANDWRITTEN_FAMILIES_H
 #define PERILAT_BENCHMARK_HANDWRITTEN_FAMILIES_H
 

@@ -3,10 +3,11 @@
 #include "tests/benchmark/bond_lanes.h"
 #include "tests/benchmark/handwritten_families.h"
 
-/* Two turns over the rows. The first finds the stretches of the bonds that a row owns and adds them to the sums of both
-   ends; the second, as many rows behind as a bond reaches, finds their forces and moves the row. Between the turns the
-   stretches stand in a ring of rows that stays in the second cache. Sums and forces go to the far end as they come: a row
-   is complete when its turn is. */
+/* Two turns over the rows. The first finds the stretches of the bonds that a row owns and adds them
+   to the sums of both ends; the second, as many rows behind as a bond reaches, finds their forces
+   and moves the row. Between the turns the stretches stand in a ring of rows that stays in the
+   second cache. Sums and forces go to the far end as they come: a row is complete when its turn is.
+   */
 
 enum { DIRECTIONS = 9 };
 

@@ -3,12 +3,13 @@
 #include "tests/benchmark/bond_lanes.h"
 #include "tests/benchmark/handwritten_families.h"
 
-/* On a cubic lattice all sites have their neighbours at the same distances in memory: the body is one long run, whose
-   rows share the empty columns between them. Two turns over it: dilatations, and as far behind as a bond reaches the
-   forces. A bond's stretch is found in both: to keep it would take more memory than any cache has.
+/* On a cubic lattice all sites have their neighbours at the same distances in memory: the body is
+   one long run, whose rows share the empty columns between them. Two turns over it: dilatations,
+   and as far behind as a bond reaches the forces. A bond's stretch is found in both: to keep it
+   would take more memory than any cache has.
 
-   A bond adds to its far end while the next ones wait for what was just stored where their own far ends overlap; so
-   neighbours of one row are taken far apart. */
+   A bond adds to its far end while the next ones wait for what was just stored where their own far
+   ends overlap; so neighbours of one row are taken far apart. */
 
 enum { MOST = 64 };
 
@@ -191,8 +192,9 @@ static void find_places(lps_cubic *h) {
   }
 }
 
-/* The bond force is T_i V^2 of both ends, T = s/m ((3 k - 5 mu) theta + 15 mu stretch) with the weighted volume m and
-   theta = 3/m sum(s^2 stretch V); here by chord over length, in which s falls out, and by twice the stretch. */
+/* The bond force is T_i V^2 of both ends, T = s/m ((3 k - 5 mu) theta + 15 mu stretch) with the
+   weighted volume m and theta = 3/m sum(s^2 stretch V); here by chord over length, in which s falls
+   out, and by twice the stretch. */
 static void set_law(lps_cubic *h) {
   const family_problem *p = h->problem;
   const rows *g = p->lattice;

@@ -1,8 +1,9 @@
-/* The linear peridynamic solid against that of LAMMPS (pair style peri/lps, Parks et al. 2008, 2010), where `lmp` is on the
-   path: a free cubic block in space that flies apart and shears. LAMMPS weighs bonds by 1/length and counts a part of
-   the volumes near the horizon, so the law here is written with both. Kinetic energies are compared before times; what
-   LAMMPS prints as potential energy is a density in which deviatoric parts count half. Its time includes the search for
-   contacts that this style always does. */
+/* The linear peridynamic solid against that of LAMMPS (pair style peri/lps, Parks et al. 2008,
+   2010), where `lmp` is on the path: a free cubic block in space that flies apart and shears.
+   LAMMPS weighs bonds by 1/length and counts a part of the volumes near the horizon, so the law
+   here is written with both. Kinetic energies are compared before times; what LAMMPS prints as
+   potential energy is a density in which deviatoric parts count half. Its time includes the search
+   for contacts that this style always does. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -147,8 +148,8 @@ static void steps_of(sweep *w, long steps) {
     if (!sweep_step(w)) give_up("the block's motion went bad");
 }
 
-/* At rest in the bonds the first kick is none: velocities then stand half a step after the displacements, as they do in
-   LAMMPS within a step. */
+/* At rest in the bonds the first kick is none: velocities then stand half a step after the
+   displacements, as they do in LAMMPS within a step. */
 static block_result run_here(block *b) {
   sweep *w = simulation_state(b->trial->run);
   block_result r;

@@ -41,13 +41,12 @@ LANES_FUNCTION lanes lanes_shift_in(lanes before, lanes x) {
   return __builtin_shufflevector(before, x, LANES_SHIFTED);
 }
 
-/* lanes_max, lanes_min: the second where one is no number.
-   lanes_inverse_root(x): 1/sqrt(x) to an ulp or two, for normal x > 0.
-   lanes_beyond(x, limit), lanes_above(x, limit, y): marks lanes where |x| > limit, or x > limit and
-   y > 0, or x is no number. Marks are gathered with |.
-   lanes_marked(word, bit): marks lanes whose word has that bit. lanes_least(a, b): a >= b, false for no numbers.
-   lanes_keep(m, x): x where marked, else 0. lanes_choose(m, a, b): a where marked, else b.
-   lanes_inverse(x): 1/x to an ulp or two, for normal x > 0. */
+/* lanes_max, lanes_min: the second where one is no number. lanes_inverse_root(x): 1/sqrt(x) to an
+   ulp or two, for normal x > 0. lanes_beyond(x, limit), lanes_above(x, limit, y): marks lanes where
+   |x| > limit, or x > limit and y > 0, or x is no number. Marks are gathered with |.
+   lanes_marked(word, bit): marks lanes whose word has that bit. lanes_least(a, b): a >= b, false
+   for no numbers. lanes_keep(m, x): x where marked, else 0. lanes_choose(m, a, b): a where marked,
+   else b. lanes_inverse(x): 1/x to an ulp or two, for normal x > 0. */
 #if LANES == 8
 
 typedef __mmask8 lanes_marks;

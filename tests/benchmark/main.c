@@ -1,7 +1,7 @@
-/* The benchmark: ratios of programs that compute the same thing, taken in turn in one process, medians of at least five
-   rounds. Prints tables and writes a flat object of named figures.
+/* The benchmark: ratios of programs that compute the same thing, taken in turn in one process,
+   medians of at least five rounds. Prints tables and writes a flat object of named figures.
 
-     benchmark [--parts bonds,families,runs,lammps] [result.json] */
+   benchmark [--parts bonds,families,runs,lammps] [result.json] */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>

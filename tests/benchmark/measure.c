@@ -108,7 +108,8 @@ double triad_bandwidth(size_t bytes, int threads) {
   return 3 * sizeof(double) * (double)count / median_of(seconds, PEAK_ROUNDS);
 }
 
-/* Enough chains to fill two units whose results take four or five cycles. This file is compiled with contraction. */
+/* Enough chains to fill two units whose results take four or five cycles. This file is compiled
+   with contraction. */
 enum { CHAINS = 12, LINKS = 1 << 20 };
 
 static __attribute__((noinline)) lanes run_chains(lanes factor, lanes term) {

@@ -1,4 +1,5 @@
-/* Clocks, medians, facts of the machine, and the flat object of named figures that the benchmark leaves behind. */
+/* Clocks, medians, facts of the machine, and the flat object of named figures that the benchmark
+   leaves behind. */
 #ifndef PERILAT_BENCHMARK_MEASURE_H
 #define PERILAT_BENCHMARK_MEASURE_H
 
@@ -20,9 +21,11 @@ void processor_fact(const char *key, char *value, size_t size);
 int vector_bits(void); /* of a register, as this program is compiled */
 int processor_count(void);
 
-/* Bytes a second that a = b + factor c moves (McCalpin's STREAM: 24 a place), on arrays of `bytes` altogether; median. */
+/* Bytes a second that a = b + factor c moves (McCalpin's STREAM: 24 a place), on arrays of `bytes`
+   altogether; median. */
 double triad_bandwidth(size_t bytes, int threads);
-/* Additions and multiplications a second, of fused multiply-adds in registers, on one core; median. */
+/* Additions and multiplications a second, of fused multiply-adds in registers, on one core; median.
+   */
 double fused_peak(void);
 
 typedef struct figures figures;
@@ -36,7 +39,8 @@ void figures_add(figures *f, double value, const char *format, ...)
 double figures_value(const figures *f, const char *key);
 void figures_close(figures *f);
 
-/* The parts of the benchmark, each with its own table. False when contestants compute different things. */
+/* The parts of the benchmark, each with its own table. False when contestants compute different
+   things. */
 bool benchmark_bonds(figures *f);
 bool benchmark_families(figures *f);
 bool benchmark_runs(figures *f);

@@ -1,5 +1,6 @@
-/* What runs cost besides the bonds themselves: threads, memory traffic, size, compiling, starting, frames, monitors, the
-   energy ledger, and what reproducible arithmetic costs against -ffast-math. Mostly on plates of the bilinear micropolar law. */
+/* What runs cost besides the bonds themselves: threads, memory traffic, size, compiling, starting,
+   frames, monitors, the energy ledger, and what reproducible arithmetic costs against -ffast-math.
+   Mostly on plates of the bilinear micropolar law. */
 #include <fcntl.h>
 #include <math.h>
 #include <spawn.h>
@@ -82,8 +83,9 @@ static void measure_threads(figures *f) {
 
 /* --- memory and arithmetic -------------------------------------------------------------------- */
 
-/* What a step must move for a particle of a law of bonds while no damage grows: displacements, velocities and states of the
-   bonds are read and written once, damage is read. Flags are shared by rows alike, and forces stay in buffers of a row. */
+/* What a step must move for a particle of a law of bonds while no damage grows: displacements,
+   velocities and states of the bonds are read and written once, damage is read. Flags are shared by
+   rows alike, and forces stay in buffers of a row. */
 static double bytes_per_particle(const pl_law *kernel, int directions) {
   double bytes = 4.0 * kernel->dof * sizeof(double);
   for (int f = 0; f < kernel->field_count; f++)
@@ -232,7 +234,8 @@ static void measure_start(figures *f, const char *folder) {
 
 enum { FRAME_STEPS = 1000, FRAMES = 20, FRAME_PLATE = 20000 };
 
-/* Processor seconds of one `perilat run`, by frames; what starting and stopping costs is in both and falls out. */
+/* Processor seconds of one `perilat run`, by frames; what starting and stopping costs is in both
+   and falls out. */
 static double run_seconds(const char *folder, int frames, long steps) {
   char text[TEXT], keys[100], groups[100];
   snprintf(keys, sizeof keys, "step = '0.4 us' end_time = '%.1f us' threads = 1",

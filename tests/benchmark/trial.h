@@ -1,4 +1,5 @@
-/* A run, or only its lattice and kernel, from a deck's text: what the parts of the benchmark about whole runs begin with. */
+/* A run, or only its lattice and kernel, from a deck's text: what the parts of the benchmark about
+   whole runs begin with. */
 #ifndef PERILAT_BENCHMARK_TRIAL_H
 #define PERILAT_BENCHMARK_TRIAL_H
 
@@ -17,12 +18,12 @@ typedef struct trial {
   simulation *run;
 } trial;
 
-/* A square plate of the hexagonal lattice, about `particles`, spacing 10 mm, free of loads; `more` are further keys of
-   &simulation and groups, in that order. */
+/* A square plate of the hexagonal lattice, about `particles`, spacing 10 mm, free of loads; `more`
+   are further keys of &simulation and groups, in that order. */
 void trial_plate_text(char *text, size_t size, double particles, const char *model_name,
                       const char *simulation_keys, const char *groups);
-/* Ends the program, after the diagnostics, when the deck is faulty. The particles start at rest, but for random
-   displacements that stretch bonds by about 1e-5. */
+/* Ends the program, after the diagnostics, when the deck is faulty. The particles start at rest,
+   but for random displacements that stretch bonds by about 1e-5. */
 trial *trial_open(const char *deck_text);
 void trial_close(trial *t);
 /* A model, opened and planned; on a lattice of so many neighbours, 0: not known. */

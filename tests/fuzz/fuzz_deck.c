@@ -1,6 +1,6 @@
 /* A deck's text through the namelist reader and the deck's checks. Lines `! --set text` at the top
-   are overrides, as in tests/runtime/deck/bad. What can be read must have its numbers finite and its
-   lists whole; every place lies in its text; what identifies the deck can be read again. */
+   are overrides, as in tests/runtime/deck/bad. What can be read must have its numbers finite and
+   its lists whole; every place lies in its text; what identifies the deck can be read again. */
 #include <math.h>
 #include <string.h>
 

@@ -1,6 +1,6 @@
-/* Laws that are right: the bytes choose from a grammar, and what comes of it is a law in which names
-   and units agree. So every input goes behind the checks of the text, which few do in fuzz_model.c.
-   What must hold there is the same. */
+/* Laws that are right: the bytes choose from a grammar, and what comes of it is a law in which
+   names and units agree. So every input goes behind the checks of the text, which few do in
+   fuzz_model.c. What must hold there is the same. */
 #include "tests/fuzz/law_stages.h"
 #include "tests/fuzz/recipe.h"
 

@@ -1,6 +1,6 @@
 /* Runs a fuzzer on files instead of on inventions, each through all its parts: `replay_model folder
-   | file ...`. A folder's files are taken in the order of their names. The test fails when one of them ends the program, or
-   when there is none. */
+   | file ...`. A folder's files are taken in the order of their names. The test fails when one of
+   them ends the program, or when there is none. */
 #include <dirent.h>
 #include <errno.h>
 #include <string.h>

@@ -1,7 +1,7 @@
-/* How libFuzzer changes texts: as it does bytes, and, more often, by words and lines. A word or line
-   takes the place of another, comes before it, or goes; with two texts it comes from the other. A
-   word is mostly replaced by one of its kind: a name by a name, a number by a number. So more of
-   the inventions are right enough to get past the reader. */
+/* How libFuzzer changes texts: as it does bytes, and, more often, by words and lines. A word or
+   line takes the place of another, comes before it, or goes; with two texts it comes from the
+   other. A word is mostly replaced by one of its kind: a name by a name, a number by a number. So
+   more of the inventions are right enough to get past the reader. */
 #include <ctype.h>
 #include <string.h>
 

@@ -1,5 +1,5 @@
-/* What tests of the command need: a folder of its own with a small deck, the program run in it by a shell, and its result
-   compared with another's to the last bit. */
+/* What tests of the command need: a folder of its own with a small deck, the program run in it by a
+   shell, and its result compared with another's to the last bit. */
 #ifndef PERILAT_TESTS_COMMAND_TOOLS_H
 #define PERILAT_TESTS_COMMAND_TOOLS_H
 
@@ -102,7 +102,8 @@ static inline int tear_down_workplace(void **state) {
   return 0;
 }
 
-/* A line of shell in the workplace, where $P is the program. Its exit status, 128 + signal; its outputs go to w->said. */
+/* A line of shell in the workplace, where $P is the program. Its exit status, 128 + signal; its
+   outputs go to w->said. */
 static inline int shell(workplace *w, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 static inline int shell(workplace *w, const char *format, ...) {

@@ -1,4 +1,5 @@
-/* For tests: a run that stops and goes on in another one, through a checkpoint. Include after cmocka.h. */
+/* For tests: a run that stops and goes on in another one, through a checkpoint. Include after
+   cmocka.h. */
 #ifndef PERILAT_TESTS_HAND_OVER_H
 #define PERILAT_TESTS_HAND_OVER_H
 

@@ -49,7 +49,8 @@ static inline test_points points_drawn(int dimensions, long count, const double 
   return p;
 }
 
-/* Columns times rows of the hexagonal lattice of spacing 1, each moved by up to `shake` along either axis. */
+/* Columns times rows of the hexagonal lattice of spacing 1, each moved by up to `shake` along
+   either axis. */
 static inline test_points points_hexagonal(long columns, long lines, double shake, uint64_t seed) {
   test_points p = points_new(2, columns * lines);
   for (long k = 0; k < p.cloud.count; k++) {

@@ -1,5 +1,5 @@
-/* A law of families by hand, for tests of the runtime alone: springs in space, force c times stretch
-   along the present bond, one pass. */
+/* A law of families by hand, for tests of the runtime alone: springs in space, force c times
+   stretch along the present bond, one pass. */
 #ifndef PERILAT_TESTS_SPRING_LAW_H
 #define PERILAT_TESTS_SPRING_LAW_H
 

@@ -44,7 +44,8 @@ static inline double centre_of(const deck_case *c, const char *name) {
   return moment / sum;
 }
 
-/* Error of the speed between the stations 0.4 m apart, against that of a bar of the lattice's own modulus. */
+/* Error of the speed between the stations 0.4 m apart, against that of a bar of the lattice's own
+   modulus. */
 static inline double error_of_speed(const char *name, const char *const overrides[2], double E) {
   deck_case c;
   run_of(&c, name, overrides, 2);
@@ -82,8 +83,8 @@ static inline double passes_at(const deck_case *c, const char *name) {
   return 0;
 }
 
-/* Between 0.4 and 1 of the Rayleigh speed, 0.93 c_s; a crack that leaves its plane by three rows breaks a fifth
-   of the bonds there and more. */
+/* Between 0.4 and 1 of the Rayleigh speed, 0.93 c_s; a crack that leaves its plane by three rows
+   breaks a fifth of the bonds there and more. */
 static inline void check_crack(const char *const overrides[2]) {
   deck_case c;
   run_of(&c, "examples/running_crack/pmb.nml", overrides, 2);

@@ -22,7 +22,8 @@ static inline const double *specimen_field(const sweep *w, const char *name) {
   abort();
 }
 
-/* For each particle the site of its image in the line x = 0; NULL when one has none. To be freed. */
+/* For each particle the site of its image in the line x = 0; NULL when one has none. To be freed.
+   */
 static inline long *specimen_images(const rows *g) {
   long *image = calloc((size_t)g->particle_count, sizeof *image), found = 0;
   for (long p = 0; p < g->particle_count; p++) {

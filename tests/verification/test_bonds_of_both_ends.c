@@ -1,5 +1,6 @@
-/* Bonds that are evaluated once and add to both ends: the same bits for any number of threads, after a checkpoint and from the
-   interpreter, while bonds break everywhere but where they are protected; in families of 122, 18 and 6 neighbours. */
+/* Bonds that are evaluated once and add to both ends: the same bits for any number of threads,
+   after a checkpoint and from the interpreter, while bonds break everywhere but where they are
+   protected; in families of 122, 18 and 6 neighbours. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
-/* Cases of laws of families against theory, from the decks of examples/ on coarser lattices: elastic constants of a cube,
-   a pulse along a bar, a running crack, a beam in space; and what a crack through cohesive bonds in space costs. */
+/* Cases of laws of families against theory, from the decks of examples/ on coarser lattices:
+   elastic constants of a cube, a pulse along a bar, a running crack, a beam in space; and what a
+   crack through cohesive bonds in space costs. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -58,7 +59,8 @@ static void count_crossing(const rows *w, long count[2]) {
     }
 }
 
-/* Half a crystal lifted off the other along a cube face costs what its bonds cost; on an endless plane that is G_f. */
+/* Half a crystal lifted off the other along a cube face costs what its bonds cost; on an endless
+   plane that is G_f. */
 static void a_crack_through_the_crystal_costs_G_f(void **state) {
   (void)state;
   deck_case l, c;

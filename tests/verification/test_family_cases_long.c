@@ -1,4 +1,5 @@
-/* The cases of test_family_cases at the spacings of examples/, the beam in space a little coarser. */
+/* The cases of test_family_cases at the spacings of examples/, the beam in space a little coarser.
+   */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

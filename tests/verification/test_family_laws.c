@@ -1,5 +1,5 @@
-/* Laws of families of models/ against theory: elastic constants of lattices, two particles as an oscillator, bonds that
-   break, the cost of a crack, a yield surface, and concrete step by step. */
+/* Laws of families of models/ against theory: elastic constants of lattices, two particles as an
+   oscillator, bonds that break, the cost of a crack, a yield surface, and concrete step by step. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -13,7 +13,8 @@
 
 /* --- elastic constants ------------------------------------------------------------------------ */
 
-/* D of an isotropic solid, in the order xx, yy, xy or xx, yy, zz, xy, yz, xz, shear strains as angles. */
+/* D of an isotropic solid, in the order xx, yy, xy or xx, yy, zz, xy, yz, xz, shear strains as
+   angles. */
 static void isotropic(law_setting setting, double E, double nu, int size, double *D) {
   const double mu = E / (2 * (1 + nu));
   const double lambda =
@@ -37,8 +38,8 @@ static const char *const space_deck =
     "size = '40 mm', '40 mm', '40 mm' /\n"
     "&material lattice = 'l' model = 'x' /\n";
 
-/* Long waves in the lattice with the law's own kernel against the isotropic solid: the largest entry that is off, over the
-   largest. */
+/* Long waves in the lattice with the law's own kernel against the isotropic solid: the largest
+   entry that is off, over the largest. */
 static double error_of_D(const char *model_name, const char *deck_text, law_setting setting,
                          double nu) {
   char text[1024];
@@ -80,8 +81,8 @@ static void lattices_have_the_stiffness_of_the_solid(void **state) {
 
 /* --- two particles ---------------------------------------------------------------------------- */
 
-/* Particles 0 and 1 of one row, bonded to each other alone, in the arrays that a pass wants; eight places of nothing
-   before and behind. */
+/* Particles 0 and 1 of one row, bonded to each other alone, in the arrays that a pass wants; eight
+   places of nothing before and behind. */
 enum { PLACES = 24, FIRST = 8, MOST_FIELDS = 4, MOST_LINKS = 8 };
 typedef struct pair {
   double u[3][PLACES], v[3][PLACES], force[3][PLACES], link[MOST_LINKS][PLACES];
@@ -145,8 +146,8 @@ static void pair_forces(pair *p, const law_case *c) {
   memcpy(p->field[0], p->field[1], sizeof p->field[0]);
 }
 
-/* Displacement of the left particle after `time`, its velocity in *velocity: velocity Verlet, so that both are of the same
-   time. */
+/* Displacement of the left particle after `time`, its velocity in *velocity: velocity Verlet, so
+   that both are of the same time. */
 static double oscillate(const law_case *c, double time, int steps, double *velocity) {
   static pair p;
   pair_open(&p, c, 2, 2);
@@ -166,8 +167,8 @@ static double oscillate(const law_case *c, double time, int steps, double *veloc
   return p.u[0][FIRST];
 }
 
-/* Two particles of a linear peridynamic solid do not change shape: each is a mass on a spring of the bulk modulus,
-   omega^2 = 9 K/rho. The amplitude is small against their distance. */
+/* Two particles of a linear peridynamic solid do not change shape: each is a mass on a spring of
+   the bulk modulus, omega^2 = 9 K/rho. The amplitude is small against their distance. */
 static void two_particles_oscillate(void **state) {
   (void)state;
   law_case c;
@@ -281,7 +282,8 @@ static void on_all_lattices(void (*test)(law_setting setting, const char *lattic
 
 /* --- prototype microelastic brittle ----------------------------------------------------------- */
 
-/* Energy density over E S^2 of an equal stretch of all bonds: 9 K/2E in space (Silling and Askari 2005, eq 7). */
+/* Energy density over E S^2 of an equal stretch of all bonds: 9 K/2E in space (Silling and Askari
+   2005, eq 7). */
 static double density_of_stretch(law_setting setting, double nu) {
   return setting == SETTING_SPACE          ? 1.5 / (1 - 2 * nu)
          : setting == SETTING_PLANE_STRESS ? 1 / (1 - nu)
@@ -326,8 +328,9 @@ static void a_bond_of_pmb_pulls(void **state) {
   law_case_close(&c);
 }
 
-/* Work per area of pulling two half planes apart until no bond is left. Within the patch the upper half of the sites moves by
-   the opening; the period grows by as much, so that the halves stay together at its border. */
+/* Work per area of pulling two half planes apart until no bond is left. Within the patch the upper
+   half of the sites moves by the opening; the period grows by as much, so that the halves stay
+   together at its border. */
 static double work_of_fracture(law_patch *l, long height, double last) {
   enum { STEPS = 6000 };
   patch *p = l->p;
@@ -360,8 +363,8 @@ static double work_of_fracture(law_patch *l, long height, double last) {
   return work / (spacing * 0.02);
 }
 
-/* The formula for s_0 is that of a continuum; on a lattice the error depends on how the horizon cuts
-   it, and is small where the horizon is large. */
+/* The formula for s_0 is that of a continuum; on a lattice the error depends on how the horizon
+   cuts it, and is small where the horizon is large. */
 static void a_crack_in_pmb_costs_G_0(void **state) {
   (void)state;
   double error[4];
@@ -414,8 +417,9 @@ static double shear_error(law_setting setting, const char *lattice, bool diagona
   return W / exact - 1;
 }
 
-/* The mean over all directions is exact on any lattice. What the two shears differ by depends on how the horizon cuts the
-   square lattice; it does not fall step by step, but it is small beside that of eight neighbours. */
+/* The mean over all directions is exact on any lattice. What the two shears differ by depends on
+   how the horizon cuts the square lattice; it does not fall step by step, but it is small beside
+   that of eight neighbours. */
 static void shear_of_lps_is_right_in_the_mean(void **state) {
   (void)state;
   const double eight = shear_error(SETTING_PLANE_STRESS, "kind = 'square' shells = 2", false);
@@ -466,7 +470,8 @@ static double shear_along(law_patch *l, double from, double to, double *stress) 
   return work;
 }
 
-/* Sheared to four times the strain of first yield, back and forth. Returns the error of the yield stress against von Mises. */
+/* Sheared to four times the strain of first yield, back and forth. Returns the error of the yield
+   stress against von Mises. */
 static double error_of_yield(const char *lattice) {
   law_patch l;
   patch_open(&l, "eps", SETTING_SPACE, lattice, 1, 1);
@@ -509,8 +514,8 @@ static void eps_yields_in_shear(void **state) {
 
 /* --- concrete --------------------------------------------------------------------------------- */
 
-/* A family whose neighbours are all in its own state (Nikravesh 2017, eqs 3.18, 3.37, 3.43 to 3.48, 3.61, 4.5, 4.10 to 4.17),
-   hexagon in plane stress. */
+/* A family whose neighbours are all in its own state (Nikravesh 2017, eqs 3.18, 3.37, 3.43 to 3.48,
+   3.61, 4.5, 4.10 to 4.17), hexagon in plane stress. */
 typedef struct concrete {
   double E, nu, f_t, f_c, f_y, eps_ult, G_f, alpha, gamma, w_cr, s, t, V; /* of the law */
   double n[6][3];                                                         /* x^2, y^2, x y */
@@ -664,7 +669,8 @@ static void concrete_follows_its_equations(void **state) {
 
 /* --- alone ------------------------------------------------------------------------------------ */
 
-/* A law of families may divide by what a family has: a particle without bonds takes nothing from the ledger. */
+/* A law of families may divide by what a family has: a particle without bonds takes nothing from
+   the ledger. */
 static void a_particle_alone_stores_nothing(void **state) {
   (void)state;
   static const char *const models[] = {"lps", "pmb", "splm_elastic", "splm_concrete"};

@@ -1,6 +1,6 @@
-/* Small families of models/ in windows of rows against the same passes over the whole body: the same bits. Rows of round
-   bodies with holes begin and end at ever other places, so that in a window they take the places of longer ones, and bonds
-   that are absent lead to them. */
+/* Small families of models/ in windows of rows against the same passes over the whole body: the
+   same bits. Rows of round bodies with holes begin and end at ever other places, so that in a
+   window they take the places of longer ones, and bonds that are absent lead to them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,7 @@
-/* Laws of families on particles that stand on no lattice. Theory: the operator of the splm laws gives a family of any shape the
-   stress of a uniform strain, so that a body has the material's moduli then, whatever its particles; left to itself it is a
-   little softer, the less the more neighbours; on a perfect lattice it is the lattice's own. */
+/* Laws of families on particles that stand on no lattice. Theory: the operator of the splm laws
+   gives a family of any shape the stress of a uniform strain, so that a body has the material's
+   moduli then, whatever its particles; left to itself it is a little softer, the less the more
+   neighbours; on a perfect lattice it is the lattice's own. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -69,7 +70,8 @@ static void the_stress_of_a_uniform_strain_is_exact(void **state) {
   assert_exact("splm_elastic", "space", 18);
 }
 
-/* The same from the law's own stress, at every particle: a dilation of the plane, in plane stress. */
+/* The same from the law's own stress, at every particle: a dilation of the plane, in plane stress.
+   */
 static void every_family_has_it(void **state) {
   (void)state;
   deck_case c;
@@ -187,7 +189,8 @@ static int neighbours_of(const rows *g, long particle) {
   return rows_degree(g, g->particle_site[particle]);
 }
 
-/* Inside, where families are whole, and the families of all neighbours too: more than two spacings from the edge. */
+/* Inside, where families are whole, and the families of all neighbours too: more than two spacings
+   from the edge. */
 static bool is_inside(const rows *g, long particle) {
   const long q = g->particle_site[particle];
   return neighbours_of(g, particle) == 6 && g->x[q] > 0.015 && g->x[q] < 0.085 && g->y[q] > 0.015 &&
@@ -258,8 +261,8 @@ static double energy_of(sweep *w) {
   return t.kinetic + t.stored;
 }
 
-/* A free body shaken at random keeps its momentum and its energy: no mode grows. Forces act along the present bonds, so that
-   its spin stays, too. */
+/* A free body shaken at random keeps its momentum and its energy: no mode grows. Forces act along
+   the present bonds, so that its spin stays, too. */
 static void a_free_body_keeps_what_it_has(void **state) {
   (void)state;
   deck_case c;
@@ -293,7 +296,8 @@ static void a_free_body_keeps_what_it_has(void **state) {
 
 /* --- peridynamics ----------------------------------------------------------------------------- */
 
-/* By volumes, with a horizon of three spacings: near the material's modulus, as far as sums over irregular points are integrals. */
+/* By volumes, with a horizon of three spacings: near the material's modulus, as far as sums over
+   irregular points are integrals. */
 static void peridynamic_solids_come_near(void **state) {
   (void)state;
   static const char *const names[] = {"lps", "pmb"};

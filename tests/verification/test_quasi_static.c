@@ -1,7 +1,8 @@
-/* The quasi-static run of the prism in tension beside dynamic ones that pull it apart within 80 and 160 periods of its
-   fundamental vibration. What tells them apart is the speed: dampers on the particles, dampers in the bonds, inertia
-   where the crack runs. So half the speed must be half as far away, and no speed, which is twice the slower run less
-   the faster, is where the quasi-static run is. */
+/* The quasi-static run of the prism in tension beside dynamic ones that pull it apart within 80 and
+   160 periods of its fundamental vibration. What tells them apart is the speed: dampers on the
+   particles, dampers in the bonds, inertia where the crack runs. So half the speed must be half as
+   far away, and no speed, which is twice the slower run less the faster, is where the quasi-static
+   run is. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -73,7 +74,8 @@ static int close_all(void **state) {
   return 0;
 }
 
-/* What the quasi-static load at an opening is less than the others', and than theirs at no speed. */
+/* What the quasi-static load at an opening is less than the others', and than theirs at no speed.
+   */
 typedef struct distance {
   double from_fast, from_slow, from_limit;
 } distance;
@@ -89,9 +91,9 @@ static distance distance_at(double opening) {
   return d;
 }
 
-/* The ends differ by the sum of what is left on 543 particles. With a square sum of 0.1 % of that of the reactions, which
-   the 15 particles of the inner row of either end carry nearly alone, it is at most 0.1 % sqrt(2*543/15) of the load; a
-   fifth more, because they do not carry evenly. */
+/* The ends differ by the sum of what is left on 543 particles. With a square sum of 0.1 % of that
+   of the reactions, which the 15 particles of the inner row of either end carry nearly alone, it is
+   at most 0.1 % sqrt(2*543/15) of the load; a fifth more, because they do not carry evenly. */
 static void every_increment_came_to_rest(void **state) {
   (void)state;
   long unbalanced;
@@ -107,8 +109,9 @@ static void every_increment_came_to_rest(void **state) {
   }
 }
 
-/* 0.5 %: the dampers on the particles, whose drag at mid-height is half of what the ends differ by, take 0.2 to 0.5 %.
-   0.02 %: the tolerance of the run's increments is 0.1 % of the reactions in the square mean. */
+/* 0.5 %: the dampers on the particles, whose drag at mid-height is half of what the ends differ by,
+   take 0.2 to 0.5 %. 0.02 %: the tolerance of the run's increments is 0.1 % of the reactions in the
+   square mean. */
 static void the_elastic_branch(void **state) {
   (void)state;
   for (double opening = 6e-6; opening < 27e-6; opening += 2e-6) {
@@ -119,7 +122,8 @@ static void the_elastic_branch(void **state) {
   }
 }
 
-/* 1 %: rows of particles begin to soften one after the other, and the load has a small tooth for each. */
+/* 1 %: rows of particles begin to soften one after the other, and the load has a small tooth for
+   each. */
 static void the_peak(void **state) {
   (void)state;
   print_message("peaks %.0f, %.0f, %.0f N\n", peak_of(&fast), peak_of(&slow), peak_of(&still));
@@ -127,8 +131,9 @@ static void the_peak(void **state) {
   assert_true(fabs(1 - peak_of(&still) / (2 * peak_of(&slow) - peak_of(&fast))) < 0.005);
 }
 
-/* The body sets free more than the crack takes: the load falls at one opening (a jump, at rest). Inertia and dampers
-   hold it up, the less the slower. Within 1280 periods, instead of 80, it falls at 32.4 um. */
+/* The body sets free more than the crack takes: the load falls at one opening (a jump, at rest).
+   Inertia and dampers hold it up, the less the slower. Within 1280 periods, instead of 80, it falls
+   at 32.4 um. */
 static void the_fall(void **state) {
   (void)state;
   const double f = fall_of(&fast), s = fall_of(&slow), q = fall_of(&still);
@@ -137,8 +142,8 @@ static void the_fall(void **state) {
   assert_true(q > 31.5e-6 && q < 33e-6);
 }
 
-/* The second branch of the law. 3 %: damping is a larger part of a smaller load. 1 % at no speed: how far each row was
-   damaged in the fall, which was a jump, stays with it. */
+/* The second branch of the law. 3 %: damping is a larger part of a smaller load. 1 % at no speed:
+   how far each row was damaged in the fall, which was a jump, stays with it. */
 static void the_softening_branch(void **state) {
   (void)state;
   for (double opening = 50e-6; opening < 129e-6; opening += 10e-6) {

@@ -268,8 +268,9 @@ static void limits_are_decimal_numbers(void **state) {
   assert_true(steps <= 1);
 }
 
-/* Bonds with an axial damper and elastic bending: what is damped most is not what is fastest without dampers. A body of
-   some size has the limit of the infinite lattice, or one that is a little longer. */
+/* Bonds with an axial damper and elastic bending: what is damped most is not what is fastest
+   without dampers. A body of some size has the limit of the infinite lattice, or one that is a
+   little longer. */
 static void the_most_damped_mode_is_found(void **state) {
   (void)state;
   write_law("damped_beam.plm", "micropolar bond",

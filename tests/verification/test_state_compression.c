@@ -1,5 +1,6 @@
-/* The state-based lattice in compression, up to just past the peak (Nikravesh 2017, section 5.2.3): yield, flow and
-   crushing, and the profile 'objective', whose strength must not depend on how the lattice is turned. */
+/* The state-based lattice in compression, up to just past the peak (Nikravesh 2017, section 5.2.3):
+   yield, flow and crushing, and the profile 'objective', whose strength must not depend on how the
+   lattice is turned. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

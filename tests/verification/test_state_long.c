@@ -1,6 +1,6 @@
-/* The specimens of examples/ for the state-based lattice beside an independent computation of the same protocols and
-   the theory (Nikravesh 2017, chapter 5): peaks, and in tension the work of fracture. Prints the table of the pages of
-   the examples. */
+/* The specimens of examples/ for the state-based lattice beside an independent computation of the
+   same protocols and the theory (Nikravesh 2017, chapter 5): peaks, and in tension the work of
+   fracture. Prints the table of the pages of the examples. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -20,7 +20,8 @@ typedef struct specimen {
 static const double compression = 620.55e3, brazilian = 193.0e3, cylinder = 236.0e3,
                     bone_b = 14.49e3, bone_d = 57.96e3;
 
-/* 1 % of the reference, whose peaks are those of every step, not of samples. 1e-8: roundings tell left from right. */
+/* 1 % of the reference, whose peaks are those of every step, not of samples. 1e-8: roundings tell
+   left from right. */
 static void compare(const specimen *s) {
   const outcome o = specimen_run(s->deck, s->until, s->more);
   print_message("%-42s %-20s %8.2f kN, reference %7.2f (%+.2f %%), theory %7.2f (%+.1f %%), ends "
@@ -51,9 +52,9 @@ static void prisms_in_compression(void **state) {
   compare_all(list, 3);
 }
 
-/* The published profile fails early in a lattice turned by 15 degrees. At the first damage, at 355 to 360 kN, the load
-   falls for good or recovers once more: differences of a thousandth in the angle or the speed decide which, and peaks
-   from 347 to 433 kN have been computed. */
+/* The published profile fails early in a lattice turned by 15 degrees. At the first damage, at 355
+   to 360 kN, the load falls for good or recovers once more: differences of a thousandth in the
+   angle or the speed decide which, and peaks from 347 to 433 kN have been computed. */
 static void the_published_profile_depends_on_the_rotation(void **state) {
   (void)state;
   const outcome o = specimen_run("examples/compression/rot15.nml", "6.5 ms", NULL);
@@ -95,8 +96,9 @@ static void dog_bones(void **state) {
   compare_all(list, 5);
 }
 
-/* Energy that damage and the dampers in the bonds took, over G_f times the section. It is no constant of the law: one
-   crack is several rows wide, and rows beside it are damaged. 3 %: the speed of the test and the last bonds' dampers. */
+/* Energy that damage and the dampers in the bonds took, over G_f times the section. It is no
+   constant of the law: one crack is several rows wide, and rows beside it are damaged. 3 %: the
+   speed of the test and the last bonds' dampers. */
 static void the_work_of_fracture_is_more_than_the_fracture_energy(void **state) {
   (void)state;
   static const struct {

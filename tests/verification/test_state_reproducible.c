@@ -1,5 +1,5 @@
-/* The state-based lattice gives the same bits for any number of threads, and after a checkpoint: a prism at 15 degrees,
-   pressed so fast that it yields, cracks and crushes within a millisecond. */
+/* The state-based lattice gives the same bits for any number of threads, and after a checkpoint: a
+   prism at 15 degrees, pressed so fast that it yields, cracks and crushes within a millisecond. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

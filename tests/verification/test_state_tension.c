@@ -1,6 +1,6 @@
-/* The state-based lattice in tension, up to just past the peak: the prism at three rotations of the lattice and the
-   coarsest dog-bone (Nikravesh 2017, sections 5.2.2 and 5.4), beside the strength times the section and an independent
-   computation of the same protocol. */
+/* The state-based lattice in tension, up to just past the peak: the prism at three rotations of the
+   lattice and the coarsest dog-bone (Nikravesh 2017, sections 5.2.2 and 5.4), beside the strength
+   times the section and an independent computation of the same protocol. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,9 +17,10 @@ typedef struct tension {
   bool symmetric;
 } tension;
 
-/* 1 % of the reference: its settings (when the load is sampled, by what way the ends are held) move the peaks by 0.5 %.
-   The band about the theory is the effect of the outline: particles there have fewer bonds. At 15 degrees the outline
-   is ragged. 1e-8: roundings tell left from right, and softening amplifies them. */
+/* 1 % of the reference: its settings (when the load is sampled, by what way the ends are held) move
+   the peaks by 0.5 %. The band about the theory is the effect of the outline: particles there have
+   fewer bonds. At 15 degrees the outline is ragged. 1e-8: roundings tell left from right, and
+   softening amplifies them. */
 static void check(const tension *t) {
   const outcome o = specimen_run(t->deck, t->until, NULL);
   print_message("%s: peak %.1f N at %.3f ms (reference %.0f: %+.2f %%; theory %.0f: %+.2f %%), "

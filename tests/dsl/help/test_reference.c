@@ -1,6 +1,6 @@
 /* The language reference and its laws: every ```plm block of dsl/README.md is a law without a
-   message, which compiles where it is one of families; every ```plm-error block gives exactly the ```text block after it. The reference lists
-   every diagnostic code and every built-in name. */
+   message, which compiles where it is one of families; every ```plm-error block gives exactly the
+   ```text block after it. The reference lists every diagnostic code and every built-in name. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,6 +1,7 @@
-/* The physics checks: every broken law of tests/generator/check/physics is caught by the check meant for it and
-   by no other, legal and shipped laws pass. Beside each law lie the lines and codes expected, e.g.
-   "10 dissipation"; with PERILAT_BLESS=1 they are rewritten: read what changed. */
+/* The physics checks: every broken law of tests/generator/check/physics is caught by the check
+   meant for it and by no other, legal and shipped laws pass. Beside each law lie the lines and
+   codes expected, e.g. "10 dissipation"; with PERILAT_BLESS=1 they are rewritten: read what
+   changed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,5 @@
-/* `perilat check` and `perilat info` as commands: a path is no deck, a law is meant for a setting, and
-   what a law implies is said with what it is measured on. */
+/* `perilat check` and `perilat info` as commands: a path is no deck, a law is meant for a setting,
+   and what a law implies is said with what it is measured on. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

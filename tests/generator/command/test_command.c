@@ -1,5 +1,6 @@
-/* The command in the hands of clumsy and hostile users: every mistake gives exit status 1 or 2 and one sentence that says
-   how to mend it; nothing is overwritten or left half-written; what was stopped goes on to the same bits. */
+/* The command in the hands of clumsy and hostile users: every mistake gives exit status 1 or 2 and
+   one sentence that says how to mend it; nothing is overwritten or left half-written; what was
+   stopped goes on to the same bits. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

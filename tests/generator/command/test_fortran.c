@@ -1,6 +1,6 @@
-/* Fortran's own namelist reader reads every deck and path that comes along, to the same values: a reader is written from the
-   tables of groups and keys, compiled by gfortran, and what it prints is compared with what perilat reads. What has a unit,
-   is a name or a choice it declares as text. */
+/* Fortran's own namelist reader reads every deck and path that comes along, to the same values: a
+   reader is written from the tables of groups and keys, compiled by gfortran, and what it prints is
+   compared with what perilat reads. What has a unit, is a name or a choice it declares as text. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

@@ -165,7 +165,8 @@ static void memory_that_there_is_not_is_not_made_up(void **state) {
 #endif
 }
 
-/* Where all private folders are taken by others, nothing is put into theirs, nor loaded from there. */
+/* Where all private folders are taken by others, nothing is put into theirs, nor loaded from there.
+   */
 static void kernels_go_to_no_folder_of_others(void **state) {
   workplace *w = *state;
   assert_int_equal(shell(w, "mkdir t && for k in $(seq 0 99); do mkdir -m 777 "

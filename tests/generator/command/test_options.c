@@ -1,5 +1,5 @@
-/* The table of options is what --help, suggestions, manual and completion show: each command takes exactly what its rows
-   say, and every option that the sources ask for has a row. */
+/* The table of options is what --help, suggestions, manual and completion show: each command takes
+   exactly what its rows say, and every option that the sources ask for has a row. */
 #define _GNU_SOURCE
 #include <setjmp.h>
 #include <stdarg.h>

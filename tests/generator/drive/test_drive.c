@@ -161,7 +161,8 @@ static void the_first_of_equal_peaks_counts(void **state) {
         "", 0, "PASS");
 }
 
-/* A slider with hardening beside a spring: energy is locked in, and given back when it slips the other way. */
+/* A slider with hardening beside a spring: energy is locked in, and given back when it slips the
+   other way. */
 static void a_fall_of_the_dissipation_is_explained(void **state) {
   (void)state;
   static const char slider[] = "model slider\n  law central bond\n"
@@ -536,7 +537,8 @@ static void a_particle_is_driven_by_strains(void **state) {
   (void)state;
 #define PARTICLE  "&material model = 'splm_elastic' /\n&particle spacing = '5 mm' /\n"
 #define STRETCHED "&path quantity = 'strain_xx' value = 1e-6 rise = '1 s' /\n"
-  /* sides held: E/(1 - nu^2), and nu times that across; half of that times the strain on sqrt(3)/2 s^2 t is stored */
+  /* sides held: E/(1 - nu^2), and nu times that across; half of that times the strain on sqrt(3)/2
+     s^2 t is stored */
   drive(PARTICLE STRETCHED
         "&expect quantity = 'stress_xx' formula = 'E*1e-6/(1 - nu**2)' tolerance = 1e-5 /\n"
         "&expect quantity = 'stress_yy' formula = 'nu*E*1e-6/(1 - nu**2)' tolerance = 1e-5 /\n"

@@ -1,4 +1,5 @@
-/* What --dump=passes and --dump=ir say of a law of families (PERILAT_BLESS=1 rewrites the golden file). */
+/* What --dump=passes and --dump=ir say of a law of families (PERILAT_BLESS=1 rewrites the golden
+   file). */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

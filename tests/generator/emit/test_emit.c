@@ -446,7 +446,8 @@ static void the_same_law_gives_the_same_text(void **state) {
   hand_free(second);
 }
 
-/* No call, in any of the code, but for what is not as expected; a call in a loop is what makes it slow without a word. */
+/* No call, in any of the code, but for what is not as expected; a call in a loop is what makes it
+   slow without a word. */
 static void the_assembly_calls_nothing(void **state) {
   (void)state;
   hand_made *h = beam_new();

@@ -96,8 +96,8 @@ static void costs_are_given(void **unused) {
   }
 }
 
-/* A law calls an operation by its name, with as many arguments as it has operands; of the larger and the smaller, of any
-   number. */
+/* A law calls an operation by its name, with as many arguments as it has operands; of the larger
+   and the smaller, of any number. */
 static void functions_find_their_operation(void **unused) {
   (void)unused;
   int found = 0;

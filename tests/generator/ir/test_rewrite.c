@@ -36,7 +36,8 @@ static void degrees_are_seen(void **state) {
   ir_free(g);
 }
 
-/* Products of sums and differences, on either side; what is named, or the same for all bonds, stays as it is. */
+/* Products of sums and differences, on either side; what is named, or the same for all bonds, stays
+   as it is. */
 static void sums_of_products_are_fused(void **state) {
   (void)state;
   ir *g = ir_new();
@@ -85,7 +86,8 @@ static void uniform_factors_are_joined(void **state) {
   ir_free(g);
 }
 
-/* Sizes give their factors away, too, and the larger of two is a choice where a choice keeps NaN. */
+/* Sizes give their factors away, too, and the larger of two is a choice where a choice keeps NaN.
+   */
 static void the_larger_of_two_keeps_its_nan(void **state) {
   (void)state;
   ir *g = ir_new();

@@ -471,7 +471,8 @@ static void the_key_holds_text_compiler_and_flags(void **state) {
   free(options);
 }
 
-/* A folder that two machines share: kernels for the processor at hand are those of one model and its instructions. */
+/* A folder that two machines share: kernels for the processor at hand are those of one model and
+   its instructions. */
 static void the_key_holds_the_processor(void **state) {
   place_of_test *p = *state;
   char path[600], *keys[4];

@@ -186,7 +186,8 @@ static void evaluate_near(const bond_state *b, double *value) {
   ir_free(g);
 }
 
-/* On both sides of where the series ends, and with chords that turn: as good as displacements are. */
+/* On both sides of where the series ends, and with chords that turn: as good as displacements are.
+   */
 static void bonds_of_large_families_lose_nothing(void **state) {
   (void)state;
   int near = 0, far = 0;
@@ -228,8 +229,8 @@ static void closing_bonds_keep_their_direction(void **state) {
   }
 }
 
-/* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord turned by about
-   atan(1/16), ends by about half a turn. */
+/* Both sides of what is expected of rotations are as exact, also where one meets the other: a chord
+   turned by about atan(1/16), ends by about half a turn. */
 static void expected_and_far_rotations_meet(void **state) {
   (void)state;
   int near = 0, wrapped_ends = 0;

@@ -207,8 +207,8 @@ static void bending_norm_is_the_size(void **state) {
   close_law(t);
 }
 
-/* A slider with nonlinear hardening is returned to its limit within one step: N = k (stretch - p) and
-   |N| = N_y (1 + (p/p_0)^2), whatever the overshoot. */
+/* A slider with nonlinear hardening is returned to its limit within one step: N = k (stretch - p)
+   and |N| = N_y (1 + (p/p_0)^2), whatever the overshoot. */
 static void a_returned_flow_ends_on_the_limit(void **state) {
   (void)state;
   tested_law *t = must_open(CENTRAL("  state p on bond = 0\n  N_t = k*(stretch - p)\n"
@@ -284,7 +284,8 @@ typedef struct end_rotation {
   double angle, rate; /* rad, rad/s */
 } end_rotation;
 
-/* One bond along its chord, stretched, its ends turned. The stored energy is that after the step. */
+/* One bond along its chord, stretched, its ends turned. The stored energy is that after the step.
+   */
 static observed_bond observe_turned(const tested_law *t, double stretch, double rate, double field,
                                     end_rotation i, end_rotation j) {
   pl_bond_class bond = tested_bond();
@@ -378,7 +379,8 @@ static void losses_are_what_they_should_be(void **state) {
   close_law(t);
 }
 
-/* Of a spring with a stress-free stretch s N^2/(2 k), of linear moments half of moment times rotation. */
+/* Of a spring with a stress-free stretch s N^2/(2 k), of linear moments half of moment times
+   rotation. */
 static void bending_is_stored_beside_an_affine_force(void **state) {
   (void)state;
   tested_law *t = must_open(MICROPOLAR("  state p = 0\n  p = previous(p)\n"

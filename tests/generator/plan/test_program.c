@@ -50,7 +50,8 @@ static void one_sum_needs_one_pass_and_one_loop(void **state) {
   close_law(t);
 }
 
-/* What the ends have alike, or exchange, is shared; what one end has alone is not, nor what is cheap given the rest. */
+/* What the ends have alike, or exchange, is shared; what one end has alone is not, nor what is
+   cheap given the rest. */
 static void ends_share_what_is_the_same_for_both(void **state) {
   (void)state;
   static const struct {
@@ -133,8 +134,8 @@ static void assert_form(int neighbours, const char *lines, family_form expected)
   close_law(t);
 }
 
-/* Small families are written out, unless bonds have fields that their ends would both write; in larger ones bonds add to both
-   ends, unless these compute nothing alike. */
+/* Small families are written out, unless bonds have fields that their ends would both write; in
+   larger ones bonds add to both ends, unless these compute nothing alike. */
 static void families_have_the_form_that_suits(void **state) {
   (void)state;
   static const char *const plain = "  force state F[j] = a*stretch[j]\n";
@@ -154,8 +155,8 @@ static void families_have_the_form_that_suits(void **state) {
   assert_form(26, of_ends, FAMILY_LOOPS);
 }
 
-/* Where many bonds meet in space, one end computes the force over the length, when both sums are known, and both read it. Links
-   are kept of one reach of rows only. */
+/* Where many bonds meet in space, one end computes the force over the length, when both sums are
+   known, and both read it. Links are kept of one reach of rows only. */
 static void one_end_computes_the_force_of_a_bond(void **state) {
   (void)state;
   tested_law *t =
@@ -179,7 +180,8 @@ static void one_end_computes_the_force_of_a_bond(void **state) {
   close_law(t);
 }
 
-/* Forces of the ends are opposite, sums of stretches the same; a later pass reads the damage that the first one found. */
+/* Forces of the ends are opposite, sums of stretches the same; a later pass reads the damage that
+   the first one found. */
 static void bonds_of_large_families_add_to_both_ends(void **state) {
   (void)state;
   tested_law *t = open_large("  damage w on bond\n  w[j] = | 1 when stretch[j] >= 1 jump\n"
@@ -202,8 +204,8 @@ static void bonds_of_large_families_add_to_both_ends(void **state) {
   close_law(t);
 }
 
-/* Of a force that is linear in particles' sums each end gives what stands before the stretch, and the rest; the weight does
-   not change from step to step. */
+/* Of a force that is linear in particles' sums each end gives what stands before the stretch, and
+   the rest; the weight does not change from step to step. */
 static void particles_of_large_families_give_their_parts(void **state) {
   (void)state;
   tested_law *t = open_large("  w = sum(s**2)\n  d = sum(s**2*stretch[j])/w\n"
@@ -267,7 +269,8 @@ static int count_asking(const family_program *p, segment_target target) {
   return count;
 }
 
-/* Sums of products with shared values ask for no absent bonds: owners ask once. What is not 0 there is asked for. */
+/* Sums of products with shared values ask for no absent bonds: owners ask once. What is not 0 there
+   is asked for. */
 static void owners_leave_zeros_for_absent_bonds(void **state) {
   (void)state;
   tested_law *t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
@@ -307,7 +310,8 @@ static void neighbours_of_neighbours_need_a_pass_more(void **state) {
   close_law(t);
 }
 
-/* A value toward a neighbour that costs little is computed again in a second loop, a dear one is kept. */
+/* A value toward a neighbour that costs little is computed again in a second loop, a dear one is
+   kept. */
 static void dear_values_are_kept_in_planes(void **state) {
   (void)state;
   tested_law *cheap = open_program("", "  state p on neighbour = 0\n  p[j] = stretch[j]\n"

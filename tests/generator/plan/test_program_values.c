@@ -363,7 +363,8 @@ static const char remembering_lines[] =
 
 enum { REMEMBERING = 16 }; /* particles */
 
-/* A step of that law in plain C: what is read above its rule is old, below it new, and `previous` is always old. */
+/* A step of that law in plain C: what is read above its rule is old, below it new, and `previous`
+   is always old. */
 static void remember(const patch *p, const int *number, remembered now[REMEMBERING],
                      double seen[REMEMBERING][6]) {
   remembered old[REMEMBERING];
@@ -428,7 +429,8 @@ static void old_and_new_values_are_those_of_both_sides(void **state) {
   close_law(t);
 }
 
-/* A flow toward each neighbour ends on its own guard; one that moves the sums in the guards of all others is refused. */
+/* A flow toward each neighbour ends on its own guard; one that moves the sums in the guards of all
+   others is refused. */
 static void flows_toward_neighbours_return_one_by_one(void **state) {
   (void)state;
   const char *lines = "  law state\n  parameter y = 1e-3 in (0, 1)\n  state p on neighbour = 0\n"
@@ -555,7 +557,8 @@ static double stored_by(const char *lines) {
   return stored;
 }
 
-/* Without an energy half of force times stretch is known to be one only where the force is proportional. */
+/* Without an energy half of force times stretch is known to be one only where the force is
+   proportional. */
 static void a_proportional_force_stores_half_of_its_work(void **state) {
   (void)state;
   const double energy = stored_by("  energy W = sum(s*a*stretch[j]**2)/4\n");

@@ -24,7 +24,8 @@ static double share(const workplace *w, const char *name) {
   return percent;
 }
 
-/* Samples, steps and frames in all; what is in no part (opening the team of threads, the bar) is little. */
+/* Samples, steps and frames in all; what is in no part (opening the team of threads, the bar) is
+   little. */
 static void parts_add_up_to_the_run(void **state) {
   workplace *w = *state;
   for (int threads = 1; threads <= 2; threads++) {
@@ -48,8 +49,8 @@ static void parts_add_up_to_the_run(void **state) {
   }
 }
 
-/* Two displacements and a rotation, their velocities, and the damage of three bonds are read and written: 8 * 2 (6 + 3)
-   bytes. */
+/* Two displacements and a rotation, their velocities, and the damage of three bonds are read and
+   written: 8 * 2 (6 + 3) bytes. */
 static void bytes_are_those_of_the_state(void **state) {
   workplace *w = *state;
   expect(w, "run beam.nml --profile", 0, " ns, 144 bytes, ");

@@ -1,5 +1,5 @@
-/* What the command says of a run, and what a map says of a body: increments in place of times that mean nothing, signs,
-   axes of space. */
+/* What the command says of a run, and what a map says of a body: increments in place of times that
+   mean nothing, signs, axes of space. */
 #define _GNU_SOURCE
 #include <math.h>
 #include <setjmp.h>
@@ -170,7 +170,8 @@ static const char block[] =
     " /\n"
     "&output      result = 'block.h5'  frames = 1  fields = 'displacement'  /\n";
 
-/* Lengths along x, y and z in a picture without perspective: the squares sum up to 1 in either direction. */
+/* Lengths along x, y and z in a picture without perspective: the squares sum up to 1 in either
+   direction. */
 static void maps_of_space_have_axes(void **state) {
   workplace *w = *state;
   static const int across[3] = {1, 0, 0}, up[3] = {2, 2, 1};

@@ -1,4 +1,5 @@
-/* The words of the target: holes are filled with their pieces, and no name of a law is one that words use. */
+/* The words of the target: holes are filled with their pieces, and no name of a law is one that
+   words use. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,4 +1,5 @@
-/* A periodic piece of a lattice: where its sites stand, what they repeat, and what a law says on it. */
+/* A periodic piece of a lattice: where its sites stand, what they repeat, and what a law says on
+   it. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -79,7 +80,8 @@ static void a_cut_bond_is_gone_from_both_sides(void **state) {
   rows_free(w);
 }
 
-/* A uniform strain leaves every particle of a perfect lattice in balance; one that moves has the others push back. */
+/* A uniform strain leaves every particle of a perfect lattice in balance; one that moves has the
+   others push back. */
 static void forces_are_those_of_the_periodic_lattice(void **state) {
   (void)state;
   const long period[3] = {4, 4, 1};

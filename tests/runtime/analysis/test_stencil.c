@@ -1,5 +1,5 @@
-/* Force constants read off a law's own step: against theory, against the bonds' tangents, and against
-   what a body does at steps just below and just above the limit. */
+/* Force constants read off a law's own step: against theory, against the bonds' tangents, and
+   against what a body does at steps just below and just above the limit. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* Memory of a run: aligned zeros, no two arrays in one place, also where one is larger than a piece. */
+/* Memory of a run: aligned zeros, no two arrays in one place, also where one is larger than a
+   piece. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
-/* Teams of threads: each block is done once a round, rounds come one after the other, a thread that does not come holds
-   up nobody, and what several blocks need is done once, before any of them goes on. */
+/* Teams of threads: each block is done once a round, rounds come one after the other, a thread that
+   does not come holds up nobody, and what several blocks need is done once, before any of them goes
+   on. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stdatomic.h>

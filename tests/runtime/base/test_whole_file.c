@@ -107,7 +107,8 @@ static void what_killed_programs_left_is_cleared(void **state) {
   }
 }
 
-/* A file that the disk has not taken does not replace the old one. Some file systems do not sync folders: that is no failure. */
+/* A file that the disk has not taken does not replace the old one. Some file systems do not sync
+   folders: that is no failure. */
 static void what_the_disk_has_not_taken_replaces_nothing(void **state) {
   (void)state;
   whole_file f;

@@ -1,4 +1,5 @@
-/* Groups of a namelist by themselves, without a deck: their text read, and what was said of them. */
+/* Groups of a namelist by themselves, without a deck: their text read, and what was said of them.
+   */
 #ifndef PERILAT_TESTS_NOTATION_H
 #define PERILAT_TESTS_NOTATION_H
 

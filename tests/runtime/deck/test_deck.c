@@ -271,7 +271,8 @@ static void overrides_replace_and_add(void **state) {
   end(&r);
 }
 
-/* A clockwise polygon with arcs comes counter-clockwise, each arc on its edge; components are degrees of freedom. */
+/* A clockwise polygon with arcs comes counter-clockwise, each arc on its edge; components are
+   degrees of freedom. */
 static void a_body_in_space(void **state) {
   (void)state;
   static const char block[] =
@@ -319,7 +320,8 @@ static void a_body_in_space(void **state) {
   end(&r);
 }
 
-/* `&force force = ...` of older decks is `&force total = ...`, to the identity that a checkpoint asks for. */
+/* `&force force = ...` of older decks is `&force total = ...`, to the identity that a checkpoint
+   asks for. */
 static void a_key_under_its_former_name(void **state) {
   (void)state;
   static const char *const keys[] = {"total", "force", "Force"};

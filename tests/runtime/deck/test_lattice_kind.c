@@ -1,4 +1,5 @@
-/* Kinds of lattices: what follows from a name, and the lattice that is meant where none is named. */
+/* Kinds of lattices: what follows from a name, and the lattice that is meant where none is named.
+   */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,4 +1,5 @@
-/* The Hilbert curve: it visits every cell of a grid once, and each step leads to a cell beside the last one. */
+/* The Hilbert curve: it visits every cell of a grid once, and each step leads to a cell beside the
+   last one. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -44,7 +45,8 @@ static void each_step_leads_to_a_neighbour(void **state) {
   }
 }
 
-/* A permutation that follows the points, whatever their numbers; points on one place are no harm. */
+/* A permutation that follows the points, whatever their numbers; points on one place are no harm.
+   */
 static void order_is_that_of_the_places(void **state) {
   (void)state;
   enum { COUNT = 500 };

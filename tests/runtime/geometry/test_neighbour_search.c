@@ -97,7 +97,8 @@ static void finds_what_stands_far_apart(void **state) {
   points_free(&p);
 }
 
-/* Three of very many stand so far away that the others are as one point. Among these they change nothing. */
+/* Three of very many stand so far away that the others are as one point. Among these they change
+   nothing. */
 static void stragglers_do_not_matter(void **state) {
   (void)state;
   enum { CROWD = 2000, ALL = CROWD + 3, NEAREST = 7 };

@@ -260,8 +260,8 @@ static void arcs_reach_out_and_in(void **unused) {
   assert_true(inside[0] > 20000 && inside[1] > 20000);
 }
 
-/* The dog-bone of van Vliet and van Mier: width D, height 1.5 D, neck 0.6 D, radius 0.725 D; the arcs end 0.25 D from
-   the ends. */
+/* The dog-bone of van Vliet and van Mier: width D, height 1.5 D, neck 0.6 D, radius 0.725 D; the
+   arcs end 0.25 D from the ends. */
 static void dog_bone_has_its_area(void **unused) {
   (void)unused;
   enum { SIDE = 1200 };

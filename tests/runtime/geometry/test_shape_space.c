@@ -108,7 +108,8 @@ static void points_lie_inside_or_outside(void **unused) {
   }
 }
 
-/* The tolerance is a distance: a point that far outside an edge or a corner is not near in each direction only. */
+/* The tolerance is a distance: a point that far outside an edge or a corner is not near in each
+   direction only. */
 static void tolerance_is_a_distance(void **unused) {
   (void)unused;
   const deck_shape *box = &solids[0].shape;

@@ -1,5 +1,5 @@
-/* Passes over a body in windows of rows, which follow each other closely, against passes over the whole body: the same
-   bits, however many blocks there are and whatever else is kept. */
+/* Passes over a body in windows of rows, which follow each other closely, against passes over the
+   whole body: the same bits, however many blocks there are and whatever else is kept. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

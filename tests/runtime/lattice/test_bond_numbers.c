@@ -1,4 +1,5 @@
-/* Owners and numbers of bonds: unique on either side of every particle, and as few as there can be. */
+/* Owners and numbers of bonds: unique on either side of every particle, and as few as there can be.
+   */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -1,5 +1,6 @@
-/* Lattices of every kind against their definitions: sites, neighbours and bonds of random bodies by all pairs, known
-   counts and shells, opposite neighbours, volumes, and the time that a million particles take. */
+/* Lattices of every kind against their definitions: sites, neighbours and bonds of random bodies by
+   all pairs, known counts and shells, opposite neighbours, volumes, and the time that a million
+   particles take. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

@@ -1,5 +1,5 @@
-/* Particles that stand anywhere: their rows, and sweeps of a law written by hand over them, against the same particles on a
-   lattice, whatever their numbers, on any number of threads. */
+/* Particles that stand anywhere: their rows, and sweeps of a law written by hand over them, against
+   the same particles on a lattice, whatever their numbers, on any number of threads. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -214,7 +214,8 @@ static void lists_keep_their_promises(void **state) {
   free(measure);
 }
 
-/* The radius of a disc, or a sphere, that holds the particle and k more: of area pi R^2 = (k + 1) A. */
+/* The radius of a disc, or a sphere, that holds the particle and k more: of area pi R^2 = (k + 1)
+   A. */
 static void horizon_holds_the_neighbours(void **state) {
   (void)state;
   test_points p = points_drawn(2, 300, (const double[3]){1, 1, 1}, 9);
@@ -519,7 +520,8 @@ static void unresolved_families_are_counted(void **state) {
 
 /* --- step ------------------------------------------------------------------------------------- */
 
-/* A body of 60 spacings holds waves that are as fast as those of the infinite lattice, to (1/60)^2. */
+/* A body of 60 spacings holds waves that are as fast as those of the infinite lattice, to (1/60)^2.
+   */
 static void step_is_that_of_the_lattice(void **state) {
   (void)state;
   for (int damped = 0; damped < 2; damped++) {

@@ -565,7 +565,8 @@ static void other_lattices_bodies_stay_out(void **unused) {
   end(&b, w);
 }
 
-/* Offsets lead from absent sites, too, and must not lead to a particle along one of its bonds: whatever the width. */
+/* Offsets lead from absent sites, too, and must not lead to a particle along one of its bonds:
+   whatever the width. */
 static void absent_sites_have_no_neighbours(void **state) {
   (void)state;
   static const char *const kinds[] = {"hexagonal", "square", "fcc", "cubic"};

@@ -1,5 +1,5 @@
-/* Particles that stand on no lattice: how even blue noise is and that it fills its bodies, particles of tables and results, and
-   what is said about those that are no set of particles. */
+/* Particles that stand on no lattice: how even blue noise is and that it fills its bodies,
+   particles of tables and results, and what is said about those that are no set of particles. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
@@ -91,7 +91,8 @@ typedef struct filled {
 #define SPACE "kind = 'blue_noise' spacing = '80 mm' setting = 'space'"
 #define BODY  "&body lattice = 'heap' shape = "
 
-/* Spacing statistics: darts alone leave a spread of 0.21 (in space 0.25), particles at random 0.53 (0.42). */
+/* Spacing statistics: darts alone leave a spread of 0.21 (in space 0.25), particles at random 0.53
+   (0.42). */
 static void blue_noise_is_even_and_fills_its_body(void **state) {
   (void)state;
   const double pi = acos(-1), segment = 0.725 * 0.725 * acos(0.525 / 0.725) - 0.525 * 0.5;
@@ -212,7 +213,8 @@ static void tables_are_read(void **state) {
   unlink(path);
 }
 
-/* A square of four in a body of twice its width: the cells are quarters. What is outside is left out with a warning. */
+/* A square of four in a body of twice its width: the cells are quarters. What is outside is left
+   out with a warning. */
 static void bodies_give_volumes(void **state) {
   (void)state;
   const char *path =
@@ -388,7 +390,8 @@ static void results_are_read_back(void **state) {
   remove_result(path);
 }
 
-/* The first particle is left out, the others stand on one place: they are named as the result numbers them. */
+/* The first particle is left out, the others stand on one place: they are named as the result
+   numbers them. */
 static void particles_of_results_keep_their_names(void **state) {
   (void)state;
   const double places[2 * PARTICLES] = {9, 9, 0.5, 0.5, 0.5, 0.5};
@@ -405,7 +408,8 @@ static void particles_of_results_keep_their_names(void **state) {
 
 /* --- any text --------------------------------------------------------------------------------- */
 
-/* Texts with bytes changed, taken out and doubled either are sets of finite particles or get a message. */
+/* Texts with bytes changed, taken out and doubled either are sets of finite particles or get a
+   message. */
 static void any_table_is_a_set_or_a_message(void **state) {
   (void)state;
   static const char start[] = "# heap\nx [mm], y [mm], area [mm^2], id\n1, 2, 3, a\n4, 5.5, 6, b\n"

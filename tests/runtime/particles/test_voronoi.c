@@ -1,5 +1,6 @@
-/* Voronoi cells against what is known of them: cells of lattices, sums over bodies of every shape, nearest points by all
-   pairs, centroids, sets with gaps, and the same bits on any number of threads. */
+/* Voronoi cells against what is known of them: cells of lattices, sums over bodies of every shape,
+   nearest points by all pairs, centroids, sets with gaps, and the same bits on any number of
+   threads. */
 #include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>

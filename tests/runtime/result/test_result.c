@@ -1,4 +1,5 @@
-/* Result files: written, read back, cut to a frame and resumed, refused when truncated or foreign; pictures of them. */
+/* Result files: written, read back, cut to a frame and resumed, refused when truncated or foreign;
+   pictures of them. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -231,7 +232,8 @@ static void damaged_files_are_refused(void **state) {
   unlink("result_e.h5");
 }
 
-/* Every element that is opened is closed, and every `&` begins an entity. Returns the number of elements. */
+/* Every element that is opened is closed, and every `&` begins an entity. Returns the number of
+   elements. */
 static int count_elements(const char *text) {
   char open[32][32];
   int depth = 0, elements = 0;
@@ -532,8 +534,9 @@ static void maps_show_their_field(void **state) {
 
 enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE, LINKS = 3 * SIDE * SIDE * (SIDE - 1) };
 
-/* A cube of particles 1 mm apart, joined to their nearest neighbours; bonds along z from the layer 1 to 2 mm have a
-   damage of 0.5, from 2 to 3 mm of 1. Displacements are along z, as large as the place. */
+/* A cube of particles 1 mm apart, joined to their nearest neighbours; bonds along z from the layer
+   1 to 2 mm have a damage of 0.5, from 2 to 3 mm of 1. Displacements are along z, as large as the
+   place. */
 static void write_cube(const char *path) {
   static double places[3 * CUBE], volumes[CUBE], u[3 * CUBE], omega[LINKS];
   static int32_t bodies[CUBE], pairs[2 * LINKS];

@@ -12,7 +12,8 @@
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/small_run.h"
 
-/* Everything that moves and takes energy; the format takes threads, the law's values and more groups. */
+/* Everything that moves and takes energy; the format takes threads, the law's values and more
+   groups. */
 static void open_busy(small_run *r, int threads, const char *values, const char *more) {
   char text[2048];
   snprintf(
@@ -235,7 +236,8 @@ static void monitors_watch_fields_and_outputs(void **state) {
   small_close(&r);
 }
 
-/* Outputs are found once for a state: with the energies, or else by the first monitor that asks, in a step or in a sample. */
+/* Outputs are found once for a state: with the energies, or else by the first monitor that asks, in
+   a step or in a sample. */
 static void watched_outputs_are_of_the_present_state(void **state) {
   (void)state;
   static const char mean[] = "/\n&monitor name = 'mean' kind = 'field' field = 'xx' region = 'mid' "

@@ -116,7 +116,8 @@ static void the_larger_of_two_damages_counts(void **state) {
   small_close(&r);
 }
 
-/* All that the table of fields holds, of a law that has it all, in the table's order and with its unit. */
+/* All that the table of fields holds, of a law that has it all, in the table's order and with its
+   unit. */
 static void every_field_of_the_table_can_be_stored(void **state) {
   (void)state;
 #define X(name, unit, components, exists, kind, words) #name,

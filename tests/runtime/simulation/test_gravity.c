@@ -37,8 +37,8 @@ static void must_open(small_run *r, const char *text) {
   assert_non_null(r->simulation);
 }
 
-/* The parabola, for every particle alike: u = a t^2/2. With the velocities half a step before and after, the kinetic energy is
-   m a^2 (t^2 - dt^2/4)/2: less by what it is at the start. */
+/* The parabola, for every particle alike: u = a t^2/2. With the velocities half a step before and
+   after, the kinetic energy is m a^2 (t^2 - dt^2/4)/2: less by what it is at the start. */
 static void a_free_body_falls_as_a_whole(void **state) {
   (void)state;
   small_run r;

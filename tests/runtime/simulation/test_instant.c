@@ -1,5 +1,5 @@
-/* What stands at a sample, and in a frame, is of one instant: places, forces, damage, reactions, energies. Windows and zeros look
-   at the states that they say. */
+/* What stands at a sample, and in a frame, is of one instant: places, forces, damage, reactions,
+   energies. Windows and zeros look at the states that they say. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -17,7 +17,8 @@
 #define S_T       1e-4
 #define STEP      1e-7
 
-/* A bar that is drawn out evenly until it has broken; both ends move at constant velocity, so that reactions are its force. */
+/* A bar that is drawn out evenly until it has broken; both ends move at constant velocity, so that
+   reactions are its force. */
 #define DRAWN                                                                                      \
   "&simulation end_time = 3e-5 step = 1e-7 /\n"                                                    \
   "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"                      \
@@ -215,8 +216,8 @@ static void damage_of_a_family_is_that_of_its_places(void **state) {
   small_close(&r);
 }
 
-/* A law of families that takes nothing: the imbalance is what steps leave, and falls with their square. One that takes something
-   does not say how much: there the imbalance is no number. */
+/* A law of families that takes nothing: the imbalance is what steps leave, and falls with their
+   square. One that takes something does not say how much: there the imbalance is no number. */
 static double spring_imbalance(double safety) {
   char text[2048];
   snprintf(text, sizeof text,
@@ -279,8 +280,9 @@ static double limit_of(const pl_law *law, const char *groups) {
   return limit;
 }
 
-/* Half of the limit, and the limit is taken away from under the run: lighter particles. It is stopped at a sample, long before one
-   of them runs away. Just below the limit it goes on, though half m v- v+ alone is negative at times. */
+/* Half of the limit, and the limit is taken away from under the run: lighter particles. It is
+   stopped at a sample, long before one of them runs away. Just below the limit it goes on, though
+   half m v- v+ alone is negative at times. */
 static void energy_from_nothing_stops_a_run(void **state) {
   (void)state;
 #define THROWN                                                                                     \

@@ -1,5 +1,5 @@
-/* Whole runs of particles that stand on no lattice: energies, threads, resuming, a slit, a state gone bad, particles of a file in
-   the file's order, and what does not run there. */
+/* Whole runs of particles that stand on no lattice: energies, threads, resuming, a slit, a state
+   gone bad, particles of a file in the file's order, and what does not run there. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -14,7 +14,8 @@
 
 static const char broken[] = "S_t = 1e-4 tau = 1e-8";
 
-/* Everything that moves and takes energy; the format takes threads, the law's values and more groups. */
+/* Everything that moves and takes energy; the format takes threads, the law's values and more
+   groups. */
 static void open_busy(small_run *r, int threads, const char *values, const char *more) {
   static pl_law law;
   char text[2048];
@@ -46,8 +47,8 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
   assert_non_null(r->simulation);
 }
 
-/* Masses differ, loads act, mass is damped: all that comes in goes somewhere. What an undamaged body takes is of the second order
-   in time. */
+/* Masses differ, loads act, mass is damped: all that comes in goes somewhere. What an undamaged
+   body takes is of the second order in time. */
 static void energies_add_up(void **state) {
   (void)state;
   small_run r;

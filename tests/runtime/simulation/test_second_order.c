@@ -1,4 +1,5 @@
-/* Loads in time against closed forms: the error of a run falls with the square of its step, whenever a load begins. */
+/* Loads in time against closed forms: the error of a run falls with the square of its step,
+   whenever a load begins. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -285,7 +286,8 @@ static double dragged(double t, double start) {
   return s < 0 ? 0 : s - sin(w * s) / w;
 }
 
-/* The drive's own particle does not accelerate once it moves: it carries the spring alone, from 0 on. */
+/* The drive's own particle does not accelerate once it moves: it carries the spring alone, from 0
+   on. */
 static double drag(double t, double start) {
   const double w = frequency(), s = t - start;
   return s < 0 ? 0 : stiffness() * sin(w * s) / w;

@@ -1,5 +1,6 @@
-/* Runs of bodies in space, with a law of springs by hand: drives, supports, forces, gravity and velocities along z,
-   what monitors and frames say of them, and the same bits for any number of threads. */
+/* Runs of bodies in space, with a law of springs by hand: drives, supports, forces, gravity and
+   velocities along z, what monitors and frames say of them, and the same bits for any number of
+   threads. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
