@@ -134,10 +134,10 @@ static void read_deck(beam *b) {
   char *text = read_text_file(DECK, 1 << 20, &length, error, sizeof error);
   if (!text) give_up(error);
   const int file = source_add(&b->sources, DECK, text, length);
-  b->deck = deck_read(b->memory, &b->sources, file, NULL, 0, &b->said);
+  const deck_override alone = {.text = "simulation.threads=1"};
+  b->deck = deck_read(b->memory, &b->sources, file, &alone, 1, &b->said);
   free(text);
   must_be_good(b, b->deck != NULL, "the deck cannot be read");
-  b->deck->simulation.threads = 1;
 }
 
 static void compile_law(beam *b) {
