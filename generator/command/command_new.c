@@ -8,9 +8,9 @@
 
 #include "generator/command/commands.h"
 #include "generator/command/templates.h"
-#include "generator/target/c_text.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "generator/target/c_text.h"
 
 enum {
   INPUT_WRONG = 1,

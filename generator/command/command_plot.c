@@ -13,7 +13,8 @@
 #include "generator/results/frame_choice.h"
 #include "generator/results/measured.h"
 #include "runtime/base/quantity.h"
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
+#include "runtime/plot/plot_map.h"
 
 /* --data, with the --band of two of its columns; --line; --band of two values. */
 typedef struct beside_request {

@@ -2,7 +2,7 @@
 
 #include <stdio.h>
 
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
 
 bool drive_draw(const drive_input *in, const drive_table *t, const char *path, char *error,
                 size_t size) {

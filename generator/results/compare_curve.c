@@ -9,7 +9,7 @@
 #include "generator/results/curve_gap.h"
 #include "generator/results/measured.h"
 #include "runtime/plot/canvas.h"
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
 
 enum { NEAR = 0, WRONG = 1, FAR = 2 };
 

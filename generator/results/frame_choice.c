@@ -12,7 +12,8 @@
 #include "generator/kernel/document.h"
 #include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
+#include "runtime/plot/plot_map.h"
 #include "runtime/result/result.h"
 
 enum { VALUE_TEXT = 64, CAPTION_TEXT = 128 };

@@ -22,8 +22,8 @@ static bool choose_unit(axis *a, const char *si_unit, const char *wanted, double
   if (!unit_parse(wanted, strlen(wanted), &shown, &bad, &bad_length) ||
       !unit_parse(si_unit, strlen(si_unit), &si, &bad, &bad_length) ||
       !dim_equal(shown.dim, si.dim)) {
-    snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name,
-             name_shown(si_unit), wanted);
+    snprintf(error, size, "`%s` is in %s; it cannot be shown in `%s`", a->name, name_shown(si_unit),
+             wanted);
     return false;
   }
   snprintf(a->unit_text, sizeof a->unit_text, "%s", wanted);

@@ -3,8 +3,8 @@
 #ifndef PERILAT_RUNTIME_PLOT_BESIDE_H
 #define PERILAT_RUNTIME_PLOT_BESIDE_H
 
-#include "runtime/plot/plot.h"
 #include "runtime/plot/plot_axes.h"
+#include "runtime/plot/plot_curve.h"
 
 /* The least and the largest value along x, or along y, widen the range *low to *high. */
 void beside_range(const plot_beside *b, bool of_x, double *low, double *high);

@@ -8,9 +8,9 @@
 #include "dsl/base/characters.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/units.h"
-#include "runtime/plot/plot.h"
 #include "runtime/plot/plot_axes.h"
 #include "runtime/plot/plot_beside.h"
+#include "runtime/plot/plot_curve.h"
 #include "runtime/result/result.h"
 
 enum { MOST_CURVES = 64 };

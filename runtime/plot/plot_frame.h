@@ -5,7 +5,7 @@
 
 #include <stdint.h>
 
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_map.h"
 
 typedef struct plot_frame {
   int dimensions; /* of the result; from plot_frame_read on, places have two coordinates */

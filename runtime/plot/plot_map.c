@@ -11,6 +11,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot_frame.h"
+#include "runtime/plot/plot_map.h"
 
 enum {
   WIDTH = 1500,

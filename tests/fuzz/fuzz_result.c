@@ -7,7 +7,8 @@
 #include <hdf5.h>
 #include <string.h>
 
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
+#include "runtime/plot/plot_map.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result.h"
 #include "runtime/result/sealed_file.h"

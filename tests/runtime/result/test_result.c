@@ -16,7 +16,8 @@
 #include <unistd.h>
 
 #include "runtime/plot/canvas.h"
-#include "runtime/plot/plot.h"
+#include "runtime/plot/plot_curve.h"
+#include "runtime/plot/plot_map.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/views.h"
 #include "tests/runtime/small_result.h"

@@ -1,7 +1,6 @@
-/* Pictures through Cairo: curves of histories and maps of a frame, as PNG, SVG or PDF by the path's
-   ending. */
-#ifndef PERILAT_RUNTIME_PLOT_H
-#define PERILAT_RUNTIME_PLOT_H
+/* Curves of histories through Cairo, as PNG, SVG or PDF by the path's ending. */
+#ifndef PERILAT_RUNTIME_PLOT_CURVE_H
+#define PERILAT_RUNTIME_PLOT_CURVE_H
 
 #include <stdbool.h>
 #include <stddef.h>
@@ -31,27 +30,6 @@ typedef struct plot_curve_options {
   int beside_count;
 } plot_curve_options;
 
-typedef struct plot_map_options {
-  const char *output;
-  long frame; /* from 0; negative: from the end (-1 the last) */
-  /* "damage" (bonds in its colour classes, default) or any field of particles or bonds */
-  const char *field;
-  int component; /* of a vector field; -1: magnitude */
-  double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
-  /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
-  int slice_axis;
-  double slice_at; /* m */
-  /* "yielded", "S_p > 1e-6": dots where a field is above 0, above or below a value; NULL: none */
-  const char *mark;
-  const char *title;
-  /* Several frames instead of one, a panel each, with what stands above it; NULL: its time. */
-  const long *frames;
-  const char *const *captions;
-  int frame_count;
-} plot_map_options;
-
-enum { PLOT_MOST_PANELS = 48 };
-
 /* One curve a result file and history in one picture. */
 bool plot_curve(const char *const *results, int result_count, const plot_curve_options *o,
                 char *error, size_t size);
@@ -68,9 +46,6 @@ bool plot_histories_read(plot_histories *h, const char *path, const char *x, con
    units. */
 bool plot_values(const double *x, const double *y, long count, const char *x_unit,
                  const char *y_unit, const plot_curve_options *o, char *error, size_t size);
-/* Particles and bonds of one frame, or of several beside each other, deformed, with a legend and a
-   scale bar in mm. */
-bool plot_map(const char *result, const plot_map_options *o, char *error, size_t size);
 
 C_LINKAGE_END
 
