@@ -13,7 +13,7 @@
 #include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot.h"
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 enum { VALUE_TEXT = 64, CAPTION_TEXT = 128 };
 

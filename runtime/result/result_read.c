@@ -1,4 +1,5 @@
-/* The reading half of result.h. */
+#include "runtime/result/result_read.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -13,7 +14,6 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/base/ordinary_file.h"
 #include "runtime/result/hdf5_tools.h"
-#include "runtime/result/result.h"
 #include "runtime/result/sealed_file.h"
 
 #define VALUES_LIMIT ((hsize_t)1 << 32) /* of one read: 32 GiB of doubles */

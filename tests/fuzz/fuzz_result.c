@@ -10,6 +10,7 @@
 #include "runtime/plot/plot.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 #include "runtime/result/sealed_file.h"
 #include "tests/fuzz/memory_file.h"
 

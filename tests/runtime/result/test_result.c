@@ -18,6 +18,7 @@
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_read.h"
 #include "runtime/result/views.h"
 #include "tests/runtime/small_result.h"
 
