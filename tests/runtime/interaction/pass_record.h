@@ -3,6 +3,8 @@
 #ifndef PERILAT_TESTS_PASS_RECORD_H
 #define PERILAT_TESTS_PASS_RECORD_H
 
+#include <stdlib.h>
+
 #include "runtime/interaction/family_run.h"
 #include "runtime/interaction/interaction.h"
 #include "tests/runtime/built_rows.h"

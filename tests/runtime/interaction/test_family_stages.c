@@ -7,8 +7,6 @@
 
 #include <cmocka.h>
 
-#include <stdlib.h>
-
 #include "runtime/interaction/family_stages.h"
 #include "tests/runtime/interaction/pass_record.h"
 
