@@ -1,5 +1,5 @@
-/* A law of families whose passes find nothing, but keep which rows they were called with, and check
-   that the pass before was done on all rows in reach. Its three passes may be run by any schedule. */
+/* A law of families whose three passes find nothing, but keep which rows they were called with, and
+   check that the pass before was done on all rows in reach: whatever schedule runs them. */
 #ifndef PERILAT_TESTS_PASS_RECORD_H
 #define PERILAT_TESTS_PASS_RECORD_H
 
@@ -24,7 +24,7 @@ static inline int record_count(const pass_record *r) {
   return r->w->body->lattice->row_count;
 }
 
-/* The rows that hold sites and whose particles may be neighbours of those of a row: first .. last. */
+/* The row holds sites, and its particles may be neighbours of those of row `from`. */
 static inline bool record_reaches(const pass_record *r, int from, int row) {
   return abs(row - from) <= family_of(r->w)->reach && r->w->body->count[row] > 0;
 }

@@ -195,8 +195,8 @@ static void a_state_is_observed_once(void **state) {
   small_close(&r);
 }
 
-/* Any number of advances takes the same steps as one, to the last bit; a run that has ended stays as
-   it is. */
+/* Any number of advances takes the same steps as one, to the last bit; a run that has ended stays
+   as it is. */
 static void advances_may_be_of_any_length(void **state) {
   (void)state;
   static const long lengths[] = {1, 7, 31, 1000};
