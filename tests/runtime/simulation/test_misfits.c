@@ -143,6 +143,7 @@ static void a_law_without_density_is_refused(void **state) {
   memcpy(renamed, elastic_parameters, sizeof renamed);
   renamed[ELASTIC_RHO].name = "density";
   massless.parameters = renamed;
+  massless.density = -1;
   small_run r;
   small_open(&r, &massless, RUN LAW BLOCK USE);
   assert_null(r.simulation);
