@@ -11,7 +11,7 @@
 #include "runtime/plot/plot_axes.h"
 #include "runtime/plot/plot_beside.h"
 #include "runtime/plot/plot_curve.h"
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 enum { MOST_CURVES = 64 };
 

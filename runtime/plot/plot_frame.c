@@ -9,7 +9,7 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 /* --- reading ---------------------------------------------------------------------------------- */
 

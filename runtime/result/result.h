@@ -1,6 +1,7 @@
-/* The result file (HDF5) and its XDMF sidecar. While a run goes on, frames are added to a plain
-   file beside it (frame_file.h), which survives a kill; result.h5 itself appears whole, by rename,
-   when the run ends. Layout, names and units of result.h5 are stable:
+/* Writing the result file (HDF5) and its XDMF sidecar; reading is result_read.h's. While a run goes
+   on, frames are added to a plain file beside it (frame_file.h), which survives a kill; result.h5
+   itself appears whole, by rename, when the run ends. Layout, names and units of result.h5 are
+   stable:
 
      /                      attributes seal (sealed_file.h), perilat_version, started (ISO 8601),
                             title, dt, steps, kernel_key, compiler, flags (of the kernels), threads,
@@ -19,7 +20,7 @@
                             and kind ("state", "damage", "output" of the law, "other")
      /VTKHDF, /xdmf         the same for other programs (views.h)
 
-   The times are dimension scales of what stands beside them.  */
+   The times are dimension scales of what stands beside them. */
 #ifndef PERILAT_RUNTIME_RESULT_H
 #define PERILAT_RUNTIME_RESULT_H
 
@@ -28,7 +29,6 @@
 #include <stdio.h>
 
 #include "dsl/base/c_linkage.h"
-#include "dsl/base/name_index.h"
 #include "runtime/result/frame_file.h"
 
 C_LINKAGE_BEGIN
@@ -52,7 +52,8 @@ typedef struct result_series { /* of the history */
   const char *unit;
   const char *long_name; /* in words; NULL: nobody has said */
   const double *values;  /* [history_count] */
-  /* Of a series that judges the run: attribute `checked` 1, or 0 where it is not known, with the sentence `unchecked`. */
+  /* Of a series that judges the run: attribute `checked` 1, or 0 where it is not known, with the
+     sentence `unchecked`. */
   bool judges;
   const char *unchecked;
 } result_series;
@@ -103,7 +104,8 @@ result *result_open(const result_header *header, bool resume, char *error, size_
    tells of. */
 bool result_begin(result *r, char *error, size_t size);
 bool result_resume(result *r, const frame_mark *mark, char *error, size_t size);
-/* Appends a frame: values[k] is field k, [count][components]. False when it cannot be written (disk full). */
+/* Appends a frame: values[k] is field k, [count][components]. False when it cannot be written (disk
+   full). */
 bool result_frame(result *r, double time, const double *const *values, char *error, size_t size);
 frame_mark result_mark(const result *r); /* of the frames so far */
 /* The frames can be read, every bit as it was written. */
@@ -117,59 +119,6 @@ bool result_finish(result *r, const result_ending *e, char *error, size_t size);
 /* Removes the file of the frames; the result is closed afterwards all the same. */
 void result_discard(result *r);
 void result_close(result *r); /* frees; keeps files */
-
-/* Reading back, for plot and info. All values are malloc'ed; NULL or false with a sentence in
-   `error` on failure. Damaged files, changed ones, and those that lead out of themselves are
-   refused; of a file without a seal a warning is printed. */
-typedef struct result_file result_file;
-result_file *result_read(const char *path, char *error, size_t size);
-void result_read_close(result_file *f);
-/* A sentence when something that is in the file could not be read: then no answer from it counts.
-   NULL: all is well. */
-const char *result_trouble(const result_file *f);
-/* The run was quasi-static: its samples are increments, its time is only an order. */
-bool result_is_quasi_static(result_file *f);
-
-typedef struct result_names {
-  char **items;
-  int count;
-  name_index whole, last; /* where a name is; where its last part is, -1 where several have it */
-} result_names;
-/* Names of what a group holds ("/history", "/bonds"), in alphabetical order. Empty where there is no such group. */
-result_names result_list(result_file *f, const char *group);
-/* Histories ("/history") or fields ("/frames"): data sets of the group and of the groups in it, "load", "energy/kinetic",
-   "concrete/omega"; without `time`. */
-result_names result_members(result_file *f, const char *group);
-void result_names_free(result_names *n);
-/* Position of the name given in full or, where that says which, by its last part ("kinetic"); else -1. */
-int result_names_find(const result_names *n, const char *given);
-/* The full name of a history or a field that is given so. False with a sentence that lists what there is. */
-bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
-                 char *error, size_t error_size);
-
-/* Why a series that judges the run does not ("" where it does, or is no such series). */
-void result_read_unchecked(result_file *f, const char *name, char *why, size_t size);
-
-/* A name may be given by its last part where that says which. */
-double *result_read_series(result_file *f, const char *name, long *count, char *unit,
-                           size_t unit_size, char *error,
-                           size_t size); /* "time", "load", "energy/kinetic" */
-double *result_read_frame(result_file *f, const char *field, long frame, long *count,
-                          int *components, char *unit, size_t unit_size, char *error, size_t size);
-double *result_read_reference(result_file *f, long *particles,
-                              int *dimensions);              /* [N][2] or [N][3] */
-double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
-int32_t *result_read_bonds(result_file *f, const char *interaction,
-                           long *bonds); /* [M][2]; NULL name: the first */
-/* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error ""). */
-double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
-double *result_read_frame_times(result_file *f, long *frames);
-char *result_read_text(result_file *f, const char *path); /* "/input/deck" */
-/* An attribute of the result: "title", "ended"; "" where it has none (malloc'ed). */
-char *result_read_words(result_file *f, const char *name);
-/* "threads", "wall_seconds"; NaN where it has none. */
-double result_read_number(result_file *f, const char *name);
-char *result_read_title(result_file *f);
 
 C_LINKAGE_END
 

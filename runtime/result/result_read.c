@@ -1,4 +1,5 @@
-/* The reading half of result.h. */
+#include "runtime/result/result_read.h"
+
 #include <errno.h>
 #include <fcntl.h>
 #include <math.h>
@@ -13,7 +14,6 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/base/ordinary_file.h"
 #include "runtime/result/hdf5_tools.h"
-#include "runtime/result/result.h"
 #include "runtime/result/sealed_file.h"
 
 #define VALUES_LIMIT ((hsize_t)1 << 32) /* of one read: 32 GiB of doubles */
@@ -129,8 +129,8 @@ static hid_t open_set(const result_file *f, const char *name) {
   }
 }
 
-/* False of a set that claims more values than its bytes in the file can hold, however well they are compressed (deflate
-   reaches 1032): a small file must not ask for all memory. */
+/* False of a set that claims more values than its bytes in the file can hold, however well they are
+   compressed (deflate reaches 1032): a small file must not ask for all memory. */
 static bool is_stored(hid_t set, int rank, const hsize_t *shape) {
   const hid_t type = H5Dget_type(set);
   double bytes = (double)H5Tget_size(type);
@@ -140,7 +140,8 @@ static bool is_stored(hid_t set, int rank, const hsize_t *shape) {
   return bytes <= 1100.0 * (double)H5Dget_storage_size(set) + 64e6;
 }
 
-/* Rank and shape of a data set; false when it is not of rank 1 to 3, or too large to be read from dimension `from` on. */
+/* Rank and shape of a data set; false when it is not of rank 1 to 3, or too large to be read from
+   dimension `from` on. */
 static bool shape_of(hid_t set, int from, int *rank, hsize_t shape[3]) {
   hid_t space = H5Dget_space(set);
   *rank = H5Sget_simple_extent_ndims(space);
@@ -309,7 +310,8 @@ static void no_such_name(result_file *f, const char *group, const char *given, c
   }
 }
 
-/* Opens a history or a field, by its full name or a part that says which. Negative after a sentence. */
+/* Opens a history or a field, by its full name or a part that says which. Negative after a
+   sentence. */
 static hid_t open_named(result_file *f, const char *group, const char *given, char *error,
                         size_t size) {
   char name[512], path[600];

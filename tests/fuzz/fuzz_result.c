@@ -11,6 +11,7 @@
 #include "runtime/plot/plot_map.h"
 #include "runtime/result/hdf5_tools.h"
 #include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 #include "runtime/result/sealed_file.h"
 #include "tests/fuzz/memory_file.h"
 

@@ -14,7 +14,7 @@
 #include <time.h>
 #include <unistd.h>
 
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 #define SAID_SIZE 20000
 

@@ -84,7 +84,7 @@ cat >use.c <<'END'
 #include <stdlib.h>
 
 #include "generator/kernel/model.h"
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 int main(int argc, char **argv) {
   char error[1000];

@@ -13,7 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 static void write_deck(const char *path, const char *text) {
   FILE *out = fopen(path, "w");

@@ -19,7 +19,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/sha256.h"
-#include "runtime/result/result.h"
+#include "runtime/result/result_read.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/run/digests/"
 

@@ -19,6 +19,7 @@
 #include "runtime/plot/plot_curve.h"
 #include "runtime/plot/plot_map.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_read.h"
 #include "runtime/result/views.h"
 #include "tests/runtime/small_result.h"
 

@@ -16,6 +16,7 @@
 
 #include "dsl/base/hash.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_read.h"
 #include "runtime/result/sealed_file.h"
 #include "tests/runtime/result/file_tools.h"
 #include "tests/runtime/small_result.h"

@@ -1,4 +1,5 @@
-/* When a run takes samples and frames, and when it ends: stops, interrupts, times between steps. */
+/* What a simulation is made of when the time loop takes it over; when a run takes samples and
+   frames, and when it ends: stops, interrupts, times between steps; what is observed. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -7,6 +8,8 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
+#include "runtime/simulation/simulation_state.h"
+#include "runtime/simulation/time_loop.h"
 #include "tests/runtime/simulation/chain.h"
 
 static void a_stop_ends_the_run_at_its_sample(void **state) {
@@ -21,7 +24,8 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   int frames = 0;
   step_status status = STEP_OK;
   while (status == STEP_OK) {
@@ -72,7 +76,8 @@ static void a_stop_waits_for_its_time(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_STOPPED);
   assert_int_equal(simulation_step_done(r.simulation), 50);
   small_close(&r);
@@ -94,7 +99,8 @@ static void times_between_steps_are_rounded_to_the_nearest(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] = w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  w->body->velocity[0][w->body->lattice->particle_site[0]] =
+      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *zeroed, *mean;
   static const int steps[] = {0, 3, 5, 8, 11, 14, 16};
@@ -123,6 +129,102 @@ static void an_interrupt_ends_an_advance_at_a_step(void **state) {
   small_close(&r);
 }
 
+/* Parts of a simulation that belong together are set up so: one body for all, a thread for each of
+   its blocks, a clock with the step and the steps that were chosen; nothing has happened yet. */
+static void parts_of_a_simulation_agree(void **state) {
+  (void)state;
+  static const char *const more[] = {"", "&relaxation increments = 3 /\n"};
+  for (int quasi_static = 0; quasi_static < 2; quasi_static++) {
+    char text[1024];
+    const int head = snprintf(text, sizeof text,
+                              COASTING "&gravity acceleration = 0, -9.81 /\n"
+                                       "&output frames = 3 /\n",
+                              1.0 * SPACING);
+    snprintf(text + head, sizeof text - (size_t)head, "%s", more[quasi_static]);
+    small_run r;
+    must_open(&r, &elastic_bar, text);
+    const simulation *s = r.simulation;
+    assert_ptr_equal(s->body, s->state->body);
+    assert_ptr_equal(s->body->lattice, s->lattice);
+    assert_ptr_equal(s->monitors->state, s->state);
+    assert_ptr_equal(s->history.monitors, s->monitors);
+    assert_true(s->clock.time_step == 1e-7 && s->limit.step == 1e-7);
+    assert_true(s->body->time_step == s->clock.time_step);
+    assert_int_equal(s->clock.step_count, s->plan.step_count);
+    assert_int_equal(s->history.capacity, s->plan.history_capacity);
+    assert_int_equal(s->bonds[0].i + s->bonds[0].j, 1);
+    assert_true((s->relaxation != NULL) == quasi_static);
+    assert_ptr_equal(s->clock.relaxation, s->relaxation);
+    assert_ptr_equal(s->history.relaxation, s->relaxation);
+    if (quasi_static) assert_ptr_equal(s->relaxation->body, s->body);
+    assert_int_equal(s->clock.at.begun + s->clock.at.step + s->clock.at.samples, 0);
+    assert_int_equal(s->clock.at.status, STEP_OK);
+    assert_int_equal(s->clock.at.stop, -1);
+    assert_int_equal(s->observed_step, -1);
+    small_close(&r);
+  }
+}
+
+/* A pair of particles drawn apart by u feels EA u/s. A state is observed once: what stands in the
+   forces then stays until the next step. */
+static void a_state_is_observed_once(void **state) {
+  (void)state;
+  enum { STEPS = 10 };
+  char text[1024];
+  snprintf(text, sizeof text, COASTING "&output frames = 0 energy = .false. /\n", 1.0 * SPACING);
+  small_run r;
+  must_open(&r, &elastic_bar, text);
+  simulation *s = r.simulation;
+  const int32_t *site = s->lattice->particle_site;
+  double *const u = s->body->displacement[0], *const f = s->body->force[0];
+  u[site[1]] = 1e-6;
+  time_loop_observe(s);
+  const double expected = rigidity_axial(0.2) * 1e-6 / SPACING;
+  assert_int_equal(s->clock.at.begun, 1);
+  assert_int_equal(s->observed_step, 0);
+  assert_true(fabs(f[site[0]] / expected - 1) < 1e-12 && f[site[1]] == -f[site[0]]);
+  f[site[0]] = 4711;
+  time_loop_observe(s);
+  assert_true(f[site[0]] == 4711);
+  assert_int_equal(time_loop_run(s, STEPS, NULL), STEP_OK);
+  assert_int_equal(s->clock.at.step, STEPS);
+  time_loop_observe(s);
+  assert_int_equal(s->observed_step, STEPS);
+  const double now = rigidity_axial(0.2) * (u[site[1]] - u[site[0]]) / SPACING;
+  assert_true(now < expected && fabs(f[site[0]] / now - 1) < 1e-12);
+  small_close(&r);
+}
+
+/* Any number of advances takes the same steps as one, to the last bit; a run that has ended stays
+   as it is. */
+static void advances_may_be_of_any_length(void **state) {
+  (void)state;
+  static const long lengths[] = {1, 7, 31, 1000};
+  double way[4], velocity[4];
+  char text[1024];
+  snprintf(text, sizeof text, COASTING "&output frames = 0 sample = 3e-7 /\n", 1.0 * SPACING);
+  for (int k = 0; k < 4; k++) {
+    small_run r;
+    must_open(&r, &elastic_bar, text);
+    simulation *s = r.simulation;
+    const long site = s->lattice->particle_site[1];
+    s->body->velocity[0][site] = 2;
+    long done = 0;
+    for (step_status at = STEP_OK; at == STEP_OK; done += lengths[k]) {
+      assert_int_equal(s->clock.at.step, done);
+      at = time_loop_run(s, lengths[k], NULL);
+    }
+    assert_int_equal(s->clock.at.step, 100);
+    way[k] = s->body->displacement[0][site];
+    velocity[k] = s->body->velocity[0][site];
+    assert_int_equal(time_loop_run(s, 5, NULL), STEP_END);
+    assert_true(s->body->displacement[0][site] == way[k]);
+    assert_true(s->clock.at.step == 100 && way[k] == way[0] && velocity[k] == velocity[0]);
+    small_close(&r);
+  }
+  assert_true(way[0] > 0);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_stop_ends_the_run_at_its_sample),
@@ -130,6 +232,9 @@ int main(void) {
       cmocka_unit_test(a_stop_waits_for_its_time),
       cmocka_unit_test(times_between_steps_are_rounded_to_the_nearest),
       cmocka_unit_test(an_interrupt_ends_an_advance_at_a_step),
+      cmocka_unit_test(parts_of_a_simulation_agree),
+      cmocka_unit_test(a_state_is_observed_once),
+      cmocka_unit_test(advances_may_be_of_any_length),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
