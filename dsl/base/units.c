@@ -1,5 +1,6 @@
 #include "dsl/base/units.h"
 
+#include <assert.h>
 #include <ctype.h>
 #include <math.h>
 #include <stdio.h>
@@ -380,6 +381,8 @@ dimension dimension_of(const char *unit_text) {
   unit u = {DIMENSIONLESS, 1};
   const char *bad;
   size_t length;
-  (void)unit_parse(unit_text, strlen(unit_text), &u, &bad, &length);
+  const bool good = unit_parse(unit_text, strlen(unit_text), &u, &bad, &length);
+  assert(good || unit_is_pure(unit_text));
+  (void)good;
   return u.dim;
 }

@@ -24,8 +24,8 @@ typedef struct physics_report {
   double seconds;
 } physics_report;
 
-/* Everything found goes to `d`, one
-   diagnostic a check. Returns false when there were errors among them. `report` may be NULL. */
+/* Everything found goes to `d`, one diagnostic a check. Returns false when there were errors among
+   them. `report` may be NULL. */
 bool physics_check(const law *l, const physics_options *o, diagnostics *d, physics_report *report);
 
 #endif

@@ -7,12 +7,12 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "generator/drive/drive_motion.h"
+#include "generator/drive/drive_table.h"
 #include "generator/interpreter/interpreted.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
-#include "generator/drive/drive_motion.h"
-#include "generator/drive/drive_table.h"
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/patch.h"
 #include "runtime/simulation/simulation.h"

@@ -88,7 +88,7 @@ ir_node ir_mark_class(ir *g, ir_node input);
 bool ir_is_of_class(const ir *g, ir_node n);
 /* Says that a condition holds nearly always, so that what is chosen where it does not need not be
    fast. Returns it. Of laws of bonds: that a size, at least 0, is below a positive limit
-   (stages_expectation), two such conditions at most. */
+   (choice_expectation), two such conditions at most. */
 ir_node ir_expect(ir *g, ir_node condition);
 bool ir_is_expected(const ir *g, ir_node n);
 /* Chooses by such a condition. */

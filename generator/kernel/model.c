@@ -298,12 +298,10 @@ bool model_plan_of_families(model *m) {
 
 static void emit_once(model *m) {
   if (m->c_text) return;
-  const double begun = monotonic_seconds();
   char *unkeyed = emit_kernel(m->plan);
   m->key = toolchain_key(unkeyed);
   m->c_text = descriptor_keyed(unkeyed, m->key);
   free(unkeyed);
-  m->seconds_front += monotonic_seconds() - begun;
 }
 
 const char *model_c_text(model *m) {
@@ -325,9 +323,7 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
     m->interpreted = plan_interpreted(m->plan, "");
     return m->interpreted;
   }
-  double begun = monotonic_seconds();
   if (!toolchain_load(model_c_text(m), model_key(m), &m->loaded, error, size)) return NULL;
-  m->seconds_kernel = monotonic_seconds() - begun;
   const char *trouble = toolchain_cache_trouble();
   if (trouble) *note = arena_printf(m->memory, "%s", trouble);
   return m->loaded.law;

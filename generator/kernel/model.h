@@ -25,7 +25,7 @@ typedef struct model {
   char *c_text, *key;                   /* of model_c_text, model_key, once they were asked for */
   pl_law *interpreted;                  /* the plan on the interpreter */
   loaded_kernel loaded;                 /* the compiled kernel, when there is one */
-  double seconds_front, seconds_kernel; /* text to plan; plan to loaded kernel */
+  double seconds_front; /* text to plan */
 } model;
 
 /* What a file is: by its ending, or else by how its text begins; a name without a file is

@@ -25,6 +25,6 @@ pid_t process_start(arguments *a, const char *log);
 int process_finish(pid_t child);
 
 /* Where the first word of `command` is, as a shell would find it. */
-bool process_find(const char *command, char *path, size_t size);
+bool process_find(const char *command, char *path, size_t size) __attribute__((nonnull));
 
 #endif

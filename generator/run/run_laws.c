@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* strcasestr */
 #include "generator/run/run_laws.h"
 
+#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -115,7 +116,8 @@ static bool is_worth_compiling(const run *r, const model *opened) {
 static int take_model(run *r, const deck_material *m, int lattice, deck_material *values) {
   char error[4 * ERROR_LENGTH];
   const char *note;
-  model *opened = &r->models[r->open_models];
+  assert(r->open_models == lattice); /* the law of each lattice in its turn */
+  model *opened = &r->models[lattice];
   const bool good =
       material_law_open(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;

@@ -125,8 +125,7 @@ void body_free(body *w) {
   free(w);
 }
 
-/* --- what has become of it ----------------------------------------------------------------------
-   */
+/* --- what has become of it -------------------------------------------------------------------- */
 
 int body_bad(const body *w) {
   for (int k = 0; k < w->block_count; k++)

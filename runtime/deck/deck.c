@@ -71,14 +71,6 @@ FIND(lattice, name)
 FIND(monitor, name)
 FIND(material, lattice)
 
-deck_material deck_material_copy(arena *a, const deck_material *m) {
-  const size_t size = (size_t)m->assignment_count * sizeof *m->assignments;
-  deck_material copy = *m;
-  copy.assignments = arena_alloc(a, size);
-  if (size) memcpy(copy.assignments, m->assignments, size);
-  return copy;
-}
-
 char *deck_file_path(const char *deck_path, const char *name) {
   const char *slash = strrchr(deck_path, '/');
   const int folder = slash && name[0] != '/' ? (int)(slash - deck_path) + 1 : 0;

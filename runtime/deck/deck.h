@@ -315,8 +315,6 @@ int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
 int deck_find_material(const deck *k, const char *lattice);
-/* A copy whose assignments may be taken out, in an arena: the deck stays as it was read. */
-deck_material deck_material_copy(arena *a, const deck_material *m);
 /* For many searches: none of the names is known yet, they are taken up as the lists grow. */
 deck_names *deck_names_new(arena *a);
 

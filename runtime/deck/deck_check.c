@@ -100,7 +100,7 @@ int deck_dimensions_of(const deck_reader *r, const char *lattice) {
   return l < 0 || !r->k->lattices[l].kind ? 0 : deck_lattice_dimensions(&r->k->lattices[l]);
 }
 
-/* --- directions */
+/* --- directions ------------------------------------------------------------------------------- */
 
 int deck_dimensions_of_region(const deck_reader *r, const char *name) {
   const int k = name ? deck_find_region(r->k, name) : -1;

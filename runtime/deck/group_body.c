@@ -8,7 +8,7 @@
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
 
-/* --- shapes */
+/* --- shapes ----------------------------------------------------------------------------------- */
 
 #define SHAPE_KEYS(group)                                                                          \
   {.name = "shape",                                                                                \
@@ -288,7 +288,7 @@ static void check_can_be_filled(deck_reader *r, const deck_item *item, const dec
               shape_words[shape->kind]);
 }
 
-/* --- what has a shape */
+/* --- what has a shape ------------------------------------------------------------------------- */
 
 static const deck_key_info body_keys[] = {
     {.name = "lattice",

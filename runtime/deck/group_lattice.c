@@ -9,7 +9,7 @@
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/deck/output_fields.h"
 
-/* --- lattices */
+/* --- lattices --------------------------------------------------------------------------------- */
 
 static const deck_key_info lattice_keys[] = {
     {.name = "name",
@@ -262,7 +262,7 @@ static void check_lattice(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(lattice, .identity = "name", .check = check_lattice,
           .doc = "A lattice of particles that bodies are cut from. At least one.");
 
-/* --- materials */
+/* --- materials -------------------------------------------------------------------------------- */
 
 static const deck_key_info material_keys[] = {
     {.name = "lattice",
@@ -324,7 +324,7 @@ DECK_LIST(
         "The law of a lattice's bonds. Every other key sets a parameter or an option of the law, "
         "e.g. `E = '30 GPa'`.");
 
-/* --- random fields */
+/* --- random fields ---------------------------------------------------------------------------- */
 
 static const deck_key_info field_keys[] = {
     {.name = "parameter",

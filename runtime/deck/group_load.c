@@ -8,7 +8,7 @@
 #define REGION_KEY(group, text)                                                                    \
   { .name = "region", .type = DECK_NAME, .required = true, DECK_AT(group, region), .doc = text }
 
-/* --- support */
+/* --- support ---------------------------------------------------------------------------------- */
 
 static const deck_key_info support_keys[] = {
     REGION_KEY(support, "what is held"),
@@ -57,7 +57,7 @@ static void check_support(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(support, .identity = "region", .check = check_support,
           .doc = "Holds particles where they are.");
 
-/* --- drive */
+/* --- drive ------------------------------------------------------------------------------------ */
 
 static const deck_key_info drive_keys[] = {
     REGION_KEY(drive, "what is moved"),
@@ -145,7 +145,7 @@ DECK_LIST(drive, .identity = "region", .check = check_drive,
           .doc = "Prescribed motion of a region from `start` on; free before. Give `velocity` or "
                  "`displacement`.");
 
-/* --- force */
+/* --- force ------------------------------------------------------------------------------------ */
 
 static const deck_key_info force_keys[] = {
     REGION_KEY(force, "what is loaded"),
@@ -204,7 +204,7 @@ static void check_force(deck_reader *r, const namelist_group *from, void *into) 
 DECK_LIST(force, .identity = "region", .check = check_force,
           .doc = "Force on a region, shared equally by its particles. Give `total` or `moment`.");
 
-/* --- end moment */
+/* --- end moment ------------------------------------------------------------------------------- */
 
 static const deck_key_info end_moment_keys[] = {
     REGION_KEY(end_moment, "what is loaded, e.g. the end columns of a beam"),
@@ -231,7 +231,7 @@ static void check_end_moment(deck_reader *r, const namelist_group *from, void *i
 DECK_LIST(end_moment, .identity = "region", .check = check_end_moment,
           .doc = "Moment on a region: horizontal forces, linear in y, without resultant.");
 
-/* --- protect */
+/* --- protect ---------------------------------------------------------------------------------- */
 
 static const deck_key_info protect_keys[] = {
     REGION_KEY(protect, "around which bonds stay whole"),
@@ -253,7 +253,7 @@ static void check_protect(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(protect, .identity = "region", .check = check_protect,
           .doc = "Bonds near a region take no damage.");
 
-/* --- damping */
+/* --- damping ---------------------------------------------------------------------------------- */
 
 static const deck_key_info damping_keys[] = {
     {.name = "kind",
@@ -296,7 +296,7 @@ static void check_damping(deck_reader *r, const namelist_group *from, void *into
 
 DECK_LIST(damping, .check = check_damping, .doc = "Slows the motion of every particle for a time.");
 
-/* --- gravity */
+/* --- gravity ---------------------------------------------------------------------------------- */
 
 static const deck_key_info gravity_keys[] = {
     {.name = "acceleration",
@@ -324,7 +324,7 @@ static void check_gravity(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(gravity, .check = check_gravity,
           .doc = "Weight of every particle; several add up. Its work is in the energy ledger.");
 
-/* --- initial velocity */
+/* --- initial velocity ------------------------------------------------------------------------- */
 
 static const deck_key_info initial_velocity_keys[] = {
     REGION_KEY(initial_velocity, "what moves"),

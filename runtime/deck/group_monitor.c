@@ -6,7 +6,7 @@
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
 
-/* --- monitors */
+/* --- monitors --------------------------------------------------------------------------------- */
 
 static const deck_key_info monitor_keys[] = {
     {.name = "name",
@@ -155,7 +155,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(monitor, .identity = "name", .check = check_monitor,
           .doc = "A quantity recorded at every sample of the history.");
 
-/* --- stops */
+/* --- stops ------------------------------------------------------------------------------------ */
 
 static const deck_key_info stop_keys[] = {
     {.name = "monitor",

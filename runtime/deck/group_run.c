@@ -92,7 +92,7 @@ DECK_ONE(relaxation, .check = check_relaxation,
                 "comes to "
                 "rest by damped motion.");
 
-/* --- what is written */
+/* --- what is written -------------------------------------------------------------------------- */
 
 static const deck_key_info output_keys[] = {
     {.name = "result",

@@ -207,8 +207,7 @@ void family_windows_free(const sweep *w, family_window *v) {
   free(v);
 }
 
-/* --- what stands where no run has come -----------------------------------------------------------
-   */
+/* --- what stands where no run has come -------------------------------------------------------- */
 
 /* The values of shared bit s. */
 static double *shared_planes(const sweep *w, const family_window *v, int s) {

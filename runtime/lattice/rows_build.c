@@ -20,8 +20,7 @@ typedef struct builder {
   diagnostics *d;
 } builder;
 
-/* --- the lattice --------------------------------------------------------------------------------
- */
+/* --- the lattice ------------------------------------------------------------------------------ */
 
 /* Columns from a site of a row with that shift to its neighbour. */
 static int columns_to(const bravais *b, const bravais_neighbour *n, int shift) {
@@ -83,8 +82,7 @@ static bool lattice_is_sound(builder *b) {
   return true;
 }
 
-/* --- storage ------------------------------------------------------------------------------------
- */
+/* --- storage ---------------------------------------------------------------------------------- */
 
 static long whole_lanes(long columns) {
   return (columns + PL_LANES - 1) / PL_LANES * PL_LANES;
@@ -241,8 +239,7 @@ static void join_neighbours(rows *w) {
   }
 }
 
-/* --- notches ------------------------------------------------------------------------------------
- */
+/* --- notches ---------------------------------------------------------------------------------- */
 
 static long cut_bonds(rows *w, const builder *b, const deck_shape *shape) {
   const site_range *left = &b->marks.left;

@@ -26,8 +26,7 @@ struct frame_set {
   int count;
 };
 
-/* --- values
-   --------------------------------------------------------------------------------------- */
+/* --- values ----------------------------------------------------------------------------------- */
 
 static void site_values(const frames_of *of, double *const *arrays, int components,
                         double *values) {
@@ -71,8 +70,7 @@ static void values_of_parameter(const frames_of *of, const frame_source *from, d
   bond_values(of, of->parameter[from->index], values);
 }
 
-/* --- fields of any law
-   ---------------------------------------------------------------------------- */
+/* --- fields of any law ------------------------------------------------------------------------ */
 
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
   site_values(of, of->state->body->displacement, from->components, values);
@@ -158,8 +156,7 @@ static const own_field *find_own(const char *name) {
   return NULL;
 }
 
-/* --- what frames hold
-   ----------------------------------------------------------------------------- */
+/* --- what frames hold ------------------------------------------------------------------------- */
 
 static bool is_asked(const deck_output *o, const char *name) {
   for (int k = 0; k < o->field_count; k++)
@@ -253,8 +250,7 @@ void frames_values(const frame_set *f, int field, double *values) {
   f->sources[field].values(&f->of, &f->sources[field], values);
 }
 
-/* --- what the deck asks for
-   ----------------------------------------------------------------------- */
+/* --- what the deck asks for ------------------------------------------------------------------- */
 
 /* Names that this run can store, or with `all` that some run can; to be freed. */
 static const char **field_names(const deck_output *o, const pl_law *law, bool all, int *count) {
@@ -305,8 +301,7 @@ bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
   return good;
 }
 
-/* --- when
-   ----------------------------------------------------------------------------------------- */
+/* --- when ------------------------------------------------------------------------------------- */
 
 /* Position at which a frame is due; the first is that of the undeformed body. */
 static int64_t position_of(const frame_set *f, int64_t frame) {

@@ -211,8 +211,7 @@ const deck_stop *simulation_stopped_by(const simulation *s) {
   return s->clock.at.stop >= 0 ? &s->deck->stops[s->clock.at.stop] : NULL;
 }
 
-/* --- what others ask ----------------------------------------------------------------------------
-   */
+/* --- what others ask -------------------------------------------------------------------------- */
 
 step_status simulation_advance(simulation *s, long steps,
                                const volatile sig_atomic_t *interrupted) {

@@ -1,11 +1,11 @@
 /* One run: bodies, their laws, loads and the time loop. Setting up allocates and checks everything;
    a step allocates nothing. Leapfrog steps, v += dt a, u += dt v, with velocities half a step
-   before the places (loads.h), by the sweep in stages that all threads do together (sweep.h).
+   before the places (load_steps.h), by the sweep in stages that all threads do together (sweep.h).
    Forces are summed in a fixed order: results do not depend on the number of threads. With a
    &relaxation the steps lead from one state of balance to the next (relaxation.h).
 
-   The energy ledger is explained in ledger.h, signs of reactions and drives in loads.h, means and
-   zeros in monitor.h. */
+   The energy ledger is explained in ledger.h, signs of reactions and drives in load_steps.h, means
+   and zeros in monitor.h. */
 #ifndef PERILAT_RUNTIME_SIMULATION_H
 #define PERILAT_RUNTIME_SIMULATION_H
 

@@ -126,24 +126,10 @@ static void a_place_has_as_many_values_as_its_lattice_has_dimensions(void **stat
     }
 }
 
-static void a_copied_material_leaves_the_deck_as_it_is(void **state) {
-  (void)state;
-  arena *memory = arena_new();
-  deck_assignment list[2] = {{.name = "onset", .word = "rankine"}, {.name = "E", .value = 3}};
-  const deck_material given = {.assignments = list, .assignment_count = 2};
-  deck_material own = deck_material_copy(memory, &given);
-  own.assignments[0] = own.assignments[1];
-  own.assignment_count = 1;
-  assert_string_equal(given.assignments[0].name, "onset");
-  assert_int_equal(given.assignment_count, 2);
-  arena_free(memory);
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(each_group_stands_in_its_place),
       cmocka_unit_test(each_key_has_a_name_and_a_place_of_its_own),
-      cmocka_unit_test(a_place_has_as_many_values_as_its_lattice_has_dimensions),
-      cmocka_unit_test(a_copied_material_leaves_the_deck_as_it_is)};
+      cmocka_unit_test(a_place_has_as_many_values_as_its_lattice_has_dimensions)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

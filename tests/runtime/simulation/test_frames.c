@@ -7,6 +7,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/deck/deck_groups.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/frame_field.h"
@@ -116,6 +117,19 @@ static void the_larger_of_two_damages_counts(void **state) {
   small_close(&r);
 }
 
+/* The key `fields` tells of each. */
+static void the_reference_names_every_field(void **state) {
+  (void)state;
+  const deck_group_info *output = deck_groups[DECK_GROUP_output];
+  const char *doc = NULL;
+  for (int k = 0; k < output->key_count; k++)
+    if (!strcmp(output->keys[k].name, "fields")) doc = output->keys[k].doc;
+  assert_non_null(doc);
+#define X(name, unit, components, exists, kind, words) assert_non_null(strstr(doc, #name));
+  OUTPUT_FIELDS(X)
+#undef X
+}
+
 /* All that the table of fields holds, of a law that has it all, in the table's order and with its
    unit. */
 static void every_field_of_the_table_can_be_stored(void **state) {
@@ -164,6 +178,7 @@ static void every_field_of_the_table_can_be_stored(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(the_reference_names_every_field),
       cmocka_unit_test(every_field_of_the_table_can_be_stored),
       cmocka_unit_test(damage_is_counted_and_protection_kept),
       cmocka_unit_test(the_larger_of_two_damages_counts),
