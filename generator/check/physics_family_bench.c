@@ -166,7 +166,7 @@ family_bench *family_bench_new(const law *l, const physics_options *o, diagnosti
     return NULL;
   }
   for (int k = 0; k < 2; k++)
-    b->kernel[k] = plan_interpreted(b->plan[k], "");
+    b->kernel[k] = plan_interpreted(b->plan[k]);
   b->whole = body_of(b, b->kernel[0], narrow, all - narrow);
   b->frozen = body_of(b, b->kernel[1], 0, 0);
   b->values = b->whole->law->dimensions * b->whole->inside_count;

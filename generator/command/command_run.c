@@ -83,7 +83,7 @@ static bool take_values(checking *c, double **values) {
   *values = NULL;
   if (c->model.values.assignment_count == 0) return true;
   *values = arena_alloc(c->memory, ((size_t)list->count + 1) * sizeof **values);
-  pl_law *kernel = plan_interpreted(c->model.plan, "");
+  pl_law *kernel = plan_interpreted(c->model.plan);
   bool good = material_parameters(&c->model.values, kernel, *values, &c->said);
   plan_interpreted_free(kernel);
   return good;

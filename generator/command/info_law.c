@@ -198,7 +198,7 @@ static bool obeys(law_facts *f) {
 
 static bool learn(law_facts *f, const info_law_options *o) {
   if (!open_law(f, o)) return false;
-  f->law = plan_interpreted(f->model.plan, "");
+  f->law = plan_interpreted(f->model.plan);
   return take_values(f) && (f->missing || imply(f));
 }
 

@@ -120,7 +120,7 @@ static bool particle_open(driven_particle *r, const drive_input *in, const law *
     return refuse(in, d, "a particle of this lattice has no neighbours, or too many");
   r->stress_plan = plan_stress(l, d);
   if (!r->stress_plan) return false;
-  r->stress_kernel = plan_interpreted(r->stress_plan, "");
+  r->stress_kernel = plan_interpreted(r->stress_plan);
   r->parts = part_count(r->dimensions);
   r->neighbours = 2 * r->lattice->directions;
   r->law = patch_new(kernel, parameters, r->lattice, one, 0, 0);

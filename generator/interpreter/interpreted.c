@@ -349,7 +349,7 @@ static pl_program program_facts(arena *memory, const ir *g, const family_program
                       .shared = shared};
 }
 
-static void describe(interpreted *p, const char *key) {
+static void describe(interpreted *p) {
   const kernel_plan *plan = p->plan;
   const law *l = plan->law;
   p->law = (pl_law){
@@ -359,7 +359,7 @@ static void describe(interpreted *p, const char *key) {
       .dof = plan->dof,
       .force_planes = plan->force_planes,
       .name = l->tree->name,
-      .key = arena_text(p->memory, key, strlen(key)),
+      .key = "",
       .parameter_count = l->parameters.count,
       .parameters = describe_parameters(p->memory, &l->parameters),
       .density = l->rho ? l->rho->index : -1,
@@ -437,12 +437,12 @@ static int count_workers(void) {
   return processors < 1 ? 1 : processors > MOST_WORKERS ? MOST_WORKERS : (int)processors;
 }
 
-pl_law *plan_interpreted(const kernel_plan *plan, const char *key) {
+pl_law *plan_interpreted(const kernel_plan *plan) {
   interpreted *p = must_calloc(1, sizeof *p);
   p->plan = plan;
   p->memory = arena_new();
   take_all_roots(p);
-  describe(p, key ? key : "");
+  describe(p);
   p->worker_count = count_workers();
   p->workers = must_calloc((size_t)p->worker_count, sizeof *p->workers);
   for (int k = 0; k < p->worker_count; k++)

@@ -6,7 +6,7 @@
 
 /* The plan on the interpreter, behind the same interface as a compiled kernel, for any number of
    threads. The plan must outlive it. */
-pl_law *plan_interpreted(const kernel_plan *p, const char *key);
+pl_law *plan_interpreted(const kernel_plan *p);
 void plan_interpreted_free(pl_law *law);
 
 #endif

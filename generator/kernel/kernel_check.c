@@ -140,7 +140,7 @@ kernel_check kernel_check_run(const kernel_plan *p, const pl_law *kernel,
                               const double *const *parameters, int sets, const pl_bond_class *bonds,
                               int classes, long states, uint64_t seed) {
   kernel_check c = {.states = 0};
-  pl_law *interpreted = plan_interpreted(p, "");
+  pl_law *interpreted = plan_interpreted(p);
   double **uniforms = planes_new(2, (long)classes * kernel->uniform_count);
   law_readers l = {.law = {kernel, interpreted},
                    .uniforms = {uniforms[0], uniforms[1]},

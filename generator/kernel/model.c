@@ -320,7 +320,7 @@ const pl_law *model_kernel(model *m, bool interpret, const char **note, char *er
     *note = arena_printf(m->memory, "%s: the law runs on the interpreter, many times slower",
                          toolchain_no_compiler());
   if (interpret || *note) {
-    m->interpreted = plan_interpreted(m->plan, "");
+    m->interpreted = plan_interpreted(m->plan);
     return m->interpreted;
   }
   if (!toolchain_load(model_c_text(m), model_key(m), &m->loaded, error, size)) return NULL;

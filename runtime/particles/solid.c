@@ -62,10 +62,10 @@ bool solid_holds(const solid *s, const double at[3]) {
   return any_holds(s->bodies, s->body_count, at) && !any_holds(s->notches, s->notch_count, at);
 }
 
-/* --- the desk --------------------------------------------------------------------------------- */
+/* --- the workspace ---------------------------------------------------------------------------- */
 
-void solid_desk_begin(solid_desk *w, const solid *s) {
-  *w = (solid_desk){.cut_room = 64, .level_room = 64};
+void solid_workspace_begin(solid_workspace *w, const solid *s) {
+  *w = (solid_workspace){.cut_room = 64, .level_room = 64};
   w->near.dimensions = s->dimensions;
   w->near.bodies = must_calloc((size_t)s->body_count + 1, sizeof *w->near.bodies);
   w->near.notches = must_calloc((size_t)s->notch_count + 1, sizeof *w->near.notches);
@@ -73,7 +73,7 @@ void solid_desk_begin(solid_desk *w, const solid *s) {
   w->levels = must_alloc(64 * sizeof *w->levels);
 }
 
-void solid_desk_end(solid_desk *w) {
+void solid_workspace_end(solid_workspace *w) {
   solid_end(&w->near);
   free(w->cuts);
   free(w->levels);
@@ -88,14 +88,14 @@ static int near_ones(const deck_shape *const *shapes, int count, const double *a
 }
 
 /* Shapes that come within `reach` of the place. */
-static void find_near(const solid *s, solid_desk *w, const double *at, double reach) {
+static void find_near(const solid *s, solid_workspace *w, const double *at, double reach) {
   w->near.body_count = near_ones(s->bodies, s->body_count, at, reach, w->near.bodies);
   w->near.notch_count = near_ones(s->notches, s->notch_count, at, reach, w->near.notches);
 }
 
 /* --- pieces of lines -------------------------------------------------------------------------- */
 
-static void add_cuts(solid_desk *w, const deck_shape *shape, const double *a, const double *b) {
+static void add_cuts(solid_workspace *w, const deck_shape *shape, const double *a, const double *b) {
   int found = shape_cuts(shape, a, b, w->cuts + w->cut_count, w->cut_room - w->cut_count - 1);
   if (w->cut_count + found + 1 > w->cut_room) {
     w->cut_room = 2 * (w->cut_count + found + 1);
@@ -116,7 +116,7 @@ static void sort_numbers(double *x, int count) {
 }
 
 /* Places, 0 < u < 1, where the line from a to b may enter or leave a near shape. */
-static void find_cuts(solid_desk *w, const double *a, const double *b) {
+static void find_cuts(solid_workspace *w, const double *a, const double *b) {
   w->cut_count = 0;
   for (int n = 0; n < w->near.body_count; n++)
     add_cuts(w, w->near.bodies[n], a, b);
@@ -126,7 +126,7 @@ static void find_cuts(solid_desk *w, const double *a, const double *b) {
 
 /* Sums of u1^n - u0^n over the pieces u0 < u < u1 of the line a-b that lie in the near shapes, for
    n = power and n = power + 1. */
-static void fill_line(solid_desk *w, const double *a, const double *b, int power, double sum[2]) {
+static void fill_line(solid_workspace *w, const double *a, const double *b, int power, double sum[2]) {
   find_cuts(w, a, b);
   if (power == 3 && w->leaves_once) {
     double u = 1;
@@ -154,7 +154,7 @@ static void fill_line(solid_desk *w, const double *a, const double *b, int power
   }
 }
 
-bool solid_meets(solid_desk *w, const double a[3], const double b[3]) {
+bool solid_meets(solid_workspace *w, const double a[3], const double b[3]) {
   double sum[2];
   if (w->near.body_count == 0) return false;
   fill_line(w, a, b, 1, sum);
@@ -163,7 +163,7 @@ bool solid_meets(solid_desk *w, const double a[3], const double b[3]) {
 
 /* A cell that is being measured. */
 typedef struct filling {
-  solid_desk *desk;
+  solid_workspace *scratch;
   const cell *cell;
   const double *at;
   double tolerance; /* m^2, m^3 */
@@ -208,7 +208,7 @@ static cell_moments across(const filling *f, double y) {
   if (!ends_of_line(f, y, &low, &high)) return (cell_moments){0};
   const double a[3] = {f->at[0] + low, f->at[1] + y, 0}, b[3] = {f->at[0] + high, a[1], 0};
   const double whole = high - low;
-  fill_line(f->desk, a, b, 1, sum);
+  fill_line(f->scratch, a, b, 1, sum);
   const double length = sum[0] * whole;
   return (cell_moments){length, {low * length + 0.5 * whole * whole * sum[1], y * length, 0}};
 }
@@ -241,14 +241,14 @@ static cell_moments halve(const filling *f, double low, double high, cell_moment
 
 /* --- levels: where the length of a line may jump or bend -------------------------------------- */
 
-static void need_levels(solid_desk *w, int more) {
+static void need_levels(solid_workspace *w, int more) {
   if (w->level_count + more <= w->level_room) return;
   w->level_room = 2 * (w->level_count + more);
   w->levels = must_realloc(w->levels, (size_t)w->level_room * sizeof *w->levels);
 }
 
 static void add_levels_of_shape(const filling *f, const deck_shape *shape) {
-  solid_desk *w = f->desk;
+  solid_workspace *w = f->scratch;
   const int count = shape_levels(shape, 1, NULL, 0);
   need_levels(w, count);
   shape_levels(shape, 1, w->levels + w->level_count, count);
@@ -258,7 +258,7 @@ static void add_levels_of_shape(const filling *f, const deck_shape *shape) {
 
 /* Those of the cell's corners and of its sides' crossings with surfaces. */
 static void add_levels_of_cell(const filling *f) {
-  solid_desk *w = f->desk;
+  solid_workspace *w = f->scratch;
   for (int k = 0; k < f->cell->now.point_count; k++) {
     const double *p = corner(f, k), *q = corner(f, k + 1);
     const double a[3] = {f->at[0] + p[0], f->at[1] + p[1], 0};
@@ -272,7 +272,7 @@ static void add_levels_of_cell(const filling *f) {
 }
 
 static cell_moments fill_polygon(const filling *f) {
-  solid_desk *w = f->desk;
+  solid_workspace *w = f->scratch;
   double lower[3], upper[3];
   cell_moments sum = {0};
   cell_extent(f->cell, lower, upper);
@@ -313,7 +313,7 @@ static beam rays(const filling *f, const double corners[3][3]) {
       to[c] = (p[c] + q[c] + r[c] + 3 * corners[k][c]) / 6;
       end[c] = f->at[c] + to[c];
     }
-    fill_line(f->desk, f->at, end, 3, sum);
+    fill_line(f->scratch, f->at, end, 3, sum);
     b.whole &= sum[0] > 1 - 1e-9;
     b.filled.size += volume * sum[0] / 3;
     for (int c = 0; c < 3; c++)
@@ -354,8 +354,8 @@ static cell_moments refine(const filling *f, const double corners[3][3], const b
 
 static cell_moments fill_polyhedron(const filling *f) {
   const cell_part *p = &f->cell->now;
-  const solid *near = &f->desk->near;
-  f->desk->leaves_once = near->body_count == 1 && near->notch_count == 0 &&
+  const solid *near = &f->scratch->near;
+  f->scratch->leaves_once = near->body_count == 1 && near->notch_count == 0 &&
                          shape_is_convex(near->bodies[0]) && solid_holds(near, f->at);
   cell_moments sum = {0};
   for (int face = 0; face < p->face_count; face++)
@@ -391,7 +391,7 @@ static bool lies_inside(const solid *near, const cell *c, const double *at) {
   return false;
 }
 
-cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const double at[3],
+cell_moments solid_fill(const solid *s, solid_workspace *w, const cell *c, const double at[3],
                         double tolerance) {
   find_near(s, w, at, c->reach);
   const cell_moments whole = cell_measure(c);
@@ -404,7 +404,7 @@ cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const doub
 /* --- the whole -------------------------------------------------------------------------------- */
 
 /* Boxes are halved across their longest side: parts are even, and have fewer shapes. */
-static double size_in_box(const solid *s, solid_desk *w, cell *c, const double lower[3],
+static double size_in_box(const solid *s, solid_workspace *w, cell *c, const double lower[3],
                           const double upper[3], double tolerance, int splits) {
   double at[3] = {0, 0, 0}, below[3] = {0, 0, 0}, above[3] = {0, 0, 0};
   int longest = 0;
@@ -427,12 +427,12 @@ static double size_in_box(const solid *s, solid_desk *w, cell *c, const double l
 
 double solid_size(const solid *s, double tolerance) {
   if (s->body_count == 0) return 0;
-  solid_desk w;
+  solid_workspace w;
   cell c;
-  solid_desk_begin(&w, s);
+  solid_workspace_begin(&w, s);
   cell_begin(&c, s->dimensions);
   const double size = size_in_box(s, &w, &c, s->lower, s->upper, tolerance, MOST_SPLITS);
   cell_end(&c);
-  solid_desk_end(&w);
+  solid_workspace_end(&w);
   return size;
 }

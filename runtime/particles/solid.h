@@ -23,25 +23,25 @@ void solid_end(solid *s);
 bool solid_holds(const solid *s, const double at[3]);
 
 /* Memory that the integration uses again and again; one for each thread. */
-typedef struct solid_desk {
+typedef struct solid_workspace {
   solid near; /* shapes that the cell may touch */
   double *cuts, *levels;
   int cut_count, cut_room, level_count, level_room;
   bool leaves_once; /* every ray from the point leaves the near shapes once */
-} solid_desk;
-void solid_desk_begin(solid_desk *w, const solid *s);
-void solid_desk_end(solid_desk *w);
+} solid_workspace;
+void solid_workspace_begin(solid_workspace *w, const solid *s);
+void solid_workspace_end(solid_workspace *w);
 
 /* Size and first moment, seen from `at`, of the part of the cell about `at` that lies in the solid.
    Up to rounding where the cell lies in one body and, in the plane, where the surfaces in it are
    straight; else steps are halved until two results differ by less than `tolerance` (of the cell's
    size). */
-cell_moments solid_fill(const solid *s, solid_desk *w, const cell *c, const double at[3],
+cell_moments solid_fill(const solid *s, solid_workspace *w, const cell *c, const double at[3],
                         double tolerance);
 
 /* True when some of the straight line a-b lies in the solid; both lie in the cell that was filled
    last. */
-bool solid_meets(solid_desk *w, const double a[3], const double b[3]);
+bool solid_meets(solid_workspace *w, const double a[3], const double b[3]);
 
 /* m^2 or m^3 of the whole, as solid_fill finds it in the box of the bodies, halved into 512 boxes
    and more where shapes crowd; in space to about a thousandth where surfaces are round. */

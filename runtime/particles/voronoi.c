@@ -75,7 +75,7 @@ typedef struct candidate {
 
 typedef struct cutter { /* of one thread */
   cell cell;
-  solid_desk desk;
+  solid_workspace scratch;
   candidate *list;
   int count, room;
 } cutter;
@@ -183,7 +183,7 @@ static int side_of(const cell *c, const int *points, int count, double reach) {
 static bool line_is_filled(cutter *w, const double at[3], const double *p, const double *q) {
   const double a[3] = {at[0] + p[0], at[1] + p[1], at[2] + p[2]};
   const double b[3] = {at[0] + q[0], at[1] + q[1], at[2] + q[2]};
-  return solid_meets(&w->desk, a, b);
+  return solid_meets(&w->scratch, a, b);
 }
 
 /* Lines to the corners from their mean, and from corner to corner. */
@@ -236,7 +236,7 @@ static void measure_cell(const diagram *g, cutter *w, long k) {
   place_of(g->points, k, at);
   begin_cell(w, g->solid, at, g->reach);
   cut_by_neighbours(w, g->points, &g->bins, &g->vicinity, k, at);
-  const cell_moments m = solid_fill(g->solid, &w->desk, &w->cell, at, g->tolerance);
+  const cell_moments m = solid_fill(g->solid, &w->scratch, &w->cell, at, g->tolerance);
   g->volume[k] = m.size;
   g->open[k] = is_open(w, at, g->reach);
   for (int c = 0; g->centroid && c < g->points->dimensions; c++)
@@ -248,13 +248,13 @@ static void measure_open_cells(const diagram *g) {
   {
     cutter w = {.room = 0};
     cell_begin(&w.cell, g->points->dimensions);
-    solid_desk_begin(&w.desk, g->solid);
+    solid_workspace_begin(&w.scratch, g->solid);
 #pragma omp for schedule(dynamic, 64)
     for (long n = 0; n < g->points->count; n++) {
       const long k = g->bins.point[n]; /* neighbours one after the other: their data is at hand */
       if (g->open[k]) measure_cell(g, &w, k);
     }
-    solid_desk_end(&w.desk);
+    solid_workspace_end(&w.scratch);
     cell_end(&w.cell);
     free(w.list);
   }

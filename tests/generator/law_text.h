@@ -51,7 +51,7 @@ static inline tested_law *open_law_chosen(const char *text, const law_choice *ch
   if (!t->law) return t;
   t->plan = plan_kernel(t->law, &t->said);
   if (!t->plan) return t;
-  t->kernel = plan_interpreted(t->plan, "test");
+  t->kernel = plan_interpreted(t->plan);
   t->parameters = calloc((size_t)t->kernel->parameter_count + 1, sizeof(double));
   t->uniforms = calloc((size_t)t->kernel->uniform_count + 1, sizeof(double));
   for (int k = 0; k < t->kernel->parameter_count; k++)

@@ -45,7 +45,7 @@ static inline bool law_case_compile(law_case *c) {
   }
   c->compiled = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->compiled) fprintf(stderr, "%s\n", error);
-  c->interpreted = plan_interpreted(c->model.plan, "");
+  c->interpreted = plan_interpreted(c->model.plan);
   c->parameters = calloc((size_t)c->interpreted->parameter_count + 1, sizeof *c->parameters);
   for (int p = 0; p < c->interpreted->parameter_count; p++)
     c->parameters[p] = c->interpreted->parameters[p].initial;

@@ -50,7 +50,7 @@ static void open_threads(deck_case *c, int which, const char *threads, bool inte
   assert_true(c->law.law->sum_count > 0);
   if (!interpreted) return;
   simulation_free(c->simulation);
-  c->law.law = plan_interpreted(c->model.plan, "");
+  c->law.law = plan_interpreted(c->model.plan);
   c->simulation = simulation_new(c->deck, &c->law, &c->said);
   assert_non_null(c->simulation);
 }

@@ -112,7 +112,7 @@ static tested_law *open_family(int neighbours, const char *lines) {
   t->law->neighbours = neighbours;
   t->plan = plan_kernel(t->law, &t->said);
   assert_non_null(t->plan);
-  t->kernel = plan_interpreted(t->plan, "test");
+  t->kernel = plan_interpreted(t->plan);
   return t;
 }
 
