@@ -31,8 +31,8 @@ typedef struct symbol {
   const char *name;
   span where;           /* of the name where it was declared */
   const stmt *declared; /* NULL for built-ins */
-  const stmt
-      *rule; /* statement that gives its value in each step; NULL for built-ins, parameters */
+  /* statement that gives its value in each step; NULL for built-ins, parameters */
+  const stmt *rule;
   int index; /* QUANTITY: builtin_quantity; otherwise its position in the list of its kind below */
   dimension dim;
   enum shape shape;

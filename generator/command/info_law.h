@@ -9,8 +9,8 @@
 typedef struct info_law_options {
   const char *law;                 /* name or path */
   const char *spacing, *thickness; /* e.g. "6.35 mm"; NULL: 10 mm, 100 mm */
-  const char *
-      lattice; /* kind; NULL: hexagonal, for laws of families in space fcc with second neighbours */
+  /* kind; NULL: hexagonal, for laws of families in space fcc with second neighbours */
+  const char *lattice;
   const char *horizon, *shells; /* numbers; NULL: the nearest neighbours */
   const char *const *settings;  /* "name=value" */
   int setting_count;

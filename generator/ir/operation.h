@@ -12,8 +12,8 @@
 /* What holds of a row whatever the operands are. */
 enum {
   LOGICAL = 1, /* the result is a truth value, 0 or 1 */
-  ARITHMETIC =
-      2, /* NaN where an operand is; finite where operands are, unless PARTIAL; overflow aside */
+  /* NaN where an operand is; finite where operands are, unless PARTIAL; overflow aside */
+  ARITHMETIC = 2,
   COMMUTES = 4,   /* in its first two operands, to the bit */
   PARTIAL = 8,    /* not defined for all numbers: divisions, roots, logarithms, powers */
   MAKES_NAN = 16, /* NaN of some numbers: what is partial, and of very large or infinite angles */
@@ -50,8 +50,8 @@ typedef struct operation_price {
 } operation_price;
 
 typedef struct operation {
-  const char
-      *name; /* of the built-in function, if a law can write it; in C: pl_name, or an operator */
+  /* of the built-in function, if a law can write it; in C: pl_name, or an operator */
+  const char *name;
   int arity;
   unsigned traits;
   operation_image image;

@@ -25,8 +25,8 @@ enum { BONDS_A_THREAD = 50000, MOST_STEPS = 240, LOOK_EVERY = 8, MOST_ROUNDS = 6
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
-typedef struct
-    stiffness { /* of a body, over the masses of its particles: what a vector is multiplied with */
+/* Of a body, over the masses of its particles: what a vector is multiplied with. */
+typedef struct stiffness {
   sweep *sweep;
   body *body;
   long size, length; /* of an array over sites; of a vector: dof of these */

@@ -37,8 +37,8 @@ typedef struct body_block { /* what one thread works on */
 typedef struct body_row { /* of a row in the state observed, J */
   double kinetic, stored, free;
   double state, rate; /* dissipated by the law of bonds since the start */
-  double mass,
-      internal; /* mass damping, work against the bonds: from the middle of the last step on */
+  /* mass damping, work against the bonds: from the middle of the last step on */
+  double mass, internal;
 } body_row;
 
 typedef struct body_totals { /* sums over all particles and bonds, J, up to the state observed */

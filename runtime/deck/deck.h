@@ -66,8 +66,8 @@ typedef struct deck_material {
   const char *model;   /* name in models/ or a path ending in .plm */
   deck_assignment *assignments;
   int assignment_count;
-  const char *
-      *varying; /* [varying_count] parameters that a &field makes differ from bond to bond */
+  /* [varying_count] parameters that a &field makes differ from bond to bond */
+  const char **varying;
   const span *varying_where;
   int varying_count;
 } deck_material;

@@ -14,8 +14,8 @@ typedef struct deck_reader {
   arena *memory;
   diagnostics *d;
   deck *k;
-  bool
-      names_known; /* false when some name could not be read: then unknown names are not reported */
+  /* false when some name could not be read: then unknown names are not reported */
+  bool names_known;
   deck_motions *motions; /* [regions] */
   int moved;             /* components of any region, a bit each */
 } deck_reader;

@@ -24,9 +24,8 @@ typedef struct sweep_engine {
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
   void (*free)(sweep *w);
-  bool
-      /* laws of families: what passes leave for each other is kept of the whole body */
-      keeps_links;
+  /* laws of families: what passes leave for each other is kept of the whole body */
+  bool keeps_links;
   void *own;
 } sweep_engine;
 

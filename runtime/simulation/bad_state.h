@@ -29,8 +29,8 @@ typedef struct bad_state {
   double place[3];                                /* m; in the plane [2] is 0 */
   long bond_particle;                             /* partner of the first bad bond, or -1 */
   double stretch, stretch_rate, theta_i, theta_j; /* of that bond before the step */
-  const double
-      *fields; /* of that bond after the step's rules, initial values where these gave no number */
+  /* of that bond after the step's rules, initial values where these gave no number */
+  const double *fields;
   int field_count;             /* 0 without a bond; the values are the simulation's */
   const double *parameters;    /* of the law in that bond; NULL without a bond */
   const bad_neighbour *family; /* of the particle; the values are the simulation's */

@@ -31,9 +31,9 @@ struct sweep;
    its parameters are wrong: then the deck is checked as far as it does not depend on them. */
 typedef struct simulation_law {
   const pl_law *law;
-  double
-      *parameters; /* [parameter_count] as of material_parameters; malloc'ed, owned by the caller. A
-                         simulation sets those that have a random field to its mean. */
+  /* [parameter_count] as of material_parameters; malloc'ed, owned by the caller. A simulation sets
+     those that have a random field to its mean. */
+  double *parameters;
 } simulation_law;
 
 /* NULL with all diagnostics when the deck does not fit its lattices or the given step is unstable,
