@@ -126,3 +126,8 @@ const char *name_shown(const char *name) {
   strcpy(shown + used, left > 0 ? "..." : "");
   return shown;
 }
+
+bool text_ends_in(const char *text, const char *tail) {
+  size_t n = strlen(text), m = strlen(tail);
+  return n > m && strcmp(text + n - m, tail) == 0;
+}

@@ -3,6 +3,7 @@
 #ifndef PERILAT_DSL_CHARACTERS_H
 #define PERILAT_DSL_CHARACTERS_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdio.h>
 
@@ -22,6 +23,8 @@ shown_character character_shown(const char *text, size_t available);
 size_t characters_plain(const char *text, size_t available);
 /* Writes a text so. */
 void characters_show(FILE *out, const char *text, size_t length);
+/* Does a longer text end in `tail`? */
+bool text_ends_in(const char *text, const char *tail);
 /* A name on one line: line ends and tabs are written out, too. Good until the thread's fourth next
  * call. */
 const char *name_shown(const char *name);

@@ -386,3 +386,10 @@ dimension dimension_of(const char *unit_text) {
   (void)good;
   return u.dim;
 }
+
+bool unit_is_whole(const char *text, size_t length) {
+  unit u;
+  const char *bad;
+  size_t bad_length;
+  return length > 0 && unit_parse(text, length, &u, &bad, &bad_length);
+}

@@ -34,6 +34,9 @@ bool dim_pow(dimension a, int numerator, int denominator, dimension *result);
 bool unit_parse(const char *text, size_t length, unit *result, const char **bad,
                 size_t *bad_length);
 
+/* Is all of it one unit? */
+bool unit_is_whole(const char *text, size_t length);
+
 /* Of a unit that the program itself writes: dimension_of("N/m"). No unit is a pure number. */
 dimension dimension_of(const char *unit_text);
 

@@ -18,3 +18,9 @@ law_setting law_first_setting(const law *l) {
       return (law_setting)k;
   return SETTING_PLANE_STRESS;
 }
+
+const stmt *law_force_state(const law *l) {
+  for (int k = 0; k < l->rule_count; k++)
+    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];
+  return NULL;
+}

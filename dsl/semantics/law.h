@@ -94,6 +94,8 @@ typedef struct law {
 const char *law_setting_name(law_setting setting);
 /* The first that the law names in its line `for`; plane stress without one. */
 law_setting law_first_setting(const law *l);
+/* The line `force state` of a law of families; NULL without one. */
+const stmt *law_force_state(const law *l);
 
 C_LINKAGE_END
 

@@ -4,13 +4,6 @@
 
 #include "dsl/base/unit_hint.h"
 
-static bool is_whole_unit(const char *text, size_t length) {
-  unit u;
-  const char *bad;
-  size_t bad_length;
-  return length > 0 && unit_parse(text, length, &u, &bad, &bad_length);
-}
-
 bool read_unit(checker *ck, const char *text, span where, unit *result) {
   const char *bad;
   size_t length, whole = strlen(text);
@@ -23,7 +16,7 @@ bool read_unit(checker *ck, const char *text, span where, unit *result) {
   if (length == 0) {
     complain(ck, DIAG_UNKNOWN_UNIT, where, "a unit is missing in `[%s]`", text);
     diag_hint(ck->d, "write a unit such as `[N/m]`, or no brackets for a pure number");
-  } else if (is_whole_unit(bad, length) && bad > text && memchr(text, '/', (size_t)(bad - text))) {
+  } else if (unit_is_whole(bad, length) && bad > text && memchr(text, '/', (size_t)(bad - text))) {
     complain(ck, DIAG_UNKNOWN_UNIT, part, "does `%.*s` stand above or below the line?", (int)length,
              bad);
     diag_hint(ck->d, "write `*`, or put the divisor in parentheses: `J/(kg*K)`");

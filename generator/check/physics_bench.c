@@ -73,7 +73,7 @@ static void open_guards(bench *b) {
     guards[t->line_count + k] = when == IR_NONE ? ir_constant(b->graph, 1) : when;
   }
   for (int k = 0; k < count; k++)
-    b->varies[k] = ir_place(b->graph, guards[k]) > ON_BODY;
+    b->varies[k] = !ir_is_uniform(b->graph, guards[k]);
   b->guards = probe_new(b, guards, count);
   free(guards);
 }

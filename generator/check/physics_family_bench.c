@@ -28,13 +28,9 @@ static void want(roots *r, ir_node n, segment_target target, int index) {
   r->items[r->count++] = (segment_root){.node = n, .target = target, .index = index};
 }
 
-static bool is_of_particle(const ir *g, ir_node n) {
-  return ir_place(g, n) <= ON_PARTICLE && !ir_is_of_class(g, n);
-}
-
 /* Numbers of particles are observed first, those toward neighbours after them. */
 static void watch(const ir *g, roots *r, ir_node n, watched *w, bool wide) {
-  if (n == IR_NONE || is_of_particle(g, n) == wide) return;
+  if (n == IR_NONE || ir_is_of_particle(g, n) == wide) return;
   *w = (watched){r->observed++, wide};
   want(r, n, wide ? TO_NEIGHBOUR_OBSERVED : TO_PARTICLE_OBSERVED, w->at);
 }
@@ -84,10 +80,10 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
   b->seen = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
   b->varies = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
   for (int k = 0; k < t->line_count; k++)
-    b->varies[k] = ir_place(p->graph, t->lines[k].guard) > ON_BODY;
+    b->varies[k] = !ir_is_uniform(p->graph, t->lines[k].guard);
   for (int k = 0; k < t->flow_count; k++)
     b->varies[t->line_count + k] =
-        t->flows[k].when != IR_NONE && ir_place(p->graph, t->flows[k].when) > ON_BODY;
+        t->flows[k].when != IR_NONE && !ir_is_uniform(p->graph, t->flows[k].when);
   roots step = roots_new(p, fields + 3),
         text = roots_new(p, fields + t->line_count + 2 * t->flow_count);
   for (int k = 0; k < fields; k++)
@@ -357,7 +353,11 @@ void family_bench_say(family_bench *b, diag_code code, span where, double size, 
 
 span family_bench_force(const family_bench *b) {
   const law *l = b->law;
-  for (int k = 0; k < l->rule_count; k++)
-    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k]->where;
+  const stmt *given = law_force_state(l);
+  if (given) return given->where;
   return l->results[RESULT_W] ? l->results[RESULT_W]->rule->where : l->tree->name_where;
+}
+
+double *family_bench_values(const family_bench *b) {
+  return must_calloc((size_t)b->values + 1, sizeof(double));
 }

@@ -85,4 +85,7 @@ span family_bench_force(const family_bench *b);
 
 double family_work(const double *force, const double *way, long count, double *size);
 
+/* Room for a displacement, at 0; to be freed. */
+double *family_bench_values(const family_bench *b);
+
 #endif

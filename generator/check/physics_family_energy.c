@@ -17,10 +17,6 @@ static const double GAIN_TOLERANCE = 1e-6;   /* of the path's peak energy */
 static const double SLOPE_TOLERANCE = 1e-6;  /* central differences of the energy */
 static const double ELASTIC_TOLERANCE = 1e-2;
 
-static double *values_new(const family_bench *b) {
-  return must_calloc((size_t)b->values + 1, sizeof(double));
-}
-
 static double largest(const double *v, long count) {
   double most = 0;
   for (long k = 0; k < count; k++)
@@ -62,7 +58,7 @@ static void turn(family_bench *b, double angle, double *u) {
 
 void family_check_rest(family_bench *b) {
   enum { ROUNDS = 4 };
-  double *u = values_new(b), *force = values_new(b);
+  double *u = family_bench_values(b), *force = family_bench_values(b);
   for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     family_bench_draw(b, round == 0);
     family_bench_deform(b, 1e-3, u);
@@ -86,7 +82,7 @@ void family_check_rest(family_bench *b) {
 
 void family_check_stiffness(family_bench *b) {
   enum { ROUNDS = 16 };
-  double *u = values_new(b), *force = values_new(b);
+  double *u = family_bench_values(b), *force = family_bench_values(b);
   for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     double size = 0;
     if (round % 4 == 0) family_bench_draw(b, round == 0);
@@ -118,15 +114,9 @@ static void seen_in_plane(law_setting setting, double *E, double *nu) {
   *nu /= 1 - *nu;
 }
 
-static const stmt *force_state(const law *l) {
-  for (int k = 0; k < l->rule_count; k++)
-    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];
-  return NULL;
-}
-
 /* Force per volumes: the law of a continuum, which a lattice approaches with a growing horizon. */
 static bool gives_density(const law *l) {
-  const stmt *given = force_state(l);
+  const stmt *given = law_force_state(l);
   return given && lower_is_per_volumes(given->symbol->dim);
 }
 
@@ -158,7 +148,8 @@ static const double gauss_weight[8] = {0.1012285362903763, 0.2223810344533745, 0
 
 static double leg_work(family_bench *b, const double *from, const double *to, int panels,
                        double *size) {
-  double *u = values_new(b), *way = values_new(b), *force = values_new(b), sum = 0;
+  double *u = family_bench_values(b), *way = family_bench_values(b),
+         *force = family_bench_values(b), sum = 0;
   for (long k = 0; k < b->values; k++)
     way[k] = to[k] - from[k];
   for (int point = 0; point < 8 * panels; point++) {
@@ -295,7 +286,8 @@ static bool has_damage(const law *l) {
 
 void family_check_energy(family_bench *b, bool damaged) {
   enum { ROUNDS = 3 };
-  triangle t = {.rest = values_new(b), .a = values_new(b), .b = values_new(b)};
+  triangle t = {
+      .rest = family_bench_values(b), .a = family_bench_values(b), .b = family_bench_values(b)};
   for (int round = 0;
        round < ROUNDS && (!damaged || has_damage(b->law)) && !(round && family_bench_tired(b));
        round++) {
@@ -316,7 +308,7 @@ void family_check_energy(family_bench *b, bool damaged) {
 
 /* Energy of the body at u + share v. */
 static double energy_beside(family_bench *b, const double *u, const double *v, double share) {
-  double *at = values_new(b);
+  double *at = family_bench_values(b);
   for (long k = 0; k < b->values; k++)
     at[k] = u[k] + share * v[k];
   family_bench_move(b, at, NULL);
@@ -329,8 +321,8 @@ static double energy_beside(family_bench *b, const double *u, const double *v, d
 void family_check_energy_and_force(family_bench *b) {
   enum { ROUNDS = 4 };
   const double share = 1e-4;
-  if (!b->has_energy || !force_state(b->law)) return;
-  double *u = values_new(b), *v = values_new(b), *force = values_new(b);
+  if (!b->has_energy || !law_force_state(b->law)) return;
+  double *u = family_bench_values(b), *v = family_bench_values(b), *force = family_bench_values(b);
   for (int round = 0; round < ROUNDS && !(round && family_bench_tired(b)); round++) {
     double size = 0;
     family_bench_draw(b, round == 0);

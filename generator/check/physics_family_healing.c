@@ -13,10 +13,6 @@ static const double FACTOR_TOLERANCE = 1e-6; /* of a factor of the forces, at tw
 static const double LEAST_LOSS = 1e-3;       /* of the forces that a state must take to count */
 static const double LEAST_RETURN = 1e-9;     /* of a state and of the forces that come back */
 
-static double *values_new(const family_bench *b) {
-  return must_calloc((size_t)b->values + 1, sizeof(double));
-}
-
 static double product(const double *x, const double *y, long count) {
   double sum = 0;
   for (long k = 0; k < count; k++)
@@ -167,7 +163,7 @@ static void look_at_step(family_bench *b, healing *h) {
 
 /* From rest to a corner and back, twice. */
 static void go_tour(family_bench *b, healing *h) {
-  double *rate = values_new(b);
+  double *rate = family_bench_values(b);
   h->strain = pl_pow(10, draw_uniform(&b->seed, -5, -0.7));
   const double speed = pl_pow(10, draw_uniform(&b->seed, -3, 4));
   family_bench_deform(b, h->strain, h->corner);
@@ -206,11 +202,11 @@ static void check_field(family_bench *b, healing *h) {
 
 void family_check_healing(family_bench *b) {
   if (b->law->nonconservative) return;
-  healing h = {.corner = values_new(b),
-               .u = values_new(b),
-               .v = values_new(b),
-               .force = values_new(b),
-               .other = values_new(b)};
+  healing h = {.corner = family_bench_values(b),
+               .u = family_bench_values(b),
+               .v = family_bench_values(b),
+               .force = family_bench_values(b),
+               .other = family_bench_values(b)};
   for (h.field = 0; h.field < b->law->fields.count && !b->failed[DIAG_HEALING]; h.field++)
     if (field_symbol(b, h.field)->kind == SYMBOL_STATE && find_way(b, &h)) check_field(b, &h);
   double *all[] = {h.corner, h.u, h.v, h.force, h.other};

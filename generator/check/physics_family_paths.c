@@ -17,10 +17,6 @@ static const double GAIN_TOLERANCE = 1e-6; /* of a cycle's peak energy */
 /* Of laws that are conservative only while whole, only a gain beyond this share is an error. */
 static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 
-static double *values_new(const family_bench *b) {
-  return must_calloc((size_t)b->values + 1, sizeof(double));
-}
-
 static int guard_count(const family_bench *b) {
   return b->step.text.line_count + b->step.text.flow_count;
 }
@@ -41,12 +37,12 @@ typedef struct leg {
 } leg;
 
 static leg leg_new(const family_bench *b) {
-  leg l = {.from = values_new(b),
-           .to = values_new(b),
-           .rate = values_new(b),
-           .u = values_new(b),
-           .force = values_new(b),
-           .other = values_new(b)};
+  leg l = {.from = family_bench_values(b),
+           .to = family_bench_values(b),
+           .rate = family_bench_values(b),
+           .u = family_bench_values(b),
+           .force = family_bench_values(b),
+           .other = family_bench_values(b)};
   for (int k = 0; k < guard_count(b); k++)
     l.truths += family_bench_places(b, b->guard[k]);
   for (int k = 0; k < 2; k++)
@@ -464,7 +460,8 @@ typedef struct cycle {
 
 /* The whole law round the corners from the virgin body, forces in the middle of each step. */
 static void go_round(family_bench *b, cycle *c, int steps) {
-  double *u = values_new(b), *v = values_new(b), *way = values_new(b), *force = values_new(b);
+  double *u = family_bench_values(b), *v = family_bench_values(b), *way = family_bench_values(b),
+         *force = family_bench_values(b);
   const patch *p = b->whole;
   patch_virgin(b->whole);
   c->work = c->peak = 0;
@@ -525,7 +522,7 @@ void family_check_dissipation(family_bench *b, int cycles) {
   enum { COARSE = 16 };
   cycle c;
   for (int k = 0; k < CORNERS; k++)
-    c.corner[k] = values_new(b);
+    c.corner[k] = family_bench_values(b);
   for (int k = 0; k < cycles && !b->failed[DIAG_DISSIPATION] && !(k && family_bench_tired(b));
        k++) {
     family_bench_draw(b, k == 0);

@@ -157,7 +157,7 @@ static probe kinks_of(bench *b) {
   ir_mark(g, forces, FORCE_COUNT, marks);
   for (ir_node n = 0; n < nodes; n++) {
     ir_node side = marks[n] ? side_of(g, n) : IR_NONE;
-    if (side != IR_NONE && ir_place(g, side) > ON_BODY) sides[count++] = side;
+    if (side != IR_NONE && !ir_is_uniform(g, side)) sides[count++] = side;
   }
   probe p = probe_new(b, sides, count);
   free(sides);

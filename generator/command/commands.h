@@ -125,7 +125,7 @@
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
-  X(info, "--lattice", "KIND", LATTICE_KINDS_OF_SITES "; by the law if not given")                 \
+  X(info, "--lattice", LATTICE_KINDS_OF_SITES, "kind of lattice; by the law if not given")         \
   X(info, "--horizon", "H",                                                                        \
     "neighbours up to so many spacings away; the nearest ones if not given")                       \
   X(info, "--shells", "N", "neighbours of so many shells")                                         \

@@ -91,7 +91,7 @@ static bool choose_lattice(law_facts *f, const info_law_options *o) {
   }
   const int dimensions = bravais_dimensions(d->kind);
   if (!dimensions) {
-    say_error("there is no lattice `%s`\n  --lattice takes " LATTICE_KINDS_OF_SITES, d->kind);
+    say_error("there is no lattice `%s`\n  --lattice takes %s", d->kind, LATTICE_KINDS_OF_SITES);
     return false;
   }
   if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &d->spacing)) ||

@@ -29,7 +29,7 @@ static long arrays_of_segment(const ir *g, const segment *a) {
     count += a->roots[k].target == TO_NEIGHBOUR_FIELD || a->roots[k].target == TO_SHARED;
   }
   for (ir_node n = 0; n < ir_count(g); n++) {
-    if (!needed[n] || ir_operation(g, n) != IR_INPUT || ir_place(g, n) <= ON_BODY) continue;
+    if (!needed[n] || ir_operation(g, n) != IR_INPUT || ir_is_uniform(g, n)) continue;
     const ir_source from = ir_input_source(g, n);
     count += from != IR_FROM_SLOT && from != IR_FROM_PLANE;
   }
@@ -57,8 +57,8 @@ long law_facts_bytes(const kernel_plan *p) {
     count += a->roots[k].target == TO_FIELD; /* read, too, to keep it where a bond is absent */
   }
   for (ir_node n = 0; n < ir_count(p->graph); n++)
-    count += needed[n] && ir_operation(p->graph, n) == IR_INPUT &&
-             ir_place(p->graph, n) > ON_BODY && ir_input_source(p->graph, n) == IR_FROM_ENDS;
+    count += needed[n] && ir_operation(p->graph, n) == IR_INPUT && !ir_is_uniform(p->graph, n) &&
+             ir_input_source(p->graph, n) == IR_FROM_ENDS;
   free(needed);
   return 8 * count;
 }

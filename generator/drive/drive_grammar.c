@@ -6,6 +6,7 @@
 #include "generator/drive/drive_path.h"
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "runtime/deck/lattice_kind.h"
 
 enum { MOST_STEPS = 1000000 };
 
@@ -73,7 +74,7 @@ static const deck_key_info particle_keys[] = {
      .type = DECK_NAME,
      .fallback = "= 'hexagonal'; in space 'fcc' with `shells = 2`",
      AT(particle, lattice),
-     .doc = "`'hexagonal'`, `'square'`, `'cubic'` or `'fcc'`"},
+     .doc = LATTICE_KINDS_OF_SITES_QUOTED},
     {.name = "spacing",
      .type = DECK_REAL,
      .unit = "m",

@@ -43,7 +43,7 @@ static void dump_reads(const kernel_plan *p, const pass *a, FILE *out, int *read
   fputs("  reads ", out);
   *read_count = 0;
   for (ir_node n = 0; n < ir_count(g); n++) {
-    bool local = ir_operation(g, n) == IR_INPUT && ir_place(g, n) > ON_BODY;
+    bool local = ir_operation(g, n) == IR_INPUT && !ir_is_uniform(g, n);
     if (!needed[n] || (!local && a->kind != PASS_BOUNDS) || ir_operation(g, n) != IR_INPUT)
       continue;
     fprintf(out, " %s", ir_name(g, n));

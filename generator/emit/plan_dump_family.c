@@ -105,7 +105,7 @@ static read_kind kind_of_input(const ir *g, ir_node n) {
 }
 
 static bool is_read(const ir *g, const unsigned char *needed, ir_node n) {
-  return needed[n] && ir_operation(g, n) == IR_INPUT && ir_place(g, n) > ON_BODY;
+  return needed[n] && ir_operation(g, n) == IR_INPUT && !ir_is_uniform(g, n);
 }
 
 /* Returns how many inputs there are. */

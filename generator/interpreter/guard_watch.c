@@ -33,7 +33,7 @@ static int find_guards(const kernel_plan *p, ir_node *guards) {
     ir_mark(g, &states->roots[k].node, 1, marks);
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && ir_operation(g, n) == IR_SELECT && !is_limit(g, n) &&
-        ir_place(g, ir_operand(g, n, 0)) > ON_BODY)
+        !ir_is_uniform(g, ir_operand(g, n, 0)))
       marks[ir_operand(g, n, 0)] = GUARD;
   int count = 0;
   for (ir_node n = 0; n < nodes; n++)

@@ -14,9 +14,6 @@ static ir_node nothing_if_zero(const ir *g, ir_node n) {
 static ir_node number(ir *g, double value) {
   return ir_constant(g, value);
 }
-static ir_node unary(ir *g, ir_op op, ir_node a) {
-  return ir_make(g, op, a, IR_NONE, IR_NONE);
-}
 
 static ir_node sum(ir *g, ir_node a, ir_node b) {
   if (a == IR_NONE) return b;
@@ -75,7 +72,7 @@ static ir_node of_power(ir *g, const term *t) {
   }
   if (t->db == IR_NONE) return by_base;
   const ir_node zero = number(g, 0.0);
-  const ir_node growth = ir_mul(g, t->q, unary(g, IR_LOG, t->a));
+  const ir_node growth = ir_mul(g, t->q, ir_unary(g, IR_LOG, t->a));
   const ir_node vanishes = ir_make(g, IR_EQ, t->q, zero, IR_NONE);
   return sum(g, by_base, times(g, ir_select(g, vanishes, zero, growth), t->db));
 }
@@ -107,7 +104,8 @@ static ir_node one_and_square(ir *g, ir_op op, ir_node q) {
 /* The neighbours that attain the extreme. */
 static ir_node of_family_extreme(ir *g, const term *t) {
   const ir_node attains = ir_make(g, IR_EQ, t->a, t->q, IR_NONE);
-  return t->da == IR_NONE ? IR_NONE : unary(g, IR_FAMILY_SUM, choose(g, attains, t->da, IR_NONE));
+  return t->da == IR_NONE ? IR_NONE
+                          : ir_unary(g, IR_FAMILY_SUM, choose(g, attains, t->da, IR_NONE));
 }
 
 static ir_node of_operation(ir *g, const term *t) {
@@ -125,7 +123,7 @@ static ir_node of_operation(ir *g, const term *t) {
   case IR_NEG:
     return difference(g, IR_NONE, t->da);
   case IR_ABS:
-    return times(g, unary(g, IR_SIGN, t->a), t->da);
+    return times(g, ir_unary(g, IR_SIGN, t->a), t->da);
   case IR_SQRT:
     return of_root(g, t);
   case IR_MIN:
@@ -143,9 +141,9 @@ static ir_node of_operation(ir *g, const term *t) {
   case IR_CBRT:
     return of_cube_root(g, t);
   case IR_SIN:
-    return times(g, unary(g, IR_COS, t->a), t->da);
+    return times(g, ir_unary(g, IR_COS, t->a), t->da);
   case IR_COS:
-    return difference(g, IR_NONE, times(g, unary(g, IR_SIN, t->a), t->da));
+    return difference(g, IR_NONE, times(g, ir_unary(g, IR_SIN, t->a), t->da));
   case IR_TAN:
     return times(g, one_and_square(g, IR_ADD, t->q), t->da);
   case IR_TANH:
@@ -157,12 +155,12 @@ static ir_node of_operation(ir *g, const term *t) {
   case IR_SELECT:
     return choose(g, t->a, t->db, t->dc);
   case IR_FAMILY_SUM:
-    return t->da == IR_NONE ? IR_NONE : unary(g, IR_FAMILY_SUM, t->da);
+    return t->da == IR_NONE ? IR_NONE : ir_unary(g, IR_FAMILY_SUM, t->da);
   case IR_FAMILY_MAX:
   case IR_FAMILY_MIN:
     return of_family_extreme(g, t);
   case IR_NEIGHBOUR:
-    return t->da == IR_NONE ? IR_NONE : unary(g, IR_NEIGHBOUR, t->da);
+    return t->da == IR_NONE ? IR_NONE : ir_unary(g, IR_NEIGHBOUR, t->da);
   case IR_CONSTANT:
   case IR_INPUT: /* others than x */
   case IR_SIGN:

@@ -54,6 +54,12 @@ ir_node ir_constant(ir *g, double value);
 ir_node ir_input(ir *g, ir_source source, int index, const char *name, placement place);
 /* Unused operands: IR_NONE. A number where a truth value is wanted means "other than 0". */
 ir_node ir_make(ir *g, ir_op op, ir_node a, ir_node b, ir_node c);
+static inline ir_node ir_unary(ir *g, ir_op op, ir_node a) {
+  return ir_make(g, op, a, IR_NONE, IR_NONE);
+}
+static inline ir_node ir_binary(ir *g, ir_op op, ir_node a, ir_node b) {
+  return ir_make(g, op, a, b, IR_NONE);
+}
 
 /* Shorthands. */
 ir_node ir_add(ir *g, ir_node a, ir_node b);
@@ -86,6 +92,14 @@ placement ir_place(const ir *g, ir_node n);        /* the most local of its oper
    Returns the input. */
 ir_node ir_mark_class(ir *g, ir_node input);
 bool ir_is_of_class(const ir *g, ir_node n);
+/* The same everywhere in the body, unless it is of a class. */
+static inline bool ir_is_uniform(const ir *g, ir_node n) {
+  return ir_place(g, n) <= ON_BODY;
+}
+/* One value for all bonds of a particle. */
+static inline bool ir_is_of_particle(const ir *g, ir_node n) {
+  return ir_place(g, n) <= ON_PARTICLE && !ir_is_of_class(g, n);
+}
 /* Says that a condition holds nearly always, so that what is chosen where it does not need not be
    fast. Returns it. Of laws of bonds: that a size, at least 0, is below a positive limit
    (choice_expectation), two such conditions at most. */

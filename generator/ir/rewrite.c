@@ -104,12 +104,9 @@ void rewrite_zero(ir *g, const ir_node *roots, int root_count, const ir_node *in
 
 /* --- reciprocals ------------------------------------------------------------------------------ */
 
-static bool is_uniform(const ir *g, ir_node n) {
-  return ir_place(g, n) <= ON_BODY;
-}
-
-static bool is_of_particle(const ir *g, ir_node n) {
-  return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
+/* Not of the body as a whole. */
+static bool is_of_one_particle(const ir *g, ir_node n) {
+  return ir_is_of_particle(g, n) && !ir_is_uniform(g, n);
 }
 
 /* a/b by 1/b, with what rounding left put right: the bits of the division (Markstein 1990), so that
@@ -124,21 +121,21 @@ static ir_node quotient_by_reciprocal(ir *g, ir_node above, ir_node below) {
 /* Toward each neighbour, by a value of the particle: (p*x)/q = (p/q)*x divides once. */
 static ir_node quotient_by_particle(ir *g, ir_node above, ir_node below) {
   for (int k = 0; k < 2 && ir_operation(g, above) == IR_MUL; k++)
-    if (is_of_particle(g, ir_operand(g, above, k)))
+    if (is_of_one_particle(g, ir_operand(g, above, k)))
       return ir_mul(g, ir_div(g, ir_operand(g, above, k), below), ir_operand(g, above, 1 - k));
   return quotient_by_reciprocal(g, above, below);
 }
 
 static ir_node reciprocal_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
-  if (ir_operation(g, old) != IR_DIV || is_uniform(g, old)) return again(g, old, operand);
+  if (ir_operation(g, old) != IR_DIV || ir_is_uniform(g, old)) return again(g, old, operand);
   ir_node below = ir_operand(g, old, 1);
-  const bool lasts = !is_uniform(g, below) && r->lasting[below] && !r->lasting[old];
-  if (lasts && is_of_particle(g, old)) return quotient_by_reciprocal(g, operand[0], operand[1]);
-  if (is_uniform(g, below) || r->shared[below])
+  const bool lasts = !ir_is_uniform(g, below) && r->lasting[below] && !r->lasting[old];
+  if (lasts && is_of_one_particle(g, old)) return quotient_by_reciprocal(g, operand[0], operand[1]);
+  if (ir_is_uniform(g, below) || r->shared[below])
     return ir_mul(g, operand[0], ir_div(g, ir_constant(g, 1), operand[1]));
   if (lasts) return quotient_by_reciprocal(g, operand[0], operand[1]);
-  if (is_of_particle(g, below) && !is_of_particle(g, old))
+  if (is_of_one_particle(g, below) && !is_of_one_particle(g, old))
     return quotient_by_particle(g, operand[0], operand[1]);
   return again(g, old, operand);
 }
@@ -161,7 +158,7 @@ static unsigned char *lasting_nodes(const ir *g) {
   unsigned char *lasting = must_calloc((size_t)ir_count(g) + 1, 1);
   for (ir_node n = 0; n < ir_count(g); n++) {
     const bool input = ir_operation(g, n) == IR_INPUT;
-    lasting[n] = !input || is_uniform(g, n) || ir_input_source(g, n) == IR_FROM_SHAPE;
+    lasting[n] = !input || ir_is_uniform(g, n) || ir_input_source(g, n) == IR_FROM_SHAPE;
     for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
       lasting[n] &= lasting[ir_operand(g, n, k)];
   }
@@ -181,7 +178,7 @@ void rewrite_reciprocals(ir *g, const ir_node *roots, int root_count, ir_node *o
 /* --- choices between quotients ---------------------------------------------------------------- */
 
 static bool is_own_quotient(const rebuilding *r, ir_node old, ir_node n) {
-  return ir_operation(r->graph, n) == IR_DIV && !is_uniform(r->graph, n) && !r->shared[old];
+  return ir_operation(r->graph, n) == IR_DIV && !ir_is_uniform(r->graph, n) && !r->shared[old];
 }
 
 /* Of two conditions of one kind that share an operand, the one that asks about the chosen
@@ -231,9 +228,9 @@ typedef struct factored {
 } factored;
 
 static factored take_factor(const ir *g, ir_node n, ir_node of) {
-  if (ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && ir_place(g, n) == ir_place(g, of))
+  if (ir_operation(g, n) == IR_MUL && !ir_is_uniform(g, n) && ir_place(g, n) == ir_place(g, of))
     for (int k = 0; k < 2; k++)
-      if (is_uniform(g, ir_operand(g, n, k)))
+      if (ir_is_uniform(g, ir_operand(g, n, k)))
         return (factored){ir_operand(g, n, k), ir_operand(g, n, 1 - k)};
   return (factored){IR_NONE, n};
 }
@@ -249,7 +246,7 @@ static ir_node factored_product(const rebuilding *r, ir_node old, const ir_node 
   factored part[2];
   bool moves = false;
   for (int k = 0; k < 2; k++) {
-    const bool uniform = is_uniform(g, operand[k]);
+    const bool uniform = ir_is_uniform(g, operand[k]);
     part[k] = uniform ? (factored){operand[k], IR_NONE} : take_factor(g, operand[k], old);
     const bool alone = uniform || !r->shared[ir_operand(g, old, k)];
     moves = moves || (alone && part[k].factor != IR_NONE);
@@ -297,7 +294,7 @@ static ir_node factored_extreme(const rebuilding *r, ir_node old, const ir_node 
 
 static ir_node factor_rule(const rebuilding *r, ir_node old, const ir_node *operand) {
   ir *g = r->graph;
-  if (is_uniform(g, old)) return again(g, old, operand);
+  if (ir_is_uniform(g, old)) return again(g, old, operand);
   switch (ir_operation(g, old)) {
   case IR_MUL:
     return factored_product(r, old, operand);
@@ -342,7 +339,7 @@ void rewrite_factors(ir *g, const ir_node *roots, int root_count, ir_node *out) 
 /* What has a name stays a value of its own: bodies at rest count on a length that is rounded before
    its reference is taken from it. */
 static bool is_local_product(const ir *g, ir_node n) {
-  return ir_operation(g, n) == IR_MUL && !is_uniform(g, n) && !ir_name(g, n);
+  return ir_operation(g, n) == IR_MUL && !ir_is_uniform(g, n) && !ir_name(g, n);
 }
 
 enum { NEEDS_NEIGHBOUR = 1, NEEDS_FAMILY = 2 };
@@ -559,7 +556,7 @@ bool rewrite_nan_follows(const ir *g, ir_node a, ir_node b) {
   bool follows = true;
   for (int k = 0; k < open.count && follows; k++) {
     const ir_node n = open.list[k];
-    if (reaching.met[n] || ir_place(g, n) <= ON_BODY) continue;
+    if (reaching.met[n] || ir_is_uniform(g, n)) continue;
     const ir_op op = ir_operation(g, n);
     follows = op != IR_INPUT && !operation_has(op, MAKES_NAN) && walk_on(&open, n);
   }

@@ -7,6 +7,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dsl/base/characters.h"
 #include "dsl/semantics/law_check.h"
 #include "dsl/syntax/parse.h"
 #include "generator/emit/descriptor.h"
@@ -61,11 +62,6 @@ char *read_text_file(const char *path, size_t limit, size_t *length, char *error
 
 /* --- kinds ------------------------------------------------------------------------------------ */
 
-static bool ends_in(const char *text, const char *tail) {
-  size_t n = strlen(text), m = strlen(tail);
-  return n > m && strcmp(text + n - m, tail) == 0;
-}
-
 /* A deck's first group begins with `&`, before it are blanks and comments; anything else is
    taken for a law. */
 static file_kind kind_of_text(const char *text) {
@@ -107,7 +103,7 @@ file_kind kind_of_file(const char *path) {
   } endings[] = {{".plm", FILE_LAW},     {".nml", FILE_DECK},  {".h5", FILE_RESULT},
                  {".hdf5", FILE_RESULT}, {".csv", FILE_TABLE}, {".xdmf", FILE_SIDECAR}};
   for (size_t k = 0; k < sizeof endings / sizeof *endings; k++)
-    if (ends_in(path, endings[k].ending)) return endings[k].kind;
+    if (text_ends_in(path, endings[k].ending)) return endings[k].kind;
   return kind_by_content(path);
 }
 
@@ -140,7 +136,7 @@ static bool is_file(const char *path) {
 static char *try_path(const char *folder, const char *name) {
   char path[PATH_LIMIT];
   int n = snprintf(path, sizeof path, "%s%s%s%s", folder, *folder ? "/" : "", name,
-                   ends_in(name, ".plm") ? "" : ".plm");
+                   text_ends_in(name, ".plm") ? "" : ".plm");
   return n > 0 && (size_t)n < sizeof path && is_file(path) ? must_copy(path) : NULL;
 }
 

@@ -20,19 +20,19 @@ static ir_node held_where(lowering *c, placement on) {
   ir *g = c->graph;
   ir_node zero = ir_constant(g, 0);
   if (c->mode == LOWER_PROTECTABLE)
-    return binary(g, IR_LT, zero, kinematics_input(g, ENDS_PROTECTED));
+    return ir_binary(g, IR_LT, zero, kinematics_input(g, ENDS_PROTECTED));
   if (c->mode != LOWER_HELD) return IR_NONE;
-  ir_node mine = binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_I));
+  ir_node mine = ir_binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_I));
   if (on == ON_PARTICLE) return mine;
-  return binary(g, IR_OR, mine, binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_J)));
+  return ir_binary(g, IR_OR, mine, ir_binary(g, IR_LT, zero, kinematics_input(g, ENDS_HELD_J)));
 }
 
 /* min(max(old, rule), 1) in a form in which a rule that is not a number stays so, and is found. */
 static ir_node clamp_damage(lowering *c, placement on, ir_node old, ir_node rule) {
   ir *g = c->graph;
   ir_node one = ir_constant(g, 1);
-  ir_node grown = ir_select(g, binary(g, IR_LT, rule, old), old, rule);
-  ir_node clamped = ir_select(g, binary(g, IR_LT, one, grown), one, grown);
+  ir_node grown = ir_select(g, ir_binary(g, IR_LT, rule, old), old, rule);
+  ir_node clamped = ir_select(g, ir_binary(g, IR_LT, one, grown), one, grown);
   ir_node held = held_where(c, on);
   return held == IR_NONE ? clamped : ir_select(g, held, old, clamped);
 }
@@ -102,7 +102,7 @@ static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node
   note_flow(c, rule, when);
   const int frozen = freeze_neighbours(c, &over, &what, &stand_in);
   ir_node lambda = ir_input(g, IR_FROM_FIELD, 2 * c->law->fields.count, "lambda",
-                            ir_place(g, over) > ON_BODY ? ir_place(g, over) : ON_BOND);
+                            !ir_is_uniform(g, over) ? ir_place(g, over) : ON_BOND);
   ir_node moved = ir_add(g, old, ir_mul(g, lambda, direction));
   ir_substitute(g, &over, 1, &old, &moved, 1, &over);
   if (ir_place(g, over) > ON_PARTICLE && moves_a_sum(g, over, lambda))
@@ -111,7 +111,7 @@ static ir_node flow_returned(lowering *c, const stmt *rule, ir_node old, ir_node
         "the flow toward one neighbour would change the guards of all others: a guard "
         "that goes over the family must be one for the whole particle");
   ir_node slope = ir_derivative(g, over, lambda);
-  ir_node falls = binary(g, IR_LT, slope, ir_constant(g, 0));
+  ir_node falls = ir_binary(g, IR_LT, slope, ir_constant(g, 0));
   ir_node safe = ir_select(g, falls, slope, ir_constant(g, -1));
   ir_node next = ir_sub(g, lambda, ir_div(g, over, safe));
   next = ir_select(g, falls, next, lambda);
@@ -211,14 +211,8 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
   lower_name_node(c->graph, out->M_j, "M_j", nowhere);
 }
 
-static const stmt *find_force_state(const law *l) {
-  for (int k = 0; k < l->rule_count; k++)
-    if (l->rules[k]->kind == STMT_FORCE_STATE) return l->rules[k];
-  return NULL;
-}
-
 static void lower_force_state(lowering *c, lowered_law *out) {
-  const stmt *given = find_force_state(c->law);
+  const stmt *given = law_force_state(c->law);
   out->F = given ? value_of(c, given->symbol) : IR_NONE;
   out->along_reference = given && given->along_reference;
   if (out->F == IR_NONE && out->W == IR_NONE)

@@ -44,10 +44,6 @@ static ir_node work(ir *g, const energy_parts *p, int k, ir_node force) {
   return k == 0 ? ir_mul(g, w, p->s) : w;
 }
 
-static ir_node half(ir *g, ir_node n) {
-  return ir_mul(g, ir_constant(g, 0.5), n);
-}
-
 static ir_node add_some(ir *g, ir_node a, ir_node b) {
   return a == IR_NONE ? b : ir_add(g, a, b);
 }
@@ -69,7 +65,7 @@ static ir_node affine_energy(ir *g, const energy_parts *p) {
       ir_operation(g, k) == IR_CONSTANT)
     return IR_NONE;
   ir_node one = ir_constant(g, 1);
-  ir_node none = binary(g, IR_EQ, k, ir_constant(g, 0));
+  ir_node none = ir_binary(g, IR_EQ, k, ir_constant(g, 0));
   ir_node divisor = ir_select(g, none, one, k);
   return half(g, ir_div(g, ir_mul(g, ir_mul(g, N, N), p->s), divisor));
 }

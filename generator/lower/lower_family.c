@@ -13,8 +13,8 @@ static bool is_plane(const law *l) {
 }
 
 static ir_node neighbour_of(ir *g, ir_node n) {
-  const bool of_body = ir_place(g, n) <= ON_BODY && !ir_is_of_class(g, n);
-  return of_body ? n : unary(g, IR_NEIGHBOUR, n);
+  const bool of_body = ir_is_uniform(g, n) && !ir_is_of_class(g, n);
+  return of_body ? n : ir_unary(g, IR_NEIGHBOUR, n);
 }
 
 components lower_neighbour(ir *g, components value) {
@@ -24,7 +24,7 @@ components lower_neighbour(ir *g, components value) {
 }
 
 ir_node lower_family_size(ir *g) {
-  ir_node n = unary(g, IR_FAMILY_SUM, ir_constant(g, 1));
+  ir_node n = ir_unary(g, IR_FAMILY_SUM, ir_constant(g, 1));
   ir_set_name(g, n, "n", (span){0, 0, 0});
   return n;
 }
@@ -40,7 +40,7 @@ components lower_direction(ir *g, const law *l) {
 }
 
 static ir_node family_sum(ir *g, ir_node n) {
-  return unary(g, IR_FAMILY_SUM, n);
+  return ir_unary(g, IR_FAMILY_SUM, n);
 }
 
 static components sum_of(ir *g, components v) {
@@ -51,7 +51,7 @@ static components sum_of(ir *g, components v) {
 
 /* Sums over a divisor, which is 1 where it would be 0: a particle without bonds has mean 0. */
 static components over(ir *g, components sums, ir_node divisor) {
-  ir_node none = binary(g, IR_EQ, divisor, ir_constant(g, 0));
+  ir_node none = ir_binary(g, IR_EQ, divisor, ir_constant(g, 0));
   ir_node safe = ir_select(g, none, ir_constant(g, 1), divisor);
   for (int k = 0; k < sums.count; k++)
     sums.of[k] = ir_div(g, sums.of[k], safe);
@@ -69,8 +69,8 @@ static components weighted_mean(ir *g, components v, ir_node weight) {
 }
 
 static ir_node family_extreme(ir *g, ir_node n, ir_op op) {
-  ir_node none = binary(g, IR_EQ, lower_family_size(g), ir_constant(g, 0));
-  return ir_select(g, none, ir_constant(g, 0), unary(g, op, n));
+  ir_node none = ir_binary(g, IR_EQ, lower_family_size(g), ir_constant(g, 0));
+  return ir_select(g, none, ir_constant(g, 0), ir_unary(g, op, n));
 }
 
 /* --- stress and strain of a family ------------------------------------------------------------ */
@@ -181,9 +181,9 @@ static ir_node uniform_force(ir *g, const law *l, components sigma) {
 
 static components norm(lowering *c, components a) {
   ir *g = c->graph;
-  if (a.count > 1) return scalar(unary(g, IR_SQRT, tensor_contract(g, a, a)));
-  if (!lower_is_state_law(c)) return scalar(unary(g, IR_ABS, a.of[0])); /* bending in a plane */
-  return scalar(unary(g, IR_SQRT, family_sum(g, ir_mul(g, a.of[0], a.of[0]))));
+  if (a.count > 1) return scalar(ir_unary(g, IR_SQRT, tensor_contract(g, a, a)));
+  if (!lower_is_state_law(c)) return scalar(ir_unary(g, IR_ABS, a.of[0])); /* bending in a plane */
+  return scalar(ir_unary(g, IR_SQRT, family_sum(g, ir_mul(g, a.of[0], a.of[0]))));
 }
 
 static components directed_deviator(ir *g, components a) {
@@ -233,7 +233,7 @@ components lower_family_call(lowering *c, const expr *e, const components *a) {
   case FUNCTION_J2:
     return scalar(tensor_J2(g, a[0]));
   case FUNCTION_VON_MISES:
-    return scalar(unary(g, IR_SQRT, ir_mul(g, ir_constant(g, 3), tensor_J2(g, a[0]))));
+    return scalar(ir_unary(g, IR_SQRT, ir_mul(g, ir_constant(g, 3), tensor_J2(g, a[0]))));
   default:
     return lower_failed_value(c, e->where, "this function cannot be compiled here");
   }

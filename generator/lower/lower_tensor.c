@@ -26,12 +26,8 @@ components tensor_deviator(ir *g, components a) {
   return a;
 }
 
-static ir_node half(ir *g, ir_node n) {
-  return ir_mul(g, ir_constant(g, 0.5), n);
-}
-
 static ir_node root(ir *g, ir_node n) {
-  return unary(g, IR_SQRT, n);
+  return ir_unary(g, IR_SQRT, n);
 }
 
 ir_node tensor_J2(ir *g, components a) {
@@ -47,9 +43,9 @@ static ir_node plane_principal(ir *g, components a, int which) {
   ir_node radius = root(g, ir_add(g, square, ir_mul(g, a.of[TENSOR_XY], a.of[TENSOR_XY])));
   ir_node large = ir_add(g, middle, radius), small = ir_sub(g, middle, radius);
   ir_node third = a.of[TENSOR_ZZ];
-  if (which == 1) return binary(g, IR_MAX, large, third);
-  if (which == 3) return binary(g, IR_MIN, small, third);
-  return binary(g, IR_MAX, small, binary(g, IR_MIN, large, third));
+  if (which == 1) return ir_binary(g, IR_MAX, large, third);
+  if (which == 3) return ir_binary(g, IR_MIN, small, third);
+  return ir_binary(g, IR_MAX, small, ir_binary(g, IR_MIN, large, third));
 }
 
 static ir_node determinant(ir *g, components a) {
@@ -70,17 +66,18 @@ static ir_node space_principal(ir *g, components a, int which) {
   components s = tensor_deviator(g, a);
   ir_node size = root(g, ir_div(g, tensor_contract(g, s, s), ir_constant(g, 6)));
   ir_node cube = ir_mul(g, ir_mul(g, size, size), size);
-  ir_node safe = binary(g, IR_MAX, ir_mul(g, ir_constant(g, 2), cube), ir_constant(g, 1e-290));
+  ir_node safe = ir_binary(g, IR_MAX, ir_mul(g, ir_constant(g, 2), cube), ir_constant(g, 1e-290));
   ir_node ratio = ir_div(g, determinant(g, s), safe);
   ir_node cosine =
-      binary(g, IR_MAX, binary(g, IR_MIN, ratio, ir_constant(g, 1)), ir_constant(g, -1));
-  ir_node sine = root(g, binary(g, IR_MAX, ir_sub(g, ir_constant(g, 1), ir_mul(g, cosine, cosine)),
-                                ir_constant(g, 0)));
-  ir_node angle = ir_div(g, binary(g, IR_ATAN2, sine, cosine), ir_constant(g, 3));
+      ir_binary(g, IR_MAX, ir_binary(g, IR_MIN, ratio, ir_constant(g, 1)), ir_constant(g, -1));
+  ir_node sine =
+      root(g, ir_binary(g, IR_MAX, ir_sub(g, ir_constant(g, 1), ir_mul(g, cosine, cosine)),
+                        ir_constant(g, 0)));
+  ir_node angle = ir_div(g, ir_binary(g, IR_ATAN2, sine, cosine), ir_constant(g, 3));
   ir_node twice = ir_mul(g, ir_constant(g, 2), size);
-  ir_node first = ir_add(g, mean, ir_mul(g, twice, unary(g, IR_COS, angle)));
+  ir_node first = ir_add(g, mean, ir_mul(g, twice, ir_unary(g, IR_COS, angle)));
   ir_node turned = ir_add(g, angle, ir_constant(g, 2.0943951023931954923)); /* 2 pi/3 */
-  ir_node last = ir_add(g, mean, ir_mul(g, twice, unary(g, IR_COS, turned)));
+  ir_node last = ir_add(g, mean, ir_mul(g, twice, ir_unary(g, IR_COS, turned)));
   if (which == 1) return first;
   if (which == 3) return last;
   return ir_sub(g, ir_sub(g, ir_mul(g, ir_constant(g, 3), mean), first), last);

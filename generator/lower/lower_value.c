@@ -117,26 +117,26 @@ static ir_node lower_option_test(lowering *c, const expr *e) {
 static ir_node lower_comparison(ir *g, binary_op op, ir_node a, ir_node b) {
   switch (op) {
   case OP_EQ:
-    return binary(g, IR_EQ, a, b);
+    return ir_binary(g, IR_EQ, a, b);
   case OP_NE:
-    return unary(g, IR_NOT, binary(g, IR_EQ, a, b));
+    return ir_unary(g, IR_NOT, ir_binary(g, IR_EQ, a, b));
   case OP_LT:
-    return binary(g, IR_LT, a, b);
+    return ir_binary(g, IR_LT, a, b);
   case OP_LE:
-    return binary(g, IR_LE, a, b);
+    return ir_binary(g, IR_LE, a, b);
   case OP_GT:
-    return binary(g, IR_LT, b, a);
+    return ir_binary(g, IR_LT, b, a);
   default:
-    return binary(g, IR_LE, b, a);
+    return ir_binary(g, IR_LE, b, a);
   }
 }
 
 static ir_node lower_scalar_binary(ir *g, binary_op op, ir_node a, ir_node b) {
   switch (op) {
   case OP_OR:
-    return binary(g, IR_OR, a, b);
+    return ir_binary(g, IR_OR, a, b);
   case OP_AND:
-    return binary(g, IR_AND, a, b);
+    return ir_binary(g, IR_AND, a, b);
   case OP_ADD:
     return ir_add(g, a, b);
   case OP_SUB:
@@ -162,7 +162,7 @@ static components lower_binary(lowering *c, const expr *e) {
 
 static components lower_unary(lowering *c, const expr *e) {
   components a = lower_value(c, e->left);
-  if (e->unary == OP_NOT) return scalar(unary(c->graph, IR_NOT, a.of[0]));
+  if (e->unary == OP_NOT) return scalar(ir_unary(c->graph, IR_NOT, a.of[0]));
   for (int k = 0; k < a.count && e->unary == OP_NEG; k++)
     a.of[k] = ir_neg(c->graph, a.of[k]);
   return a;
@@ -181,7 +181,7 @@ static ir_node keep_nan(lowering *c, ir_node guard, ir_node value) {
   }
   for (int k = 0; k < ir_arity(ir_operation(g, guard)) && ir_is_logical(g, guard); k++) {
     ir_node x = ir_operand(g, guard, k);
-    if (ir_may_be_nan(g, x)) value = ir_select(g, binary(g, IR_EQ, x, x), value, x);
+    if (ir_may_be_nan(g, x)) value = ir_select(g, ir_binary(g, IR_EQ, x, x), value, x);
   }
   return value;
 }
@@ -278,7 +278,7 @@ static ir_node lower_diff(lowering *c, const expr *e) {
   if (ir_operation(c->graph, x) != IR_INPUT)
     return lower_fail(c, e->arguments[1].value->where,
                       "nothing can be differentiated by this in a plane");
-  if (lower_is_state_law(c) && ir_place(c->graph, f) > ON_BODY && ir_place(c->graph, x) > ON_BODY)
+  if (lower_is_state_law(c) && !ir_is_uniform(c->graph, f) && !ir_is_uniform(c->graph, x))
     return lower_fail(c, e->where,
                       "in a law of families only a parameter can be differentiated by yet");
   if (ir_count(c->graph) > MOST_NODES) /* derivatives of derivatives grow without another visit */
@@ -288,7 +288,7 @@ static ir_node lower_diff(lowering *c, const expr *e) {
 }
 
 static ir_node soft_sign(ir *g, ir_node x) {
-  return ir_div(g, x, ir_add(g, ir_constant(g, 1), unary(g, IR_ABS, x)));
+  return ir_div(g, x, ir_add(g, ir_constant(g, 1), ir_unary(g, IR_ABS, x)));
 }
 
 /* What has the name of an operation is that operation, of more than two arguments the first with
@@ -303,10 +303,10 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
     return lower_fail(c, e->where, "this function cannot be compiled here");
   ir_node a = lower_expr(c, e->arguments[0].value);
   if (f == FUNCTION_SOFT_SIGN) return soft_sign(g, a);
-  if (f == FUNCTION_MACAULAY) return binary(g, IR_MAX, a, ir_constant(g, 0));
-  if (e->argument_count == 1 && ir_arity(op) == 1) return unary(g, op, a);
+  if (f == FUNCTION_MACAULAY) return ir_binary(g, IR_MAX, a, ir_constant(g, 0));
+  if (e->argument_count == 1 && ir_arity(op) == 1) return ir_unary(g, op, a);
   for (int k = 1; k < e->argument_count; k++)
-    a = binary(g, op, a, lower_expr(c, e->arguments[k].value));
+    a = ir_binary(g, op, a, lower_expr(c, e->arguments[k].value));
   return a;
 }
 

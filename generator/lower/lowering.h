@@ -62,11 +62,8 @@ ir_node lower_fail(lowering *c, span where, const char *what);
 components lower_failed_value(lowering *c, span where, const char *what);
 bool lower_is_state_law(const lowering *c);
 
-static inline ir_node unary(ir *g, ir_op op, ir_node a) {
-  return ir_make(g, op, a, IR_NONE, IR_NONE);
-}
-static inline ir_node binary(ir *g, ir_op op, ir_node a, ir_node b) {
-  return ir_make(g, op, a, b, IR_NONE);
+static inline ir_node half(ir *g, ir_node n) {
+  return ir_mul(g, ir_constant(g, 0.5), n);
 }
 static inline components scalar(ir_node n) {
   return (components){1, {n}};

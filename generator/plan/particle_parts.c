@@ -45,11 +45,6 @@ static void find_sided(taking_apart *t, const ir_node *same, int same_count) {
   }
 }
 
-/* Has one value for all bonds of a particle. */
-static bool belongs_to_particle(const ir *g, ir_node n) {
-  return ir_place(g, n) <= ON_PARTICLE && !ir_is_of_class(g, n);
-}
-
 static ir_node times(ir *g, ir_node a, ir_node b) {
   return a == IR_NONE ? b : b == IR_NONE ? a : ir_mul(g, a, b);
 }
@@ -108,7 +103,7 @@ static products added(ir *g, const products *a, products b, bool subtracts) {
 static products taken_apart(const taking_apart *t, ir_node n) {
   ir *g = t->g;
   const ir_op op = ir_operation(g, n);
-  if (belongs_to_particle(g, n)) return (products){{{.particle = n}}, 1};
+  if (ir_is_of_particle(g, n)) return (products){{{.particle = n}}, 1};
   if (op != IR_MUL && !t->sided[n])
     return (products){{{.particle = IR_NONE, .bond = {n}, .count = 1}}, 1};
   if (op != IR_MUL && op != IR_ADD && op != IR_SUB && op != IR_NEG && op != IR_DIV)
@@ -120,7 +115,7 @@ static products taken_apart(const taking_apart *t, ir_node n) {
   }
   const ir_node second = ir_operand(g, n, 1);
   if (op == IR_DIV) {
-    if (!belongs_to_particle(g, second)) return (products){.count = 0};
+    if (!ir_is_of_particle(g, second)) return (products){.count = 0};
     const products inverse = {{{.particle = ir_div(g, ir_constant(g, 1), second)}}, 1};
     return multiplied(g, &a, &inverse);
   }

@@ -44,7 +44,7 @@ bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
 /* --- what is hoisted -------------------------------------------------------------------------- */
 
 static void mark_hoisted(const ir *g, ir_node n, unsigned char *hoisted) {
-  if (ir_operation(g, n) != IR_CONSTANT && ir_place(g, n) <= ON_BODY) hoisted[n] = 1;
+  if (ir_operation(g, n) != IR_CONSTANT && ir_is_uniform(g, n)) hoisted[n] = 1;
 }
 
 typedef struct hoisting {
@@ -60,7 +60,7 @@ static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_
   for (int k = 0; k < root_count; k++)
     mark_hoisted(g, roots[k], h->hoisted);
   for (ir_node n = 0; n < ir_count(g); n++) {
-    if (!needed[n] || ir_place(g, n) <= ON_BODY) continue;
+    if (!needed[n] || ir_is_uniform(g, n)) continue;
     for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
       mark_hoisted(g, ir_operand(g, n, k), h->hoisted);
   }

@@ -61,7 +61,7 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
   ir_node image = n, operand[3] = {IR_NONE, IR_NONE, IR_NONE};
   if (!is_leaf(g, n)) {
     const bool kept =
-        is_of_particle(g, n) ? program_goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
+        is_of_one_particle(g, n) ? program_goes_over_family(b, n) : map_get(&b->linked, n) >= 0;
     const segment_root *field = field_before(v, n);
     if (field)
       image = ir_input(g, IR_FROM_NEW_FIELD, field->index, ir_name(g, n) ? ir_name(g, n) : "new",
@@ -99,7 +99,7 @@ static void build_pass(builder *b, family_pass *pass, int now, const segment_roo
     if (level_of(b, b->link[k]) == now)
       wanted[count++] =
           (segment_root){.node = b->link[k],
-                         .target = is_of_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK,
+                         .target = is_of_one_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK,
                          .index = b->link_number[k]};
   for (int k = 0; k < b->shared_count; k++)
     if (level_of(b, b->shared[k]) == now)

@@ -69,7 +69,7 @@ static bool is_finite(absent_search *s, int pass, ir_node n) {
   const ir_op op = ir_operation(s->g, n);
   const int known = map_get(&s->finite[pass], n);
   if (known >= 0) return known != 0;
-  bool finite = ir_place(s->g, n) <= ON_BODY;
+  bool finite = ir_is_uniform(s->g, n);
   if (!finite && op == IR_INPUT)
     finite = is_finite_input(s, pass, n);
   else if (!finite && keeps_finite(op)) {

@@ -25,12 +25,9 @@ static inline bool is_leaf(const ir *g, ir_node n) {
   return ir_arity(ir_operation(g, n)) == 0;
 }
 
-static inline bool is_uniform(const ir *g, ir_node n) {
-  return ir_place(g, n) <= ON_BODY;
-}
-
-static inline bool is_of_particle(const ir *g, ir_node n) {
-  return ir_place(g, n) == ON_PARTICLE && !ir_is_of_class(g, n);
+/* Not of the body as a whole. */
+static inline bool is_of_one_particle(const ir *g, ir_node n) {
+  return ir_is_of_particle(g, n) && !ir_is_uniform(g, n);
 }
 
 #endif

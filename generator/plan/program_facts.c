@@ -54,7 +54,7 @@ static bool mark_expected(const ir *g, const segment *a, unsigned char *conditio
   for (int k = 0; k < a->root_count; k++)
     ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g); n++) {
-    if (!needed[n] || ir_place(g, n) <= ON_BODY || !ir_is_expected_choice(g, n)) continue;
+    if (!needed[n] || ir_is_uniform(g, n) || !ir_is_expected_choice(g, n)) continue;
     conditions[ir_operand(g, n, 0)] = 1;
     any = true;
   }
@@ -80,7 +80,7 @@ static bool is_of_motion(const ir *g, ir_node n) {
   bool is = true;
   ir_mark(g, &n, 1, needed);
   for (ir_node m = 0; m <= n && is; m++)
-    is = !needed[m] || ir_operation(g, m) != IR_INPUT || ir_place(g, m) <= ON_BODY ||
+    is = !needed[m] || ir_operation(g, m) != IR_INPUT || ir_is_uniform(g, m) ||
          ir_input_source(g, m) == IR_FROM_ENDS;
   free(needed);
   return is;

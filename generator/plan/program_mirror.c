@@ -29,7 +29,7 @@ static ir_node with_images(builder *b, ir_node n, ir_node (*image)(builder *, ir
 
 /* What a value toward a neighbour costs when it is computed again, in additions. */
 int program_cost_again(const ir *g, ir_node n, int most) {
-  if (is_leaf(g, n) || is_uniform(g, n) || is_of_particle(g, n)) return 0;
+  if (is_leaf(g, n) || ir_is_uniform(g, n) || is_of_one_particle(g, n)) return 0;
   ir_op op = ir_operation(g, n);
   int cost = operations[op].weight;
   for (int k = 0; k < ir_arity(op) && cost < most; k++)
@@ -57,7 +57,7 @@ static int link_of(builder *b, ir_node n) {
   assert(b->link_count < MOST_LINKS);
   b->link[b->link_count] = n;
   b->link_number[b->link_count] =
-      is_of_particle(b->g, n) ? b->links.of_particles++ : b->links.of_bonds++;
+      is_of_one_particle(b->g, n) ? b->links.of_particles++ : b->links.of_bonds++;
   map_set(&b->linked, n, b->link_count);
   return b->link_count++;
 }
@@ -67,7 +67,7 @@ ir_node program_linked_node(const builder *b, ir_node input) {
   const bool of_particle = ir_input_source(b->g, input) == IR_FROM_NEIGHBOUR_LINK;
   int k = 0;
   while (b->link_number[k] != ir_input_index(b->g, input) ||
-         is_of_particle(b->g, b->link[k]) != of_particle)
+         is_of_one_particle(b->g, b->link[k]) != of_particle)
     k++;
   return b->link[k];
 }
@@ -80,14 +80,14 @@ static const char *link_name(builder *b, int link) {
 static ir_node neighbour_link(builder *b, ir_node n) {
   int link = link_of(b, n);
   const char *name = arena_printf(b->memory, "%s_j", link_name(b, link));
-  const bool of_particle = is_of_particle(b->g, n);
+  const bool of_particle = is_of_one_particle(b->g, n);
   return ir_input(b->g, of_particle ? IR_FROM_NEIGHBOUR_LINK : IR_FROM_NEIGHBOUR_BOND_LINK,
                   b->link_number[link], name, ON_NEIGHBOUR);
 }
 
 ir_node program_own_link(builder *b, ir_node n) {
   int link = link_of(b, n);
-  const bool of_particle = is_of_particle(b->g, n);
+  const bool of_particle = is_of_one_particle(b->g, n);
   return ir_input(b->g, of_particle ? IR_FROM_LINK : IR_FROM_BOND_LINK, b->link_number[link],
                   link_name(b, link), of_particle ? ON_PARTICLE : ON_NEIGHBOUR);
 }
@@ -138,7 +138,7 @@ static ir_node mirror_input(builder *b, ir_node n) {
     if (ir_place(g, n) == ON_BOND) return n; /* both sides keep the same value */
     return ir_input(g, IR_FROM_NEIGHBOUR_FIELD, index,
                     arena_printf(b->memory, "%s_j", ir_name(g, n)),
-                    is_of_particle(g, n) ? ON_BOND : ON_NEIGHBOUR);
+                    is_of_one_particle(g, n) ? ON_BOND : ON_NEIGHBOUR);
   case IR_FROM_NEIGHBOUR_FIELD: {
     const char *name = ir_name(g, n);
     return ir_input(g, IR_FROM_FIELD, index,
@@ -165,7 +165,7 @@ ir_node program_mirror(builder *b, ir_node n) {
     image = n;
   else if (is_leaf(b->g, n))
     image = mirror_input(b, n);
-  else if (is_of_particle(b->g, n) && program_goes_over_family(b, n))
+  else if (is_of_one_particle(b->g, n) && program_goes_over_family(b, n))
     image = neighbour_link(b, n);
   else
     image = with_images(b, n, program_mirror);
@@ -178,7 +178,7 @@ ir_node program_mirror(builder *b, ir_node n) {
 static bool has_sides(builder *b, ir_node n) {
   int known = map_get(&b->sided, n);
   if (known >= 0) return known != 0;
-  bool sided = is_of_particle(b->g, n);
+  bool sided = is_of_one_particle(b->g, n);
   if (ir_operation(b->g, n) == IR_INPUT) sided = sided || mirror_input(b, n) != n;
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && !sided; k++)
     sided = has_sides(b, ir_operand(b->g, n, k));
@@ -191,7 +191,7 @@ static bool has_sides(builder *b, ir_node n) {
    count. */
 static bool is_dear(builder *b, ir_node n) {
   enum { DEAR = 30 };
-  return !is_uniform(b->g, n) && !is_of_particle(b->g, n) && has_sides(b, n) &&
+  return !ir_is_uniform(b->g, n) && !is_of_one_particle(b->g, n) && has_sides(b, n) &&
          program_cost_again(b->g, n, DEAR) >= DEAR;
 }
 

@@ -133,11 +133,11 @@ static ir_node seen_in_segment(segment_view *v, ir_node n) {
   int known = map_get(&v->seen, n);
   if (known >= 0) return known;
   ir_node image;
-  if (is_leaf(g, n) || is_uniform(g, n))
+  if (is_leaf(g, n) || ir_is_uniform(g, n))
     image = n;
   else if (ir_is_reduction(ir_operation(g, n)))
     image = slot_of(s, n);
-  else if (is_of_particle(g, n))
+  else if (is_of_one_particle(g, n))
     image = (v->kind != OVER_PARTICLES || phase_of(s, n) < v->loop) && is_worth_a_slot(s, n)
                 ? slot_of(s, n)
                 : computed_here(v, n);
@@ -153,9 +153,9 @@ static void view_segment(scheduler *s, segment *a, int loop) {
   segment_view v = {.s = s, .kind = a->kind, .loop = loop};
   for (int k = 0; k < a->root_count; k++) { /* more may be added to earlier segments only */
     ir_node n = a->roots[k].node;
-    bool here = !is_leaf(s->g, n) && !is_uniform(s->g, n) &&
-                !ir_is_reduction(ir_operation(s->g, n)) &&
-                (a->kind == OVER_PARTICLES) == is_of_particle(s->g, n) && phase_of(s, n) == loop;
+    bool here =
+        !is_leaf(s->g, n) && !ir_is_uniform(s->g, n) && !ir_is_reduction(ir_operation(s->g, n)) &&
+        (a->kind == OVER_PARTICLES) == is_of_one_particle(s->g, n) && phase_of(s, n) == loop;
     a->roots[k].node = here ? computed_here(&v, n) : seen_in_segment(&v, n);
   }
   map_clear(&v.seen);

@@ -15,7 +15,7 @@ static bool is_plain(builder *b, ir_node n) {
   if (op == IR_INPUT) {
     const ir_source from = ir_input_source(b->g, n);
     plain = from == IR_FROM_FIELD || from == IR_FROM_NEIGHBOUR_FIELD || from == IR_FROM_ENDS ||
-            is_uniform(b->g, n);
+            ir_is_uniform(b->g, n);
   }
   for (int k = 0; k < ir_arity(op) && plain; k++)
     plain = is_plain(b, ir_operand(b->g, n, k));
@@ -29,7 +29,7 @@ static int cost_in_round(builder *b, ir_node n, int most) {
   map_set(&b->counted, n, b->round);
   for (int k = 0; k < b->shared_count; k++)
     if (b->shared[k] == n) return 0;
-  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n)) return 0;
+  if (is_leaf(b->g, n) || ir_is_uniform(b->g, n) || is_of_one_particle(b->g, n)) return 0;
   int cost = operations[ir_operation(b->g, n)].weight;
   for (int k = 0; k < ir_arity(ir_operation(b->g, n)) && cost < most; k++)
     cost += cost_in_round(b, ir_operand(b->g, n, k), most - cost);
@@ -49,8 +49,8 @@ static int dear(const builder *b) {
 }
 
 static bool is_worth_sharing(builder *b, ir_node n) {
-  if (is_leaf(b->g, n) || is_uniform(b->g, n) || is_of_particle(b->g, n) || !is_plain(b, n) ||
-      ir_is_logical(b->g, n) || cost_beyond(b, n, dear(b)) < dear(b))
+  if (is_leaf(b->g, n) || ir_is_uniform(b->g, n) || is_of_one_particle(b->g, n) ||
+      !is_plain(b, n) || ir_is_logical(b->g, n) || cost_beyond(b, n, dear(b)) < dear(b))
     return false;
   const int parity = program_parity(b, n);
   return parity == 1 || (parity == -1 && b->sharing >= SHARE_MORE);

@@ -5,7 +5,7 @@
 /* A constant of the class, or a sum of such and of displacements. */
 static bool is_finite(const ir *g, ir_node n) {
   const ir_op op = ir_operation(g, n);
-  if (ir_place(g, n) <= ON_BODY) return true;
+  if (ir_is_uniform(g, n)) return true;
   if (op == IR_ADD || op == IR_SUB)
     return is_finite(g, ir_operand(g, n, 0)) && is_finite(g, ir_operand(g, n, 1));
   return op == IR_INPUT && ir_input_source(g, n) == IR_FROM_ENDS &&
@@ -13,7 +13,7 @@ static bool is_finite(const ir *g, ir_node n) {
 }
 
 bool segment_fuses(const ir *g, const segment_root *r) {
-  if (r->target != TO_SUM || ir_operation(g, r->node) != IR_MUL || ir_place(g, r->node) <= ON_BODY)
+  if (r->target != TO_SUM || ir_operation(g, r->node) != IR_MUL || ir_is_uniform(g, r->node))
     return false;
   return !r->paired || is_finite(g, ir_operand(g, r->node, 0)) ||
          is_finite(g, ir_operand(g, r->node, 1));

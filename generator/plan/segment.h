@@ -101,7 +101,7 @@ static inline shared_place program_shared_place(int index) {
 /* A sum of what is the same for all bonds of a class: it does not change from step to step
    (pl_family.constant_sum). */
 static inline bool segment_is_constant(const ir *g, const segment_root *r) {
-  return r->paired && r->target == TO_SUM && ir_place(g, r->node) <= ON_BODY;
+  return r->paired && r->target == TO_SUM && ir_is_uniform(g, r->node);
 }
 
 /* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one

@@ -12,7 +12,8 @@
 typedef struct uniform_response {
   /* Pa, 1: of the isotropic solid whose stresses are nearest (Voigt's mean of the stiffness) */
   double E, nu;
-  /* median over particles and strains of the force left, over stress times the face of a particle */
+  /* median over particles and strains of the force left, over stress times the face of a
+     particle */
   double left_force;
   double momentum;   /* largest |sum of forces| over sum of |forces| */
   long unresolved;   /* particles whose bonds do not resolve all strains */

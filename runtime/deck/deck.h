@@ -35,7 +35,7 @@ typedef enum volume_correction { VOLUME_WHOLE, VOLUME_LINEAR } volume_correction
 typedef struct deck_lattice {
   deck_item item;
   const char *name;
-  const char *kind; /* "hexagonal", "square", "cubic", "fcc"; "blue_noise", "particles" */
+  const char *kind; /* of lattice_kind.h: "hexagonal", "blue_noise", ... */
   double spacing;   /* m; on no lattice: of the hexagonal or fcc one with as large particles */
   double horizon;   /* in spacings; 0: `shells` or `neighbours` decide */
   int shells;       /* 0: the nearest neighbours */

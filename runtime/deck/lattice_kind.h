@@ -19,16 +19,15 @@ C_LINKAGE_BEGIN
          o   o   o   o       each shifted by one half step
        o   o   o   o
  */
-#define LATTICE_KINDS(X)                                                                           \
+#define LATTICE_KINDS(X) KINDS_OF_SITES(X) KINDS_WITHOUT_SITES(X)
+#define KINDS_OF_SITES(X)                                                                          \
   X(hexagonal, 2, (1, 0.75, 0), (1, 0))                                                            \
   X(square, 2, (1, 1, 0), (0, 0))                                                                  \
   X(cubic, 3, (1, 1, 1), (0, 0))                                                                   \
-  X(fcc, 3, (2, 0.5, 0.5), (1, 1)) /* cube edges along the axes */                                 \
+  X(fcc, 3, (2, 0.5, 0.5), (1, 1)) /* cube edges along the axes */
+#define KINDS_WITHOUT_SITES(X)                                                                     \
   X(blue_noise, 0, (0, 0, 0), (0, 0))                                                              \
   X(particles, 0, (0, 0, 0), (0, 0))
-
-/* Those that have sites, in a sentence. */
-#define LATTICE_KINDS_OF_SITES "hexagonal, square, cubic or fcc"
 
 typedef struct lattice_kind {
   const char *name;
@@ -41,6 +40,10 @@ typedef struct lattice_kind {
 /* clang-format off */
 #define LATTICE_KIND_CHOICE(name, dimensions, square, shift_by) "|" #name
 #define LATTICE_KIND_CHOICES (&(LATTICE_KINDS(LATTICE_KIND_CHOICE))[1])
+#define LATTICE_KIND_QUOTED(name, dimensions, square, shift_by) ", `'" #name "'`"
+/* Those that have sites, and so in sentences: "`'hexagonal'`, `'square'`, ..." */
+#define LATTICE_KINDS_OF_SITES        (&(KINDS_OF_SITES(LATTICE_KIND_CHOICE))[1])
+#define LATTICE_KINDS_OF_SITES_QUOTED (&(KINDS_OF_SITES(LATTICE_KIND_QUOTED))[2])
 /* clang-format on */
 
 enum {

@@ -183,16 +183,9 @@ static const char *excerpt(reader *r, uint32_t begin) {
   return arena_printf(r->memory, "%.*s...", (int)length, r->text + begin);
 }
 
-static bool is_unit(const char *text, size_t length) {
-  unit u;
-  const char *bad;
-  size_t bad_length;
-  return length > 0 && unit_parse(text, length, &u, &bad, &bad_length);
-}
-
 /* `6.35 mm` without quotes: the number has been read, the unit begins at `begin`. */
 static bool unquoted_unit(reader *r, const namelist_key *key, uint32_t begin, bool comma) {
-  if (comma || !key->value_count || !is_unit(r->text + begin, r->at - begin)) return false;
+  if (comma || !key->value_count || !unit_is_whole(r->text + begin, r->at - begin)) return false;
   const namelist_value *last = &key->values[key->value_count - 1];
   if (last->kind != NAMELIST_NUMBER) return false;
   span where = {last->where.begin, r->at, r->file};
@@ -207,7 +200,7 @@ static bool bad_number(reader *r, const namelist_key *key, uint32_t begin, size_
   if (unquoted_unit(r, key, begin, comma)) return false;
   diag_report(r->d, DIAG_BAD_NUMBER, since(r, begin), "`%s` is not a number", excerpt(r, begin));
   const char *rest = r->text + begin + used;
-  if (used && is_unit(rest, r->at - begin - used))
+  if (used && unit_is_whole(rest, r->at - begin - used))
     diag_hint(r->d, "a value with a unit stands in quotes: '%.*s %s'", (int)used, r->text + begin,
               excerpt(r, begin + (uint32_t)used));
   return false;

@@ -202,10 +202,7 @@ static bool find_rows(text_table *t, const char *line, diagnostics *d) {
 /* --- columns ---------------------------------------------------------------------------------- */
 
 static bool is_unit(const char *from, const char *to) {
-  unit u;
-  const char *bad;
-  size_t length;
-  return to > from && unit_parse(from, (size_t)(to - from), &u, &bad, &length);
+  return to > from && unit_is_whole(from, (size_t)(to - from));
 }
 
 /* The last opening parenthesis of a title that ends with one; NULL without a unit in it. */

@@ -69,7 +69,7 @@ static bool lattice_is_sound(builder *b) {
   if (!bravais_of(l, &b->infinite)) {
     diag_report(b->d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "there is no lattice of kind '%s'", l->kind);
-    diag_hint(b->d, "the kinds that have sites are " LATTICE_KINDS_OF_SITES);
+    diag_hint(b->d, "the kinds that have sites are %s", LATTICE_KINDS_OF_SITES);
     return false;
   }
   if (!(l->spacing > 0) || !isfinite(l->spacing)) {

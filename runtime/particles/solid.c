@@ -95,7 +95,8 @@ static void find_near(const solid *s, solid_workspace *w, const double *at, doub
 
 /* --- pieces of lines -------------------------------------------------------------------------- */
 
-static void add_cuts(solid_workspace *w, const deck_shape *shape, const double *a, const double *b) {
+static void add_cuts(solid_workspace *w, const deck_shape *shape, const double *a,
+                     const double *b) {
   int found = shape_cuts(shape, a, b, w->cuts + w->cut_count, w->cut_room - w->cut_count - 1);
   if (w->cut_count + found + 1 > w->cut_room) {
     w->cut_room = 2 * (w->cut_count + found + 1);
@@ -126,7 +127,8 @@ static void find_cuts(solid_workspace *w, const double *a, const double *b) {
 
 /* Sums of u1^n - u0^n over the pieces u0 < u < u1 of the line a-b that lie in the near shapes, for
    n = power and n = power + 1. */
-static void fill_line(solid_workspace *w, const double *a, const double *b, int power, double sum[2]) {
+static void fill_line(solid_workspace *w, const double *a, const double *b, int power,
+                      double sum[2]) {
   find_cuts(w, a, b);
   if (power == 3 && w->leaves_once) {
     double u = 1;

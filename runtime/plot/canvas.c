@@ -7,13 +7,9 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "dsl/base/characters.h"
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
-
-static bool ends_in(const char *text, const char *tail) {
-  size_t n = strlen(text), m = strlen(tail);
-  return n > m && strcmp(text + n - m, tail) == 0;
-}
 
 /* Cairo's own file output takes a full disk for success; this does not. */
 static cairo_status_t write_bytes(void *data, const unsigned char *bytes, unsigned int count) {
@@ -25,9 +21,10 @@ static cairo_status_t write_bytes(void *data, const unsigned char *bytes, unsign
 
 bool canvas_open(canvas *c, const char *path, double width, double height, char *error,
                  size_t size) {
-  *c = (canvas){.path = path, .width = width, .height = height, .is_png = ends_in(path, ".png")};
-  const bool is_svg = ends_in(path, ".svg");
-  if (!c->is_png && !is_svg && !ends_in(path, ".pdf")) {
+  *c = (canvas){
+      .path = path, .width = width, .height = height, .is_png = text_ends_in(path, ".png")};
+  const bool is_svg = text_ends_in(path, ".svg");
+  if (!c->is_png && !is_svg && !text_ends_in(path, ".pdf")) {
     snprintf(error, size, "a picture's name ends in .png, .svg or .pdf; `%s` does not", path);
     return false;
   }

@@ -16,7 +16,8 @@ typedef struct plot_map_options {
   const char *field;
   int component; /* of a vector field; -1: magnitude */
   double factor; /* displacements are drawn times this; negative: chosen so that they can be seen */
-  /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its surface */
+  /* 0 x, 1 y, 2 z: of a body in space, a slice at right angles to that axis; negative: its
+     surface */
   int slice_axis;
   double slice_at; /* m */
   /* "yielded", "S_p > 1e-6": dots where a field is above 0, above or below a value; NULL: none */

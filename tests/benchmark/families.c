@@ -46,8 +46,8 @@ typedef struct contest {
   double s_0;     /* of lps: bonds break */
   double stretch; /* of the start */
   long agreement_steps;
-  double
-      list_margin; /* spacings from the outline within which a list moves as a lattice does; 0: everywhere */
+  /* spacings from the outline within which a list moves as a lattice does; 0: everywhere */
+  double list_margin;
   arena *memory;
   source_set sources;
   diagnostics said;

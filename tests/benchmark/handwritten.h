@@ -11,14 +11,13 @@
 
 typedef struct handwritten handwritten;
 
-#define HANDWRITTEN_FUNCTIONS(prefix)                                                                \
-  handwritten *prefix##_new(const problem *p);                                                       \
-  void prefix##_free(handwritten *h);                                                                \
-  void prefix##_set(handwritten *h, const motion *from);                                             \
-  void prefix##_get(const handwritten *h, motion *to);                                               \
-  void prefix##_advance(handwritten *h, long steps);                                                 \
-  /* Bonds, summed over the steps since the start, of rows where one moved too far for the series. \
-   */ \
+#define HANDWRITTEN_FUNCTIONS(prefix)                                                              \
+  handwritten *prefix##_new(const problem *p);                                                     \
+  void prefix##_free(handwritten *h);                                                              \
+  void prefix##_set(handwritten *h, const motion *from);                                           \
+  void prefix##_get(const handwritten *h, motion *to);                                             \
+  void prefix##_advance(handwritten *h, long steps);                                               \
+  /* Bonds, summed over the steps since the start, of rows with one too far for the series. */     \
   long prefix##_rare(const handwritten *h);
 
 HANDWRITTEN_FUNCTIONS(handwritten)

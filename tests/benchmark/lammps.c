@@ -62,7 +62,9 @@ static const char *const input_text =
     "thermo %d\n"
     "thermo_style custom step ke\n"
     "thermo_modify format float %%.15g\n"
-    "run 0\n" /* finds the bonds only after the first forces, without which it takes 0 for the critical stretch */
+    /* finds the bonds only after the first forces, without which it takes 0 for the critical
+       stretch */
+    "run 0\n"
     "run %d\n";
 
 typedef struct block_result {

@@ -297,7 +297,8 @@ static const pl_law *compile_fast(model *m, const char *name, const char *folder
   snprintf(command, sizeof command, "%s %s -ffast-math -ffp-contract=fast -o %s %s",
            toolchain_compiler(), toolchain_flags(), path, c_path);
   FILE *c = fopen(c_path, "w");
-  if (!c || fputs(model_c_text(m), c) < 0 || fclose(c) != 0) give_up("%s cannot be written", c_path);
+  if (!c || fputs(model_c_text(m), c) < 0 || fclose(c) != 0)
+    give_up("%s cannot be written", c_path);
   if (system(command) != 0) give_up("failed: %s", command);
   if (!toolchain_open(path, NULL, out, error, sizeof error)) give_up("%s", error);
   return out->law;

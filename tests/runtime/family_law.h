@@ -6,8 +6,8 @@
    Energy of a particle: (1 - omega) L0/4 (a sum S^2 + b (sum S)^2). Two passes: the first writes
    omega, most and, into links, sum S and 1 - omega; the second the forces.
 
-   On lists a and b are those of the spacing, stretches are by the bonds' own lengths s, and bond forces have the factor L0/s
-   that they follow from the energy with. */
+   On lists a and b are those of the spacing, stretches are by the bonds' own lengths s, and bond
+   forces have the factor L0/s that they follow from the energy with. */
 #ifndef PERILAT_TESTS_FAMILY_LAW_H
 #define PERILAT_TESTS_FAMILY_LAW_H
 

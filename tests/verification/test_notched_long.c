@@ -36,13 +36,12 @@ static double load_at(const double *load, const double *cmod, long samples, doub
   return count ? sum / (double)count : NAN;
 }
 
-/* Largest difference of the two feet's reactions, over their peak, until the opening is `cmod_end`.
- */
-static double asymmetry_until(const deck_case *c, double cmod_end, double peak) {
-  const double *cmod = deck_case_series(c, "cmod");
+/* Largest difference of the two feet's reactions, over their peak, until they first carry `part` of
+   it. */
+static double asymmetry_until(const deck_case *c, double part, double peak) {
   const double *left = deck_case_series(c, "left_foot"), *right = deck_case_series(c, "right_foot");
   double uneven = 0;
-  for (long k = 0; k < simulation_history(c->simulation, NULL) && cmod[k] <= cmod_end; k++)
+  for (long k = 0; left[k] + right[k] < part * peak; k++)
     uneven = fmax(uneven, fabs(left[k] - right[k]));
   return uneven / peak;
 }
@@ -60,7 +59,7 @@ static outcome run_beam(const reference *r, const char *const *overrides, int co
   outcome o = {.peak = load[at], .cmod = cmod[at]};
   for (long k = 0; k < samples; k++)
     o.reactions = fmax(o.reactions, left[k] + right[k]);
-  o.asymmetry = asymmetry_until(&c, r->cmod, o.reactions);
+  o.asymmetry = asymmetry_until(&c, 0.85, o.reactions);
   for (int k = 0; k < OPENINGS; k++)
     o.loads[k] = load_at(load, cmod, samples, openings[k]);
   o.imbalance = deck_case_series(&c, "energy/imbalance")[samples - 1] /
@@ -90,11 +89,13 @@ static void compare(const reference *r) {
       print_beside(name, o.loads[k], r->loads[k], "N", 1);
   }
   print_message(
-      "  imbalance %.2e of the external work; feet differ by %.1e up to the reference's opening\n",
+      "  imbalance %.2e of the external work; feet differ by %.1e up to 0.85 of their peak\n",
       o.imbalance, o.asymmetry);
   assert_true(fabs(o.peak / r->peak - 1) < r->tolerance);
   assert_true(fabs(o.imbalance) < 0.01);
-  assert_true(o.asymmetry < 1e-8); /* rounding, amplified by softening; see test_beam */
+  /* Rounding alone. Near the peak it grows tenfold in 0.03 to 0.07 ms: how much of it there is at
+     the reference's opening says only how long after the beginning of the growth that comes. */
+  assert_true(o.asymmetry < 1e-13);
 }
 
 /* A millionth more moment at one end: enough to decide early which way the crack leans. */

@@ -182,8 +182,9 @@ static void write_hostile_result(const workplace *w) {
   char path[400], error[1024];
   snprintf(path, sizeof path, "%s", in_workplace(w, "hostile.h5"));
   result_header h = small_header(path);
-  const result_field fields[] = {{"u\x1b[31m", "m\x1b[5m", NULL, 2, PARTICLES, "other", NULL},
-                                 {"om\x1b[5mega", "1", "\x1b[7mconcrete", 1, BONDS, "damage", NULL}};
+  const result_field fields[] = {
+      {"u\x1b[31m", "m\x1b[5m", NULL, 2, PARTICLES, "other", NULL},
+      {"om\x1b[5mega", "1", "\x1b[7mconcrete", 1, BONDS, "damage", NULL}};
   h.title = "\x1b]0;title\x07";
   h.overrides = "simulation.title='\x1b[31m'\n";
   h.interaction = "\x1b[7mconcrete";

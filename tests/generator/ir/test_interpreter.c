@@ -97,10 +97,11 @@ static void strips_of_any_count(void **unused) {
 
 /* X(operation, C expression of a, b): each on numbers of all sizes, zeros, infinities and NaN. */
 /* clang-format off */
-#define OPERATIONS_IN_C(X)                                                                             \
+#define OPERATIONS_IN_C(X)                                                                         \
   X(ADD, a + b) X(SUB, a - b) X(MUL, a * b) X(DIV, a / b) X(NEG, -a) X(FMA, fma(a, b, a))          \
   X(ABS, fabs(a)) X(SQRT, sqrt(a)) X(MIN, pl_min(a, b)) X(MAX, pl_max(a, b))                  \
-  X(SIGN, pl_sign(a)) X(INVERSE_ROOT, pl_inverse_root(a)) X(EXP, pl_exp(a)) X(LOG, pl_log(a)) X(POW, pl_pow(a, b))                     \
+  X(SIGN, pl_sign(a)) X(INVERSE_ROOT, pl_inverse_root(a)) X(EXP, pl_exp(a)) X(LOG, pl_log(a)) \
+  X(POW, pl_pow(a, b))                                                                             \
   X(CBRT, pl_cbrt(a)) X(SIN, pl_sin(a)) X(COS, pl_cos(a)) X(TAN, pl_tan(a)) X(TANH, pl_tanh(a))    \
   X(ATAN2, pl_atan2(a, b)) X(WRAP_ANGLE, pl_wrap_angle(a))                                         \
   X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) && (b != 0))                            \

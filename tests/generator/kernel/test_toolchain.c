@@ -27,7 +27,7 @@
 
 #define ERROR_SIZE 2000
 
-/* --- a small kernel, written by hand ---------------------------------------------------------- */
+/* --- a small kernel, written by hand --------------------------------------------------------- */
 
 static char *kernel_text(const char *key, int abi, double flops) {
   const char *format = "%s\n"
@@ -50,7 +50,7 @@ static char *keyed_text(double flops, char **key) {
   return kernel_text(*key, PL_KERNEL_ABI, flops);
 }
 
-/* --- another processor ------------------------------------------------------------------------- */
+/* --- another processor ------------------------------------------------------------------------ */
 
 static const char *processor_file = "/proc/cpuinfo";
 
@@ -67,7 +67,7 @@ static void put_processor(const char *path, const char *model, const char *flags
   fclose(out);
 }
 
-/* --- fixtures --------------------------------------------------------------------------------- */
+/* --- fixtures -------------------------------------------------------------------------------- */
 
 typedef struct place_of_test {
   char folder[256];
@@ -139,7 +139,7 @@ static int count_files(const char *folder, const char *ending) {
   return n;
 }
 
-/* --- SHA-256 ---------------------------------------------------------------------------------- */
+/* --- SHA-256 --------------------------------------------------------------------------------- */
 
 static void assert_digest(const char *block, int times, const char *expected) {
   sha256 h;
@@ -162,7 +162,7 @@ static void digests_are_those_of_the_standard(void **state) {
                 "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
 }
 
-/* --- loading ---------------------------------------------------------------------------------- */
+/* --- loading --------------------------------------------------------------------------------- */
 
 static void a_kernel_is_compiled_once(void **state) {
   (void)state;
@@ -301,7 +301,7 @@ static void refused_source_is_kept_and_named(void **state) {
   assert_int_equal(count_files(p->folder, "tmp"), 0);
 }
 
-/* --- opening ---------------------------------------------------------------------------------- */
+/* --- opening --------------------------------------------------------------------------------- */
 
 static void assert_refused(const char *path, const char *key, const char *why) {
   loaded_kernel k;
@@ -352,7 +352,7 @@ static void objects_cannot_be_built_where_nothing_can_be_written(void **state) {
   assert_non_null(strstr(error, "cannot write"));
 }
 
-/* --- the compiler ----------------------------------------------------------------------------- */
+/* --- the compiler ---------------------------------------------------------------------------- */
 
 static void without_a_compiler_there_is_none(void **state) {
   (void)state;
@@ -493,7 +493,7 @@ static void the_key_holds_the_processor(void **state) {
     free(keys[k]);
 }
 
-/* --- the cache -------------------------------------------------------------------------------- */
+/* --- the cache ------------------------------------------------------------------------------- */
 
 static void an_unwritable_cache_gives_a_temporary_one(void **state) {
   place_of_test *p = *state;

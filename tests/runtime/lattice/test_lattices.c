@@ -14,55 +14,19 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/geometry/shape.h"
-#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
 #include "runtime/lattice/rows_build.h"
 #include "runtime/lattice/rows_select.h"
+#include "tests/runtime/lattice/filled_lattice.h"
 
-typedef struct bench {
-  deck deck;
-  deck_lattice lattice;
-  deck_body bodies[4];
-  deck_notch notches[4];
-  source_set sources;
-  diagnostics d;
-} bench;
-
-static void begin(bench *b, const char *kind, double horizon, int shells) {
-  memset(b, 0, sizeof *b);
-  b->lattice = (deck_lattice){
-      .name = "body", .kind = kind, .spacing = 1, .horizon = horizon, .shells = shells};
-  b->lattice.mass_thickness = b->lattice.stiffness_thickness = 0.3;
-  b->deck.lattices = &b->lattice;
-  b->deck.lattice_count = 1;
-  b->deck.bodys = b->bodies;
-  b->deck.notchs = b->notches;
-  source_add(&b->sources, "test.nml", "&body /", 7);
-  diag_begin(&b->d, &b->sources);
-}
-
-static void end(bench *b, rows *w) {
-  rows_free(w);
-  diag_clear(&b->d);
-  source_clear(&b->sources);
-}
-
-static void add_body(bench *b, deck_shape shape) {
-  b->bodies[b->deck.body_count++] = (deck_body){.lattice = "body", .shape = shape};
-}
-
-static void add_notch(bench *b, deck_shape shape) {
-  b->notches[b->deck.notch_count++] =
-      (deck_notch){.lattice = "body", .shape = shape, .cut_bonds = true};
-}
-
-static rows *build(bench *b) {
-  rows *w = lattice_build(&b->deck, 0, &b->d);
-  for (int k = 0; k < b->d.count; k++)
-    print_message("%s\n", b->d.items[k].message);
-  assert_non_null(w);
-  assert_int_equal(b->d.errors, 0);
-  return w;
+static void begin(filled_lattice *b, const char *kind, double horizon, int shells) {
+  fill_begin(b, (deck_lattice){.name = "body",
+                               .kind = kind,
+                               .spacing = 1,
+                               .horizon = horizon,
+                               .shells = shells,
+                               .mass_thickness = 0.3,
+                               .stiffness_thickness = 0.3});
 }
 
 static uint64_t state;
@@ -111,10 +75,10 @@ static void families_have_their_neighbours(void **unused) {
   (void)unused;
   for (int f = 0; f < FAMILIES; f++) {
     const family *is = &families[f];
-    bench b;
+    filled_lattice b;
     begin(&b, is->kind, is->horizon, is->shells);
     add_body(&b, middle_of(is->kind));
-    rows *w = build(&b);
+    rows *w = fill_rows(&b);
     const int n = w->directions;
     assert_int_equal(2 * n, is->neighbours);
     assert_int_equal(w->shell[n - 1], is->last_shell);
@@ -130,7 +94,7 @@ static void families_have_their_neighbours(void **unused) {
       if (k) assert_true(w->length[k] >= w->length[k - 1] && w->shell[k] >= w->shell[k - 1]);
       if (k) assert_int_equal(w->length[k] == w->length[k - 1], w->shell[k] == w->shell[k - 1]);
     }
-    end(&b, w);
+    fill_end(&b, w);
   }
 }
 
@@ -140,38 +104,38 @@ static void order_is_stable(void **unused) {
   static const double square[][2] = {{1, 0}, {0, 1}, {1, 1}, {-1, 1}};
   static const double fcc[][3] = {{1, 1, 0}, {-1, 1, 0}, {0, -1, 1},
                                   {1, 0, 1}, {-1, 0, 1}, {0, 1, 1}};
-  bench b;
+  filled_lattice b;
   begin(&b, "square", 0, 2);
   add_body(&b, middle_of("square"));
-  rows *w = build(&b);
+  rows *w = fill_rows(&b);
   for (int k = 0; k < 4; k++)
     for (int c = 0; c < 2; c++)
       assert_true(fabs(w->chord[k][c] - square[k][c]) < 1e-15);
-  end(&b, w);
+  fill_end(&b, w);
   begin(&b, "fcc", 0, 1);
   add_body(&b, middle_of("fcc"));
-  w = build(&b);
+  w = fill_rows(&b);
   assert_int_equal(w->directions, 6);
   for (int k = 0; k < 6; k++)
     for (int c = 0; c < 3; c++)
       assert_true(fabs(w->chord[k][c] - sqrt(0.5) * fcc[k][c]) < 1e-15);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 static void linear_correction_weighs_the_horizon(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, "square", 3.015, 0);
   b.lattice.volume_correction = VOLUME_LINEAR;
   add_body(&b, middle_of("square"));
-  rows *w = build(&b);
+  rows *w = fill_rows(&b);
   for (int k = 0; k < w->directions; k++) {
     const double part = fmin(fmax(3.515 - w->length[k], 0), 1);
     assert_true(fabs(w->weight[k] - part) < 1e-14);
     assert_true(rows_bond_class(w, k + w->directions).weight == w->weight[k]);
   }
   assert_true(w->weight[0] == 1 && fabs(w->weight[w->directions - 1] - 0.515) < 1e-14);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 /* --- random bodies by all pairs --------------------------------------------------------------- */
@@ -222,7 +186,7 @@ static deck_shape random_notch(int dimensions, int number) {
   return s;
 }
 
-static void random_lattice(bench *b, const family *is, int number) {
+static void random_lattice(filled_lattice *b, const family *is, int number) {
   begin(b, is->kind, is->horizon, is->shells);
   const int dimensions = bravais_dimensions(is->kind);
   b->lattice.rotation = number % 4 == 0 ? 0 : uniform(-3, 3);
@@ -233,11 +197,11 @@ static void random_lattice(bench *b, const family *is, int number) {
   for (int k = 0; k < 2; k++)
     add_body(b, random_body(dimensions, number + k));
   for (int k = 0; k < 2; k++)
-    add_notch(b, random_notch(dimensions, number + k));
+    add_notch(b, random_notch(dimensions, number + k), true);
 }
 
 /* A vector turned with the lattice. */
-static void turned(const bench *b, const double v[3], double out[3]) {
+static void turned(const filled_lattice *b, const double v[3], double out[3]) {
   const double *n = b->lattice.axis, size = hypot(hypot(n[0], n[1]), n[2]);
   const double e[3] = {size > 0 ? n[0] / size : 0, size > 0 ? n[1] / size : 0,
                        size > 0 ? n[2] / size : 1};
@@ -262,7 +226,7 @@ static int basis_index(const char *kind) {
   return !strcmp(kind, "hexagonal") ? 0 : !strcmp(kind, "square") ? 1 : strcmp(kind, "fcc") ? 2 : 3;
 }
 
-static bool wanted(const bench *b, const double p[3]) {
+static bool wanted(const filled_lattice *b, const double p[3]) {
   bool in = false;
   for (int k = 0; k < b->deck.body_count; k++)
     in = in || shape_contains(&b->bodies[k].shape, p, 1e-6);
@@ -272,7 +236,7 @@ static bool wanted(const bench *b, const double p[3]) {
 }
 
 /* Count and centre of the sites straight from the definition: origin + sums of lattice vectors. */
-static void check_sites(const bench *b, const rows *w) {
+static void check_sites(const filled_lattice *b, const rows *w) {
   enum { REACH = 32 };
   double basis[3][3], sum[3] = {0}, stored[3] = {0};
   const int last = w->dimensions == 3 ? REACH : 0;
@@ -335,7 +299,7 @@ static void check_storage(const rows *w) {
 }
 
 /* Every pair within the horizon and 0.1 % more has its bond once, if no notch is between. */
-static void check_bonds(const bench *b, const rows *w) {
+static void check_bonds(const filled_lattice *b, const rows *w) {
   const long n = w->particle_count;
   const double reach = 1.001 * w->length[w->directions - 1];
   unsigned char *joined = must_calloc((size_t)(n * n) + 1, 1);
@@ -366,11 +330,11 @@ static void random_bodies_agree_with_all_pairs(void **unused) {
   state = 2026;
   for (int f = 0; f < FAMILIES; f++)
     for (int n = 0; n < 12; n++) {
-      bench b;
+      filled_lattice b;
       random_lattice(&b, &families[f], n);
       rows *w = lattice_build(&b.deck, 0, &b.d);
       if (!w || w->particle_count > 1500) {
-        end(&b, w);
+        fill_end(&b, w);
         continue;
       }
       check_storage(w);
@@ -378,7 +342,7 @@ static void random_bodies_agree_with_all_pairs(void **unused) {
       check_bonds(&b, w);
       particles += w->particle_count;
       bonds += w->bond_count;
-      end(&b, w);
+      fill_end(&b, w);
     }
   print_message("%ld particles, %ld bonds compared\n", particles, bonds);
   assert_true(particles > 5000 && bonds > 50000);
@@ -395,7 +359,7 @@ static void volumes_converge(void **unused) {
     for (int level = 0; level < 3; level++) {
       double error = 0; /* mean over places of the lattice: a single one is erratic */
       for (int try = 0; try < 4; try++) {
-        bench b;
+        filled_lattice b;
         begin(&b, kinds[k], 0, 0);
         b.lattice.spacing = 0.1 / (1 << level);
         b.lattice.rotation = 0.21 * try;
@@ -404,11 +368,11 @@ static void volumes_converge(void **unused) {
         add_body(&b,
                  (deck_shape){
                      .kind = SHAPE_CYLINDER, .from = {0, 0, 0}, .to = {0, 0, 1.3}, .radius = 0.5});
-        rows *w = build(&b);
+        rows *w = fill_rows(&b);
         error += fabs((double)w->particle_count * w->volume / exact - 1) / 4;
         assert_true(fabs(w->width - 1) < 0.1 && fabs(w->height - 1) < 0.1);
         assert_true(fabs(w->depth - 1.3) < 0.1);
-        end(&b, w);
+        fill_end(&b, w);
       }
       print_message("%s cylinder: spacing %.4f, volume error %.2e\n", kinds[k], 0.1 / (1 << level),
                     error);
@@ -425,7 +389,7 @@ static void points_find_their_site(void **unused) {
   state = 5;
   for (int k = 0; k < 4; k++)
     for (int n = 0; n < 200; n++) {
-      bench b;
+      filled_lattice b;
       double best = INFINITY, p[3];
       int32_t *list;
       begin(&b, kinds[k], 0, 0);
@@ -435,7 +399,7 @@ static void points_find_their_site(void **unused) {
       if (k > 1) point.at[2] = uniform(-1.4, 1.4);
       point.within = 1;
       add_body(&b, point); /* is there already */
-      rows *w = build(&b);
+      rows *w = fill_rows(&b);
       assert_int_equal(rows_select(w, &point, &list), 1);
       rows_place(w, w->particle_site[list[0]], p);
       const double chosen = bravais_distance(p, point.at);
@@ -448,11 +412,11 @@ static void points_find_their_site(void **unused) {
       rows_free(w);
       b.bodies[0] = b.bodies[1]; /* alone: the one site nearest to it */
       b.deck.body_count = 1;
-      w = build(&b);
+      w = fill_rows(&b);
       assert_int_equal(w->particle_count, 1);
       rows_place(w, w->particle_site[0], p);
       assert_true(fabs(bravais_distance(p, point.at) - chosen) < 1e-9);
-      end(&b, w);
+      fill_end(&b, w);
     }
 }
 
@@ -461,11 +425,11 @@ static void protection_reaches_as_far_as_asked(void **unused) {
   static const double radii[] = {0, 1, 1.01, 1.75, 3.3, 1e9};
   for (int f = 0; f < FAMILIES; f++)
     for (size_t r = 0; r < sizeof radii / sizeof *radii; r++) {
-      bench b;
+      filled_lattice b;
       begin(&b, families[f].kind, families[f].horizon, families[f].shells);
       b.lattice.rotation = 0.3;
       add_body(&b, middle_of(families[f].kind));
-      rows *w = build(&b);
+      rows *w = fill_rows(&b);
       const int32_t feet[] = {0, (int32_t)w->particle_count / 2};
       double at[2][3];
       rows_protect(w, feet, 2, radii[r]);
@@ -483,29 +447,29 @@ static void protection_reaches_as_far_as_asked(void **unused) {
           assert_int_equal(held, rows_has_bond(w, site, k) && near);
         }
       }
-      end(&b, w);
+      fill_end(&b, w);
     }
 }
 
 static void faults_are_reported(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, "cubic", 4, 0);
   add_body(&b, middle_of("cubic"));
   assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "more than 128 neighbours"));
-  end(&b, NULL);
+  fill_end(&b, NULL);
   begin(&b, "square", 0.9, 0);
   add_body(&b, middle_of("square"));
   assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "reaches no neighbour"));
-  end(&b, NULL);
+  fill_end(&b, NULL);
   begin(&b, "fcc", 0, 0);
   b.lattice.spacing = 1e-3;
   add_body(&b, middle_of("fcc"));
   assert_null(lattice_build(&b.deck, 0, &b.d));
   assert_non_null(strstr(b.d.items[0].message, "sites"));
-  end(&b, NULL);
+  fill_end(&b, NULL);
 }
 
 static double seconds(void) {
@@ -517,19 +481,20 @@ static double seconds(void) {
 /* The limit is far above what it takes; work that grew faster than the particles would pass it. */
 static void a_million_particles_take_seconds(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, "cubic", 3.015, 0);
   add_body(&b, (deck_shape){.kind = SHAPE_BOX, .size = {99, 99, 99}});
-  add_notch(&b, (deck_shape){.kind = SHAPE_BOX, .corner = {49.4, -1, -1}, .size = {0.2, 50, 101}});
+  add_notch(&b, (deck_shape){.kind = SHAPE_BOX, .corner = {49.4, -1, -1}, .size = {0.2, 50, 101}},
+            true);
   const double begun = seconds();
-  rows *w = build(&b);
+  rows *w = fill_rows(&b);
   const double taken = seconds() - begun;
   print_message("%ld particles, %ld bonds: built in %.2f s\n", w->particle_count, w->bond_count,
                 taken);
   assert_int_equal(w->particle_count, 1000000);
   assert_true(w->bond_count > 58000000);
   assert_true(taken < 30);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 /* Particles on no lattice have no rows to build. */
@@ -537,13 +502,13 @@ static void a_kind_without_sites_is_refused(void **unused) {
   (void)unused;
   static const char *const kinds[] = {"blue_noise", "particles", "hexagon"};
   for (int k = 0; k < 3; k++) {
-    bench b;
+    filled_lattice b;
     begin(&b, kinds[k], 0, 0);
     add_body(&b, (deck_shape){.kind = SHAPE_DISC, .radius = 3});
     assert_null(rows_build(&b.deck, 0, &b.d));
     assert_int_equal(b.d.count, 1);
     assert_non_null(strstr(b.d.items[0].message, "there is no lattice of kind"));
-    end(&b, NULL);
+    fill_end(&b, NULL);
   }
 }
 

@@ -97,8 +97,8 @@ static rows *rows_of_deck(const char *text) {
   source_set sources = {0};
   diagnostics said = {0};
   diag_begin(&said, &sources);
-  const deck *k = deck_read(memory, &sources, source_add(&sources, "deck.nml", text, strlen(text)), NULL,
-                      0, &said);
+  const deck *k = deck_read(memory, &sources, source_add(&sources, "deck.nml", text, strlen(text)),
+                            NULL, 0, &said);
   rows *g = k ? lattice_build(k, 0, &said) : NULL;
   if (!g) diag_print(&said, stderr);
   diag_clear(&said);

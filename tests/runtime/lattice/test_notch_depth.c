@@ -25,8 +25,8 @@ static notch_depth depth_of(const char *lattice, const char *body, const char *n
            "&simulation end_time = 1 /\n&material lattice = 'l' model = 'none' /\n"
            "&lattice name = 'l' %s /\n&body lattice = 'l' %s /\n&notch lattice = 'l' %s /\n",
            lattice, body, notch);
-  const deck *k = deck_read(memory, &sources, source_add(&sources, "n.nml", text, strlen(text)), NULL, 0,
-                      &said);
+  const deck *k = deck_read(memory, &sources, source_add(&sources, "n.nml", text, strlen(text)),
+                            NULL, 0, &said);
   rows *w = k ? lattice_build(k, 0, &said) : NULL;
   if (said.errors) diag_print(&said, stderr);
   assert_non_null(w);

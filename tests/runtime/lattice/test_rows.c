@@ -12,63 +12,19 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/geometry/shape.h"
-#include "runtime/lattice/lattice.h"
 #include "runtime/lattice/rows.h"
 #include "runtime/lattice/rows_select.h"
-
-enum { MOST_SHAPES = 8 };
-
-/* A deck with one lattice. */
-typedef struct bench {
-  deck deck;
-  deck_lattice lattice;
-  deck_body bodies[MOST_SHAPES];
-  deck_notch notches[MOST_SHAPES];
-  source_set sources;
-  diagnostics d;
-} bench;
+#include "tests/runtime/lattice/filled_lattice.h"
 
 static const double degree = 0.017453292519943295;
 
-static void begin(bench *b, double spacing) {
-  memset(b, 0, sizeof *b);
-  b->lattice = (deck_lattice){.name = "concrete",
-                              .kind = "hexagonal",
-                              .spacing = spacing,
-                              .thickness = 0.1524,
-                              .stiffness_thickness = 0.127,
-                              .mass_thickness = 0.12};
-  b->deck.lattices = &b->lattice;
-  b->deck.lattice_count = 1;
-  b->deck.bodys = b->bodies;
-  b->deck.notchs = b->notches;
-  source_add(&b->sources, "test.nml", "&body /", 7);
-  diag_begin(&b->d, &b->sources);
-}
-
-static void end(bench *b, rows *w) {
-  rows_free(w);
-  diag_clear(&b->d);
-  source_clear(&b->sources);
-}
-
-static void body(bench *b, deck_shape shape) {
-  b->bodies[b->deck.body_count++] =
-      (deck_body){.item = {.where = {0, 5, 0}}, .lattice = "concrete", .shape = shape};
-}
-
-static void notch(bench *b, deck_shape shape, bool cut_bonds) {
-  b->notches[b->deck.notch_count++] = (deck_notch){
-      .item = {.where = {0, 5, 0}}, .lattice = "concrete", .shape = shape, .cut_bonds = cut_bonds};
-}
-
-static rows *build(bench *b) {
-  rows *w = lattice_build(&b->deck, 0, &b->d);
-  for (int k = 0; k < b->d.count; k++)
-    print_message("%s\n", b->d.items[k].message);
-  assert_non_null(w);
-  assert_int_equal(b->d.errors, 0);
-  return w;
+static void begin(filled_lattice *b, double spacing) {
+  fill_begin(b, (deck_lattice){.name = "concrete",
+                               .kind = "hexagonal",
+                               .spacing = spacing,
+                               .thickness = 0.1524,
+                               .stiffness_thickness = 0.127,
+                               .mass_thickness = 0.12});
 }
 
 static deck_shape rectangle(double x, double y, double w, double h) {
@@ -137,7 +93,7 @@ static void check_storage(const rows *w) {
 
 /* Bonds are all pairs of particles within 1.001 spacings, each once, less those whose chord crosses
  * a notch. */
-static void check_bonds(const bench *b, const rows *w) {
+static void check_bonds(const filled_lattice *b, const rows *w) {
   const long n = w->particle_count;
   unsigned char *joined = must_calloc((size_t)(n * n), 1);
   rows_bond *bonds = rows_bonds(w);
@@ -166,7 +122,7 @@ static void check_bonds(const bench *b, const rows *w) {
   free(joined);
 }
 
-static bool wanted(const bench *b, const double p[2]) {
+static bool wanted(const filled_lattice *b, const double p[2]) {
   const double tolerance = 1e-6 * b->lattice.spacing;
   bool in = false;
   for (int k = 0; k < b->deck.body_count; k++)
@@ -177,7 +133,7 @@ static bool wanted(const bench *b, const double p[2]) {
 }
 
 /* Sites straight from the definition: origin + p a1 + q a2, over more than the bodies' box. */
-static void check_sites(const bench *b, const rows *w, int reach) {
+static void check_sites(const filled_lattice *b, const rows *w, int reach) {
   const deck_lattice *l = &b->lattice;
   const double c = cos(l->rotation), s = sin(l->rotation);
   const double a1[2] = {l->spacing * c, l->spacing * s};
@@ -216,21 +172,21 @@ static void neighbours_are_all_near_pairs(void **unused) {
   static const double arm[] = {0.05, 0.02, 0.14, 0.05, 0.12, 0.11, 0.09, 0.06, 0.04, 0.12};
   for (int r = 0; r < 5; r++) {
     for (int o = 0; o < 3; o++) {
-      bench b;
+      filled_lattice b;
       begin(&b, 6e-3);
       b.lattice.rotation = rotations[r] * degree;
       memcpy(b.lattice.origin, origins[o], sizeof origins[o]);
-      body(&b, rectangle(0, 0, 0.1, 0.05));
-      body(&b, disc(0.1, 0.05, 0.03, 0.012));
-      body(&b, polygon(arm, 5));
-      notch(&b, rectangle(0.03, -0.01, 0.002, 0.04), true);
-      notch(&b, disc(0.1, 0.09, 0.01, 0), true);
-      notch(&b, disc(0.06, 0.02, 0.007, 0), false);
-      rows *w = build(&b);
+      add_body(&b, rectangle(0, 0, 0.1, 0.05));
+      add_body(&b, disc(0.1, 0.05, 0.03, 0.012));
+      add_body(&b, polygon(arm, 5));
+      add_notch(&b, rectangle(0.03, -0.01, 0.002, 0.04), true);
+      add_notch(&b, disc(0.1, 0.09, 0.01, 0), true);
+      add_notch(&b, disc(0.06, 0.02, 0.007, 0), false);
+      rows *w = fill_rows(&b);
       check_storage(w);
       check_bonds(&b, w);
       check_sites(&b, w, o == 2 ? 700 : 60);
-      end(&b, w);
+      fill_end(&b, w);
     }
   }
 }
@@ -243,16 +199,16 @@ static void renumbering_changes_nothing(void **unused) {
                                  {-3, 7, 0}, {4, -5, 60}, {0, 1, 120}};
   long particles = 0, bonds = 0;
   for (int k = 0; k < 6; k++) {
-    bench b;
+    filled_lattice b;
     begin(&b, 6e-3);
     const double turn = 11 * degree, s = b.lattice.spacing;
     b.lattice.rotation = turn + steps[k][2] * degree;
     b.lattice.origin[0] = s * (steps[k][0] * cos(turn) + steps[k][1] * cos(turn + 60 * degree));
     b.lattice.origin[1] = s * (steps[k][0] * sin(turn) + steps[k][1] * sin(turn + 60 * degree));
-    body(&b, rectangle(0.001, 0.0005, 0.2, 0.1));
-    body(&b, disc(0.2, 0.1, 0.041, 0.0133));
-    notch(&b, rectangle(0.1, 0, 0.0017, 0.0503), true);
-    rows *w = build(&b);
+    add_body(&b, rectangle(0.001, 0.0005, 0.2, 0.1));
+    add_body(&b, disc(0.2, 0.1, 0.041, 0.0133));
+    add_notch(&b, rectangle(0.1, 0, 0.0017, 0.0503), true);
+    rows *w = fill_rows(&b);
     check_storage(w);
     if (k == 0) {
       particles = w->particle_count;
@@ -260,7 +216,7 @@ static void renumbering_changes_nothing(void **unused) {
     }
     assert_int_equal(w->particle_count, particles);
     assert_int_equal(w->bond_count, bonds);
-    end(&b, w);
+    fill_end(&b, w);
   }
 }
 
@@ -279,26 +235,26 @@ static const beam beams[] = {
 
 /* An extra particle stands on the first row that has a site at midspan and lies above or in the top
  * row. */
-static void build_beam(bench *b, const beam *m, bool cut, bool extra) {
+static void build_beam(filled_lattice *b, const beam *m, bool cut, bool extra) {
   const double mm = 1e-3, h = m->spacing * mm * sqrt(3) / 2;
   begin(b, m->spacing * mm);
-  body(b, rectangle(0, 0, m->length * mm, m->height * mm));
+  add_body(b, rectangle(0, 0, m->length * mm, m->height * mm));
   const long top = (long)floor(m->height * mm / h + 1e-6);
   /* even rows have sites at multiples of s, odd rows half-way */
   const bool even_midspan = lround(m->length / m->spacing) % 2 == 0;
   const bool top_fits = (top % 2 == 0) == even_midspan;
-  if (extra) body(b, point(m->length * mm / 2, (double)(top_fits ? top : top + 1) * h));
-  notch(b, rectangle((m->length / 2 - 1.27) * mm, 0, 2.54 * mm, m->notch_height * mm), cut);
+  if (extra) add_body(b, point(m->length * mm / 2, (double)(top_fits ? top : top + 1) * h));
+  add_notch(b, rectangle((m->length / 2 - 1.27) * mm, 0, 2.54 * mm, m->notch_height * mm), cut);
 }
 
 static void published_particle_counts(void **unused) {
   (void)unused;
   for (size_t k = 0; k < sizeof beams / sizeof beams[0]; k++) {
-    bench b;
+    filled_lattice b;
     long bonds[2];
     for (int cut = 0; cut < 2; cut++) {
       build_beam(&b, &beams[k], cut, true);
-      rows *w = build(&b);
+      rows *w = fill_rows(&b);
       check_storage(w);
       bonds[cut] = w->bond_count;
       print_message(
@@ -306,7 +262,7 @@ static void published_particle_counts(void **unused) {
           beams[k].length, beams[k].spacing, cut, w->particle_count, w->bond_count, 1e3 * w->width,
           1e3 * w->height, w->pitch);
       assert_int_equal(w->particle_count, beams[k].particles);
-      end(&b, w);
+      fill_end(&b, w);
     }
     assert_int_equal(bonds[0], beams[k].bonds);
     assert_true(bonds[1] < bonds[0]);
@@ -317,10 +273,10 @@ static void published_particle_counts(void **unused) {
  * cut away. */
 static void notch_separates(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   build_beam(&b, &beams[3], true, false);
-  notch(&b, rectangle(-1, 0.0508, 2, 1), true); /* everything above the notch */
-  rows *w = build(&b);
+  add_notch(&b, rectangle(-1, 0.0508, 2, 1), true); /* everything above the notch */
+  rows *w = fill_rows(&b);
   rows_bond *bonds = rows_bonds(w);
   long across = 0, lowest = 0;
   for (long m = 0; m < w->bond_count; m++) {
@@ -332,7 +288,7 @@ static void notch_separates(void **unused) {
   assert_int_equal(across, 0);
   assert_int_equal(lowest, 0);
   free(bonds);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 static void disc_area_converges(void **unused) {
@@ -342,16 +298,16 @@ static void disc_area_converges(void **unused) {
   for (int level = 0; level < 5; level++) {
     double error = 0; /* mean over places of the lattice: a single one is erratic */
     for (int try = 0; try < 8; try++) {
-      bench b;
+      filled_lattice b;
       begin(&b, 0.02 / (1 << level));
       b.lattice.rotation = 5 * try * degree;
       b.lattice.origin[0] = 0.37e-2 * try;
       b.lattice.origin[1] = 0.21e-2 * try * try;
-      body(&b, disc(0.3, -0.2, radius, 0));
-      rows *w = build(&b);
+      add_body(&b, disc(0.3, -0.2, radius, 0));
+      rows *w = fill_rows(&b);
       const double area = (double)w->particle_count * w->volume / b.lattice.mass_thickness;
       error += fabs(area / (acos(-1) * radius * radius) - 1) / 8;
-      end(&b, w);
+      fill_end(&b, w);
     }
     print_message("disc: s/R %.4f, area error %.2e\n", 0.2 / (1 << level), error);
     assert_true(error < before);
@@ -362,26 +318,26 @@ static void disc_area_converges(void **unused) {
 
 static void thicknesses_stay_apart(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 0.01);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  rows *w = build(&b);
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  rows *w = fill_rows(&b);
   w->mass = 3;
   const pl_bond_class c = rows_bond_class(w, 2);
   assert_true(fabs(w->volume - sqrt(3) / 2 * 1e-4 * 0.12) < 1e-18);
   assert_true(c.t == 0.127 && c.V == w->volume && c.mass_i == 3 && c.mass_j == 3);
   assert_true(c.s == 0.01 && c.n == 6 && c.shell == 1);
   assert_true(fabs(hypot(c.chord[0], c.chord[1]) - c.s) < 1e-17);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 static void regions_are_selected(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 6e-3);
   b.lattice.rotation = 17 * degree;
-  body(&b, rectangle(0, 0, 0.2, 0.1));
-  rows *w = build(&b);
+  add_body(&b, rectangle(0, 0, 0.2, 0.1));
+  rows *w = fill_rows(&b);
   int32_t *list;
   const deck_shape shape = disc(0.05, 0.05, 0.02, 0.01);
   long count = rows_select(w, &shape, &list), next = 0;
@@ -406,19 +362,19 @@ static void regions_are_selected(void **unused) {
   one.within = 1e-3;
   assert_int_equal(rows_select(w, &one, &list), 0);
   free(list);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 static void protection_reaches_as_far_as_asked(void **unused) {
   (void)unused;
   static const double radii[] = {0, 0.5, 1, 1.01, 1.74, 5.3, 1e9}; /* spacings */
   for (size_t r = 0; r < sizeof radii / sizeof radii[0]; r++) {
-    bench b;
+    filled_lattice b;
     begin(&b, 6e-3);
     b.lattice.rotation = 23.7 * degree;
-    body(&b, rectangle(0, 0, 0.15, 0.08));
-    notch(&b, rectangle(0.07, 0, 0.001, 0.04), true);
-    rows *w = build(&b);
+    add_body(&b, rectangle(0, 0, 0.15, 0.08));
+    add_notch(&b, rectangle(0.07, 0, 0.001, 0.04), true);
+    rows *w = fill_rows(&b);
     const int32_t feet[] = {0, 13, (int32_t)w->particle_count / 2, (int32_t)w->particle_count - 1};
     rows_protect(w, feet, 4, radii[r] * w->spacing);
     rows_bond *bonds = rows_bonds(w);
@@ -435,14 +391,14 @@ static void protection_reaches_as_far_as_asked(void **unused) {
     }
     free(bonds);
     check_storage(w);
-    end(&b, w);
+    fill_end(&b, w);
   }
 }
 
 /* --- messages -----------------------------------------------------------------------------------
  */
 
-static void expect(bench *b, diag_code code, const char *part) {
+static void expect(filled_lattice *b, diag_code code, const char *part) {
   rows *w = lattice_build(&b->deck, 0, &b->d);
   assert_true(b->d.count >= 1);
   assert_int_equal(b->d.items[0].code, code);
@@ -451,94 +407,95 @@ static void expect(bench *b, diag_code code, const char *part) {
     assert_null(w);
   else
     assert_non_null(w);
-  end(b, w);
+  fill_end(b, w);
 }
 
 static void bad_geometry_is_reported(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 6e-3);
   expect(&b, DIAG_EMPTY_REGION, "has no body");
   begin(&b, 6e-3);
-  body(&b, rectangle(0.001, 0.001, 0.001, 0.001));
+  add_body(&b, rectangle(0.001, 0.001, 0.001, 0.001));
   expect(&b, DIAG_EMPTY_REGION, "contains no site");
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  body(&b,
-       point(3e-3, sqrt(3) * 1e-3)); /* the middle of a triangle: 0.577 spacings from its corners */
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  add_body(
+      &b,
+      point(3e-3, sqrt(3) * 1e-3)); /* the middle of a triangle: 0.577 spacings from its corners */
   expect(&b, DIAG_EMPTY_REGION, "within 3 mm");
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  body(&b, disc(0.05, 0.05, 0.01, 0));
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  add_body(&b, disc(0.05, 0.05, 0.01, 0));
   expect(&b, DIAG_DECK_WARNING, "adds nothing");
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  notch(&b, rectangle(0.2, 0, 0.1, 0.1), true);
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  add_notch(&b, rectangle(0.2, 0, 0.1, 0.1), true);
   expect(&b, DIAG_DECK_WARNING, "cuts no bond");
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  notch(&b, rectangle(-1, -1, 3, 3), true);
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  add_notch(&b, rectangle(-1, -1, 3, 3), true);
   expect(&b, DIAG_EMPTY_REGION, "every site");
 }
 
 /* Refused before anything is allocated. */
 static void absurd_sizes_are_refused(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 1e-6);
-  body(&b, rectangle(0, 0, 10, 10));
+  add_body(&b, rectangle(0, 0, 10, 10));
   expect(&b, DIAG_OUT_OF_BOUNDS, "sites");
   begin(&b, 1e-3);
-  body(&b, rectangle(0, 0, 0.1, 0.1));
-  body(&b, rectangle(50e3, 50e3, 0.1, 0.1));
+  add_body(&b, rectangle(0, 0, 0.1, 0.1));
+  add_body(&b, rectangle(50e3, 50e3, 0.1, 0.1));
   expect(&b, DIAG_OUT_OF_BOUNDS, "sites");
   begin(&b, 1e-12);
-  body(&b, rectangle(0, 0, 1, 1));
+  add_body(&b, rectangle(0, 0, 1, 1));
   expect(&b, DIAG_OUT_OF_BOUNDS, "farther");
   begin(&b, 1e-3);
-  body(&b, rectangle(0, 0, INFINITY, 1));
+  add_body(&b, rectangle(0, 0, INFINITY, 1));
   expect(&b, DIAG_OUT_OF_BOUNDS, "farther");
   begin(&b, 1e-3);
-  body(&b, rectangle(0, 0, NAN, 1));
+  add_body(&b, rectangle(0, 0, NAN, 1));
   expect(&b, DIAG_OUT_OF_BOUNDS, "farther");
   begin(&b, 0);
-  body(&b, rectangle(0, 0, 1, 1));
+  add_body(&b, rectangle(0, 0, 1, 1));
   expect(&b, DIAG_BAD_VALUE, "positive");
 }
 
 /* The extra particle that is there already is no reason for a message. */
 static void conditional_extra_point(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.06, 0.06));
+  add_body(&b, rectangle(0, 0, 0.06, 0.06));
   rows *w = lattice_build(&b.deck, 0, &b.d);
   const long count = w->particle_count;
   rows_free(w);
-  body(&b, point(0.0301, -0.0001)); /* nearest to (0.03, 0): present */
+  add_body(&b, point(0.0301, -0.0001)); /* nearest to (0.03, 0): present */
   w = lattice_build(&b.deck, 0, &b.d);
   assert_int_equal(w->particle_count, count);
   assert_int_equal(b.d.count, 0);
   rows_free(w);
-  body(&b, point(0.0661, 0.0001)); /* one site beyond the right end */
+  add_body(&b, point(0.0661, 0.0001)); /* one site beyond the right end */
   w = lattice_build(&b.deck, 0, &b.d);
   assert_int_equal(w->particle_count, count + 1);
   assert_int_equal(b.d.count, 0);
   check_storage(w);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 /* The first body that holds a site is its body; bodies of other lattices are counted, too. */
 static void particles_know_their_bodies(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.06, 0.02));
-  body(&b, rectangle(0, 0, 1, 1));
-  body(&b, rectangle(0, 0, 0.06, 0.06));
-  body(&b, point(0.066, 0));
+  add_body(&b, rectangle(0, 0, 0.06, 0.02));
+  add_body(&b, rectangle(0, 0, 1, 1));
+  add_body(&b, rectangle(0, 0, 0.06, 0.06));
+  add_body(&b, point(0.066, 0));
   b.bodies[1].lattice = "steel";
-  rows *w = build(&b);
+  rows *w = fill_rows(&b);
   int32_t *of = must_calloc((size_t)w->particle_count, sizeof *of);
   long counts[4] = {0};
   rows_bodies(w, &b.deck, 0, of);
@@ -550,19 +507,19 @@ static void particles_know_their_bodies(void **unused) {
   }
   assert_true(counts[0] > 10 && counts[1] == 0 && counts[2] > 10 && counts[3] == 1);
   free(of);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 static void other_lattices_bodies_stay_out(void **unused) {
   (void)unused;
-  bench b;
+  filled_lattice b;
   begin(&b, 6e-3);
-  body(&b, rectangle(0, 0, 0.06, 0.06));
-  body(&b, rectangle(0.06, 0, 0.06, 0.06));
+  add_body(&b, rectangle(0, 0, 0.06, 0.06));
+  add_body(&b, rectangle(0.06, 0, 0.06, 0.06));
   b.bodies[1].lattice = "steel"; /* not this lattice's */
-  rows *w = build(&b);
+  rows *w = fill_rows(&b);
   assert_true(w->width < 0.0601);
-  end(&b, w);
+  fill_end(&b, w);
 }
 
 /* Offsets lead from absent sites, too, and must not lead to a particle along one of its bonds:
@@ -573,22 +530,22 @@ static void absent_sites_have_no_neighbours(void **state) {
   for (int kind = 0; kind < 4; kind++)
     for (int columns = 1; columns <= 26; columns++)
       for (int horizon = 1; horizon <= (kind == 2 ? 2 : 3); horizon++) { /* fcc: 3 are too many */
-        bench b;
+        filled_lattice b;
         begin(&b, 0.01);
         b.lattice.kind = (char *)(uintptr_t)kinds[kind];
         b.lattice.horizon = horizon;
         const double width = 0.01 * columns - 0.004;
         if (kind < 2)
-          body(&b, rectangle(0, 0, width, 0.06));
+          add_body(&b, rectangle(0, 0, width, 0.06));
         else
-          body(&b, (deck_shape){.kind = SHAPE_BOX, .size = {width, 0.03, 0.03}});
-        rows *w = build(&b);
+          add_body(&b, (deck_shape){.kind = SHAPE_BOX, .size = {width, 0.03, 0.03}});
+        rows *w = fill_rows(&b);
         for (long site = rows_start(w, 0); site < rows_start(w, w->row_count); site++)
           for (int k = 0; k < 2 * w->directions; k++)
             if (!w->present[site] && rows_has_neighbour(w, site, k))
               fail_msg("%s, %d columns, horizon %d: an absent site has neighbour %d", kinds[kind],
                        columns, horizon, k);
-        end(&b, w);
+        fill_end(&b, w);
       }
 }
 

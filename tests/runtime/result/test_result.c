@@ -127,8 +127,8 @@ static void resumed_after_a_kill(void **state) {
     if (k == 2) two = result_mark(r);
     write_frame(r, k);
   }
-  result_close(
-      r); /* as a kill would leave it: three frames, of which the checkpoint knows two, and half a fourth */
+  /* as a kill would leave it: three frames, of which the checkpoint knows two, and half a fourth */
+  result_close(r);
   int file = open("result_b.h5.frames", O_WRONLY | O_APPEND);
   assert_int_equal(write(file, "garbage", 7), 7);
   close(file);
@@ -336,7 +336,7 @@ static void pictures(void **state) {
   assert_non_null(strstr(error, "2 frames"));
 }
 
-/* --- kinds of fields ---------------------------------------------------------------------------- */
+/* --- kinds of fields -------------------------------------------------------------------------- */
 
 enum { KINDS = 6 };
 static const result_field of_kinds[KINDS] = {
@@ -470,7 +470,7 @@ static void texts_of_fixed_length_are_read(void **state) {
   unlink("fixed.h5");
 }
 
-/* --- what pictures show ------------------------------------------------------------------------- */
+/* --- what pictures show ----------------------------------------------------------------------- */
 
 /* Pixels of a colour in the part of a picture between its head and its foot. */
 static long pixels(const char *path, colour ink) {
@@ -532,7 +532,7 @@ static void maps_show_their_field(void **state) {
   assert_non_null(strstr(error, "add 'displacement' to `fields` in &output"));
 }
 
-/* --- in space ----------------------------------------------------------------------------------- */
+/* --- in space --------------------------------------------------------------------------------- */
 
 enum { SIDE = 4, CUBE = SIDE * SIDE * SIDE, LINKS = 3 * SIDE * SIDE * (SIDE - 1) };
 

@@ -3,6 +3,7 @@
 #ifndef PERILAT_TESTS_CHAIN_H
 #define PERILAT_TESTS_CHAIN_H
 
+#include "runtime/interaction/sweep.h"
 #include "tests/runtime/small_run.h"
 
 #define SPACING   0.01
@@ -32,6 +33,14 @@ static inline void must_open(small_run *r, const pl_law *law, const char *text) 
   small_open(r, law, text);
   if (!r->simulation) small_print(r);
   assert_non_null(r->simulation);
+}
+
+/* Both particles of a coasting chain at 2 m/s along x. */
+static inline void must_coast(small_run *r, const char *text) {
+  must_open(r, &elastic_bar, text);
+  body *b = simulation_state(r->simulation)->body;
+  for (int p = 0; p < 2; p++)
+    b->velocity[0][b->lattice->particle_site[p]] = 2;
 }
 
 #endif

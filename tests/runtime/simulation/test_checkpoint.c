@@ -11,7 +11,7 @@
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/checkpoint.h"
 #include "runtime/simulation/simulation_save.h"
-#include "tests/runtime/small_run.h"
+#include "tests/runtime/simulation/same_runs.h"
 
 static const char path[] = "test_checkpoint.state";
 static const char fingerprint[] = "deck 1, law 2";
@@ -60,24 +60,8 @@ static int go_with_frames(small_run *r, long steps) {
   return frames;
 }
 
-static void same_runs(small_run *a, small_run *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
-  assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
-  for (int d = 0; d < 3; d++) {
-    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
-    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], site);
-  }
-  assert_memory_equal(x->field[0], y->field[0], 3 * site);
-  const double *p, *q;
-  const long samples = simulation_history(a->simulation, &p);
-  assert_int_equal(simulation_history(b->simulation, &q), samples);
-  assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
+static void same_runs_and_peaks(const small_run *a, const small_run *b) {
+  same_runs(a, b);
   for (int m = 0; m < 3; m++) {
     double s, t;
     assert_true(simulation_monitor_peak(a->simulation, m, &s) ==
@@ -111,7 +95,7 @@ static void a_resumed_run_gives_the_same_bits(void **state) {
     assert_true(frames.count == before && frames.sum == 9);
     assert_int_equal(simulation_step_done(second.simulation), stops[k]);
     assert_int_equal(before + go_with_frames(&second, total), 7);
-    same_runs(&straight, &second);
+    same_runs_and_peaks(&straight, &second);
     small_close(&second);
   }
   small_close(&straight);
@@ -153,7 +137,7 @@ static void an_impulse_is_not_lost(void **state) {
     assert_true(
         simulation_restore(second.simulation, path, fingerprint, NULL, error, sizeof error));
     go_with_frames(&second, 40 - stop);
-    same_runs(&straight, &second);
+    same_runs_and_peaks(&straight, &second);
     small_close(&first);
     small_close(&second);
   }
@@ -192,7 +176,7 @@ static void refuse(small_run *r, const char *sentence) {
 /* The runs have gone on since the file was written: whatever was taken from it would be seen. */
 static void refuse_untouched(small_run *r, small_run *untouched, const char *sentence) {
   refuse(r, sentence);
-  same_runs(r, untouched);
+  same_runs_and_peaks(r, untouched);
 }
 
 static void damaged_and_foreign_files_are_refused(void **state) {

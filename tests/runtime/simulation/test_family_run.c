@@ -10,7 +10,7 @@
 #include "runtime/interaction/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
-#include "tests/runtime/small_run.h"
+#include "tests/runtime/simulation/same_runs.h"
 
 /* Everything that moves and takes energy; the format takes threads, the law's values and more
    groups. */
@@ -49,15 +49,7 @@ static void an_elastic_body_loses_nothing(void **state) {
   (void)state;
   small_run r;
   open_busy(&r, 2, "", "/");
-  assert_int_equal(small_go(&r), STEP_END);
-  const double external = small_largest(&r, "energy/external");
-  assert_true(external > 1e-3 && small_largest(&r, "energy/stored") > 0.1 * external);
-  assert_true(small_largest(&r, "energy/dissipated_damping") > 1e-3 * external);
-  print_message("elastic body: imbalance %.1e, taken by the law %.1e of the work\n",
-                small_largest(&r, "energy/imbalance") / external,
-                small_largest(&r, "energy/dissipated_damage") / external);
-  assert_true(small_largest(&r, "energy/imbalance") <= 1e-12 * external);
-  assert_true(small_largest(&r, "energy/dissipated_damage") <= 1e-6 * external);
+  loses_nothing(&r);
   small_close(&r);
 }
 
@@ -86,26 +78,6 @@ static void a_breaking_body_takes_energy(void **state) {
 }
 
 /* --- same bits -------------------------------------------------------------------------------- */
-
-static void same_runs(small_run *a, small_run *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
-  assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
-  for (int d = 0; d < 2; d++) {
-    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
-    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], site);
-  }
-  assert_memory_equal(x->field[0], y->field[0], site);
-  assert_memory_equal(x->field[1], y->field[1], 6 * site);
-  const double *p, *q;
-  const long samples = simulation_history(a->simulation, &p);
-  assert_int_equal(simulation_history(b->simulation, &q), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
 
 static const char broken[] = "S_t = 1e-4 tau = 1e-7";
 

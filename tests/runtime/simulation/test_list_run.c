@@ -10,7 +10,7 @@
 #include "runtime/interaction/sweep.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
-#include "tests/runtime/small_run.h"
+#include "tests/runtime/simulation/same_runs.h"
 
 static const char broken[] = "S_t = 1e-4 tau = 1e-8";
 
@@ -53,35 +53,8 @@ static void energies_add_up(void **state) {
   (void)state;
   small_run r;
   open_busy(&r, 2, "", "");
-  assert_int_equal(small_go(&r), STEP_END);
-  const double external = small_largest(&r, "energy/external");
-  assert_true(external > 1e-3 && small_largest(&r, "energy/stored") > 0.1 * external);
-  assert_true(small_largest(&r, "energy/dissipated_damping") > 1e-3 * external);
-  print_message("imbalance %.1e, taken by the law %.1e of the work\n",
-                small_largest(&r, "energy/imbalance") / external,
-                small_largest(&r, "energy/dissipated_damage") / external);
-  assert_true(small_largest(&r, "energy/imbalance") <= 1e-12 * external);
-  assert_true(small_largest(&r, "energy/dissipated_damage") <= 1e-6 * external);
+  loses_nothing(&r);
   small_close(&r);
-}
-
-static void same_runs(const small_run *a, const small_run *b) {
-  const sweep *one = simulation_state(a->simulation), *two = simulation_state(b->simulation);
-  const size_t site = (size_t)one->body->lattice->size * sizeof(double);
-  assert_int_equal(one->body->lattice->size, two->body->lattice->size);
-  for (int d = 0; d < one->body->dof; d++) {
-    assert_memory_equal(one->body->displacement[d], two->body->displacement[d], site);
-    assert_memory_equal(one->body->velocity[d], two->body->velocity[d], site);
-  }
-  assert_memory_equal(one->field[0], two->field[0], site);
-  const long samples = simulation_history(a->simulation, NULL);
-  assert_int_equal(simulation_history(b->simulation, NULL), samples);
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    const double *here, *there;
-    simulation_series(a->simulation, k, NULL, &here);
-    simulation_series(b->simulation, k, NULL, &there);
-    assert_memory_equal(here, there, (size_t)samples * sizeof(double));
-  }
 }
 
 static void threads_and_stops_do_not_change_a_bit(void **state) {

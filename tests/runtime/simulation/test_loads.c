@@ -86,8 +86,8 @@ static void each_end_moment_comes_in_its_own_time(void **state) {
   double momentum = 0;
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     const long q = w->body->lattice->particle_site[p];
-    momentum +=
-        w->body->mass[0] * (w->body->lattice->x[q] * w->body->velocity[1][q] - w->body->lattice->y[q] * w->body->velocity[0][q]);
+    momentum += w->body->mass[0] * (w->body->lattice->x[q] * w->body->velocity[1][q] -
+                                    w->body->lattice->y[q] * w->body->velocity[0][q]);
   }
   assert_true(fabs(momentum / (0.05 * (TURNS - 0.5) * w->body->time_step) - 1) < 1e-6);
   small_close(&r);
@@ -177,8 +177,8 @@ static void reactions_balance_the_momentum(void **state) {
     for (long c = 0; c < l->constraint_count;
          c++) { /* what begins to move at once is no reaction */
       const int d = l->constraints[c].component;
-      outside[d] +=
-          w->body->mass[d] * w->body->decay * l->constraints[c].impulse / (w->body->time_step * motion_force_part(w->body));
+      outside[d] += w->body->mass[d] * w->body->decay * l->constraints[c].impulse /
+                    (w->body->time_step * motion_force_part(w->body));
     }
     sweep_step(w);
     for (int block = 0; block < w->body->block_count; block++)
@@ -274,7 +274,8 @@ static void each_of_many_drives_goes_its_own_way(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   for (int k = 0; k < MANY; k++) {
     const double way = 1e-5 * (k + 1) * 1e-6;
-    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) < 1e-12);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) <
+                1e-12);
   }
   small_close(&r);
 }
@@ -290,7 +291,8 @@ static void each_of_many_forces_is_its_own(void **state) {
   for (int k = 0; k < MANY; k++) {
     const double slope = (k + 1) * 1e-6 / 1e-5;
     const double way = slope * 1e-21 * 100 * (100 * 100 - 1) / (6 * particle_mass());
-    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) < 1e-9);
+    assert_true(fabs(w->body->displacement[1][w->body->lattice->particle_site[k]] / way - 1) <
+                1e-9);
   }
   small_close(&r);
 }

@@ -12,7 +12,7 @@
 #include "runtime/simulation/relaxation.h"
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
-#include "tests/runtime/small_run.h"
+#include "tests/runtime/simulation/same_runs.h"
 
 /* A plate drawn out, its ends held; `motion` is that of the right one, in a deck's words. */
 static void open_moved(small_run *r, const pl_law *kernel, const char *keys, const char *values,
@@ -289,24 +289,6 @@ static void impatience_is_counted(void **state) {
 /* --- same bits -------------------------------------------------------------------------------- */
 
 static const char keys_of[] = "increments = 12 tolerance = 1e-3";
-
-static void same_runs(small_run *a, small_run *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
-  const size_t site = (size_t)x->body->lattice->size * sizeof(double);
-  assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
-  for (int d = 0; d < 2; d++)
-    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], site);
-  assert_memory_equal(x->field[0], y->field[0], site);
-  const double *p, *q;
-  const long samples = simulation_history(a->simulation, &p);
-  assert_int_equal(simulation_history(b->simulation, &q), samples);
-  assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  for (int k = 0; k < simulation_series_count(a->simulation); k++) {
-    simulation_series(a->simulation, k, NULL, &p);
-    simulation_series(b->simulation, k, NULL, &q);
-    assert_memory_equal(p, q, (size_t)samples * sizeof(double));
-  }
-}
 
 static void threads_and_resuming_change_no_bit(void **state) {
   (void)state;

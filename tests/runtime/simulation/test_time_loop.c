@@ -22,10 +22,7 @@ static void a_stop_ends_the_run_at_its_sample(void **state) {
            "&output frames = 4 sample = 1e-6 energy = .false. /\n",
            1.0 * SPACING);
   small_run r;
-  must_open(&r, &elastic_bar, text);
-  sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] =
-      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  must_coast(&r, text);
   int frames = 0;
   step_status status = STEP_OK;
   while (status == STEP_OK) {
@@ -74,10 +71,7 @@ static void a_stop_waits_for_its_time(void **state) {
            "&output frames = 0 sample = 1e-6 energy = .false. /\n",
            1.0 * SPACING);
   small_run r;
-  must_open(&r, &elastic_bar, text);
-  sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] =
-      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  must_coast(&r, text);
   assert_int_equal(small_go(&r), STEP_STOPPED);
   assert_int_equal(simulation_step_done(r.simulation), 50);
   small_close(&r);
@@ -97,10 +91,7 @@ static void times_between_steps_are_rounded_to_the_nearest(void **state) {
            "&output frames = 0 sample = 2.7e-7 energy = .false. /\n",
            1.0 * SPACING);
   small_run r;
-  must_open(&r, &elastic_bar, text);
-  sweep *w = simulation_state(r.simulation);
-  w->body->velocity[0][w->body->lattice->particle_site[0]] =
-      w->body->velocity[0][w->body->lattice->particle_site[1]] = 2;
+  must_coast(&r, text);
   assert_int_equal(small_go(&r), STEP_END);
   const double *time, *zeroed, *mean;
   static const int steps[] = {0, 3, 5, 8, 11, 14, 16};
