@@ -6,6 +6,7 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
+#include "generator/lower/lowered.h"
 #include "runtime/deck/bravais.h"
 
 enum { ERROR_LENGTH = 4096 };
@@ -175,21 +176,21 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
   return found;
 }
 
-/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's
+/* The parameters that the deck's random fields name. Their order decides nothing: the law's
    does. */
-static bool plan_material(const deck_material *m, model *out, diagnostics *said) {
-  int *varying = must_calloc((size_t)m->varying_count + 1, sizeof *varying), count = 0;
+static bool find_variation(const deck_material *m, model *out, law_variation *v,
+                           diagnostics *said) {
+  int *varying = arena_alloc(out->memory, ((size_t)m->varying_count + 1) * sizeof *varying);
   bool good = true;
+  *v = (law_variation){.varying = varying};
   for (int k = 0; k < m->varying_count; k++) {
     int found = find_varying(m, k, out->law, said);
     good = good && found >= 0;
-    int at = count++;
+    int at = v->varying_count++;
     for (; at > 0 && varying[at - 1] > found; at--)
       varying[at] = varying[at - 1];
     varying[at] = found;
   }
-  good = good && model_plan_varying(out, varying, count);
-  free(varying);
   return good;
 }
 
@@ -199,28 +200,12 @@ static bool needs_families(const deck_lattice *l, const law *of) {
   return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
 }
 
-/* Families have one value of each parameter. */
-static bool can_vary(const deck_material *m, const law *of, bool families, diagnostics *said) {
-  if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
-  if (families) {
-    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "on this lattice the central law `%s` runs as one of families, whose parameters "
-                "cannot differ from bond to bond",
-                of->tree->name);
-    diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");
-  } else
-    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                of->tree->name);
-  return false;
-}
-
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said) {
-  if (!take_setting(m, l, out, said)) return false;
-  const bool families = l && needs_families(l, out->law);
-  if (!can_vary(m, out->law, families, said)) return false;
-  return families ? model_plan_of_families(out) : plan_material(m, out, said);
+  law_variation v;
+  if (!take_setting(m, l, out, said) || !find_variation(m, out, &v, said)) return false;
+  return l && needs_families(l, out->law) ? model_plan_of_families(out, &v)
+                                          : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

@@ -59,7 +59,7 @@ static components lower_own_name(lowering *c, const expr *e) {
   case SYMBOL_QUANTITY:
     return lower_quantity_name(c, e, (builtin_quantity)e->symbol->index);
   case SYMBOL_PARAMETER:
-    return scalar(lower_parameter(c->graph, c->law, e->symbol->index));
+    return scalar(lower_own_parameter(c, e->symbol->index));
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
     return scalar(lower_field_name(c, e));
@@ -280,7 +280,8 @@ static ir_node lower_diff(lowering *c, const expr *e) {
                       "nothing can be differentiated by this in a plane");
   if (lower_is_state_law(c) && !ir_is_uniform(c->graph, f) && !ir_is_uniform(c->graph, x))
     return lower_fail(c, e->where,
-                      "in a law of families only a parameter can be differentiated by yet");
+                      "in a law of families only a parameter that is the same everywhere can be "
+                      "differentiated by yet");
   if (ir_count(c->graph) > MOST_NODES) /* derivatives of derivatives grow without another visit */
     return lower_fail(c, e->where,
                       "with its derivatives written out the law is too large to compile");

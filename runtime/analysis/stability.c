@@ -133,9 +133,9 @@ static void find_limit(const pl_law *law, const double *parameters, const random
   bool definite;
   out->at_surface = false;
   out->least = 0;
-  if (w->list) {
+  if (w->list || (fields && law->kind == PL_STATE)) {
     out->limit = 0;
-    body_limit(law, parameters, NULL, w, out);
+    body_limit(law, parameters, fields ? fields->value : NULL, w, out);
     return;
   }
   crystal c = crystal_of(law, parameters, fields, w, &definite);
