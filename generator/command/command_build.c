@@ -74,11 +74,11 @@ static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law
   int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
   const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
   out->deck = k;
-  bool good =
-      k && material_law_open(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
+  bool good = k && material_law_open(deck_material_of(k, 0), &k->lattices[0], deck_path,
+                                     &out->model, &said);
   out->opened = k != NULL && out->model.memory != NULL;
   if (good) {
-    out->name = k->materials[0].model;
+    out->name = deck_material_of(k, 0)->model;
     list_choices(out->model.law, &out->choices);
   }
   if (!good) diag_print(&said, stderr);

@@ -161,8 +161,8 @@ static int dump_deck(const run_options *o, const char *stage) {
   diag_begin(&c.said, &c.sources);
   const int file = source_add(&c.sources, o->deck_path, text, length);
   const deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
-  const bool good =
-      k && material_law_open(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
+  const bool good = k && material_law_open(deck_material_of(k, 0), &k->lattices[0], o->deck_path,
+                                           &c.model, &c.said);
   diag_print(&c.said, stderr);
   if (c.model.memory) diag_print(&c.model.said, stderr);
   const int status = good ? dump_stage(&c.model, stage) : 1;

@@ -11,7 +11,7 @@
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/simulation/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
@@ -78,7 +78,7 @@ static void announce_body(const run *r, int lattice) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);
   const simulation_law *l = &r->laws[lattice];
-  const random_fields *f = simulation_fields(r->simulation);
+  const parameter_planes *f = simulation_planes(r->simulation);
   implied_elasticity e;
   double E[3];
   if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
@@ -135,17 +135,21 @@ static void announce_notches(const run *r, int lattice) {
   if (left > 0) printf("             and %d more\n", left);
 }
 
-/* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
-static void announce_fields(const run *r) {
-  const random_fields *f = simulation_fields(r->simulation);
+/* "S_t differs from bond to bond: 1.02e-4 to 1.33e-4, mean 1.18e-4": random fields, regions. */
+static void announce_planes(const run *r) {
+  const parameter_planes *f = simulation_planes(r->simulation);
   const pl_law *kernel = r->laws[0].law;
+  const char *places =
+      kernel->varying_place == PL_ON_PARTICLE ? "particle to particle" : "bond to bond";
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
-    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
-           "%.5g\n",
-           p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
-           r->laws[0].parameters[kernel->varying[k]]);
+    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", f->random[k] ? "field" : "regions",
+           p->name, f->random[k] ? places : "region to region", f->smallest[k], f->largest[k],
+           *in ? " " : "", in);
+    if (f->random[k])
+      printf(", mean of the distribution %.5g", r->laws[0].parameters[kernel->varying[k]]);
+    putchar('\n');
   }
 }
 
@@ -204,7 +208,7 @@ void announce(const run *r) {
     announce_law(r, k);
     announce_body(r, k);
   }
-  announce_fields(r);
+  announce_planes(r);
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else

@@ -12,7 +12,7 @@
 struct bad_search {
   const sweep *state;
   const double *parameters; /* of the law */
-  double *const *varying;   /* of random fields */
+  double *const *varying;   /* that differ in space */
   const rows_bond *bonds;
   const run_clock *clock;
   bad_state found;

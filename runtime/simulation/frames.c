@@ -67,7 +67,11 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
 }
 
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  bond_values(of, of->parameter[from->index], values);
+  double *array = of->parameter[from->index];
+  if (of->state->law->varying_place == PL_ON_PARTICLE)
+    site_values(of, &array, 1, values);
+  else
+    bond_values(of, array, values);
 }
 
 /* --- fields of any law ------------------------------------------------------------------------ */
@@ -218,7 +222,8 @@ static void add_of_law(frame_set *f) {
     const pl_parameter *p = &law->parameters[law->varying[k]];
     if (!is_asked(asked, p->name)) continue;
     add(f,
-        (frame_field){p->name, p->unit, true, 1, "other", words_of(p->doc, "parameter of the law")},
+        (frame_field){p->name, p->unit, law->varying_place != PL_ON_PARTICLE, 1, "other",
+                      words_of(p->doc, "parameter of the law")},
         values_of_parameter, k);
   }
 }

@@ -20,7 +20,7 @@ typedef struct frames_of {
   sweep *state;
   const loads *loads;
   const rows_bond *bonds;   /* [bond_count] */
-  double *const *parameter; /* [varying] of random fields */
+  double *const *parameter; /* [varying] of those that differ in space */
   const run_clock *clock;
 } frames_of;
 

@@ -24,27 +24,22 @@ static int choose_threads(const simulation *s) {
   return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
 }
 
-static bool open_fields(simulation *s, diagnostics *d) {
+static bool open_planes(simulation *s, const simulation_law *of, diagnostics *d) {
   const deck *k = s->deck;
-  if (k->field_count > 0 && s->law->kind == PL_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, k->fields[0].item.where,
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                s->law->name);
-    return false;
-  }
-  if (k->field_count == 0 && s->law->varying_count == 0) return true;
-  s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
-  return s->fields != NULL;
+  if (k->field_count == 0 && of->regional_count == 0 && s->law->varying_count == 0) return true;
+  s->planes = parameter_planes_new(k, 0, s->lattice, s->law, s->parameters, of->regional,
+                                   of->regional_count, d);
+  return s->planes != NULL;
 }
 
 /* What asks for the values of parameters. */
-static bool open_material(simulation *s, diagnostics *d) {
+static bool open_material(simulation *s, const simulation_law *of, diagnostics *d) {
   const deck *k = s->deck;
-  const bool fields = open_fields(s, d), mass = law_fits_motion(s->law, k, d);
+  const bool planes = open_planes(s, of, d), mass = law_fits_motion(s->law, k, d);
   if (mass) rows_set_density(s->lattice, material_density(s->law, s->parameters));
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
-  return fields && mass &&
-         step_choose(k, s->law, s->parameters, s->fields, s->lattice, &s->limit, d) &&
+  return planes && mass &&
+         step_choose(k, s->law, s->parameters, s->planes, s->lattice, &s->limit, d) &&
          step_plan_make(k, &s->limit, &s->plan, d);
 }
 
@@ -60,7 +55,7 @@ static bool open_lattice(simulation *s, diagnostics *d) {
 
 /* Everything that can be said of the deck with this lattice, or nothing and true. Laws and
    parameters may be missing, when they are wrong themselves. */
-static bool is_sound(simulation *s, diagnostics *d) {
+static bool is_sound(simulation *s, const simulation_law *of, diagnostics *d) {
   enum { ANY_DOF = 3 };
   const deck *k = s->deck;
   const bool fits = s->law && law_fits_lattice(s->law, k, s->lattice, d);
@@ -69,7 +64,7 @@ static bool is_sound(simulation *s, diagnostics *d) {
   law_fits_protection(s->law, k, d);
   const bool frames = deck_lacks(k, "output") || frames_check(&k->output, s->law, d),
              watched = monitors_check(k, s->law, d);
-  return s->parameters && open_material(s, d) && s->loads && frames && watched;
+  return s->parameters && open_material(s, of, d) && s->loads && frames && watched;
 }
 
 static bool is_quasi_static(const simulation *s) {
@@ -82,7 +77,7 @@ static bool open_state(simulation *s, diagnostics *d) {
                              s->deck->output.energy, is_quasi_static(s));
   s->body = s->state->body;
   s->team = team_new(s->body->block_count);
-  if (s->fields) s->state->parameter = s->fields->value;
+  if (s->planes) s->state->parameter = s->planes->value;
   if (s->deck->gravity_count > 0) body_add_gravity(s->body);
   return loads_initial_velocity(s->loads, s->body, d);
 }
@@ -116,8 +111,8 @@ static bool open_frames(simulation *s, diagnostics *d) {
   return law_fits_result(s->law, s->deck, fields, count, d);
 }
 
-static bool set_up(simulation *s, diagnostics *d) {
-  if (!open_lattice(s, d) || !is_sound(s, d) || deck_lacks(s->deck, NULL)) return false;
+static bool set_up(simulation *s, const simulation_law *of, diagnostics *d) {
+  if (!open_lattice(s, d) || !is_sound(s, of, d) || deck_lacks(s->deck, NULL)) return false;
   if (!open_state(s, d)) return false;
   open_clock(s);
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
@@ -132,7 +127,7 @@ simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law
   s->law = laws[0].law;
   s->parameters = laws[0].parameters;
   s->lattice = lattice;
-  if (set_up(s, d) && d->errors == 0) return s;
+  if (set_up(s, &laws[0], d) && d->errors == 0) return s;
   simulation_free(s);
   return NULL;
 }
@@ -148,7 +143,7 @@ void simulation_free(simulation *s) {
   loads_free(s->loads);
   sweep_free(s->state);
   team_free(s->team);
-  random_fields_free(s->fields);
+  parameter_planes_free(s->planes);
   free(s->bonds);
   if (s->lattice) rows_free(s->lattice);
   frames_free(s->frames);
@@ -157,8 +152,8 @@ void simulation_free(simulation *s) {
   free(s);
 }
 
-const random_fields *simulation_fields(const simulation *s) {
-  return s->fields;
+const parameter_planes *simulation_planes(const simulation *s) {
+  return s->planes;
 }
 
 const rows *simulation_rows(const simulation *s, int lattice) {
@@ -200,7 +195,7 @@ double simulation_memory(const simulation *s) {
       g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
               : 0;
   return (double)s->body->bytes + list * (double)g->size +
-         (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
+         (s->planes ? (double)s->planes->bytes : 0) + looks * (double)s->lattice->size +
          site * (double)s->lattice->size +
          (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
          (double)sizeof(double) * ((double)s->history.capacity * (s->history.series_count + 1) +

@@ -4,7 +4,7 @@
 
 #include "runtime/base/team.h"
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/simulation/frames.h"
 #include "runtime/simulation/history.h"
 #include "runtime/simulation/ledger.h"
@@ -20,8 +20,8 @@ struct simulation {
   const deck *deck;
   rows *lattice;
   const pl_law *law;
-  double *parameters;    /* the caller's; those of random fields become their mean */
-  random_fields *fields; /* NULL without */
+  double *parameters;       /* the caller's; those of random fields become their mean */
+  parameter_planes *planes; /* NULL without */
   sweep *state;
   body *body; /* of the state */
   team *team; /* of the threads; each has a block of the body */

@@ -30,7 +30,7 @@ static bool ends_after_a_step(const step_limit *limit, const deck *k, diagnostic
 }
 
 bool step_choose(const deck *of, const pl_law *law, const double *parameters,
-                 const random_fields *fields, const rows *lattice, step_limit *limit,
+                 const parameter_planes *fields, const rows *lattice, step_limit *limit,
                  diagnostics *d) {
   const deck_simulation *k = &of->simulation;
   stability_limit(law, parameters, fields, lattice, limit);

@@ -6,7 +6,7 @@
 #include "runtime/analysis/step_limit.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows.h"
 
 typedef struct step_plan {
@@ -18,7 +18,7 @@ typedef struct step_plan {
 /* The stable step of the virgin body, and the deck's part of it. False with a diagnostic where none
    is stable. */
 bool step_choose(const deck *k, const pl_law *law, const double *parameters,
-                 const random_fields *fields, const rows *lattice, step_limit *limit,
+                 const parameter_planes *fields, const rows *lattice, step_limit *limit,
                  diagnostics *d);
 /* False with a diagnostic where there are too many steps. */
 bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, diagnostics *d);
