@@ -100,7 +100,8 @@ static void announce_body(const run *r, int lattice) {
     print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
     printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
   }
-  puts(": edges and notches lack bonds");
+  puts(f && f->count > 0 ? ": it is not uniform, and edges and notches lack bonds"
+                         : ": edges and notches lack bonds");
 }
 
 static void announce_notch(const notch_depth *n, int number, bool only) {
