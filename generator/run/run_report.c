@@ -31,9 +31,10 @@ static void print_quantity(const char *text, double value, const char *unit_name
 static void announce_uniform_strain(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  const simulation_law *l = &r->laws[lattice];
+  const parameter_planes *f = simulation_planes(r->simulation);
   uniform_response u;
-  if (!uniform_strain_response(r->laws[lattice].law, r->laws[lattice].parameters, w, plane_strain,
-                               &u)) {
+  if (!uniform_strain_response(l->law, l->parameters, f ? f->value : NULL, w, plane_strain, &u)) {
     printf(": no stiffness\n");
     return;
   }

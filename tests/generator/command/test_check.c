@@ -165,8 +165,7 @@ static void a_length_of_its_own_is_judged_on_the_lattice_of_the_deck(void **stat
   expect(w, "check repulsion.plm", 1, "[rest-force]");
   expect(w, "check two.nml", 0, "no errors");
   /* that the two verdicts differ both say */
-  assert_non_null(
-      strstr(w->said, "with these values on this lattice, but not with all"));
+  assert_non_null(strstr(w->said, "with these values on this lattice, but not with all"));
   expect(w, "check two.nml --set material.reach=2.1", 1, "[rest-force]");
 }
 
@@ -210,6 +209,8 @@ static void commands_agree(void **state) {
          "E differs from particle to particle");
   expect(w, "check field.nml --set material.model=splm_elastic --set field.on=bond", 1,
          "its parameters have values on particles");
+  expect(w, "check field.nml --set material.model=splm_elastic --set lattice.kind=blue_noise", 0,
+         "E differs from particle to particle");
   /* upper and lower case differ in laws */
   expect(w, "info plain.plm", 0, "stable step           2");
   shell(w, "sed 's/rho/Rho/' plain.plm > other.plm");
