@@ -12,7 +12,7 @@
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/parameter_planes.h"
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -32,7 +32,7 @@ static void announce_uniform_strain(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
   const simulation_law *l = &r->laws[lattice];
-  const parameter_planes *f = simulation_planes(r->simulation);
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
   uniform_response u;
   if (!uniform_strain_response(l->law, l->parameters, f ? f->value : NULL, w, plane_strain, &u)) {
     printf(": no stiffness\n");
@@ -50,8 +50,8 @@ static void announce_law(const run *r, int lattice) {
   const pl_law *kernel = r->laws[lattice].law;
   implied_elasticity e;
   printf("  law        %s", kernel->name);
-  if (r->open_models > lattice && r->models[lattice].path) {
-    const char *path = r->models[lattice].path;
+  if (r->model_of[lattice] && r->model_of[lattice]->path) {
+    const char *path = r->model_of[lattice]->path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
   if (w->list) {
@@ -79,7 +79,7 @@ static void announce_body(const run *r, int lattice) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);
   const simulation_law *l = &r->laws[lattice];
-  const parameter_planes *f = simulation_planes(r->simulation);
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
   implied_elasticity e;
   double E[3];
   if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
@@ -124,6 +124,7 @@ static void announce_notches(const run *r, int lattice) {
   const deck *k = r->deck;
   int said = 0, left = 0;
   for (int n = 0; n < k->notch_count; n++) {
+    if (strcmp(k->notchs[n].lattice, k->lattices[lattice].name) != 0) continue;
     if (said == MOST) {
       left++;
       continue;
@@ -138,19 +139,19 @@ static void announce_notches(const run *r, int lattice) {
 }
 
 /* "S_t differs from bond to bond: 1.02e-4 to 1.33e-4, mean 1.18e-4": random fields, regions. */
-static void announce_planes(const run *r) {
-  const parameter_planes *f = simulation_planes(r->simulation);
-  const pl_law *kernel = r->laws[0].law;
-  const char *places =
-      kernel->varying_place == PL_ON_PARTICLE ? "particle to particle" : "bond to bond";
+static void announce_planes(const run *r, int lattice) {
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
+  const simulation_law *l = &r->laws[lattice];
+  const bool particles = l->law->varying_place == PL_ON_PARTICLE;
   for (int k = 0; f && k < f->count; k++) {
-    const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
+    const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
+    const char *places = !f->random[k] ? "region to region"
+                         : particles   ? "particle to particle"
+                                       : "bond to bond";
     printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", f->random[k] ? "field" : "regions",
-           p->name, f->random[k] ? places : "region to region", f->smallest[k], f->largest[k],
-           *in ? " " : "", in);
-    if (f->random[k])
-      printf(", mean of the distribution %.5g", r->laws[0].parameters[kernel->varying[k]]);
+           p->name, places, f->smallest[k], f->largest[k], *in ? " " : "", in);
+    if (f->random[k]) printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
     putchar('\n');
   }
 }
@@ -210,15 +211,19 @@ void announce(const run *r) {
     announce_law(r, k);
     announce_body(r, k);
   }
-  announce_planes(r);
+  for (int k = 0; k < r->deck->lattice_count; k++)
+    announce_planes(r, k);
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s rules)\n", 1e6 * limit->step,
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
          limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
          limit->at_surface ? " at a surface" : "");
+  if (r->deck->lattice_count > 1)
+    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  puts(" rules)");
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
@@ -263,8 +268,8 @@ void describe_monitors(const run *r, char *text, size_t size) {
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
   bad_bond_path(r->result_path, path, sizeof path);
-  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL,
-                     &r->laws[0], simulation_rows(r->simulation, 0), b, error, sizeof error))
+  if (bad_bond_write(path, r->options->deck_path, r->model_of[b->body], &r->laws[b->body],
+                     simulation_rows(r->simulation, b->body), b, error, sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
@@ -278,7 +283,7 @@ static void print_fields(const pl_law *kernel, const double *values, bool on_par
 
 /* What the particle's law read: its family. */
 static void print_family(const run *r, const bad_state *b) {
-  const pl_law *kernel = r->laws[0].law;
+  const pl_law *kernel = r->laws[b->body].law;
   fprintf(stderr, "  the particle has %d bonds", b->family_count);
   print_fields(kernel, b->own_fields, true);
   fputc('\n', stderr);
@@ -331,17 +336,19 @@ void report_bad(const run *r) {
     report_bad_energy(r, &b);
     return;
   }
-  say_error("%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
-            r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
-            rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
+  say_error(
+      "%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
+      r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+      rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
             "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
-    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, 0), 0);
-    if (r->open_models > 0) explain_bad(r->models[0].plan, b.parameters, &bonds, &b, stderr);
+    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, b.body), 0);
+    if (r->model_of[b.body])
+      explain_bad(r->model_of[b.body]->plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
   fprintf(stderr,
@@ -489,10 +496,11 @@ static void conclude_monitor(const run *r, int k) {
 }
 
 void conclude(const run *r, double seconds, long steps) {
-  const rows *w = simulation_rows(r->simulation, 0);
-  double rate = (double)steps / pl_fmax(seconds, 1e-9);
+  double rate = (double)steps / pl_fmax(seconds, 1e-9), bonds = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+    bonds += (double)simulation_rows(r->simulation, b)->bond_count;
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
-         1e-6 * rate * (double)w->bond_count);
+         1e-6 * rate * bonds);
   conclude_increments(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);

@@ -36,7 +36,7 @@ static void check_chain(const char *kind, const char *text) {
   enum { LEFT = 10, PARTICLES = 20 };
   deck_case c;
   open_text(&c, text);
-  sweep *w = simulation_state(c.simulation);
+  sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   double u = 0, borne = 0, left = 0;
   assert_int_equal(g->particle_count, PARTICLES);
@@ -73,7 +73,7 @@ static void a_bond_has_the_mean_of_its_ends(void **state) {
 static double *forces_of(const char *text) {
   deck_case c;
   open_text(&c, text);
-  sweep *w = simulation_state(c.simulation);
+  sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   double *forces = must_calloc((size_t)(2 * g->size), sizeof *forces);
   uint64_t seed = 5;
@@ -137,7 +137,7 @@ static void forces_are_slopes_of_the_energy(void **state) {
                                      "&field parameter = 'E' distribution = 'uniform' cv = 0.3 /\n",
              laws[l]);
     open_text(&c, text);
-    sweep *w = simulation_state(c.simulation);
+    sweep *w = simulation_state(c.simulation, 0);
     const rows *g = w->body->lattice;
     const long site = g->particle_site[g->particle_count / 3];
     uint64_t seed = 5;
@@ -184,7 +184,7 @@ static void open_torn(deck_case *c, const char *kind, int threads) {
 }
 
 static void assert_same_run(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
   const rows *g = x->body->lattice;
   for (int d = 0; d < x->body->dof; d++)
     for (long p = 0; p < g->particle_count; p++)
