@@ -210,9 +210,8 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_law(r, k);
     announce_body(r, k);
-  }
-  for (int k = 0; k < r->deck->lattice_count; k++)
     announce_planes(r, k);
+  }
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else
