@@ -13,6 +13,11 @@ typedef struct planes {
   double **all, **at;
 } planes;
 
+/* Marks of fields (pl_family.old_filled), and where they begin for the run at hand. */
+typedef struct marks {
+  uint64_t **all, **at;
+} marks;
+
 /* Two, and one for the last bond of a ring of bonds of one direction, as lists may have them, with
    an odd number of bonds. */
 enum { RUNS = 3 };
@@ -27,7 +32,7 @@ struct family_forces {
   uint64_t *run[RUNS];    /* [size] bit k: of direction k seen in that run */
   uint64_t *seen, *incoming; /* [size] bonds that the last pass sees */
   pair_sums sums;
-  uint64_t **filled, **written, **settled; /* [fields] marks; of laws with sums */
+  marks filled, written, settled; /* of laws with sums */
 };
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -54,6 +59,22 @@ static double *const *planes_at(planes *p, long site) {
   for (int k = 0; k < p->count; k++)
     p->at[k] = p->all[k] ? p->all[k] + site : NULL;
   return p->at;
+}
+
+static marks marks_new(sweep *w) {
+  return (marks){pair_marks_new(w),
+                 must_calloc((size_t)w->law->field_count + 1, sizeof(uint64_t *))};
+}
+
+static void marks_free(const sweep *w, marks *m) {
+  pair_marks_free(w, m->all);
+  free(m->at);
+}
+
+static uint64_t *const *marks_at(marks *m, int count, long site) {
+  for (int k = 0; k < count; k++)
+    m->at[k] = m->all[k] ? m->all[k] + site / PL_LANES : NULL;
+  return m->at;
 }
 
 static planes new_fields(sweep *w) {
@@ -113,9 +134,9 @@ static void share_out(family_forces *f) {
 static void set_marks(family_forces *f) {
   const size_t words = (size_t)(f->w->body->lattice->size / PL_LANES);
   for (int k = 0; k < f->field.count; k++) {
-    if (!f->filled[k]) continue;
-    memset(f->filled[k], 0xff, words * sizeof **f->filled);
-    memset(f->settled[k], 0, words * sizeof **f->settled);
+    if (!f->filled.all[k]) continue;
+    memset(f->filled.all[k], 0xff, words * sizeof(uint64_t));
+    memset(f->settled.all[k], 0, words * sizeof(uint64_t));
   }
 }
 
@@ -133,9 +154,9 @@ family_forces *family_forces_new(sweep *w) {
   f->seen = must_calloc((size_t)size, sizeof *f->seen);
   f->incoming = must_calloc((size_t)size, sizeof *f->incoming);
   f->sums = pair_sums_new(w, &(body_block){.first = 0, .last = g->row_count}, family_of(w)->reach);
-  f->filled = pair_marks_new(w);
-  f->written = pair_marks_new(w);
-  f->settled = pair_marks_new(w);
+  f->filled = marks_new(w);
+  f->written = marks_new(w);
+  f->settled = marks_new(w);
   return f;
 }
 
@@ -150,25 +171,17 @@ void family_forces_free(family_forces *f) {
   free(f->seen);
   free(f->incoming);
   pair_sums_free(&f->sums);
-  pair_marks_free(f->w, f->filled);
-  pair_marks_free(f->w, f->written);
-  pair_marks_free(f->w, f->settled);
+  marks_free(f->w, &f->filled);
+  marks_free(f->w, &f->written);
+  marks_free(f->w, &f->settled);
   free(f);
 }
 
 /* --- passes ----------------------------------------------------------------------------------- */
 
-static uint64_t **marks_at(uint64_t **marks, int count, long site, uint64_t **at) {
-  for (int k = 0; k < count; k++)
-    at[k] = marks[k] ? marks[k] + site / PL_LANES : NULL;
-  return at;
-}
-
 /* A pass on a part of a row. `bonds` and `incoming` are those it sees. */
 static void run_part(family_forces *f, int pass, row_part at, const uint64_t *bonds,
                      const uint64_t *incoming, planes *bond_link) {
-  enum { MOST_FIELDS = 64 };
-  uint64_t *filled[MOST_FIELDS], *written[MOST_FIELDS], *settled[MOST_FIELDS];
   const sweep *w = f->w;
   const long start = body_start(w->body, at.row) + at.first;
   pl_family run;
@@ -185,9 +198,9 @@ static void run_part(family_forces *f, int pass, row_part at, const uint64_t *bo
   run.link_offset = run.offset;
   run.held_near = 1;
   run.sum = pair_sums_at(w, &f->sums, start);
-  run.old_filled = (const uint64_t *const *)marks_at(f->filled, f->field.count, start, filled);
-  run.new_filled = marks_at(f->written, f->field.count, start, written);
-  run.settled = marks_at(f->settled, f->field.count, start, settled);
+  run.old_filled = (const uint64_t *const *)marks_at(&f->filled, f->field.count, start);
+  run.new_filled = marks_at(&f->written, f->field.count, start);
+  run.settled = marks_at(&f->settled, f->field.count, start);
   w->law->step.pass[pass](w->law, family_of(w)->uniforms, &run);
 }
 
