@@ -3,33 +3,8 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-#include <strings.h>
 
 #include "dsl/base/arena.h"
-
-typedef struct tensor_name {
-  const char *name;
-  int first, second; /* directions of space */
-} tensor_name;
-
-/* Of the plane, of space. */
-static const tensor_name tensors[2][TENSOR_MOST] = {
-    {{"xx", 0, 0}, {"yy", 1, 1}, {"xy", 0, 1}},
-    {{"xx", 0, 0}, {"yy", 1, 1}, {"zz", 2, 2}, {"xy", 0, 1}, {"yz", 1, 2}, {"xz", 0, 2}}};
-
-int tensor_components(int dimensions) {
-  return dimensions == 2 ? 3 : TENSOR_MOST;
-}
-
-const char *tensor_names(int dimensions) {
-  return dimensions == 2 ? "xx yy xy" : "xx yy zz xy yz xz";
-}
-
-int tensor_component(int dimensions, const char *name) {
-  for (int c = 0; c < tensor_components(dimensions); c++)
-    if (strcasecmp(tensors[dimensions - 2][c].name, name) == 0) return c;
-  return -1;
-}
 
 /* --- stress ----------------------------------------------------------------------------------- */
 
@@ -40,16 +15,17 @@ static void present_chord(const body *of, const bond_force *b, double chord[3]) 
     chord[d] += of->displacement[d][b->partner] - of->displacement[d][b->owner];
 }
 
-/* The part of an end, J: half of sym(f (x) c). It is the same for both ends, whose forces and
-   chords are opposite. */
-static void virtual_work(const body *of, const bond_force *b, double work[TENSOR_MOST]) {
+/* The part of an end, J: half of sym(f (x) c), the same for both, whose forces and chords are
+   opposite. Returns how many components there are. */
+static int virtual_work(const body *of, const bond_force *b, double work[TENSOR_MOST]) {
   double chord[3];
+  const tensor_component *t;
+  const int count = tensor_components(of->dimensions, &t);
   present_chord(of, b, chord);
-  for (int c = 0; c < tensor_components(of->dimensions); c++) {
-    const tensor_name *t = &tensors[of->dimensions - 2][c];
-    work[c] = 0.25 *
-              (b->on_owner[t->first] * chord[t->second] + b->on_owner[t->second] * chord[t->first]);
-  }
+  for (int c = 0; c < count; c++)
+    work[c] = 0.25 * (b->on_owner[t[c].first] * chord[t[c].second] +
+                      b->on_owner[t[c].second] * chord[t[c].first]);
+  return count;
 }
 
 typedef struct stress_field {
@@ -60,8 +36,8 @@ typedef struct stress_field {
 static void add_to_field(void *to, const bond_force *b) {
   const stress_field *s = to;
   double work[TENSOR_MOST];
-  virtual_work(s->of, b, work);
-  for (int c = 0; c < tensor_components(s->of->dimensions); c++) {
+  const int count = virtual_work(s->of, b, work);
+  for (int c = 0; c < count; c++) {
     s->stress[c][b->owner] += work[c];
     s->stress[c][b->partner] += work[c];
   }
@@ -69,11 +45,13 @@ static void add_to_field(void *to, const bond_force *b) {
 
 void particle_stress(bond_forces *f, const body *of, double *const *stress) {
   const rows *g = of->lattice;
+  const tensor_component *t;
+  const int count = tensor_components(of->dimensions, &t);
   stress_field s = {of, stress};
-  for (int c = 0; c < tensor_components(of->dimensions); c++)
+  for (int c = 0; c < count; c++)
     memset(stress[c], 0, (size_t)g->size * sizeof(double));
   bond_forces_each(f, NULL, add_to_field, &s);
-  for (int c = 0; c < tensor_components(of->dimensions); c++)
+  for (int c = 0; c < count; c++)
     for (long p = 0; p < g->particle_count; p++)
       stress[c][g->particle_site[p]] /= rows_stressed_volume(g, g->particle_site[p]);
 }
@@ -98,7 +76,7 @@ static void fit_sums(const body *of, long site, double directions[3][3], double 
   }
 }
 
-/* By minors; false where it is singular, to rounding. In the plane zz counts as 1. */
+/* By minors; false where it is singular, to rounding. */
 static bool invert(double m[3][3], double inverse[3][3]) {
   static const double least = 1e-6;
   const double mean = (m[0][0] + m[1][1] + m[2][2]) / 3;
@@ -110,26 +88,38 @@ static bool invert(double m[3][3], double inverse[3][3]) {
     }
   for (int b = 0; b < 3; b++)
     det += m[0][b] * inverse[b][0];
+  if (!(det > least * mean * mean * mean)) return false;
   for (int a = 0; a < 3; a++)
     for (int b = 0; b < 3; b++)
       inverse[a][b] /= det;
-  return det > least * mean * mean * mean;
+  return true;
 }
 
-void particle_strain(const body *of, long site, double strain[TENSOR_MOST]) {
-  double directions[3][3] = {{0}}, changes[3][3] = {{0}}, inverse[3][3], gradient[3][3] = {{0}};
+/* The gradient of displacements that fits the bonds of a site; NaN where they do not span. */
+static void fit(const body *of, long site, double gradient[3][3]) {
+  double directions[3][3] = {{0}}, changes[3][3] = {{0}}, inverse[3][3];
   fit_sums(of, site, directions, changes);
   if (of->dimensions == 2) directions[2][2] = 1;
   const bool spans = invert(directions, inverse);
   for (int a = 0; a < 3; a++)
-    for (int b = 0; b < 3; b++)
-      for (int c = 0; c < 3; c++)
+    for (int b = 0; b < 3; b++) {
+      gradient[a][b] = spans ? 0 : NAN;
+      for (int c = 0; c < 3 && spans; c++)
         gradient[a][b] += changes[a][c] * inverse[c][b];
-  for (int c = 0; c < tensor_components(of->dimensions); c++) {
-    const int a = tensors[of->dimensions - 2][c].first, b = tensors[of->dimensions - 2][c].second;
-    strain[c] = spans ? 0.5 * (gradient[a][b] + gradient[b][a]) : NAN;
-    for (int k = 0; k < of->dimensions && spans; k++)
-      strain[c] += 0.5 * gradient[k][a] * gradient[k][b];
+    }
+}
+
+void particle_strain(const body *of, long site, double strain[TENSOR_MOST]) {
+  double gradient[3][3];
+  const tensor_component *t;
+  const int count = tensor_components(of->dimensions, &t);
+  fit(of, site, gradient);
+  for (int c = 0; c < count; c++) {
+    const int a = t[c].first, b = t[c].second;
+    double twice = gradient[a][b] + gradient[b][a];
+    for (int k = 0; k < of->dimensions; k++)
+      twice += gradient[k][a] * gradient[k][b];
+    strain[c] = 0.5 * twice;
   }
 }
 
@@ -166,28 +156,26 @@ static void add_to_region(void *to, const bond_force *b) {
   const region_sum *s = to;
   const int ends = s->region->inside[b->owner] + s->region->inside[b->partner];
   double work[TENSOR_MOST];
-  virtual_work(s->region->of, b, work);
-  for (int c = 0; c < tensor_components(s->region->of->dimensions); c++)
+  const int count = virtual_work(s->region->of, b, work);
+  for (int c = 0; c < count; c++)
     s->sum[c] += ends * work[c];
 }
 
 void tensor_region_stress(const tensor_region *r, bond_forces *f, double stress[TENSOR_MOST]) {
-  const int components = tensor_components(r->of->dimensions);
   region_sum s = {r, stress};
-  memset(stress, 0, (size_t)components * sizeof *stress);
+  memset(stress, 0, TENSOR_MOST * sizeof *stress);
   bond_forces_each(f, r->bonds, add_to_region, &s);
-  for (int c = 0; c < components; c++)
+  for (int c = 0; c < TENSOR_MOST; c++)
     stress[c] /= r->volume;
 }
 
 void tensor_region_strain(const tensor_region *r, double strain[TENSOR_MOST]) {
-  const int components = tensor_components(r->of->dimensions);
-  memset(strain, 0, (size_t)components * sizeof *strain);
+  memset(strain, 0, TENSOR_MOST * sizeof *strain);
   for (long p = 0; p < r->count; p++) {
     const double part = rows_stressed_volume(r->of->lattice, r->sites[p]) / r->volume;
-    double here[TENSOR_MOST];
+    double here[TENSOR_MOST] = {0};
     particle_strain(r->of, r->sites[p], here);
-    for (int c = 0; c < components; c++)
+    for (int c = 0; c < TENSOR_MOST; c++)
       strain[c] += part * here[c];
   }
 }

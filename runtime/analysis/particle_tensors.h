@@ -16,15 +16,8 @@
 #ifndef PERILAT_RUNTIME_PARTICLE_TENSORS_H
 #define PERILAT_RUNTIME_PARTICLE_TENSORS_H
 
+#include "runtime/base/symmetric_tensor.h"
 #include "runtime/interaction/bond_forces.h"
-
-/* Components in their order: xx, yy, xy; in space xx, yy, zz, xy, yz, xz. */
-enum { TENSOR_MOST = 6 };
-int tensor_components(int dimensions);
-/* "xx yy xy" */
-const char *tensor_names(int dimensions);
-/* A component by its name; -1: there is none. */
-int tensor_component(int dimensions, const char *name);
 
 /* Of all particles, Pa: stress[components][size]. The forces have been found (bond_forces.h). */
 void particle_stress(bond_forces *f, const body *of, double *const *stress);
