@@ -22,7 +22,7 @@ typedef void bond_force_use(void *to, const bond_force *bond);
 
 typedef struct bond_forces bond_forces;
 
-/* Memory for a body, which keeps it. One thread at a time. */
+/* Part of its memory is the body's. One thread at a time; to be freed before the sweep. */
 bond_forces *bond_forces_new(sweep *w);
 void bond_forces_free(bond_forces *f);
 /* The forces are those of the present state from now on, until a particle moves. */

@@ -1,10 +1,13 @@
 #include "runtime/simulation/frames.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/particle_tensors.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -16,11 +19,32 @@ typedef void values_of(const frames_of *of, const frame_source *from, double *va
 struct frame_source { /* where a frame field comes from */
   values_of *values;
   int components;
-  int index; /* of the law's fields, outputs, or parameters that differ from bond to bond */
+  /* of the law's fields, outputs, or parameters that differ from bond to bond; of a tensor's
+     components */
+  int index;
+  struct frame_tensor *tensor;
 };
+
+typedef void tensor_values(const frames_of *of, bond_forces *forces, double *const *values);
+
+/* All components of a tensor are found together. */
+typedef struct frame_tensor {
+  tensor_values *find;
+  bond_forces *forces;
+  double *values[TENSOR_MOST];
+  char names[TENSOR_MOST][16];
+  int first;          /* component that is stored first */
+  int64_t found_step; /* step that the values are of; -1: none */
+} frame_tensor;
+
+#define X(name, unit, words) TENSOR_##name,
+enum { OUTPUT_TENSORS(X) TENSORS };
+#undef X
 
 struct frame_set {
   frames_of of;
+  bond_forces *forces; /* NULL unless some field needs them */
+  frame_tensor tensors[TENSORS];
   frame_field *fields;
   frame_source *sources;
   int count;
@@ -108,6 +132,47 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
   }
 }
 
+/* --- tensors ---------------------------------------------------------------------------------- */
+
+static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
+  bond_forces_find(forces);
+  particle_stress(forces, of->state->body, values);
+}
+
+static void find_strain(const frames_of *of, bond_forces *forces, double *const *values) {
+  const body *b = of->state->body;
+  (void)forces;
+  for (long p = 0; p < b->lattice->particle_count; p++) {
+    const long site = b->lattice->particle_site[p];
+    double here[TENSOR_MOST] = {0};
+    particle_strain(b, site, here);
+    for (int c = 0; c < TENSOR_MOST && values[c]; c++)
+      values[c][site] = here[c];
+  }
+}
+
+/* Fields of a frame come in their order. */
+static void values_of_tensor(const frames_of *of, const frame_source *from, double *values) {
+  frame_tensor *t = from->tensor;
+  if (from->index == t->first || t->found_step != of->clock->at.step)
+    t->find(of, t->forces, t->values);
+  t->found_step = of->clock->at.step;
+  site_values(of, &t->values[from->index], 1, values);
+}
+
+typedef struct tensor_field {
+  const char *name, *unit, *words;
+  tensor_values *find;
+} tensor_field;
+
+static const tensor_field tensor_fields[] = {
+#define X(name, unit, words) {#name, unit, words, find_##name},
+    OUTPUT_TENSORS(X)
+#undef X
+};
+
+/* --- which runs have them --------------------------------------------------------------------- */
+
 /* In runs with this law and output. */
 typedef bool exists_in(const deck_output *asked, const pl_law *law);
 
@@ -165,13 +230,14 @@ static bool is_asked(const deck_output *o, const char *name) {
 }
 
 static size_t most_fields(const pl_law *law) {
-  return OWN_FIELDS + (size_t)law->field_count + (size_t)law->output_count +
-         (size_t)law->varying_count;
+  return OWN_FIELDS + TENSORS * (1 + TENSOR_MOST) + (size_t)law->field_count +
+         (size_t)law->output_count + (size_t)law->varying_count;
 }
 
 static void add(frame_set *f, frame_field field, values_of *values, int index) {
   f->fields[f->count] = field;
-  f->sources[f->count++] = (frame_source){values, field.components, index};
+  f->sources[f->count++] =
+      (frame_source){.values = values, .components = field.components, .index = index};
 }
 
 static const char *words_of(const char *doc, const char *otherwise) {
@@ -191,6 +257,53 @@ static void add_own(frame_set *f) {
                       .kind = own->kind,
                       .long_name = largest ? "the largest damage of the particle" : own->words},
         own->values, 0);
+  }
+}
+
+/* "stress_xx" */
+static void name_component(char name[16], const char *tensor, const char *component) {
+  snprintf(name, 16, "%s_%s", tensor, component);
+}
+
+/* What a law calls so goes before. */
+static bool is_of_law(const pl_law *law, const char *name) {
+  for (int k = 0; k < law->field_count; k++)
+    if (strcasecmp(law->fields[k].name, name) == 0) return true;
+  for (int k = 0; k < law->output_count; k++)
+    if (strcasecmp(law->outputs[k].name, name) == 0) return true;
+  return false;
+}
+
+/* A component of it, or all, is asked for. */
+static void begin_tensor(frame_set *f, int k) {
+  frame_tensor *t = &f->tensors[k];
+  const tensor_component *component;
+  const int count = tensor_components(f->of.state->body->dimensions, &component);
+  if (k == TENSOR_stress) f->forces = bond_forces_new(f->of.state);
+  *t = (frame_tensor){.find = tensor_fields[k].find, .forces = f->forces, .found_step = -1};
+  for (int c = 0; c < count; c++) {
+    t->values[c] = must_calloc((size_t)f->of.state->body->lattice->size, sizeof(double));
+    name_component(t->names[c], tensor_fields[k].name, component[c].name);
+  }
+}
+
+static void add_tensor(frame_set *f, int k) {
+  const tensor_field *from = &tensor_fields[k];
+  const tensor_component *component;
+  const int count = tensor_components(f->of.state->law->dimensions, &component);
+  for (int c = 0; c < count; c++) {
+    frame_tensor *t = &f->tensors[k];
+    char name[16];
+    name_component(name, from->name, component[c].name);
+    if (!is_asked(f->of.asked, from->name) && !is_asked(f->of.asked, name)) continue;
+    if (is_of_law(f->of.state->law, name)) continue;
+    if (!t->find) {
+      begin_tensor(f, k);
+      t->first = c;
+    }
+    add(f, (frame_field){t->names[c], from->unit, false, 1, "other", from->words}, values_of_tensor,
+        c);
+    f->sources[f->count - 1].tensor = t;
   }
 }
 
@@ -230,12 +343,17 @@ frame_set *frames_new(const frames_of *of) {
   f->fields = must_calloc(most, sizeof *f->fields);
   f->sources = must_calloc(most, sizeof *f->sources);
   add_own(f);
+  for (int k = 0; k < TENSORS; k++)
+    add_tensor(f, k);
   add_of_law(f);
   return f;
 }
 
 void frames_free(frame_set *f) {
   if (!f) return;
+  bond_forces_free(f->forces);
+  for (int k = 0; k < TENSORS * TENSOR_MOST; k++)
+    free(f->tensors[k / TENSOR_MOST].values[k % TENSOR_MOST]);
   free(f->fields);
   free(f->sources);
   free(f);
@@ -258,6 +376,8 @@ static const char **field_names(const deck_output *o, const pl_law *law, bool al
   *count = 0;
   for (int k = 0; k < OWN_FIELDS; k++)
     if (all || own_fields[k].exists(o, law)) names[(*count)++] = own_fields[k].name;
+  for (int k = 0; k < TENSORS; k++)
+    names[(*count)++] = tensor_fields[k].name;
   for (int f = 0; f < law->field_count; f++)
     names[(*count)++] = law->fields[f].name;
   for (int f = 0; f < law->output_count; f++)
@@ -287,7 +407,7 @@ bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
   bool good = true;
   for (int k = 0; o->field_where && k < o->field_count; k++) {
     const own_field *own = find_own(o->fields[k]);
-    bool known = false;
+    bool known = output_is_component(o->fields[k], law->dimensions);
     for (int n = 0; n < count; n++)
       known |= strcasecmp(names[n], o->fields[k]) == 0;
     good &= known;

@@ -144,6 +144,7 @@ simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostic
 void simulation_free(simulation *s) {
   if (!s) return;
   monitors_free(s->monitors);
+  frames_free(s->frames);
   relaxation_free(s->relaxation);
   loads_free(s->loads);
   sweep_free(s->state);
@@ -151,7 +152,6 @@ void simulation_free(simulation *s) {
   random_fields_free(s->fields);
   free(s->bonds);
   if (s->lattice) rows_free(s->lattice);
-  frames_free(s->frames);
   history_free(&s->history);
   bad_search_free(s->bad);
   free(s);
