@@ -13,6 +13,7 @@ struct bond_forces {
   family_forces *families; /* NULL of laws of bonds, which use what follows */
   double **field, **force; /* [field_count][pitch], [force_planes][pitch]: of a strip */
   const double **parameter;
+  int64_t found_step; /* -1: none */
 };
 
 static double **planes_new(sweep *w, int count) {
@@ -25,6 +26,7 @@ static double **planes_new(sweep *w, int count) {
 bond_forces *bond_forces_new(sweep *w) {
   bond_forces *f = must_calloc(1, sizeof *f);
   f->w = w;
+  f->found_step = -1;
   if (w->law->kind == PL_STATE) {
     f->families = family_forces_new(w);
     return f;
@@ -44,8 +46,10 @@ void bond_forces_free(bond_forces *f) {
   free(f);
 }
 
-void bond_forces_find(bond_forces *f) {
+void bond_forces_find(bond_forces *f, int64_t step) {
+  if (step >= 0 && f->found_step == step) return;
   if (f->families) family_forces_find(f->families);
+  f->found_step = step;
 }
 
 /* --- laws of bonds ---------------------------------------------------------------------------- */

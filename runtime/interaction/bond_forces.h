@@ -25,8 +25,9 @@ typedef struct bond_forces bond_forces;
 /* Part of its memory is the body's. One thread at a time; to be freed before the sweep. */
 bond_forces *bond_forces_new(sweep *w);
 void bond_forces_free(bond_forces *f);
-/* The forces are those of the present state from now on, until a particle moves. */
-void bond_forces_find(bond_forces *f);
+/* The forces are those of the present state from now on, until a particle moves. Nothing is done
+   where they were found at that step; -1: whatever was found. */
+void bond_forces_find(bond_forces *f, int64_t step);
 /* Every bond that exists and is wanted, in an order that threads do not change. `wanted`: [size]
    bits of the bonds that sites own; NULL: all. */
 void bond_forces_each(bond_forces *f, const uint64_t *wanted, bond_force_use *use, void *to);

@@ -135,7 +135,7 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
 /* --- tensors ---------------------------------------------------------------------------------- */
 
 static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
-  bond_forces_find(forces);
+  bond_forces_find(forces, -1);
   particle_stress(forces, of->state->body, values);
 }
 

@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_monitor.h"
 #include "runtime/interaction/damage.h"
 #include "runtime/simulation/load_steps.h"
 
@@ -16,27 +17,16 @@ static bool counts_damage(const deck_monitor *m) {
   return m->kind == MONITOR_DAMAGED || m->kind == MONITOR_BROKEN;
 }
 
+/* A component of the motion of particles, or of the forces on them. */
 static bool has_component(const deck_monitor *m) {
-  return !counts_damage(m) && m->kind != MONITOR_FIELD;
+  return m->kind == MONITOR_REACTION || m->kind == MONITOR_REACTIONS ||
+         m->kind == MONITOR_DISPLACEMENT || m->kind == MONITOR_VELOCITY ||
+         m->kind == MONITOR_OPENING || m->kind == MONITOR_ACCELERATION ||
+         m->kind == MONITOR_MOMENTUM;
 }
 
-static const char *unit_of(const deck_monitor *m, int dimensions) {
-  const bool turns = m->component >= dimensions;
-  switch (m->kind) {
-  case MONITOR_REACTION:
-  case MONITOR_REACTIONS:
-    return turns ? "N*m" : "N";
-  case MONITOR_VELOCITY:
-    return turns ? "rad/s" : "m/s";
-  case MONITOR_DISPLACEMENT:
-  case MONITOR_OPENING:
-    return turns ? "rad" : "m";
-  case MONITOR_DAMAGED:
-  case MONITOR_BROKEN:
-  case MONITOR_FIELD: /* the law says */
-    break;
-  }
-  return "1";
+static bool follows_tip(const deck_monitor *m) {
+  return m->kind == MONITOR_TIP || m->kind == MONITOR_TIP_SPEED;
 }
 
 static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
@@ -64,9 +54,10 @@ static bool check_component(const deck_monitor *m, const pl_law *law, diagnostic
 }
 
 static bool check_damage(const deck_monitor *m, const pl_law *law, diagnostics *d) {
-  if (!counts_damage(m) || damage_on_bonds(law) || damage_on_particles(law)) return true;
-  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
-              "the law `%s` has no damage to count", law->name);
+  if (!(counts_damage(m) || follows_tip(m)) || damage_on_bonds(law) || damage_on_particles(law))
+    return true;
+  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"), "the law `%s` has no damage to %s",
+              law->name, follows_tip(m) ? "follow" : "count");
   return false;
 }
 
@@ -122,20 +113,52 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
 }
 
 static monitor_time when_known(const monitor *m, const monitors *all) {
-  const bool field = m->deck->kind == MONITOR_FIELD;
-  if (all->deck->relaxation.increments > 0 || (field && m->field >= all->state->law->field_count))
+  if (all->deck->relaxation.increments > 0) return KNOWN_WHEN_OBSERVED;
+  switch (m->deck->kind) {
+  case MONITOR_FIELD:
+    return m->field < all->state->law->field_count ? KNOWN_ONE_LATE : KNOWN_WHEN_OBSERVED;
+  case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
+  case MONITOR_TIP:
+  case MONITOR_TIP_SPEED:
+    return KNOWN_ONE_LATE;
+  case MONITOR_MOMENTUM:
+  case MONITOR_ANGULAR_MOMENTUM:
+  case MONITOR_ENERGY:
+  case MONITOR_FORCE:
+  case MONITOR_STRESS:
     return KNOWN_WHEN_OBSERVED;
-  const bool reaction = m->deck->kind == MONITOR_REACTION || m->deck->kind == MONITOR_REACTIONS;
-  return field || reaction ? KNOWN_ONE_LATE : KNOWN_AFTER_STEP;
+  default:
+    return KNOWN_AFTER_STEP;
+  }
+}
+
+/* What watched.h watches, of a region or of all particles. */
+static void watch(monitor *m, monitors *all, diagnostics *d) {
+  const rows *g = all->state->body->lattice;
+  if (m->deck->region) take_sites(m, 0, all, m->deck->region);
+  const bool whole = !m->deck->region;
+  m->own = watched_new(m->deck, whole ? g->particle_site : m->indices[0],
+                       whole ? g->particle_count : m->index_count[0], all->state, all->bonds, d);
+  if (watched_needs_forces(m->deck) && !all->forces) all->forces = bond_forces_new(all->state);
+}
+
+/* A line through one value has no slope. */
+static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
+  if (m->deck->kind != MONITOR_TIP_SPEED || m->window > 1) return;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&m->deck->item, "average"),
+              "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
 }
 
 static void new_monitor(monitors *all, int index, diagnostics *d) {
   const pl_law *law = all->state->law;
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
-  m->unit = unit_of(m->deck, all->state->body->dimensions);
+  m->unit = deck_monitor_unit(m->deck, has_component(m->deck) &&
+                                           m->deck->component >= all->state->body->dimensions);
   m->window = 1;
   if (!find_steps(m, all, d)) return;
+  check_speed(m, all, d);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     take_reactions(m, 0, all, m->deck->region);
@@ -160,6 +183,8 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
+  default:
+    watch(m, all, d);
   }
   m->known = when_known(m, all);
 }
@@ -196,7 +221,9 @@ void monitors_free(monitors *m) {
   for (int i = 0; i < m->count; i++) {
     free(m->items[i].indices[0]);
     free(m->items[i].indices[1]);
+    watched_free(m->items[i].own);
   }
+  bond_forces_free(m->forces);
   free(m->items);
   free(m->values);
   free(m->ring_memory);
@@ -251,9 +278,10 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return field_words(all, m, a);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
-    break;
+    return count_words(all, m, a);
+  default:
+    return watched_words(m->own, a);
   }
-  return count_words(all, m, a);
 }
 
 char *monitor_words(const monitors *all, int index, arena *a) {
@@ -328,6 +356,29 @@ static double velocity_mean(const monitors *all, const monitor *m, long step) {
   return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
 }
 
+typedef struct instant_velocities { /* what a velocity at an instant is known by */
+  const loads *loads;
+  const body *of;
+  long step;
+} instant_velocities;
+
+static double velocity_at(const void *from, int component, long site) {
+  const instant_velocities *v = from;
+  return load_steps_velocity(v->loads, v->of, component, site, v->step);
+}
+
+/* What watched.h has; `field`: the law's fields in the state that is meant. */
+static double watched_now(const monitors *all, const monitor *m, long step, double *const *field) {
+  const instant_velocities v = {all->loads, all->state->body, step};
+  const watch_instant at = {.velocity = velocity_at,
+                            .velocities = &v,
+                            .forces = all->forces,
+                            .field = field,
+                            .scratch = all->values};
+  if (watched_needs_forces(m->deck)) bond_forces_find(all->forces, step);
+  return watched_value(m->own, &at);
+}
+
 /* A value at the instant of the state observed. */
 static double value_now(const monitors *all, const monitor *m, long step) {
   const int c = m->deck->component;
@@ -347,9 +398,10 @@ static double value_now(const monitors *all, const monitor *m, long step) {
     return field_mean(all, m, all->state->new_field);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
-    break;
+    return count_damaged(all, m);
+  default:
+    return watched_now(all, m, step, all->state->new_field);
   }
-  return count_damaged(all, m);
 }
 
 /* What a step has made known for a window: the velocity in it, the field of the state that it left;
@@ -359,6 +411,8 @@ static double value_of_step(const monitors *all, const monitor *m, long step) {
     return mean_at(all->state->body->velocity[m->deck->component], m->indices[0],
                    m->index_count[0]);
   if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, all->state->field);
+  if (m->deck->kind == MONITOR_ACCELERATION) return watched_velocity(m->own);
+  if (m->own) return watched_now(all, m, step, all->state->field);
   return value_now(all, m, step);
 }
 
@@ -378,18 +432,53 @@ static double mean_of_ring(const monitor *m, long most, const double *more) {
   return more ? (sum + *more) / (double)(count + 1) : sum / (double)count;
 }
 
+/* Slope over time of the straight line that fits the same values best. */
+static double slope_of_ring(const monitors *all, const monitor *m, long most, const double *more) {
+  const int64_t count = m->state.filled < most ? m->state.filled : most,
+                values = count + (more != NULL);
+  const double n = (double)values, middle = 0.5 * (n - 1);
+  double sum = more ? (n - 1 - middle) * *more : 0;
+  for (int64_t k = 0; k < count; k++)
+    sum += ((double)k - middle) * m->ring[(m->state.filled - count + k) % m->window];
+  return values > 1 ? sum / (n * (n * n - 1) / 12 * all->interval) : 0;
+}
+
+/* Velocity over the time of the states in the window: from half a step before the first of them to
+   half a step after the present one. */
+static double acceleration_of_ring(const monitors *all, const monitor *m, double now) {
+  const int64_t count = m->state.filled < m->window ? m->state.filled : m->window;
+  const double first = m->ring[(m->state.filled - count) % m->window],
+               last = m->ring[(m->state.filled - 1) % m->window];
+  return (last - first + now * all->interval) / ((double)count * all->interval);
+}
+
+static double reduced(const monitors *all, const monitor *m, long most, const double *more) {
+  return m->deck->kind == MONITOR_TIP_SPEED ? slope_of_ring(all, m, most, more)
+                                            : mean_of_ring(m, most, more);
+}
+
+/* Its window holds what steps made of velocities, not states. */
+static bool is_over_steps(const monitor *m) {
+  return m->known == KNOWN_AFTER_STEP &&
+         (m->deck->kind == MONITOR_VELOCITY || m->deck->kind == MONITOR_ACCELERATION);
+}
+
 static double averaged(const monitors *all, const monitor *m, long step) {
   const bool late = m->known == KNOWN_ONE_LATE;
-  if (m->window > 1 && !late && m->state.filled > 0) return mean_of_ring(m, m->window, NULL);
+  if (m->window > 1 && !late && m->state.filled > 0) {
+    if (m->deck->kind == MONITOR_ACCELERATION && is_over_steps(m))
+      return acceleration_of_ring(all, m, value_now(all, m, step));
+    return reduced(all, m, m->window, NULL);
+  }
   const double now = value_now(all, m, step);
-  return m->window > 1 && late ? mean_of_ring(m, m->window - 1, &now) : now;
+  return m->window > 1 && late ? reduced(all, m, m->window - 1, &now) : now;
 }
 
 void monitors_step(monitors *all, long step) {
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
-    const bool of_state = m->known == KNOWN_AFTER_STEP && m->deck->kind != MONITOR_VELOCITY;
-    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED && (step > 0 || of_state))
+    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED &&
+        (step > 0 || (m->known == KNOWN_AFTER_STEP && !is_over_steps(m))))
       push(m, value_of_step(all, m, step));
   }
 }

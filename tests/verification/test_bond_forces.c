@@ -102,7 +102,7 @@ static void sums_free(sums *s) {
 static void assert_sums_are_those_observed(const sweep *w, bond_forces *f) {
   sums s = sums_new(w);
   double off = 0;
-  bond_forces_find(f);
+  bond_forces_find(f, -1);
   bond_forces_each(f, NULL, add, &s);
   for (int d = 0; d < s.dof; d++)
     for (long q = 0; q < s.lattice->size; q++)
@@ -173,7 +173,7 @@ static void those_asked_for_are_as_among_all(void **state) {
       all.force[d] = calloc((size_t)(g->directions * g->size), sizeof(double));
     for (long q = 0; q < g->size; q++)
       if (fabs(g->x[q] - 0.02) < 0.012) wanted[q] = UINT64_C(0x5b) * (uint64_t)(q % 5);
-    bond_forces_find(f);
+    bond_forces_find(f, -1);
     bond_forces_each(f, NULL, keep, &all);
     bond_forces_each(f, wanted, compare, &all);
     for (int d = 0; d < g->dimensions; d++)
