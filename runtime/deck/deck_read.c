@@ -319,15 +319,23 @@ static void check_regional_materials(deck_reader *r) {
     if (k->materials[i].region) check_regional(r, &k->materials[i]);
 }
 
+/* The material of the lattice whose region `m` is for; -1: nothing fits. */
+static int lattice_material(const deck *k, const deck_material *m) {
+  const int region = m->region ? deck_find_region(k, m->region) : -1;
+  const int whole = region < 0 || !m->lattice ? -1 : deck_find_material(k, m->lattice);
+  const bool fits = whole >= 0 && deck_same_name(k->regions[region].lattice, m->lattice) &&
+                    deck_same_name(k->materials[whole].model, m->model);
+  return fits ? whole : -1;
+}
+
 /* The lattice's material knows those of its regions. */
 static void link_regional(arena *a, deck *k) {
   for (int i = 0; i < k->material_count; i++) {
-    const deck_material *m = &k->materials[i];
-    const int whole = m->region && m->lattice ? deck_find_material(k, m->lattice) : -1;
+    const int whole = lattice_material(k, &k->materials[i]);
     if (whole < 0) continue;
     deck_material *of = (deck_material *)(uintptr_t)&k->materials[whole]; /* still being read */
     of->regional = arena_room(a, of->regional, of->regional_count, sizeof *of->regional);
-    of->regional[of->regional_count++] = m;
+    of->regional[of->regional_count++] = &k->materials[i];
   }
 }
 
