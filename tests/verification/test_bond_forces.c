@@ -120,7 +120,7 @@ static void they_add_up_to_the_forces_on_particles(void **state) {
   for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
     deck_case c;
     assert_true(deck_case_text(&c, decks[n]));
-    sweep *w = simulation_state(c.simulation);
+    sweep *w = simulation_state(c.simulation, 0);
     shake(w);
     bond_forces *f = bond_forces_new(w);
     sweep_observe(w);
@@ -163,7 +163,7 @@ static void those_asked_for_are_as_among_all(void **state) {
   for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
     deck_case c;
     assert_true(deck_case_text(&c, decks[n]));
-    sweep *w = simulation_state(c.simulation);
+    sweep *w = simulation_state(c.simulation, 0);
     const rows *g = w->body->lattice;
     shake(w);
     bond_forces *f = bond_forces_new(w);

@@ -51,7 +51,7 @@ typedef struct tensor_case {
 
 static void open_case(tensor_case *c, const char *text) {
   assert_true(deck_case_text(&c->deck, text));
-  c->w = simulation_state(c->deck.simulation);
+  c->w = simulation_state(c->deck.simulation, 0);
   c->g = c->w->body->lattice;
   c->forces = bond_forces_new(c->w);
   c->components = tensor_components(c->g->dimensions, &c->component);

@@ -110,7 +110,7 @@ static void angular_momentum_stays(void **state) {
               "&monitor name = 'L' kind = 'angular_momentum' about = 0.3, -0.2 component = 'z' /\n"
               "&monitor name = 'p' kind = 'momentum' component = 'y' /\n"
               "&output frames = 0 sample = 1e-5 /\n");
-    body *b = simulation_state(r.simulation)->body;
+    body *b = simulation_state(r.simulation, 0)->body;
     const rows *g = b->lattice;
     double expected = 0;
     for (long p = 0; p < g->particle_count; p++) {
@@ -260,7 +260,7 @@ static void the_tip_is_the_furthest_damaged_bond(void **state) {
            9 * SPACING);
   small_run r;
   must_open(&r, &elastic_bar, text);
-  const body *b = simulation_state(r.simulation)->body;
+  const body *b = simulation_state(r.simulation, 0)->body;
   assert_int_equal(b->lattice->bond_count, 9);
   double v = 0;
   for (int k = 0; k < 10; k++) {
