@@ -42,6 +42,13 @@ static bool read_time(const namelist_group *g, const char *name, deck_bound boun
          deck_real_read(&key->values[0], name, "s", bound, time, d);
 }
 
+static bool ends_later(const namelist_group *g, const time_function *f, diagnostics *d) {
+  if (time_function_end(f) > f->start) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, namelist_find(g, "end")->value_where,
+              "`end` must be later than `start`");
+  return false;
+}
+
 static double *read_list(arena *a, const namelist_key *key, const char *name, const char *unit_text,
                          diagnostics *d) {
   double *list = arena_alloc(a, (size_t)key->value_count * sizeof(double));
@@ -293,6 +300,7 @@ int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int 
 static bool read_times(arena *a, const namelist_group *g, const deck_load_kind *kind, double full,
                        time_function *f, diagnostics *d) {
   bool good = read_time(g, "start", BOUND_NOT_NEGATIVE, &f->start, d);
+  good &= read_time(g, "end", BOUND_POSITIVE, &f->end, d) && ends_later(g, f, d);
   good &= read_time(g, "rise", BOUND_POSITIVE, &f->rise, d);
   const int way = way_of(a, g, d);
   if (way < 0 || !good) return false;

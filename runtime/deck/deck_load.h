@@ -20,6 +20,12 @@
        .fallback = "= 0",                                                                          \
        DECK_NOT_KEPT,                                                                              \
        .doc = "nothing acts before"},                                                              \
+      {.name = "end",                                                                              \
+       .type = DECK_LATER,                                                                         \
+       .unit = "s",                                                                                \
+       .fallback = "= never",                                                                      \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "nothing acts after: a force is 0, a drive lets go"},                                \
       {.name = "rise",                                                                             \
        .type = DECK_LATER,                                                                         \
        .unit = "s",                                                                                \
@@ -52,7 +58,7 @@ typedef struct deck_load_kind {
    after messages. */
 int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int count,
                       diagnostics *d);
-/* Reads the full value and the group's history, start, rise, times, values and file. False after
+/* Reads the full value and the group's history, start, end, rise, times, values and file. False after
    messages. */
 bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,
                     diagnostics *d);

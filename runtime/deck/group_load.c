@@ -93,9 +93,9 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
   diag_note(r->d, other, "the other one");
 }
 
-/* A load without a history grows with the increments of a quasi-static run. */
+/* A load without a history grows with the increments of a quasi-static run, up to its end. */
 static void spread(const deck_reader *r, const namelist_group *from, time_function *f) {
-  const double rest = r->k->simulation.end_time - f->start;
+  const double rest = fmin(r->k->simulation.end_time, time_function_end(f)) - f->start;
   if (r->k->relaxation.increments < 1 || f->shape != TIME_CONSTANT || !(rest > 0)) return;
   if (namelist_find(from, "history")) return;
   f->shape = TIME_RAMP_HOLD;
@@ -142,7 +142,8 @@ static void check_drive(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(drive, .identity = "region", .check = check_drive,
-          .doc = "Prescribed motion of a region from `start` on; free before. Give `velocity` or "
+          .doc = "Prescribed motion of a region from `start` to `end`; free before and after. Give "
+                 "`velocity` or "
                  "`displacement`.");
 
 /* --- force ------------------------------------------------------------------------------------ */

@@ -41,6 +41,10 @@ static double table_integral(const time_function *f, double t) {
   return f->integrals[last] + (f->values[last] + table_at(f, t)) / 2 * (t - f->times[last]);
 }
 
+double time_function_end(const time_function *f) {
+  return f->end > 0 ? f->end : INFINITY;
+}
+
 double time_function_at(const time_function *f, double t) {
   double since = t - f->start;
   if (since < 0) return 0;

@@ -19,6 +19,7 @@ typedef struct time_function {
   time_shape shape;
   double value;                 /* SI */
   double start, rise;           /* s */
+  double end;                   /* s: nothing acts after; 0: it has none */
   const double *times, *values; /* table; not owned */
   const double *integrals;      /* table: of the values from the start to each of the times */
   int count;
@@ -27,7 +28,9 @@ typedef struct time_function {
 /* Integrals of a table's values from 0 to each of its times; [count]. */
 void time_table_integrals(const double *times, const double *values, int count, double *integrals);
 
-/* 0 before start. */
+/* When it ends; infinite without an end. */
+double time_function_end(const time_function *f);
+/* 0 before start; after the end as if there were none, here and below. */
 double time_function_at(const time_function *f, double t);
 /* Integral from start to t, exact: displacement of a prescribed velocity. */
 double time_function_integral(const time_function *f, double t);

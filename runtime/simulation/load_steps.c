@@ -1,5 +1,7 @@
 #include "runtime/simulation/load_steps.h"
 
+#include <math.h>
+
 #include "dsl/base/elementary.h"
 #include "runtime/body/motion.h"
 
@@ -32,29 +34,50 @@ static double decay_of(const loads *l, const body *w, long step) {
   return decay_with(w, rate);
 }
 
-/* Motion prescribed after `step` steps since the drive's start: m, rad. */
+/* What of the time of a step is rounding. */
+static double hardly(const body *w) {
+  return 1e-6 * w->time_step;
+}
+
+/* Velocity that a drive ends with: just before, as kinks often lie there. */
+static double last_velocity(const body *w, const deck_drive *drive) {
+  const double end = drive->motion.end;
+  return drive->is_displacement ? time_function_slope(&drive->motion, end - hardly(w))
+                                : time_function_at(&drive->motion, end);
+}
+
+/* Motion prescribed after `step` steps since the drive's start: m, rad. After its end it goes on
+   straight. */
 static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return 0;
   const deck_drive *drive = &l->deck->drives[c->drive];
-  return load_clock_value(&l->clock, w, &drive->motion,
-                          drive->is_displacement ? time_function_at : time_function_integral, step);
+  in_time *const motion = drive->is_displacement ? time_function_at : time_function_integral;
+  const double over = load_clock_time(&l->clock, w, step) - time_function_end(&drive->motion);
+  if (l->clock.ramp > 0 || over <= 0)
+    return load_clock_value(&l->clock, w, &drive->motion, motion, step);
+  return motion(&drive->motion, drive->motion.end) + over * last_velocity(w, drive);
 }
 
 static double start_of(const loads *l, const constraint *c) {
   return c->drive < 0 ? 0 : l->deck->drives[c->drive].motion.start;
 }
 
-/* What of the time of a step is rounding. */
-static double hardly(const body *w) {
-  return 1e-6 * w->time_step;
+static double end_of(const loads *l, const constraint *c) {
+  return c->drive < 0 ? INFINITY : time_function_end(&l->deck->drives[c->drive].motion);
+}
+
+static bool has_ended(const loads *l, const body *w, const constraint *c, long step) {
+  return load_clock_time(&l->clock, w, step) >= end_of(l, c) - hardly(w);
 }
 
 /* A drive holds its particles from the step on that begins with it, to rounding; in a quasi-static
-   run from the beginning of the increment that it begins in. */
+   run in all increments that it acts at the end of. */
 static bool is_held(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return true;
-  if (l->clock.ramp > 0) return l->clock.to > load_clock_just_after(&l->clock, start_of(l, c));
-  return load_clock_time(&l->clock, w, step) >= start_of(l, c) - hardly(w);
+  if (l->clock.ramp > 0)
+    return load_clock_settled(&l->clock, &l->deck->drives[c->drive].motion, l->clock.to);
+  return load_clock_time(&l->clock, w, step) >= start_of(l, c) - hardly(w) &&
+         !has_ended(l, w, c, step);
 }
 
 /* Velocity prescribed just after the instant of a step, which rounding may have put before the
@@ -62,7 +85,22 @@ static bool is_held(const loads *l, const body *w, const constraint *c, long ste
 static double velocity_at(const loads *l, const body *w, const constraint *c, long step) {
   const deck_drive *drive = &l->deck->drives[c->drive];
   const double t = pl_fmax(load_clock_time(&l->clock, w, step), drive->motion.start);
+  if (t >= end_of(l, c)) return last_velocity(w, drive);
   return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
+}
+
+/* The step is the drive's last: it ends within half a step of its instant, or earlier. */
+static bool lets_go(const loads *l, const body *w, const constraint *c, long step) {
+  const double last = load_clock_time(&l->clock, w, step) + 0.5 * w->time_step;
+  return l->clock.ramp == 0 && last >= end_of(l, c) - hardly(w);
+}
+
+/* Velocity after that step: the drive's last one, and from its end on what the particle gains by
+   itself, which a whole step would take to the velocity `free`. */
+static double velocity_let_go(const loads *l, const body *w, const constraint *c, long step,
+                              double free) {
+  const double since = load_clock_time(&l->clock, w, step) + 0.5 * w->time_step - end_of(l, c);
+  return last_velocity(w, &l->deck->drives[c->drive]) + since / w->time_step * (free - c->velocity);
 }
 
 /* A motion that begins moves on as if it had always gone so: its velocity half a step before is
@@ -103,8 +141,11 @@ static void set_gravity(const loads *l, body *w, long step) {
 
 void load_steps_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
-  for (long i = 0; i < l->constraint_count; i++)
-    take_up(l, w, &l->constraints[i], (long)clock.first);
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    if (!is_held(l, w, c, (long)clock.first)) c->active = 0;
+    take_up(l, w, c, (long)clock.first);
+  }
 }
 
 void load_steps_begin(loads *l, body *w) {
@@ -290,6 +331,7 @@ static double impulsive(const body *w, const constraint *c) {
 /* A motion that begins between the ends of the step: until then the particle was free. */
 static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
   const body *w = r->w;
+  if (has_ended(r->l, w, c, r->step)) return;
   const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
   if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
   const double v = w->velocity[c->component][c->site],
@@ -300,11 +342,22 @@ static void begin_on_the_way(const load_run *r, constraint *c, remembered *after
   pull(w, c, c->anchor + motion_after(r, c, after));
 }
 
+/* The part of the step that the drive still covers decides its force. */
+static void let_go(const load_run *r, constraint *c) {
+  const body *w = r->w;
+  const double free = w->velocity[c->component][c->site];
+  const double velocity = velocity_let_go(r->l, w, c, r->step, free);
+  c->reaction = pull(w, c, c->held + w->time_step * velocity) - impulsive(w, c);
+  c->active = 0;
+}
+
 static void apply_motion(const load_run *r, constraint *c, remembered *after) {
   const body *w = r->w;
   const bool held = c->active;
   c->reaction = 0;
-  if (held)
+  if (held && lets_go(r->l, w, c, r->step))
+    let_go(r, c);
+  else if (held)
     c->reaction = pull(w, c, c->anchor + motion_after(r, c, after)) - impulsive(w, c);
   else
     begin_on_the_way(r, c, after);
@@ -367,8 +420,20 @@ static double free_velocity(const body *w, int component, int64_t site) {
          w->time_step * motion_force_part(w) * weight;
 }
 
-/* The same when a motion is prescribed. */
+/* With the forces that are applied to it. */
+static double loaded_velocity(const loads *l, const body *w, int component, int64_t site) {
+  double velocity = free_velocity(w, component, site);
+  long i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
+  for (; i < l->force_count && l->forces[i].site == site; i++)
+    if (l->forces[i].component == component)
+      velocity += given_by(w, component, site, l->forces[i].now);
+  return velocity;
+}
+
+/* When a motion is prescribed. */
 static double prescribed_velocity(const loads *l, const body *w, const constraint *c, long step) {
+  if (lets_go(l, w, c, step))
+    return velocity_let_go(l, w, c, step, loaded_velocity(l, w, c->component, c->site));
   return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
 }
 
@@ -418,10 +483,5 @@ double load_steps_velocity(const loads *l, const body *w, int component, int64_t
   for (; i < count && l->constraints[i].site == site; i++)
     if (l->constraints[i].component == component && l->constraints[i].active)
       return mean_velocity(l, w, &l->constraints[i], step);
-  double after = free_velocity(w, component, site);
-  i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
-  for (; i < l->force_count && l->forces[i].site == site; i++)
-    if (l->forces[i].component == component)
-      after += given_by(w, component, site, l->forces[i].now);
-  return 0.5 * (w->velocity[component][site] + after);
+  return 0.5 * (w->velocity[component][site] + loaded_velocity(l, w, component, site));
 }

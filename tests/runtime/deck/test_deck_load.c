@@ -36,6 +36,7 @@ static void histories_are_what_their_keys_say(void **state) {
                {"displacement = 4 rise = 8", TIME_RAMP_HOLD, 20, 4},
                {"displacement = 4 rise = 8 history = 'ramp'", TIME_RAMP, 20, 10},
                {"displacement = 4 rise = 8 history = 'cosine' start = 1", TIME_COSINE, 5, 2},
+               {"velocity = 2 end = '2 ms'", TIME_CONSTANT, 1e-3, 2},
                {"velocity = 10 times = 0, '1 s', 3 values = 0, 1, -0.5", TIME_TABLE, 2, 2.5}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     notation n;
