@@ -299,6 +299,7 @@ static bool stands_alone(checker *ck, const expr *e) {
 static void enter_variables(checker *ck, const formula_scope *scope) {
   for (int k = 0; k < scope->count; k++) {
     const formula_variable *v = &scope->variables[k];
+    if (!*v->name) continue;
     entry *e = names_add(ck, SPACE_QUANTITIES, v->name,
                          (symbol){.kind = SYMBOL_ARGUMENT, .name = v->name, .index = k});
     e->type = scalar_of(dimension_of(v->unit), ON_BODY);

@@ -3,15 +3,17 @@
 #ifndef PERILAT_DSL_FORMULA_H
 #define PERILAT_DSL_FORMULA_H
 
+#include <stdbool.h>
+
+#include "dsl/base/arena.h"
 #include "dsl/base/c_linkage.h"
 #include "dsl/base/diagnostics.h"
 #include "dsl/base/units.h"
-#include "dsl/syntax/tree.h"
 
 C_LINKAGE_BEGIN
 
 typedef struct formula_variable {
-  const char *name, *unit;
+  const char *name, *unit; /* name "": it is not to be read here */
 } formula_variable;
 
 typedef struct formula_scope {

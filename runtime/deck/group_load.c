@@ -3,6 +3,7 @@
 #include <math.h>
 
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
 
 #define REGION_KEY(group, text)                                                                    \
@@ -103,7 +104,7 @@ static void spread(const deck_reader *r, const namelist_group *from, time_functi
 }
 
 static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_function *f) {
-  if (time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
+  if (f->formula || time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
   const bool table = f->shape == TIME_TABLE;
   const namelist_key *at = namelist_find(from, !table ? "displacement" : "values");
   diag_report(r->d, DIAG_DECK_WARNING, (at ? at : namelist_find(from, "file"))->name_where,
@@ -117,9 +118,10 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
-  const deck_load_kind kinds[] = {{"velocity", rotates ? "1/s" : "m/s", false},
-                                  {"displacement", rotates ? "1" : "m", false}};
-  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  const deck_load_kind kinds[] = {
+      {"velocity", rotates ? "1/s" : "m/s", false, &deck_formula_of_all},
+      {"displacement", rotates ? "1" : "m", false, &deck_formula_of_all}};
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
   if (kind < 0) return;
   item->is_displacement = kind == 1;
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
@@ -170,11 +172,18 @@ static const deck_key_info force_keys[] = {
     DECK_TIME_KEYS,
 };
 
+/* What gives a load without its full value. */
+static const namelist_key *source_of(const namelist_group *from) {
+  const namelist_key *written = namelist_find(from, "formula");
+  return written ? written : namelist_find(from, "file");
+}
+
 static void check_force(deck_reader *r, const namelist_group *from, void *into) {
   deck_force *item = into;
-  static const deck_load_kind kinds[] = {{"total", "N", false}, {"moment", "N*m", false}};
+  static const deck_load_kind kinds[] = {{"total", "N", false, &deck_formula_of_all},
+                                         {"moment", "N*m", false, &deck_formula_of_all}};
   deck_item_region_known(r, &item->item, item->region);
-  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
   if (kind < 0) return;
   const bool rotates = kind == 1;
@@ -190,8 +199,7 @@ static void check_force(deck_reader *r, const namelist_group *from, void *into) 
   }
   if (rotates != deck_is_rotation(r, item->region, item->component)) {
     const namelist_key *key = namelist_find(from, kinds[kind].key);
-    diag_report(r->d, DIAG_CONFLICT,
-                key ? key->name_where : namelist_find(from, "file")->value_where,
+    diag_report(r->d, DIAG_CONFLICT, key ? key->name_where : source_of(from)->value_where,
                 "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
                 key ? "`" : "", deck_component_of(r, item->region, item->component));
     diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
@@ -212,7 +220,7 @@ static const deck_key_info end_moment_keys[] = {
     {.name = "moment",
      .type = DECK_LATER,
      .unit = "N*m",
-     .fallback = "= required, but for a file with a unit",
+     .fallback = "= required, but for a file or formula with a unit",
      DECK_NOT_KEPT,
      .doc = "full moment; counter-clockwise on the body is positive"},
     DECK_TIME_KEYS,
@@ -220,9 +228,9 @@ static const deck_key_info end_moment_keys[] = {
 
 static void check_end_moment(deck_reader *r, const namelist_group *from, void *into) {
   deck_end_moment *item = into;
-  static const deck_load_kind kind = {"moment", "N*m", false};
+  static const deck_load_kind kind = {"moment", "N*m", false, &deck_formula_of_time};
   deck_item_region_known(r, &item->item, item->region);
-  if (deck_load_kind_of(from, &kind, 1, r->d) < 0 ||
+  if (deck_load_kind_of(r->memory, from, &kind, 1, r->d) < 0 ||
       !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
     return;
   deck_warn_late(r, &item->item, "start", item->moment.start);

@@ -4,14 +4,13 @@
 
 #include "dsl/base/elementary.h"
 
-/* Part of the increment's loads that is there after `step` steps of a quasi-static run. */
-static double part_of(const load_clock *c, long step) {
+double load_clock_part(const load_clock *c, long step) {
   return pl_fmin(1, (double)(step - c->first) / (double)c->ramp);
 }
 
 double load_clock_time(const load_clock *c, const body *w, long step) {
   if (c->ramp == 0) return (double)step * w->time_step;
-  return c->from + (c->to - c->from) * part_of(c, step);
+  return c->from + (c->to - c->from) * load_clock_part(c, step);
 }
 
 /* A time later than t by what rounding may do to the ends of increments. */
@@ -33,7 +32,7 @@ static double settled(const load_clock *c, const time_function *f, in_time *valu
 double load_clock_value(const load_clock *c, const body *w, const time_function *f, in_time *value,
                         long step) {
   if (c->ramp == 0) return value(f, load_clock_time(c, w, step));
-  const double part = part_of(c, step);
+  const double part = load_clock_part(c, step);
   return (1 - part) * settled(c, f, value, c->from) + part * settled(c, f, value, c->to);
 }
 

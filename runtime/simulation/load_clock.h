@@ -25,6 +25,8 @@ double load_clock_just_after(const load_clock *c, double t);
 /* When an increment has ended at t: whether it acts. What begins then comes in the next increment,
    what ends then goes in the next. */
 bool load_clock_settled(const load_clock *c, const time_function *f, double t);
+/* Part of the increment's way from its beginning to its end, after a number of steps. */
+double load_clock_part(const load_clock *c, long step);
 /* After a number of steps; within an increment evenly from its beginning to its end. */
 double load_clock_value(const load_clock *c, const body *w, const time_function *f, in_time *value,
                         long step);

@@ -92,6 +92,52 @@ static void add_motions(loads *l, motions *m) {
   free(supports);
 }
 
+/* --- formulas --------------------------------------------------------------------------------- */
+
+/* What the function has of the particle when it begins. False after a message: no number. */
+static bool first_value(const loads *l, const time_function *f, const deck_item *item,
+                        int32_t particle, double *first, diagnostics *d) {
+  double at[3];
+  rows_place(l->lattice, l->lattice->particle_site[particle], at);
+  const time_function here = time_function_placed(f, at);
+  *first = time_function_at(&here, f->start);
+  if (isfinite(*first)) return true;
+  char text[ROWS_PLACE_TEXT];
+  diag_report(d, DIAG_BAD_NUMBER, deck_where(item, "formula"),
+              "this formula has no finite value at %s, t = 0 s",
+              rows_place_text(l->lattice->dimensions, at, text));
+  return false;
+}
+
+static void check_formula(const loads *l, const time_function *f, const deck_item *item,
+                          const char *region, bool from_zero, diagnostics *d) {
+  const region_sites *at = region_of(l, region);
+  double first = 0;
+  bool jumps = false;
+  if (!f->formula || !at) return;
+  for (long p = 0; p < at->count; p++) {
+    if (!first_value(l, f, item, at->particles[p], &first, d)) return;
+    jumps |= first != 0;
+  }
+  if (!jumps || !from_zero) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(item, "formula"),
+              "this displacement begins with a jump");
+  diag_hint(d, "let the formula be 0 at t = 0");
+}
+
+static void check_formulas(const loads *l, diagnostics *d) {
+  const deck *k = l->deck;
+  const bool moves_at_once = k->relaxation.increments == 0;
+  for (int i = 0; i < k->drive_count; i++)
+    check_formula(l, &k->drives[i].motion, &k->drives[i].item, k->drives[i].region,
+                  moves_at_once && k->drives[i].is_displacement, d);
+  for (int i = 0; i < k->force_count; i++)
+    check_formula(l, &k->forces[i].force, &k->forces[i].item, k->forces[i].region, false, d);
+  for (int i = 0; i < k->end_moment_count; i++)
+    check_formula(l, &k->end_moments[i].moment, &k->end_moments[i].item, k->end_moments[i].region,
+                  false, d);
+}
+
 /* --- forces ----------------------------------------------------------------------------------- */
 
 static void add_force(loads *l, int32_t particle, int component, int cause, double share) {
@@ -242,6 +288,7 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
   put_in_order(l, &m);
   find_holders(l, &m);
   check_velocities(l, &m);
+  check_formulas(l, d);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;
