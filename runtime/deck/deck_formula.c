@@ -3,6 +3,7 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "runtime/deck/deck_value.h"
 #include "runtime/deck/time_function.h"
 
 static const formula_variable variables[FORMULA_VARIABLES] = {[FORMULA_X] = {"x", "m"},
@@ -47,4 +48,14 @@ const formula *deck_formula_read(arena *a, const namelist_value *v, const char *
   diag_report(d, DIAG_BAD_VALUE, v->where, "`%s` is one expression in quotes", key);
   diag_hint(d, "for example %s = '2 [mm]*sin(x/10 [mm])'", key);
   return NULL;
+}
+
+bool deck_placed_read(arena *a, const namelist_key *key, const char *unit_text, deck_placed *p,
+                      diagnostics *d) {
+  *p = (deck_placed){0};
+  if (!deck_values_counted(key, 1, d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (!deck_is_formula(v)) return deck_real_read(v, key->name, unit_text, BOUND_NONE, &p->value, d);
+  p->formula = deck_formula_read(a, v, key->name, &deck_formula_of_place, unit_text, d);
+  return p->formula != NULL;
 }

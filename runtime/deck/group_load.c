@@ -333,36 +333,51 @@ static void check_gravity(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(gravity, .check = check_gravity,
           .doc = "Weight of every particle; several add up. Its work is in the energy ledger.");
 
-/* --- initial velocity ------------------------------------------------------------------------- */
+/* --- motion at the start ---------------------------------------------------------------------- */
+
+#define INITIAL_KEYS(group, unit_text, what)                                                       \
+  REGION_KEY(group, "what moves"),                                                                 \
+      {.name = "component",                                                                        \
+       .type = DECK_CHOICE,                                                                        \
+       .choices = DECK_COMPONENTS,                                                                 \
+       .required = true,                                                                           \
+       DECK_AT(group, component),                                                                  \
+       .doc = "direction of the motion"},                                                          \
+  {                                                                                                \
+    .name = "value", .type = DECK_LATER, .unit = unit_text, .required = true, DECK_NOT_KEPT,       \
+    .doc = what ", of each particle; or a formula of `x`, `y`, `z`, where the particle stands"     \
+  }
 
 static const deck_key_info initial_velocity_keys[] = {
-    REGION_KEY(initial_velocity, "what moves"),
-    {.name = "component",
-     .type = DECK_CHOICE,
-     .choices = DECK_COMPONENTS,
-     .required = true,
-     DECK_AT(initial_velocity, component),
-     .doc = "direction of the motion"},
-    {.name = "value",
-     .type = DECK_LATER,
-     .unit = "m/s; rotation: rad/s",
-     .required = true,
-     DECK_NOT_KEPT,
-     .doc = "the velocity, of each particle"},
-};
+    INITIAL_KEYS(initial_velocity, "m/s; rotation: rad/s", "the velocity")};
+static const deck_key_info initial_displacement_keys[] = {
+    INITIAL_KEYS(initial_displacement, "m; rotation: rad", "the displacement")};
 
-static void check_initial_velocity(deck_reader *r, const namelist_group *from, void *into) {
-  deck_initial_velocity *item = into;
-  const namelist_key *key = namelist_find(from, "value");
+static void check_initial(deck_reader *r, const namelist_group *from, deck_initial *item,
+                          const char *unit_text, const char *unit_of_rotation, const char *hint) {
   deck_item_region_known(r, &item->item, item->region);
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
-  if (!deck_values_counted(key, 1, r->d) ||
-      deck_real_read(&key->values[0], "value", rotates ? "1/s" : "m/s", BOUND_NONE, &item->value,
-                     r->d))
+  const int errors = r->d->errors;
+  if (deck_placed_read(r->memory, namelist_find(from, "value"),
+                       rotates ? unit_of_rotation : unit_text, &item->value, r->d))
     return;
-  if (rotates) diag_hint(r->d, "a rotation's velocity is in rad/s");
+  const diagnostic *last = &r->d->items[r->d->count - 1];
+  if (rotates && r->d->errors > errors && !last->hint) diag_hint(r->d, "%s", hint);
+}
+
+static void check_initial_velocity(deck_reader *r, const namelist_group *from, void *item) {
+  check_initial(r, from, item, "m/s", "1/s", "a rotation's velocity is in rad/s");
+}
+
+static void check_initial_displacement(deck_reader *r, const namelist_group *from, void *item) {
+  check_initial(r, from, item, "m", "1", "a rotation is in rad");
 }
 
 DECK_LIST(initial_velocity, .identity = "region", .check = check_initial_velocity,
           .doc = "Velocity of a region when the run begins.");
+
+DECK_LIST(initial_displacement, .identity = "region", .check = check_initial_displacement,
+          .doc =
+              "Displacement of a region when the run begins: bonds are stretched from the start, "
+              "where it is not a rigid motion.");

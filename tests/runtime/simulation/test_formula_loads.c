@@ -192,7 +192,7 @@ static void each_particle_has_its_own_value(void **state) {
   (void)state;
   small_run r;
   open_block(&r, BLOCK(VARIED), 1);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   for (int k = 0; k < 12; k++) {
     simulation_advance(r.simulation, 7, NULL);

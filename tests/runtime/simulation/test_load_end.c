@@ -87,7 +87,7 @@ static void a_pulse_within_a_step_counts_in_full(void **state) {
              "&drive region = 'left' component = 'x' velocity = 1 start = 1 /\n",
              start, end, start, end);
     small_run r = open_run(&(motion){groups, 0, "u", NULL, 1}, STEPS);
-    const sweep *w = simulation_state(r.simulation);
+    const sweep *w = simulation_state(r.simulation, 0);
     assert_int_equal(small_go(&r), STEP_END);
     const double v = w->body->velocity[0][w->body->lattice->particle_site[1]];
     assert_true(fabs(v / (100 * step_of(0.13) / mass()) - 1) < 1e-9);
@@ -196,7 +196,7 @@ static void a_drive_that_hurries_throws_with_its_last_velocity(void **state) {
                    "%.17g end = %%.17g /\n",
              end_time(), end_time());
     small_run r = open_run(&(motion){groups, ends[k], "u", NULL, 1}, STEPS);
-    const sweep *w = simulation_state(r.simulation);
+    const sweep *w = simulation_state(r.simulation, 0);
     assert_int_equal(small_go(&r), STEP_END);
     for (int p = 0; p < 2; p++) {
       const double v = w->body->velocity[0][w->body->lattice->particle_site[p]];
