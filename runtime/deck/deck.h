@@ -170,12 +170,19 @@ typedef struct deck_gravity { /* force mass * acceleration on every particle */
   time_function factor;   /* 1: full */
 } deck_gravity;
 
-typedef struct deck_initial_velocity { /* of each particle of the region when the run begins */
+typedef struct deck_placed {     /* a value that may differ from place to place */
+  double value;                  /* SI */
+  const struct formula *formula; /* of x, y, z, instead; or NULL */
+} deck_placed;
+
+typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
   int component;
-  double value; /* m/s, rad/s */
-} deck_initial_velocity;
+  deck_placed value;
+} deck_initial;
+typedef deck_initial deck_initial_velocity;     /* m/s, rad/s */
+typedef deck_initial deck_initial_displacement; /* m, rad */
 
 typedef struct deck_stop {
   deck_item item;
@@ -288,6 +295,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(damping)                                                                                    \
   LIST(gravity)                                                                                    \
   LIST(initial_velocity)                                                                           \
+  LIST(initial_displacement)                                                                       \
   LIST(monitor)                                                                                    \
   LIST(stop)                                                                                       \
   ONE(output)                                                                                      \

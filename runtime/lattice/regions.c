@@ -68,6 +68,7 @@ static bool *find_used_regions(const deck *k) {
   USED(end_moment, region)
   USED(protect, region)
   USED(initial_velocity, region)
+  USED(initial_displacement, region)
   USED(monitor, region)
   USED(monitor, between[0])
   USED(monitor, between[1])

@@ -68,7 +68,7 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->body = b->state->body;
   if (b->planes) b->state->parameter = b->planes->value;
   if (k->gravity_count > 0) body_add_gravity(b->body);
-  return loads_initial_velocity(b->loads, b->body, d);
+  return loads_initial_motion(b->loads, b->body, d);
 }
 
 void run_body_free(run_body *b) {
