@@ -193,10 +193,10 @@ static bool plan_material(const deck_material *m, model *out, diagnostics *said)
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a
-   central law runs as one of families. */
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices as laws
+   of families. */
 static bool needs_families(const deck_lattice *l, const law *of) {
-  return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
+  return of->tree->law != LAW_STATE && !bravais_is_hexagon(l);
 }
 
 /* Families have one value of each parameter. */
@@ -204,7 +204,7 @@ static bool can_vary(const deck_material *m, const law *of, bool families, diagn
   if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
   if (families) {
     diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "on this lattice the central law `%s` runs as one of families, whose parameters "
+                "on this lattice the law of bonds `%s` runs as one of families, whose parameters "
                 "cannot differ from bond to bond",
                 of->tree->name);
     diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");

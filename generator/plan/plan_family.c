@@ -325,7 +325,10 @@ static void rewrite_last(ir *g, root_list *step, root_list *observe) {
   free(all);
 }
 
+/* Of what both ends of a bond in space see alike fused products would tell nothing: where one end
+   computes it, they are fused later. */
 static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
+  if (plan->rotations == 3 && plan->form == FAMILY_PAIRS) return;
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   rewrite_fused(plan->graph, motion->to, motion->count, to);
   motion->to = to;
