@@ -38,9 +38,10 @@ static inline __attribute__((always_inline)) void drift(const body *w, int dof, 
     }
 }
 
-/* Masses of a part's particles relative to their mean; NULL where all are alike. */
-static const double *relative_mass(const body *w, row_part at) {
-  return w->relative_mass ? w->relative_mass + body_start(w, at.row) + at.first : NULL;
+/* Of a part's particles, over the mean; NULL where all are alike. */
+static const double *relative_mass(const body *w, int component, row_part at) {
+  const double *relative = w->relative_mass[body_turns(w, component)];
+  return relative ? relative + body_start(w, at.row) + at.first : NULL;
 }
 
 void motion_note_bad(const body *w, body_block *b, int row, long first) {
@@ -60,9 +61,8 @@ void motion_note_bad(const body *w, body_block *b, int row, long first) {
 
 static void keep_ledger(body *w, const body_block *b, row_part at) {
   const long start = body_start(w, at.row) + at.first, count = at.end - at.first;
-  const double *m = relative_mass(w, at);
   for (int d = 0; d < w->dof; d++) {
-    const double *next = b->next + d * w->lattice->pitch + at.first;
+    const double *next = b->next + d * w->lattice->pitch + at.first, *m = relative_mass(w, d, at);
     if (w->decay < 1 && w->ledger)
       w->row_mass[at.row] +=
           0.5 * w->mass[d] * motion_drag(w) * lane_square(count, m, w->velocity[d] + start, next);
@@ -76,18 +76,20 @@ void motion_drift(body *w, body_block *b, row_part at) {
   if ((w->decay < 1 && w->ledger) || w->weight) keep_ledger(w, b, at);
   if (w->dof == 2)
     drift(w, 2, at, b->next);
-  else
+  else if (w->dof == 3)
     drift(w, 3, at, b->next);
+  else
+    drift(w, 6, at, b->next);
 }
 
 void motion_observe(body *w, const body_block *b, int row) {
   const long start = body_start(w, row);
   const long count = w->count[row];
-  const double *m = relative_mass(w, whole_row(w, row));
   body_row *r = &w->observed[row];
   r->kinetic = r->free = r->mass = r->internal = 0;
   for (int d = 0; d < w->dof; d++) {
     const double *v = w->velocity[d] + start, *next = b->next + d * w->lattice->pitch;
+    const double *m = relative_mass(w, d, whole_row(w, row));
     const double half = 0.5 * w->mass[d], square = lane_dot(count, m, v, v),
                  product = lane_dot(count, m, v, next);
     r->kinetic += half * product;
