@@ -15,8 +15,8 @@ typedef struct uniform_response {
   /* median over particles and strains of the force left, over stress times the face of a
      particle */
   double left_force;
-  double momentum;   /* largest |sum of forces| over sum of |forces| */
-  long unresolved;   /* particles whose bonds do not resolve all strains */
+  double momentum; /* largest |sum of forces| over sum of |forces| */
+  long unresolved; /* particles whose bonds do not resolve all strains */
 } uniform_response;
 
 /* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart.

@@ -31,9 +31,10 @@ static const double *force_of_row(const sweep *w, const body_block *b, int row, 
      next = decay v + part dt/m f (motion.h)
 
    Not 0 when a velocity is not below the limit (NaN is not below anything). */
-static inline __attribute__((always_inline)) int64_t
-kick(const body *w, const body_block *b, int row, const double *const force[PL_MAX_DOF],
-     int dimensions, int dof, bool each_mass) {
+static inline __attribute__((always_inline)) int64_t kick(const body *w, const body_block *b,
+                                                          int row,
+                                                          const double *const force[PL_MAX_DOF],
+                                                          int dimensions, int dof, bool each_mass) {
   const long start = body_start(w, row), count = w->count[row], pitch = w->lattice->pitch;
   const double decay = w->decay, *v[PL_MAX_DOF], *mobility[2] = {NULL, NULL};
   double factor[PL_MAX_DOF], *restrict next = b->next;
