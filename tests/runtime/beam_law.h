@@ -188,7 +188,6 @@ static inline pl_law beams_in(int dimensions, int topology) {
                   .parameter_count = BEAM_PARAMETERS,
                   .density = BEAM_RHO,
                   .parameters = beam_parameters,
-                  .reads_rates = 1,
                   .uniform_count = BEAM_UNIFORMS,
                   .prepare = beam_prepare,
                   .bounds = beam_bounds,
