@@ -156,6 +156,7 @@ static const struct {
                            [RESULT_V] = {"N", SHAPE_BENDING},
                            [RESULT_M_I] = {"N*m", SHAPE_BENDING},
                            [RESULT_M_J] = {"N*m", SHAPE_BENDING},
+                           [RESULT_T] = {"N*m", SHAPE_SCALAR},
                            [RESULT_W] = {"J", SHAPE_SCALAR}};
 
 static void check_result(checker *ck, stmt *s) {

@@ -101,7 +101,7 @@ static void write_programs(c_text *out, const kernel_plan *p) {
              p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
              p->links.of_bonds, program_sum_count(&p->step),
              program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
-             p->law->tree->law == LAW_CENTRAL_BOND);
+             p->law->tree->law != LAW_STATE);
   write_program(out, p, &p->step);
   write_program(out, p, &p->observe);
 }

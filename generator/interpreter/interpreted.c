@@ -391,7 +391,7 @@ static void describe(interpreted *p) {
   p->law.bond_link_count = plan->links.of_bonds;
   p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
-  p->law.pairwise = l->tree->law == LAW_CENTRAL_BOND;
+  p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
   p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);
