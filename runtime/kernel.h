@@ -148,7 +148,8 @@ typedef struct pl_family {
   /* [count] not 0: the damage of this particle, and of its bonds, stays as it is. */
   const uint64_t *held;
   /* [dof][count]: displacements, then rotations (m, rad); velocities, then rates of rotation (m/s,
-     rad/s) */
+     rad/s). In space a rotation vector, and how quickly the particle turns about x, y and z: in a
+     step of h it turns by h w, after what it has turned. */
   const double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
      is some vector that is not 0. */

@@ -1,8 +1,8 @@
-/* What particles that stand on no lattice make of a uniform strain, before anything has happened to
-   them. The mean stress of a free body follows from the forces on its particles alone, -sum(f x)/V
-   (virial theorem); a body with exact families has that of the material, whatever its shape. The
-   forces themselves should be 0 inside; how far they are from it is what a particle feels of the
-   irregularity of its surroundings. */
+/* What particles make of a uniform strain, before anything has happened to them; those that rotate
+   are in balance of moments. The mean stress of a free body follows from the forces on its
+   particles alone, -sum(f x)/V (virial theorem); a body with exact families has that of the
+   material, whatever its shape. The forces themselves should be 0 inside; how far they are from it
+   is what a particle feels of the irregularity of its surroundings. */
 #ifndef PERILAT_RUNTIME_UNIFORM_STRAIN_H
 #define PERILAT_RUNTIME_UNIFORM_STRAIN_H
 
@@ -15,8 +15,8 @@ typedef struct uniform_response {
   /* median over particles and strains of the force left, over stress times the face of a
      particle */
   double left_force;
-  double momentum;   /* largest |sum of forces| over sum of |forces| */
-  long unresolved;   /* particles whose bonds do not resolve all strains */
+  double momentum; /* largest |sum of forces| over sum of |forces| */
+  long unresolved; /* particles whose bonds do not resolve all strains */
 } uniform_response;
 
 /* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart.

@@ -56,13 +56,13 @@ enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 typedef struct rows {
   bravais infinite; /* the lattice without ends */
   int dimensions;   /* 2 or 3 */
-  int row_count; /* from the first with sites to the last, empty ones between layers included */
-  int layer_rows; /* rows from the first of a layer to the first of the next */
-  int margin;     /* empty rows before the first, and as many behind the last */
-  long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
-  long first;     /* site at which row 0 starts */
-  long size;      /* length of every site array */
-  int directions; /* owned bonds of a site of the infinite lattice: half the neighbours */
+  int row_count;    /* from the first with sites to the last, empty ones between layers included */
+  int layer_rows;   /* rows from the first of a layer to the first of the next */
+  int margin;       /* empty rows before the first, and as many behind the last */
+  long pitch;       /* doubles between the starts of rows; multiple of PL_LANES */
+  long first;       /* site at which row 0 starts */
+  long size;        /* length of every site array */
+  int directions;   /* owned bonds of a site of the infinite lattice: half the neighbours */
   long offset[ROWS_CLASSES][ROWS_MAX_NEIGHBOURS];
   unsigned char *row_class;           /* [margin + row_count + margin] */
   double chord[PL_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */
@@ -73,7 +73,7 @@ typedef struct rows {
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
   double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
   double stiffness_thickness; /* m: `t` of the laws; 0 in space */
-  double mass, inertia;       /* kg, kg m^2: see rows_set_density; on lists their mean */
+  double mass, inertia;       /* kg, kg m^2: see rows_set_density; on lists of the mean particle */
   neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
   uint64_t *bonds;                 /* [size] bit k: the owned bond k exists */
@@ -148,8 +148,11 @@ static inline double rows_chord(const rows *w, long site, int direction, double 
 int rows_degree(const rows *w, long site);
 
 /* Masses of all particles of a density (kg/m^3); a particle turns as a ball of half a spacing does,
-   I = 2/5 m (s/2)^2 (Asadollahi 2014). */
+   I = 2/5 m (s/2)^2 (Asadollahi 2014); on lists s is a spacing of its own, that of particles as
+   large as itself. */
 void rows_set_density(rows *w, double rho);
+/* Of a particle on a list: the square of its radius over that of the mean particle. */
+double rows_radius_square(const rows *w, long site);
 
 /* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:
    in runs, in checks, by `drive` and `info`. Masses as `mass` says. `area` is 0: no bars here. On

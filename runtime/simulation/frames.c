@@ -85,7 +85,8 @@ static void values_of_velocity(const frames_of *of, const frame_source *from, do
 }
 
 static void values_of_rotation(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->state->body->displacement + 2, from->components, values);
+  const body *w = of->state->body;
+  site_values(of, w->displacement + w->dimensions, from->components, values);
 }
 
 static void values_of_force(const frames_of *of, const frame_source *from, double *values) {
@@ -132,7 +133,12 @@ static bool with_losses(const deck_output *asked, const pl_law *law) {
   return asked->energy && law->kind != PL_STATE;
 }
 
-enum { SCALAR = 1, VECTOR = 0 /* as many as there are directions of space */ };
+/* as many as there are directions of space, or axes to turn about */
+enum { SCALAR = 1, VECTOR = 0, ROTATION = -1 };
+
+static int component_count(int kind, const pl_law *law) {
+  return kind == VECTOR ? law->dimensions : kind == ROTATION ? law->dof - law->dimensions : kind;
+}
 
 typedef struct own_field {
   const char *name, *unit;
@@ -187,7 +193,7 @@ static void add_own(frame_set *f) {
     add(f,
         (frame_field){.name = own->name,
                       .unit = own->unit,
-                      .components = own->components == VECTOR ? law->dimensions : own->components,
+                      .components = component_count(own->components, law),
                       .kind = own->kind,
                       .long_name = largest ? "the largest damage of the particle" : own->words},
         own->values, 0);

@@ -61,7 +61,7 @@ static bool open_lattice(simulation *s, diagnostics *d) {
 /* Everything that can be said of the deck with this lattice, or nothing and true. Laws and
    parameters may be missing, when they are wrong themselves. */
 static bool is_sound(simulation *s, diagnostics *d) {
-  enum { ANY_DOF = 3 };
+  enum { ANY_DOF = PL_MAX_DOF };
   const deck *k = s->deck;
   const bool fits = s->law && law_fits_lattice(s->law, k, s->lattice, d);
   s->loads = loads_new(k, 0, s->lattice, fits ? s->law->name : "", fits ? s->law->dof : ANY_DOF, d);
