@@ -8,10 +8,13 @@
 
 #include <cmocka.h>
 
+#include <unistd.h>
+
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/stability.h"
 #include "runtime/analysis/stencil.h"
 #include "runtime/lattice/lattice.h"
+#include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/rigid_motion.h"
 #include "tests/verification/cantilever.h"
 
@@ -166,6 +169,92 @@ static void a_spinning_body_conserves(void **state) {
   }
 }
 
+/* --- bits ------------------------------------------------------------------------------------- */
+
+/* A bar twisted and pulled; in the plane a plate that cracks. */
+static void open_loaded(deck_case *c, int dimensions, int threads) {
+  char text[2048];
+  const int space = snprintf(
+      text, sizeof text,
+      "&simulation end_time = 1e-4 threads = %d /\n"
+      "&lattice name = 'c' kind = 'fcc' shells = 2 spacing = 0.01 origin = 0, 0, 0 /\n"
+      "&material lattice = 'c' model = 'mplm_space' /\n"
+      "&body lattice = 'c' shape = 'box' corner = 0, 0, 0 size = 0.05, 0.05, 0.09 /\n"
+      "&region name = 'foot' shape = 'box' corner = -1, -1, -1 size = 2, 2, 1.001 /\n"
+      "&region name = 'top' shape = 'box' corner = -1, -1, 0.08 size = 2, 2, 1 /\n"
+      "&support region = 'foot' fix = 'xyz', 'rotation' /\n"
+      "&drive region = 'top' component = 'rotation_z' velocity = 20 rise = 5e-5 /\n"
+      "&force region = 'top' component = 'rotation_x' moment = 50 /\n"
+      "&monitor name = 'held' kind = 'reaction' region = 'foot' component = 'rotation_z' /\n"
+      "&output frames = 0 sample = 5e-6 /\n",
+      threads);
+  if (dimensions == 2)
+    snprintf(text, sizeof text,
+             "&simulation end_time = 2e-4 threads = %d /\n"
+             "&lattice name = 'c' kind = 'square' spacing = 0.01 thickness = 0.1 /\n"
+             "&material lattice = 'c' model = 'mplm_bilinear' /\n"
+             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.2, 0.3 /\n"
+             "&notch lattice = 'c' shape = 'segment' from = 0, 0.155 to = 0.08, 0.155 /\n"
+             "&region name = 'foot' shape = 'rectangle' corner = 0, 0 size = 1, 0.001 /\n"
+             "&region name = 'top' shape = 'rectangle' corner = 0, 0.295 size = 1, 1 /\n"
+             "&support region = 'foot' fix = 'xy', 'rotation' /\n"
+             "&drive region = 'top' component = 'y' velocity = 0.5 rise = 2e-5 /\n"
+             "&monitor name = 'held' kind = 'reaction' region = 'foot' component = 'rotation' /\n"
+             "&output frames = 0 sample = 5e-6 /\n",
+             threads);
+  assert_true(space > 0 && space < (int)sizeof text);
+  assert_true(deck_case_text(c, text));
+}
+
+static void same_bits(const deck_case *a, const deck_case *b) {
+  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const long size = x->body->lattice->size;
+  for (int d = 0; d < x->body->dof; d++) {
+    assert_memory_equal(x->body->displacement[d], y->body->displacement[d], (size_t)size * 8);
+    assert_memory_equal(x->body->velocity[d], y->body->velocity[d], (size_t)size * 8);
+  }
+  for (int f = 0; f < x->law->field_count; f++)
+    assert_memory_equal(x->field[f], y->field[f],
+                        (size_t)(sweep_planes(x, x->law->fields[f].place) * size) * 8);
+  const long samples = simulation_history(a->simulation, NULL);
+  assert_int_equal(simulation_history(b->simulation, NULL), samples);
+  assert_memory_equal(deck_case_series(a, "held"), deck_case_series(b, "held"),
+                      (size_t)samples * 8);
+}
+
+static void neither_threads_nor_a_stop_change_bits(void **state) {
+  (void)state;
+  static const char path[] = "test_micropolar_families.state";
+  for (int dimensions = 2; dimensions <= 3; dimensions++) {
+    deck_case one, some;
+    char error[200];
+    frame_mark frames = {0, 0};
+    open_loaded(&one, dimensions, 1);
+    assert_int_equal(deck_case_go(&one), STEP_END);
+    const sweep *w = simulation_state(one.simulation);
+    const long bonds = w->body->lattice->directions * w->body->lattice->size;
+    assert_true(dimensions == 3 || w->field[0][largest_of(w->field[0], bonds)] > 0.5);
+    for (int threads = 2; threads <= 3; threads++) {
+      open_loaded(&some, dimensions, threads);
+      assert_int_equal(simulation_threads(some.simulation), threads);
+      assert_int_equal(deck_case_go(&some), STEP_END);
+      same_bits(&one, &some);
+      deck_case_close(&some);
+    }
+    open_loaded(&some, dimensions, 2);
+    simulation_advance(some.simulation, simulation_step_count(some.simulation) / 3, NULL);
+    assert_true(simulation_save(some.simulation, path, "deck", &frames, error, sizeof error));
+    deck_case_close(&some);
+    open_loaded(&some, dimensions, 3);
+    assert_true(simulation_restore(some.simulation, path, "deck", &frames, error, sizeof error));
+    assert_int_equal(deck_case_go(&some), STEP_END);
+    same_bits(&one, &some);
+    deck_case_close(&some);
+    deck_case_close(&one);
+  }
+  unlink(path);
+}
+
 /* --- cantilevers ------------------------------------------------------------------------------ */
 
 static const double depth = 0.1, width = 0.05, end_load = 1000; /* m, N */
@@ -249,6 +338,7 @@ int main(void) {
       cmocka_unit_test(the_lattice_in_space_is_isotropic),
       cmocka_unit_test(a_rigid_motion_leaves_no_force),
       cmocka_unit_test(a_spinning_body_conserves),
+      cmocka_unit_test(neither_threads_nor_a_stop_change_bits),
       cmocka_unit_test(cantilevers_converge_to_theory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
