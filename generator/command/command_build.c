@@ -48,17 +48,23 @@ static int build_law(const char *path, const char *output, bool no_physics) {
 
 /* --- solvers ---------------------------------------------------------------------------------- */
 
-/* What the deck's only lattice is made of, with its options decided, and the tables of the deck's
+/* What the deck's lattices are made of, with their options decided, and the tables of the deck's
    loads. */
 typedef struct deck_law {
+  const deck_lattice *lattice;
+  const deck_material *material;
   model model;
   bool opened;
+  c_text choices; /* ";option=choice;..." */
+} deck_law;
+
+typedef struct deck_laws {
   arena *memory;
   source_set sources;
   const deck *deck;
-  const char *name; /* as the deck gives it */
-  c_text choices;   /* ";option=choice;..." */
-} deck_law;
+  deck_law *items; /* [count] */
+  int count;
+} deck_laws;
 
 static void list_choices(const law *l, c_text *out) {
   c_text_add(out, ";");
@@ -66,29 +72,40 @@ static void list_choices(const law *l, c_text *out) {
     c_text_add(out, "%s=%s;", l->options.items[k]->name, l->chosen[k]);
 }
 
+static bool open_deck_law(const deck *k, int lattice, const char *deck_path, deck_law *l,
+                          diagnostics *said) {
+  l->lattice = &k->lattices[lattice];
+  l->material = &k->materials[deck_find_material(k, l->lattice->name)];
+  const bool good = material_law_open(l->material, l->lattice, deck_path, &l->model, said);
+  l->opened = l->model.memory != NULL;
+  if (good) list_choices(l->model.law, &l->choices);
+  return good;
+}
+
 /* The deck has been checked whole before: its warnings are not said again. */
-static bool open_deck_law(const char *deck_path, const char *deck_text, deck_law *out) {
+static bool open_deck_laws(const char *deck_path, const char *deck_text, deck_laws *out) {
   diagnostics said;
   out->memory = arena_new();
   diag_begin(&said, &out->sources);
   int file = source_add(&out->sources, deck_path, deck_text, strlen(deck_text));
   const deck *k = deck_read(out->memory, &out->sources, file, NULL, 0, &said);
+  bool good = k != NULL;
   out->deck = k;
-  bool good =
-      k && material_law_open(&k->materials[0], &k->lattices[0], deck_path, &out->model, &said);
-  out->opened = k != NULL && out->model.memory != NULL;
-  if (good) {
-    out->name = k->materials[0].model;
-    list_choices(out->model.law, &out->choices);
-  }
+  out->count = k ? k->lattice_count : 0;
+  out->items = must_calloc((size_t)out->count + 1, sizeof *out->items);
+  for (int n = 0; n < out->count; n++)
+    good = open_deck_law(k, n, deck_path, &out->items[n], &said) && good;
   if (!good) diag_print(&said, stderr);
   diag_clear(&said);
   return good;
 }
 
-static void close_deck_law(deck_law *l) {
-  if (l->opened) model_close(&l->model);
-  free(l->choices.text);
+static void close_deck_laws(deck_laws *l) {
+  for (int n = 0; n < l->count; n++) {
+    if (l->items[n].opened) model_close(&l->items[n].model);
+    free(l->items[n].choices.text);
+  }
+  free(l->items);
   source_clear(&l->sources);
   if (l->memory) arena_free(l->memory);
 }
@@ -99,24 +116,39 @@ static void put_string(c_text *out, const char *name, const char *text) {
   c_text_add(out, ";\n");
 }
 
-static const char solver_main[] =
-    "typedef struct built_in_law {\n  const char *model;\n  const pl_law *law;\n"
+static void put_string_of(c_text *out, const char *name, int number, const char *text) {
+  char numbered[64];
+  snprintf(numbered, sizeof numbered, "%s_%d", name, number);
+  put_string(out, numbered, text);
+}
+
+static const char solver_types[] =
+    "typedef struct pl_law pl_law;\n"
+    "typedef struct built_in_law {\n  const char *lattice, *model;\n  const pl_law *law;\n"
     "  const char *law_text, *c_text;\n  const char *choices;\n"
     "  const char *compiler, *flags;\n} built_in_law;\n"
+    "typedef struct built_in_file {\n  const char *path, *text;\n} built_in_file;\n"
     "int perilat_solver_main(int argc, char **argv, const char *deck_name, const char *deck_text,\n"
     "                        const built_in_law *laws, int law_count,\n"
-    "                        const built_in_file *files, int file_count);\n"
-    "int main(int argc, char **argv) {\n"
-    "  const built_in_law laws[] = {{solver_model, perilat_kernel(), solver_law_text,\n"
-    "                                solver_kernel_text, solver_choices,\n"
-    "                                solver_compiler, solver_flags}};\n"
-    "  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, 1,\n"
-    "                             solver_files, solver_file_count);\n}\n";
+    "                        const built_in_file *files, int file_count);\n";
+
+static void put_main(c_text *out, int laws) {
+  c_text_add(out, "int main(int argc, char **argv) {\n  const built_in_law laws[] = {\n");
+  for (int n = 0; n < laws; n++)
+    c_text_add(out,
+               "      {solver_lattice_%d, solver_model_%d, perilat_kernel_%d(), "
+               "solver_law_text_%d,\n       solver_kernel_text_%d, solver_choices_%d, "
+               "solver_compiler, solver_flags},\n",
+               n, n, n, n, n, n);
+  c_text_add(out,
+             "  };\n  return perilat_solver_main(argc, argv, solver_deck_name, solver_deck, laws, "
+             "%d,\n                             solver_files, solver_file_count);\n}\n",
+             laws);
+}
 
 /* The tables of the loads; C wants one in an array. */
-static void put_files(c_text *out, const deck_law *l) {
+static void put_files(c_text *out, const deck_laws *l) {
   c_text_add(out,
-             "typedef struct built_in_file {\n  const char *path, *text;\n} built_in_file;\n"
              "static const int solver_file_count = %d;\n"
              "static const built_in_file solver_files[] = {\n",
              l->deck->file_count);
@@ -131,27 +163,42 @@ static void put_files(c_text *out, const deck_law *l) {
   c_text_add(out, "  {0, 0}};\n");
 }
 
-/* The kernel's C and a main() that hands everything to the runtime. malloc'ed. */
-static char *solver_text(deck_law *l, const char *deck_name, const char *deck_text) {
+static void put_law(c_text *out, int n, deck_law *l) {
+  c_text_add(out, "const pl_law *perilat_kernel_%d(void);\n", n);
+  put_string_of(out, "solver_lattice", n, l->lattice->name);
+  put_string_of(out, "solver_model", n, l->material->model);
+  put_string_of(out, "solver_law_text", n, l->model.sources.items[0].text);
+  put_string_of(out, "solver_kernel_text", n, model_c_text(&l->model));
+  put_string_of(out, "solver_choices", n, l->choices.text);
+}
+
+/* Each kernel's C, a part for itself, and a main() that hands everything to the runtime.
+   malloc'ed. */
+static char *solver_text(deck_laws *l, const char *deck_name, const char *deck_text) {
   c_text out = {NULL, 0, 0};
   char compiler[512];
-  c_text_add(&out, "%s\n/* --- the solver --- */\n\n", model_c_text(&l->model));
+  for (int n = 0; n < l->count; n++)
+    c_text_add(&out,
+               "#if PL_SOLVER_PART == %d\n#define perilat_kernel perilat_kernel_%d\n%s\n#endif\n",
+               n + 1, n, model_c_text(&l->items[n].model));
+  c_text_add(&out, "#if PL_SOLVER_PART == 0\n/* --- the solver --- */\n\n%s", solver_types);
   put_string(&out, "solver_deck_name", deck_name);
   put_string(&out, "solver_deck", deck_text);
-  put_string(&out, "solver_model", l->name);
-  put_string(&out, "solver_law_text", l->model.sources.items[0].text);
-  put_string(&out, "solver_kernel_text", model_c_text(&l->model));
-  put_string(&out, "solver_choices", l->choices.text);
+  for (int n = 0; n < l->count; n++)
+    put_law(&out, n, &l->items[n]);
   put_files(&out, l);
   toolchain_version(compiler, sizeof compiler);
   put_string(&out, "solver_compiler", compiler);
   put_string(&out, "solver_flags", toolchain_flags());
-  c_text_add(&out, "%s", solver_main);
+  put_main(&out, l->count);
+  c_text_add(&out, "#endif\n");
   return out.text;
 }
 
-static bool spares_all(const char *output, const deck_law *l) {
-  bool good = spares_input(output, l->model.path);
+static bool spares_all(const char *output, const deck_laws *l) {
+  bool good = true;
+  for (int n = 0; good && n < l->count; n++)
+    good = spares_input(output, l->items[n].model.path);
   for (int k = 0; good && k < l->deck->file_count; k++)
     good = spares_input(output, l->sources.items[l->deck->files[k].source].name);
   return good;
@@ -159,18 +206,18 @@ static bool spares_all(const char *output, const deck_law *l) {
 
 static int link_solver(const char *path, const char *deck_text, const char *output) {
   char error[ERROR_LENGTH];
-  deck_law l = {.opened = false};
-  int status = open_deck_law(path, deck_text, &l) && spares_all(output, &l) ? 0 : INPUT_WRONG;
+  deck_laws l = {.count = 0};
+  int status = open_deck_laws(path, deck_text, &l) && spares_all(output, &l) ? 0 : INPUT_WRONG;
   if (!status) {
     char *text = solver_text(&l, path, deck_text);
-    if (!toolchain_build_program(text, output, error, sizeof error)) {
+    if (!toolchain_build_program(text, l.count + 1, output, error, sizeof error)) {
       say_error("%s", error);
       status = BUILD_FAILED;
     }
     free(text);
   }
   if (!status) printf("written %s: runs the deck %s without a compiler\n", output, path);
-  close_deck_law(&l);
+  close_deck_laws(&l);
   return status;
 }
 

@@ -148,7 +148,20 @@ static int check_path(const run_options *o) {
   return status;
 }
 
-/* The law of a deck's first lattice, as it is written for that lattice. */
+static int dump_lattice(const deck *k, int lattice, const char *deck_path, const char *stage,
+                        diagnostics *said) {
+  const char *name = k->lattices[lattice].name;
+  const deck_material *m = &k->materials[deck_find_material(k, name)];
+  model opened = {.memory = NULL};
+  const bool good = material_law_open(m, &k->lattices[lattice], deck_path, &opened, said);
+  if (opened.memory) diag_print(&opened.said, stderr);
+  if (good && k->lattice_count > 1) printf("%s/* lattice `%s` */\n", lattice ? "\n" : "", name);
+  const int status = good ? dump_stage(&opened, stage) : 1;
+  if (opened.memory) model_close(&opened);
+  return status;
+}
+
+/* The laws of a deck's lattices, each as it is written for its lattice. */
 static int dump_deck(const run_options *o, const char *stage) {
   char error[4096];
   size_t length;
@@ -161,12 +174,10 @@ static int dump_deck(const run_options *o, const char *stage) {
   diag_begin(&c.said, &c.sources);
   const int file = source_add(&c.sources, o->deck_path, text, length);
   const deck *k = deck_read(c.memory, &c.sources, file, o->overrides, o->override_count, &c.said);
-  const bool good =
-      k && material_law_open(&k->materials[0], &k->lattices[0], o->deck_path, &c.model, &c.said);
+  int status = k ? 0 : 1;
+  for (int n = 0; k && n < k->lattice_count && !status; n++)
+    status = dump_lattice(k, n, o->deck_path, stage, &c.said);
   diag_print(&c.said, stderr);
-  if (c.model.memory) diag_print(&c.model.said, stderr);
-  const int status = good ? dump_stage(&c.model, stage) : 1;
-  if (c.model.memory) model_close(&c.model);
   diag_clear(&c.said);
   source_clear(&c.sources);
   arena_free(c.memory);

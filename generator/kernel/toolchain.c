@@ -89,8 +89,9 @@ char *toolchain_key(const char *text) {
 typedef struct compilation {
   const char *source;
   const char *libraries; /* the option that says where they are: a program; NULL: a shared object */
-  bool in_parts;
-  const char *log; /* what the compiler says is added to */
+  int parts;             /* that the source is compiled in at the same time; 1: whole */
+  const char *macro;     /* what tells a part its number */
+  const char *log;       /* what the compiler says is added to */
 } compilation;
 
 /* The compiler with flags, but not `less`, and where to write. */
@@ -110,14 +111,22 @@ static int run_and_free(arguments *a, const char *log) {
   return status;
 }
 
-static int compile_whole(const compilation *c, const char *object) {
-  arguments a = command(object, c->libraries ? "-shared" : "");
-  arguments_add(&a, c->source);
+static arguments linking(const compilation *c, const char *object) {
+  return command(object, c->libraries ? "-shared" : "");
+}
+
+static int link_and_free(arguments *a, const compilation *c) {
   if (c->libraries) {
-    arguments_add(&a, c->libraries);
-    arguments_add_words(&a, SOLVER_LIBRARIES, "");
+    arguments_add(a, c->libraries);
+    arguments_add_words(a, SOLVER_LIBRARIES, "");
   }
-  return run_and_free(&a, c->log);
+  return run_and_free(a, c->log);
+}
+
+static int compile_whole(const compilation *c, const char *object) {
+  arguments a = linking(c, object);
+  arguments_add(&a, c->source);
+  return link_and_free(&a, c);
 }
 
 static void name_part(char part[LONGEST_PATH], const char *object, int number) {
@@ -126,33 +135,34 @@ static void name_part(char part[LONGEST_PATH], const char *object, int number) {
 
 /* Parts at the same time, then linked. */
 static int compile_parts(const compilation *c, const char *object) {
-  char part[LONGEST_PATH], macro[32];
-  pid_t children[KERNEL_PARTS];
-  arguments link = command(object, "");
+  char part[LONGEST_PATH], macro[64];
+  pid_t *children = must_calloc((size_t)c->parts, sizeof *children);
+  arguments link = linking(c, object);
   int status = 0;
-  for (int k = 0; k < KERNEL_PARTS; k++) {
+  for (int k = 0; k < c->parts; k++) {
     name_part(part, object, k);
     arguments_add(&link, part);
     arguments a = command(part, "-shared");
-    snprintf(macro, sizeof macro, "-DPL_PART=%d", k);
+    snprintf(macro, sizeof macro, "-D%s=%d", c->macro, k);
     arguments_add(&a, macro);
     arguments_add(&a, "-c");
     arguments_add(&a, c->source);
     children[k] = process_start(&a, c->log);
     arguments_free(&a);
   }
-  for (int k = 0; k < KERNEL_PARTS; k++) {
+  for (int k = 0; k < c->parts; k++) {
     const int of_part = process_finish(children[k]);
     status = status ? status : of_part;
   }
   if (!status)
-    status = run_and_free(&link, c->log);
+    status = link_and_free(&link, c);
   else
     arguments_free(&link);
-  for (int k = 0; k < KERNEL_PARTS; k++) {
+  for (int k = 0; k < c->parts; k++) {
     name_part(part, object, k);
     unlink(part);
   }
+  free(children);
   return status;
 }
 
@@ -186,7 +196,7 @@ static bool compile_to(compilation c, const char *path, bool sealed, char *error
     return false;
   }
   c.log = log;
-  const int status = c.in_parts ? compile_parts(&c, object) : compile_whole(&c, object);
+  const int status = c.parts > 1 ? compile_parts(&c, object) : compile_whole(&c, object);
   if (status) explain_failure(status, c.source, log, error, size);
   unlink(log);
   bool done = !status && (!sealed || cache_seal(object)) && chmod(object, 0755) == 0 &&
@@ -196,12 +206,15 @@ static bool compile_to(compilation c, const char *path, bool sealed, char *error
   return done;
 }
 
-static bool has_parts(const char *c_text) {
-  return strstr(c_text, "PL_PART") != NULL;
+/* Of a kernel's text. */
+static compilation of_kernel(const char *source, const char *c_text) {
+  const int parts = strstr(c_text, "PL_PART") ? KERNEL_PARTS : 1;
+  return (compilation){.source = source, .parts = parts, .macro = "PL_PART"};
 }
 
-static bool build(const char *c_text, const char *libraries, const char *path, char *error,
-                  size_t size) {
+/* A program with `libraries`, of `parts`; else a kernel. */
+static bool build(const char *c_text, const char *libraries, int parts, const char *path,
+                  char *error, size_t size) {
   char source[LONGEST_PATH], base[LONGEST_PATH - 16];
   snprintf(base, sizeof base, "%s/build", toolchain_cache());
   if (!cache_temporary(base, ".c", source, sizeof source) ||
@@ -209,15 +222,18 @@ static bool build(const char *c_text, const char *libraries, const char *path, c
     snprintf(error, size, "cannot write a file in `%s`: %s", toolchain_cache(), strerror(errno));
     return false;
   }
-  const compilation c = {
-      .source = source, .libraries = libraries, .in_parts = !libraries && has_parts(c_text)};
+  const compilation c = libraries ? (compilation){.source = source,
+                                                  .libraries = libraries,
+                                                  .parts = parts,
+                                                  .macro = "PL_SOLVER_PART"}
+                                  : of_kernel(source, c_text);
   bool done = compile_to(c, path, false, error, size);
   if (done) unlink(source);
   return done;
 }
 
 bool toolchain_build(const char *c_text, const char *path, char *error, size_t size) {
-  return build(c_text, NULL, path, error, size);
+  return build(c_text, NULL, 1, path, error, size);
 }
 
 /* -L and the folder with this program's static libraries: where it was built, or where it is
@@ -238,14 +254,15 @@ static bool find_libraries(char *folder, size_t size) {
   return false;
 }
 
-bool toolchain_build_program(const char *c_text, const char *path, char *error, size_t size) {
+bool toolchain_build_program(const char *c_text, int parts, const char *path, char *error,
+                             size_t size) {
   char folder[LONGEST_PATH];
   if (!find_libraries(folder, sizeof folder)) {
     snprintf(error, size,
              "a solver is linked with libperilat_runtime.a, which is not beside this program");
     return false;
   }
-  return build(c_text, folder, path, error, size);
+  return build(c_text, folder, parts, path, error, size);
 }
 
 /* --- loading ---------------------------------------------------------------------------------- */
@@ -309,7 +326,7 @@ bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, cha
     snprintf(error, size, "cannot write `%s`: %s", source, strerror(errno));
     return false;
   }
-  const compilation c = {.source = source, .in_parts = has_parts(c_text)};
+  const compilation c = of_kernel(source, c_text);
   return compile_to(c, object, true, error, size) && toolchain_open(object, key, out, error, size);
 }
 

@@ -31,8 +31,10 @@ bool toolchain_load(const char *c_text, const char *key, loaded_kernel *out, cha
 /* Writes the shared object to `path` instead of the cache. */
 bool toolchain_build(const char *c_text, const char *path, char *error, size_t size);
 /* A program from a C text with a main(), linked with perilat's own libraries: a stand-alone
-   solver. */
-bool toolchain_build_program(const char *c_text, const char *path, char *error, size_t size);
+   solver. The text is compiled `parts` times, with PL_SOLVER_PART defined as 0, 1, ...; a main()
+   and each kernel are parts, as the names inside of kernels are alike. */
+bool toolchain_build_program(const char *c_text, int parts, const char *path, char *error,
+                             size_t size);
 /* Loads an existing shared kernel. */
 bool toolchain_open(const char *path, const char *key_or_null, loaded_kernel *out, char *error,
                     size_t size);

@@ -97,32 +97,45 @@ static void take_threads(run *r) {
 /* A solver's law was checked when it was built. A law that breaks mechanics has no step. */
 static int check_physics(run *r, int lattice) {
   simulation_law *l = &r->laws[lattice];
-  const bool known = r->lattice || !deck_lattice_is_irregular(&r->deck->lattices[lattice]);
+  const bool known =
+      r->lattices[lattice] || !deck_lattice_is_irregular(&r->deck->lattices[lattice]);
   if (r->options->laws || r->options->no_physics || !known || obeys_mechanics(r, lattice)) return 0;
   free(l->parameters);
   l->parameters = NULL;
   return INPUT_WRONG;
 }
 
-/* No run has a second lattice. */
+/* The worst that has become of one. */
 static int load_laws(run *r) {
   int status = 0;
-  if (r->deck->lattice_count > 0) status = load_law(r, 0);
-  if (r->deck->lattice_count > 0 && !status) status = check_physics(r, 0);
+  for (int k = 0; k < r->deck->lattice_count; k++) {
+    int failed = load_law(r, k);
+    if (!failed) failed = check_physics(r, k);
+    status = failed > status ? failed : status;
+  }
   for (int k = 0; k < r->deck->material_count; k++)
     if (deck_find_lattice(r->deck, r->deck->materials[k].lattice) < 0)
       check_law_alone(r, &r->deck->materials[k]);
   return status;
 }
 
-/* What is left of the deck may not say what it is. */
-static void build_lattice(run *r) {
+/* What is left of the deck may not say what they are. */
+static void build_lattices(run *r) {
   const deck *k = r->deck;
-  if (k->lattice_count > 1)
-    diag_report(&r->said, DIAG_NOT_SUPPORTED, k->lattices[1].item.where,
-                "a run can have one lattice, this is the second");
-  else if (k->lattice_count == 1 && !deck_lacks(k, "body") && !deck_lacks(k, "notch"))
-    r->lattice = lattice_build(k, 0, &r->said);
+  for (int n = 0; n < k->lattice_count && !deck_lacks(k, "body") && !deck_lacks(k, "notch"); n++)
+    r->lattices[n] = lattice_build(k, n, &r->said);
+}
+
+/* All of them are known; else what there is goes. */
+static bool has_lattices(run *r) {
+  bool all = r->deck->lattice_count > 0;
+  for (int n = 0; n < r->deck->lattice_count; n++)
+    all = all && r->lattices[n];
+  for (int n = 0; n < r->deck->lattice_count && !all; n++) {
+    if (r->lattices[n]) rows_free(r->lattices[n]);
+    r->lattices[n] = NULL;
+  }
+  return all;
 }
 
 /* Deck, laws, simulation. What is wrong is said at once, wherever it does not follow from what is
@@ -133,13 +146,15 @@ static int set_up(run *r) {
   r->models = must_calloc((size_t)r->deck->material_count + 1, sizeof *r->models);
   r->laws = must_calloc(lattices, sizeof *r->laws);
   r->built_in = must_calloc(lattices, sizeof *r->built_in);
+  r->model_of = must_calloc(lattices, sizeof *r->model_of);
+  r->lattices = must_calloc(lattices, sizeof *r->lattices);
   choose_paths(r);
   if (!r->options->check_only) result_can_be_written(r);
-  build_lattice(r);
+  build_lattices(r);
   const int status = load_laws(r);
   take_threads(r);
   result_spares_inputs(r);
-  if (r->lattice) r->simulation = simulation_new_on(r->lattice, r->deck, r->laws, &r->said);
+  if (has_lattices(r)) r->simulation = simulation_new_on(r->lattices, r->deck, r->laws, &r->said);
   if (status) return status;
   if (!r->simulation) return INPUT_WRONG;
   if (!r->options->check_only) fingerprint(r);
@@ -163,6 +178,8 @@ static void let_go(run *r) {
   free(r->frame_buffer);
   free(r->laws);
   free(r->built_in);
+  free(r->model_of);
+  free(r->lattices);
   free(r->models);
   diag_clear(&r->said);
   source_clear(&r->sources);
@@ -293,7 +310,7 @@ static bool check_kernels(const run *r) {
   bool good = true;
   for (int k = 0; k < r->deck->lattice_count; k++) {
     const simulation_law *l = &r->laws[k];
-    if (k >= r->open_models || l->law->context) {
+    if (!r->model_of[k] || l->law->context) {
       printf("kernel check: nothing to compare %s with: %s\n", l->law->name,
              l->law->context ? "it runs on the interpreter"
                              : "a stand-alone solver has no interpreter");
@@ -306,7 +323,7 @@ static bool check_kernels(const run *r) {
       bonds[n] = rows_bond_class(w, n);
     const double *parameters = l->parameters;
     kernel_check c =
-        kernel_check_run(r->models[k].plan, l->law, &parameters, 1, bonds, classes, STATES, 1);
+        kernel_check_run(r->model_of[k]->plan, l->law, &parameters, 1, bonds, classes, STATES, 1);
     kernel_check_report(&c, l->law->name);
     fflush(stdout);
     good = good && kernel_check_agrees(&c);

@@ -1,7 +1,6 @@
 #define _GNU_SOURCE /* strcasestr */
 #include "generator/run/run_laws.h"
 
-#include <assert.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,9 +18,10 @@ static const deck_material *material_of(const run *r, int lattice) {
   return m < 0 ? NULL : &r->deck->materials[m];
 }
 
-static const built_in_law *find_built_in(const run_options *o, const char *model_name) {
+static const built_in_law *find_built_in(const run_options *o, const deck_material *m) {
   for (int k = 0; k < o->law_count; k++)
-    if (strcmp(o->laws[k].model, model_name) == 0) return &o->laws[k];
+    if (strcmp(o->laws[k].model, m->model) == 0 && strcmp(o->laws[k].lattice, m->lattice) == 0)
+      return &o->laws[k];
   return NULL;
 }
 
@@ -83,8 +83,8 @@ static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
 }
 
 bool obeys_mechanics(run *r, int lattice) {
-  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattice);
-  model *opened = &r->models[lattice];
+  const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattices[lattice]);
+  model *opened = r->model_of[lattice];
   return run_law_obeys(opened, &like, r->laws[lattice].parameters,
                        deck_where(&material_of(r, lattice)->item, "model"), &opened->said,
                        &r->said);
@@ -93,7 +93,7 @@ bool obeys_mechanics(run *r, int lattice) {
 /* --- opening ---------------------------------------------------------------------------------- */
 
 static bool take_built_in(run *r, const deck_material *m, int lattice, deck_material *values) {
-  const built_in_law *b = find_built_in(r->options, m->model);
+  const built_in_law *b = find_built_in(r->options, m);
   if (!b) {
     diag_report(&r->said, DIAG_FILE, deck_where(&m->item, "model"),
                 "this solver was built without the model `%s`", m->model);
@@ -107,24 +107,25 @@ static bool take_built_in(run *r, const deck_material *m, int lattice, deck_mate
 
 /* A check asks a kernel for a few hundred steps at most, to find the fastest mode of a body of
    families: of a small body that takes the interpreter less time than the compiler. */
-static bool is_worth_compiling(const run *r, const model *opened) {
+static bool is_worth_compiling(const rows *w, const model *opened) {
   enum { MANY_BONDS = 200000 };
-  return r->lattice && r->lattice->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;
+  return w && w->bond_count > MANY_BONDS && opened->law->tree->law == LAW_STATE;
 }
 
 /* 0, or an exit status. */
 static int take_model(run *r, const deck_material *m, int lattice, deck_material *values) {
   char error[4 * ERROR_LENGTH];
   const char *note;
-  assert(r->open_models == lattice); /* the law of each lattice in its turn */
-  model *opened = &r->models[lattice];
+  model *opened = &r->models[r->open_models];
   const bool good =
       material_law_open(m, &r->deck->lattices[lattice], r->options->deck_path, opened, &r->said);
   r->open_models += opened->memory != NULL;
   if (!good) return INPUT_WRONG;
+  r->model_of[lattice] = opened;
   *values = opened->values;
   const bool interpret =
-      r->options->interpret || (r->options->check_only && !is_worth_compiling(r, opened));
+      r->options->interpret ||
+      (r->options->check_only && !is_worth_compiling(r->lattices[lattice], opened));
   r->laws[lattice].law = model_kernel(opened, interpret, &note, error, sizeof error);
   if (note) fprintf(stderr, "perilat: warning: %s\n", note);
   if (r->laws[lattice].law) return 0;

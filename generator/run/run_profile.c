@@ -41,9 +41,9 @@ static double triad(int threads) {
    written once, and so is what one pass leaves to another, unless it stays in windows of rows;
    marks of bonds and what is known of the reference are read. Rows of bonds share marks; where
    bonds add to both ends, their fields are hardly touched. */
-static double bytes_of_step(const run *r) {
-  const pl_law *kernel = r->laws[0].law;
-  const sweep *w = simulation_state(r->simulation);
+static double bytes_in(const run *r, int number) {
+  const pl_law *kernel = r->laws[number].law;
+  const sweep *w = simulation_state(r->simulation, number);
   const rows *g = w->body->lattice;
   const double one = sizeof(double);
   double both = 2.0 * kernel->dof, read = 0;
@@ -57,16 +57,40 @@ static double bytes_of_step(const run *r) {
     read += 2 + (kernel->reads_shape ? PL_SHAPE_PLANES(kernel->dimensions) : 0);
   }
   if (g->list) read += 2.0 * g->directions * (1.5 + kernel->dimensions) + 3;
-  return one * (2 * both + read);
+  return one * (2 * both + read) * (double)g->particle_count;
 }
 
 /* A law of families is evaluated by both ends of a bond. */
-static double operations_of_step(const run *r) {
-  const pl_law *kernel = r->laws[0].law;
-  const rows *g = simulation_rows(r->simulation, 0);
+static double operations_in(const run *r, int number) {
+  const pl_law *kernel = r->laws[number].law;
   const double ends = kernel->kind == PL_STATE ? 2 : 1;
-  return ends * (kernel->flops_per_bond + kernel->divisions_per_bond) * (double)g->bond_count /
-         (double)g->particle_count;
+  return ends * (kernel->flops_per_bond + kernel->divisions_per_bond) *
+         (double)simulation_rows(r->simulation, number)->bond_count;
+}
+
+static double particles_of(const run *r) {
+  double sum = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+    sum += (double)simulation_rows(r->simulation, b)->particle_count;
+  return sum;
+}
+
+/* A mean over the particles of all bodies. */
+static double mean_over_particles(const run *r, double (*in)(const run *, int number)) {
+  double sum = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+    sum += in(r, b);
+  return sum / particles_of(r);
+}
+
+/* Of the law with the most; of laws of bonds one. */
+static int most_passes(const run *r) {
+  int most = 1;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++) {
+    const pl_law *kernel = r->laws[b].law;
+    if (kernel->kind == PL_STATE && kernel->step.pass_count > most) most = kernel->step.pass_count;
+  }
+  return most;
 }
 
 /* --- the table -------------------------------------------------------------------------------- */
@@ -77,8 +101,7 @@ static void print_part(const char *name, double part, double seconds) {
 
 static void print_parts(const run *r, double seconds) {
   const profile *p = &r->profile;
-  const pl_law *kernel = r->laws[0].law;
-  const int passes = kernel->kind == PL_STATE ? kernel->step.pass_count : 1;
+  const int passes = most_passes(r);
   double known = 0;
   for (int k = 0; k < PROFILE_PART_COUNT; k++) {
     known += p->part[k];
@@ -123,14 +146,14 @@ static const char *limit_of(const run *r, double share_of_triad) {
 }
 
 void print_profile(const run *r, double seconds, long steps) {
-  const rows *g = simulation_rows(r->simulation, 0);
   const int threads = simulation_threads(r->simulation);
   if (steps <= 0 || seconds <= 0) return;
   printf("  profile    %.2f s, %d thread%s\n", seconds, threads,
          threads == 1 ? "" : "s, their mean");
   print_parts(r, seconds);
-  const double each = seconds / (double)steps / (double)g->particle_count;
-  const double bytes = bytes_of_step(r), operations = operations_of_step(r), peak = triad(threads);
+  const double each = seconds / (double)steps / particles_of(r);
+  const double bytes = mean_over_particles(r, bytes_in),
+               operations = mean_over_particles(r, operations_in), peak = triad(threads);
   printf("    a particle's step: %.3g ns, %.0f bytes, %.0f operations: %.3g GB/s, %.0f %% of this "
          "machine's %.3g GB/s, %.3g Gflop/s\n",
          1e9 * each, bytes, operations, 1e-9 * bytes / each, 100 * bytes / each / peak, 1e-9 * peak,

@@ -12,7 +12,7 @@
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"
 #include "runtime/lattice/random_field.h"
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
 
@@ -49,8 +49,8 @@ static void announce_law(const run *r, int lattice) {
   const pl_law *kernel = r->laws[lattice].law;
   implied_elasticity e;
   printf("  law        %s", kernel->name);
-  if (r->open_models > lattice && r->models[lattice].path) {
-    const char *path = r->models[lattice].path;
+  if (r->model_of[lattice] && r->model_of[lattice]->path) {
+    const char *path = r->model_of[lattice]->path;
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
   if (w->list) {
@@ -78,7 +78,7 @@ static void announce_body(const run *r, int lattice) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);
   const simulation_law *l = &r->laws[lattice];
-  const random_fields *f = simulation_fields(r->simulation);
+  const random_fields *f = simulation_fields(r->simulation, lattice);
   implied_elasticity e;
   double E[3];
   if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
@@ -122,6 +122,7 @@ static void announce_notches(const run *r, int lattice) {
   const deck *k = r->deck;
   int said = 0, left = 0;
   for (int n = 0; n < k->notch_count; n++) {
+    if (strcmp(k->notchs[n].lattice, k->lattices[lattice].name) != 0) continue;
     if (said == MOST) {
       left++;
       continue;
@@ -136,16 +137,16 @@ static void announce_notches(const run *r, int lattice) {
 }
 
 /* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
-static void announce_fields(const run *r) {
-  const random_fields *f = simulation_fields(r->simulation);
-  const pl_law *kernel = r->laws[0].law;
+static void announce_fields(const run *r, int lattice) {
+  const random_fields *f = simulation_fields(r->simulation, lattice);
+  const pl_law *kernel = r->laws[lattice].law;
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
     printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
            "%.5g\n",
            p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
-           r->laws[0].parameters[kernel->varying[k]]);
+           r->laws[lattice].parameters[kernel->varying[k]]);
   }
 }
 
@@ -204,15 +205,19 @@ void announce(const run *r) {
     announce_law(r, k);
     announce_body(r, k);
   }
-  announce_fields(r);
+  for (int k = 0; k < r->deck->lattice_count; k++)
+    announce_fields(r, k);
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else
     printf("  time       %.6g ms in %ld steps of ", 1e3 * s->end_time,
            simulation_step_count(r->simulation));
-  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s rules)\n", 1e6 * limit->step,
+  printf("%.4g us: %.3g of the stable step %.4g us (%s mode%s", 1e6 * limit->step,
          limit->step / limit->limit, 1e6 * limit->limit, limit->mode,
          limit->at_surface ? " at a surface" : "");
+  if (r->deck->lattice_count > 1)
+    printf(" of %s", r->deck->lattices[simulation_ruling_body(r->simulation)].name);
+  puts(" rules)");
   printf("  machine    %d thread%s, %.1f MiB\n", simulation_threads(r->simulation),
          simulation_threads(r->simulation) == 1 ? "" : "s",
          simulation_memory(r->simulation) / 1048576.0);
@@ -257,8 +262,8 @@ void describe_monitors(const run *r, char *text, size_t size) {
 static void write_bad_bond(const run *r, const bad_state *b) {
   char path[4200], error[ERROR_LENGTH + 4200];
   bad_bond_path(r->result_path, path, sizeof path);
-  if (bad_bond_write(path, r->options->deck_path, r->open_models > 0 ? &r->models[0] : NULL,
-                     &r->laws[0], simulation_rows(r->simulation, 0), b, error, sizeof error))
+  if (bad_bond_write(path, r->options->deck_path, r->model_of[b->body], &r->laws[b->body],
+                     simulation_rows(r->simulation, b->body), b, error, sizeof error))
     fprintf(stderr, "  this bond alone: perilat drive %s\n", path);
   else
     fprintf(stderr, "  %s\n", error);
@@ -272,7 +277,7 @@ static void print_fields(const pl_law *kernel, const double *values, bool on_par
 
 /* What the particle's law read: its family. */
 static void print_family(const run *r, const bad_state *b) {
-  const pl_law *kernel = r->laws[0].law;
+  const pl_law *kernel = r->laws[b->body].law;
   fprintf(stderr, "  the particle has %d bonds", b->family_count);
   print_fields(kernel, b->own_fields, true);
   fputc('\n', stderr);
@@ -325,17 +330,19 @@ void report_bad(const run *r) {
     report_bad_energy(r, &b);
     return;
   }
-  say_error("%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
-            r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
-            rows_place_text(simulation_rows(r->simulation, 0)->dimensions, b.place, place_text));
+  say_error(
+      "%s in step %ld (%s%s) at particle %ld, %s", b.what, b.step,
+      r->deck->relaxation.increments > 0 ? "after " : "", moment(r, b.time, when), b.particle,
+      rows_place_text(simulation_rows(r->simulation, b.body)->dimensions, b.place, place_text));
   if (b.family) print_family(r, &b);
   if (b.bond_particle >= 0) {
     fprintf(stderr,
             "  bond to particle %ld: stretch %.6g, stretch rate %.6g 1/s, end rotations %.6g and "
             "%.6g\n",
             b.bond_particle, b.stretch, b.stretch_rate, b.theta_i, b.theta_j);
-    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, 0), 0);
-    if (r->open_models > 0) explain_bad(r->models[0].plan, b.parameters, &bonds, &b, stderr);
+    const pl_bond_class bonds = rows_bond_class(simulation_rows(r->simulation, b.body), 0);
+    if (r->model_of[b.body])
+      explain_bad(r->model_of[b.body]->plan, b.parameters, &bonds, &b, stderr);
     write_bad_bond(r, &b);
   }
   fprintf(stderr,
@@ -483,10 +490,11 @@ static void conclude_monitor(const run *r, int k) {
 }
 
 void conclude(const run *r, double seconds, long steps) {
-  const rows *w = simulation_rows(r->simulation, 0);
-  double rate = (double)steps / pl_fmax(seconds, 1e-9);
+  double rate = (double)steps / pl_fmax(seconds, 1e-9), bonds = 0;
+  for (int b = 0; b < simulation_bodies(r->simulation); b++)
+    bonds += (double)simulation_rows(r->simulation, b)->bond_count;
   printf("%ld steps in %.2f s: %.0f steps/s, %.1f million bond updates/s\n", steps, seconds, rate,
-         1e-6 * rate * (double)w->bond_count);
+         1e-6 * rate * bonds);
   conclude_increments(r);
   for (int k = 0; k < r->deck->monitor_count; k++)
     conclude_monitor(r, k);

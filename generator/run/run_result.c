@@ -108,7 +108,15 @@ bool result_spares_inputs(run *r) {
 
 /* That of the compiled kernel, also where the law is interpreted. */
 static const char *kernel_key(run *r, int lattice) {
-  return r->built_in[lattice] ? r->laws[lattice].law->key : model_key(&r->models[lattice]);
+  return r->built_in[lattice] ? r->laws[lattice].law->key : model_key(r->model_of[lattice]);
+}
+
+/* One after the other. */
+static const char *all_kernel_keys(run *r) {
+  const char *keys = kernel_key(r, 0);
+  for (int k = 1; k < r->deck->lattice_count; k++)
+    keys = arena_printf(r->memory, "%s %s", keys, kernel_key(r, k));
+  return keys;
 }
 
 void fingerprint(run *r) {
@@ -131,17 +139,27 @@ void fingerprint(run *r) {
 
 /* --- result ----------------------------------------------------------------------------------- */
 
+/* Two lattices may have one law: its text is kept once. Kernels of one law for other lattices differ.
+ */
+static const char *text_name(run *r, const result_text *texts, int lattice) {
+  const char *name = r->laws[lattice].law->name;
+  for (int k = 0; k < lattice; k++)
+    if (strcmp(texts[k].name, name) == 0 && strcmp(texts[k].text, texts[lattice].text) != 0)
+      return arena_printf(r->memory, "%s.%s", name, r->deck->lattices[lattice].name);
+  return name;
+}
+
 static result_text *collect_texts(run *r, bool c_text, int *count) {
   *count = r->deck->lattice_count;
   result_text *texts = arena_alloc(r->memory, (size_t)*count * sizeof *texts);
   for (int k = 0; k < *count; k++) {
     const built_in_law *b = r->built_in[k];
-    model *m = b ? NULL : &r->models[k];
-    texts[k].name = r->laws[k].law->name;
+    model *m = b ? NULL : r->model_of[k];
     if (b)
       texts[k].text = c_text ? b->c_text : b->law_text;
     else
       texts[k].text = c_text ? model_c_text(m) : m->sources.items[0].text;
+    texts[k].name = text_name(r, texts, k);
   }
   return texts;
 }
@@ -159,38 +177,73 @@ static result_text *collect_files(run *r) {
   return texts;
 }
 
-static void particle_table(run *r, const rows *w, result_header *h) {
-  size_t n = (size_t)w->particle_count;
-  const size_t dimensions = (size_t)w->dimensions;
-  double *reference = arena_alloc(r->memory, dimensions * n * sizeof *reference);
-  double *volume = arena_alloc(r->memory, n * sizeof *volume);
-  int32_t *bodies = arena_alloc(r->memory, n * sizeof *bodies);
+typedef struct particle_arrays { /* of all bodies, one after the other */
+  double *reference, *volume;
+  int32_t *body, *resolved;
+} particle_arrays;
+
+static void put_particles(const run *r, int lattice, particle_arrays at) {
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const size_t dimensions = (size_t)w->dimensions, n = (size_t)w->particle_count;
   for (size_t p = 0; p < n; p++) {
-    double at[3];
-    rows_place(w, w->particle_site[p], at);
-    memcpy(reference + dimensions * p, at, dimensions * sizeof *at);
-    volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
+    double here[3];
+    rows_place(w, w->particle_site[p], here);
+    memcpy(at.reference + dimensions * p, here, dimensions * sizeof *here);
+    at.volume[p] = w->site_volume ? w->site_volume[w->particle_site[p]] : w->volume;
+    at.resolved[p] = 1;
   }
-  rows_bodies(w, r->deck, 0, bodies);
-  if (w->list) {
-    int32_t *resolved = arena_alloc(r->memory, n * sizeof *resolved);
-    shape_unresolved(w, resolved);
-    h->resolved = resolved;
+  rows_bodies(w, r->deck, lattice, at.body);
+  if (w->list) shape_unresolved(w, at.resolved);
+}
+
+static void particle_table(run *r, result_header *h) {
+  const int bodies = simulation_bodies(r->simulation);
+  bool irregular = false;
+  h->dimensions = simulation_rows(r->simulation, 0)->dimensions;
+  for (int b = 0; b < bodies; b++) {
+    h->particle_count += simulation_rows(r->simulation, b)->particle_count;
+    irregular = irregular || simulation_rows(r->simulation, b)->list;
   }
-  h->dimensions = w->dimensions;
-  h->particle_count = w->particle_count;
-  h->reference = reference;
-  h->volume = volume;
-  h->body = bodies;
+  const size_t n = (size_t)h->particle_count, dimensions = (size_t)h->dimensions;
+  const particle_arrays all = {arena_alloc(r->memory, dimensions * n * sizeof(double)),
+                               arena_alloc(r->memory, n * sizeof(double)),
+                               arena_alloc(r->memory, n * sizeof(int32_t)),
+                               arena_alloc(r->memory, n * sizeof(int32_t))};
+  size_t first = 0;
+  for (int b = 0; b < bodies; b++) {
+    put_particles(r, b,
+                  (particle_arrays){all.reference + dimensions * first, all.volume + first,
+                                    all.body + first, all.resolved + first});
+    first += (size_t)simulation_rows(r->simulation, b)->particle_count;
+  }
+  h->reference = all.reference;
+  h->volume = all.volume;
+  h->body = all.body;
+  h->resolved = irregular ? all.resolved : NULL;
+}
+
+/* Of a body whose particles begin at `first`. */
+static const int32_t *pairs_of(run *r, const rows *w, int32_t first) {
   rows_bond *bonds = rows_bonds(w);
   int32_t *pairs = arena_alloc(r->memory, 2 * (size_t)w->bond_count * sizeof *pairs);
   for (long m = 0; m < w->bond_count; m++) {
-    pairs[2 * m] = bonds[m].i;
-    pairs[2 * m + 1] = bonds[m].j;
+    pairs[2 * m] = first + bonds[m].i;
+    pairs[2 * m + 1] = first + bonds[m].j;
   }
   free(bonds);
-  h->bond_count = w->bond_count;
-  h->bonds = pairs;
+  return pairs;
+}
+
+static void bond_table(run *r, result_header *h) {
+  int32_t first = 0;
+  h->interaction_count = simulation_bodies(r->simulation);
+  result_bonds *bonds = arena_alloc(r->memory, (size_t)h->interaction_count * sizeof *bonds);
+  for (int b = 0; b < h->interaction_count; b++) {
+    const rows *w = simulation_rows(r->simulation, b);
+    bonds[b] = (result_bonds){r->deck->lattices[b].name, w->bond_count, pairs_of(r, w, first)};
+    first += (int32_t)w->particle_count;
+  }
+  h->bonds = bonds;
 }
 
 /* What a law says may take several lines. */
@@ -202,18 +255,20 @@ static const char *one_line(const run *r, const char *words) {
 }
 
 /* Fields of the frames, as the simulation offers them. */
-static void frame_table(run *r, result_header *h, const char *interaction) {
+static void frame_table(run *r, result_header *h) {
   const frame_field *offered;
   h->field_count = simulation_frame_fields(r->simulation, &offered);
   result_field *fields = arena_alloc(r->memory, (size_t)h->field_count * sizeof *fields);
-  for (int k = 0; k < h->field_count; k++)
-    fields[k] = (result_field){offered[k].name,
-                               offered[k].unit,
-                               offered[k].on_bonds ? interaction : NULL,
-                               offered[k].components,
-                               offered[k].on_bonds ? h->bond_count : h->particle_count,
-                               offered[k].kind,
-                               one_line(r, offered[k].long_name)};
+  for (int k = 0; k < h->field_count; k++) {
+    const frame_field *f = &offered[k];
+    fields[k] = (result_field){f->name,
+                               f->unit,
+                               f->on_bonds ? h->bonds[f->body].name : NULL,
+                               f->components,
+                               f->count,
+                               f->kind,
+                               one_line(r, f->long_name)};
+  }
   h->fields = fields;
 }
 
@@ -223,7 +278,7 @@ static void name_compiler(run *r, result_header *h) {
   const built_in_law *b = r->built_in[0];
   if (b)
     h->compiler = b->compiler, h->flags = b->flags;
-  else if (r->models[0].loaded.law) {
+  else if (r->model_of[0]->loaded.law) {
     toolchain_version(version, sizeof version);
     h->compiler = arena_text(r->memory, version, strlen(version));
     h->flags = arena_printf(r->memory, "%s", toolchain_flags());
@@ -244,18 +299,18 @@ bool open_result(run *r) {
                      .title = r->deck->simulation.title ? r->deck->simulation.title : "",
                      .started = r->started,
                      .version = perilat_version,
-                     .kernel_key = kernel_key(r, 0),
+                     .kernel_key = all_kernel_keys(r),
                      .threads = simulation_threads(r->simulation),
                      .deck_text = r->sources.items[0].text,
-                     .overrides = list_overrides(r),
-                     .interaction = r->deck->lattices[0].name};
+                     .overrides = list_overrides(r)};
   h.models = collect_texts(r, false, &h.model_count);
   h.kernels = collect_texts(r, true, &h.kernel_count);
   h.files = collect_files(r);
   h.file_count = r->deck->file_count;
   name_compiler(r, &h);
-  particle_table(r, simulation_rows(r->simulation, 0), &h);
-  frame_table(r, &h, h.interaction);
+  particle_table(r, &h);
+  bond_table(r, &h);
+  frame_table(r, &h);
   char error[ERROR_LENGTH];
   r->result = result_open(&h, r->options->resume, error, sizeof error);
   if (!r->result) {
@@ -320,13 +375,12 @@ bool resume(run *r) {
 bool write_frame(run *r) {
   const frame_field *fields;
   int count = simulation_frame_fields(r->simulation, &fields);
-  const rows *w = simulation_rows(r->simulation, 0);
   const double **values = must_alloc((size_t)(count + 1) * sizeof *values);
   double *at = r->frame_buffer;
   for (int k = 0; k < count; k++) {
     values[k] = at;
     simulation_frame_values(r->simulation, k, at);
-    at += (fields[k].on_bonds ? w->bond_count : w->particle_count) * fields[k].components;
+    at += fields[k].count * fields[k].components;
   }
   char error[ERROR_LENGTH];
   bool good = result_frame(r->result, simulation_time(r->simulation), values, error, sizeof error);
@@ -367,13 +421,10 @@ bool finish_result(run *r, const run_end *end) {
   char ended[512], error[ERROR_LENGTH];
   for (int k = 0; k < count; k++) {
     series[k] = (result_series){.judges = false};
+    series[k].judges = simulation_judges(r->simulation, k, &series[k].unchecked);
     series[k].name = simulation_series(r->simulation, k, &series[k].unit, &series[k].values);
     series[k].long_name = one_line(r, simulation_series_words(r->simulation, k, r->memory));
   }
-  const char *unchecked;
-  const int imbalance = simulation_imbalance(r->simulation, &unchecked);
-  if (imbalance >= 0) series[imbalance].judges = true;
-  if (imbalance >= 0) series[imbalance].unchecked = unchecked;
   describe_end(r, end, ended, sizeof ended);
   result_ending e = {.ended = ended,
                      .status = end->exit_status,

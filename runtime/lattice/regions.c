@@ -79,6 +79,8 @@ region_sites *regions_select(const deck *k, const char *lattice, const rows *w, 
   region_sites *regions = must_calloc((size_t)k->region_count + 1, sizeof *regions);
   for (int r = 0; r < k->region_count; r++) {
     const deck_region *region = &k->regions[r];
+    regions[r].here = region->lattice && strcmp(region->lattice, lattice) == 0;
+    if (!regions[r].here) continue;
     regions[r].count = rows_select(w, &region->shape, &regions[r].particles);
     if (regions[r].count == 0)
       report_empty(lattice, region, w, d);

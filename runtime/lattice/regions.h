@@ -7,12 +7,13 @@
 #include "runtime/lattice/rows.h"
 
 typedef struct region_sites { /* of a region of the deck */
+  bool here;                  /* it is of this lattice; else there are no particles */
   int32_t *particles;
   long count;
 } region_sites;
 
 /* [deck->region_count], to be freed by regions_free. Diagnostics of those that are empty, warnings
-   of those that nothing names; `lattice` is its name. */
+   of those that nothing names; regions of other lattices than the one of that name are left out. */
 region_sites *regions_select(const deck *k, const char *lattice, const rows *w, diagnostics *d);
 void regions_free(const deck *k, region_sites *regions);
 

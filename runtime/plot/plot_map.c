@@ -185,14 +185,18 @@ static colour shade(double v) {
                   stops[k].b + w * (stops[k + 1].b - stops[k].b)};
 }
 
-/* Place in the colour bar, 0 to 1; what is no number stands with the lowest. */
+/* Place in the colour bar, 0 to 1. */
 static double place_of(double value, double low, double high) {
   return high > low ? pl_fmin(pl_fmax((value - low) / (high - low), 0), 1) : 0;
 }
 
+/* What is no number has no colour: a body may not have the field. */
+static const colour no_value = {0.85, 0.85, 0.85};
+
 static colour particle_colour(const map *m, long p, int component, double low, double high) {
   const double value = plot_frame_value(&m->frame, p, component);
-  return m->frame.of_damage ? classes[class_of(value)].ink : shade(place_of(value, low, high));
+  if (m->frame.of_damage) return classes[class_of(value)].ink;
+  return isnan(value) ? no_value : shade(place_of(value, low, high));
 }
 
 static void draw_particle(canvas *c, const map *m, long p, colour ink, double radius) {
@@ -227,9 +231,20 @@ static bool is_separated(const map *m, long b) {
   return m->frame.damage && m->frame.damage[b] >= 1;
 }
 
-enum { SHADES = 64 };
+enum { SHADES = 64, NO_SHADE = -1 };
 static int shade_of(double value, double low, double high) {
+  if (isnan(value)) return NO_SHADE;
   return (int)pl_fmin(SHADES * place_of(value, low, high), SHADES - 1);
+}
+
+/* Those of one shade, separated or not. */
+static void draw_bonds_of(canvas *c, const map *m, int component, double low, double high,
+                          int wanted, bool separated) {
+  for (long b = 0; b < m->frame.bonds; b++)
+    if (is_separated(m, b) == separated &&
+        shade_of(plot_frame_value(&m->frame, b, component), low, high) == wanted)
+      stroke_bond(c, m, b);
+  cairo_stroke(c->cr);
 }
 
 /* Bonds by their value, higher ones above lower ones; separated ones as thin lines across their
@@ -237,15 +252,14 @@ static int shade_of(double value, double low, double high) {
 static void draw_bond_values(canvas *c, const map *m, int component, double low, double high) {
   const double wide = pl_fmax(0.8, 0.22 * m->frame.spacing * m->scale);
   cairo_set_line_cap(c->cr, CAIRO_LINE_CAP_ROUND);
+  cairo_set_line_width(c->cr, 0.3 * wide);
+  canvas_colour(c, no_value);
+  draw_bonds_of(c, m, component, low, high, NO_SHADE, false);
   for (int k = 0; k < 2 * SHADES; k++) {
     const bool separated = k < SHADES;
     canvas_colour(c, shade((k % SHADES + 0.5) / SHADES));
     cairo_set_line_width(c->cr, separated ? 0.3 * wide : wide);
-    for (long b = 0; b < m->frame.bonds; b++)
-      if (is_separated(m, b) == separated &&
-          shade_of(plot_frame_value(&m->frame, b, component), low, high) == k % SHADES)
-        stroke_bond(c, m, b);
-    cairo_stroke(c->cr);
+    draw_bonds_of(c, m, component, low, high, k % SHADES, separated);
   }
 }
 

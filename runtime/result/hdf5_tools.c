@@ -1,6 +1,7 @@
 #include "runtime/result/hdf5_tools.h"
 
 #include <hdf5_hl.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -225,32 +226,45 @@ bool h5_scale_end(h5_scale *s) {
 
 /* --- views ------------------------------------------------------------------------------------ */
 
-/* The block goes where the view begins. */
-static bool map_block(hid_t view, const hsize_t *shape, int rank, hid_t set, const h5_block *of,
+static bool map_block(hid_t file, hid_t view, const hsize_t *shape, int rank, const h5_block *of,
                       hid_t plist) {
-  const hsize_t none[H5_VIEW_RANK] = {0};
-  hsize_t here[H5_VIEW_RANK];
+  const hid_t set = H5Dopen2(file, of->set, H5P_DEFAULT);
+  if (set < 0) return false;
   const hid_t there = H5Dget_space(set);
   const int from = H5Sget_simple_extent_ndims(there);
-  memcpy(here, shape, sizeof *here * (size_t)rank);
-  if (rank > 1) here[rank - 1] = of->count[from - 1];
+  const hsize_t rows = of->rows ? of->rows : shape[0], every = of->every ? of->every : shape[0],
+                times = (shape[0] - of->first + every - 1) / every;
+  const hsize_t begin[] = {of->first, 0}, stride[] = {every, 1}, repeats[] = {times, 1},
+                block[] = {rows, rank > 1 ? of->count[from - 1] : 1};
   const bool good =
-      H5Sselect_hyperslab(view, H5S_SELECT_SET, none, NULL, here, NULL) >= 0 &&
+      H5Sselect_hyperslab(view, H5S_SELECT_SET, begin, stride, repeats, block) >= 0 &&
       H5Sselect_hyperslab(there, H5S_SELECT_SET, of->start, NULL, of->count, NULL) >= 0 &&
       H5Pset_virtual(plist, view, ".", of->set, there) >= 0;
   H5Sclose(there);
-  return good;
+  return H5Dclose(set) >= 0 && good;
+}
+
+static bool is_nothing(const h5_block *of) {
+  return of->count[0] == 0 || of->count[1] == 0;
+}
+
+static hid_t type_of_set(hid_t file, const char *name) {
+  const hid_t set = H5Dopen2(file, name, H5P_DEFAULT), type = set < 0 ? -1 : H5Dget_type(set);
+  if (set >= 0) H5Dclose(set);
+  return type;
 }
 
 bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape,
-                  const h5_block *of) {
-  const hid_t set = H5Dopen2(file, of->set, H5P_DEFAULT);
-  if (set < 0) return false;
-  const hid_t space = H5Screate_simple(rank, shape, NULL), plist = H5Pcreate(H5P_DATASET_CREATE),
-              type = H5Dget_type(set);
+                  const h5_block *blocks, int count, bool gaps) {
+  const double none = NAN;
+  const hid_t type = type_of_set(file, blocks[0].set);
+  if (type < 0) return false;
+  const hid_t space = H5Screate_simple(rank, shape, NULL), plist = H5Pcreate(H5P_DATASET_CREATE);
   H5Pset_dset_no_attrs_hint(plist, true); /* half the size */
   H5Pset_obj_track_times(plist, false);
-  bool good = is_empty(rank, shape) || map_block(space, shape, rank, set, of, plist);
+  bool good = !gaps || H5Pset_fill_value(plist, H5T_NATIVE_DOUBLE, &none) >= 0;
+  for (int b = 0; good && b < count && !is_empty(rank, shape); b++)
+    good = is_nothing(&blocks[b]) || map_block(file, space, shape, rank, &blocks[b], plist);
   H5Sselect_all(space);
   const hid_t view =
       good ? H5Dcreate2(file, name, type, space, H5P_DEFAULT, plist, H5P_DEFAULT) : -1;
@@ -258,7 +272,6 @@ bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape,
   H5Tclose(type);
   H5Pclose(plist);
   H5Sclose(space);
-  H5Dclose(set);
   return good;
 }
 

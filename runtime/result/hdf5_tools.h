@@ -59,10 +59,14 @@ enum { H5_VIEW_RANK = 3 }; /* at most, of a view and of what it shows */
 typedef struct h5_block {  /* of a data set of the file */
   const char *set;
   hsize_t start[H5_VIEW_RANK], count[H5_VIEW_RANK];
+  /* Where its values go: `rows` rows of the view from `first` on, as many again `every` rows
+     further on, and so forth. 0, 0, 0: one after the other, from the first row on. */
+  hsize_t first, rows, every;
 } h5_block;
-/* A virtual data set, which shows a block without a copy. A table may have more columns than the
-   block: these are 0. */
-bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape, const h5_block *of);
+/* A virtual data set, which shows blocks without a copy. A table may have more columns than the
+   blocks: these are 0. With `gaps` there may be numbers in no block, which are NaN. */
+bool h5_make_view(hid_t file, const char *name, int rank, const hsize_t *shape,
+                  const h5_block *blocks, int count, bool gaps);
 
 /* Text attribute of fixed or variable length, cut to size; false (and "") when there is none. */
 bool h5_read_attribute_text(hid_t object, const char *name, char *text, size_t size);

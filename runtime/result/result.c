@@ -84,18 +84,24 @@ void result_close(result *r) {
 
 /* --- the HDF5 file ---------------------------------------------------------------------------- */
 
+static bool write_bonds(hid_t file, const result_bonds *b) {
+  const hsize_t shape[2] = {(hsize_t)b->count, 2};
+  char name[256];
+  snprintf(name, sizeof name, "/bonds/%s", b->name);
+  return h5_write_integers(file, name, b->pairs, 2, shape);
+}
+
 static bool write_particles(hid_t file, const result_header *h) {
   hsize_t places[2] = {(hsize_t)h->particle_count, (hsize_t)h->dimensions};
   hsize_t one[1] = {(hsize_t)h->particle_count};
-  hsize_t bonds[2] = {(hsize_t)h->bond_count, 2};
-  char name[256];
-  snprintf(name, sizeof name, "/bonds/%s", h->interaction);
-  return h5_make_group(file, "/particles") && h5_make_group(file, "/bonds") &&
-         h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
-         h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
-         h5_write_integers(file, "/particles/body", h->body, 1, one) &&
-         (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one)) &&
-         h5_write_integers(file, name, h->bonds, 2, bonds);
+  bool good = h5_make_group(file, "/particles") && h5_make_group(file, "/bonds") &&
+              h5_write_doubles(file, "/particles/reference", h->reference, 2, places, "m") &&
+              h5_write_doubles(file, "/particles/volume", h->volume, 1, one, "m^3") &&
+              h5_write_integers(file, "/particles/body", h->body, 1, one) &&
+              (!h->resolved || h5_write_integers(file, "/particles/resolved", h->resolved, 1, one));
+  for (int k = 0; good && k < h->interaction_count; k++)
+    good = write_bonds(file, &h->bonds[k]);
+  return good;
 }
 
 static bool write_texts(hid_t file, const char *group, const result_text *texts, int count) {
@@ -139,9 +145,19 @@ static bool write_verdict(hid_t set, const result_series *s) {
                         (!s->unchecked || h5_attribute_text(set, "unchecked", s->unchecked)));
 }
 
+/* "energy/kinetic", "plate/kinetic": in a folder. */
+static bool make_folder(hid_t file, const result_series *s) {
+  char name[512];
+  const char *slash = strchr(s->name, '/');
+  if (!slash) return true;
+  snprintf(name, sizeof name, "/history/%.*s", (int)(slash - s->name), s->name);
+  return h5_make_group(file, name);
+}
+
 static bool write_series(hid_t file, h5_scale *times, long count, const result_series *s) {
   char name[512];
   const hsize_t n[1] = {(hsize_t)count};
+  if (!make_folder(file, s)) return false;
   snprintf(name, sizeof name, "/history/%s", s->name);
   if (!h5_write_doubles(file, name, s->values, 1, n, s->unit)) return false;
   const hid_t set = H5Dopen2(file, name, H5P_DEFAULT);

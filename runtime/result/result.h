@@ -9,7 +9,7 @@
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);
                             /input/models/<name> law text; /input/kernels/<name> generated C;
                             /input/files/<name> tables of loads (only then)
-     /particles/reference   [N, dimensions] m; /particles/body [N]; /particles/volume [N] m^3
+     /particles/reference   [N, dimensions] m, body by body in the order of the deck's lattices; /particles/body [N]; /particles/volume [N] m^3
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices
@@ -58,6 +58,12 @@ typedef struct result_series { /* of the history */
   const char *unchecked;
 } result_series;
 
+typedef struct result_bonds { /* of an interaction */
+  const char *name;           /* the lattice's */
+  long count;
+  const int32_t *pairs; /* [count][2] particles */
+} result_bonds;
+
 typedef struct result_header {
   const char *path;        /* of the final file */
   const char *fingerprint; /* says which run the frames belong to */
@@ -72,13 +78,12 @@ typedef struct result_header {
   int file_count;
   int dimensions; /* 2 or 3 */
   long particle_count;
-  const double *reference; /* [N][dimensions] */
-  const int32_t *body;     /* [N] number of the body in the deck, from 0 */
-  const double *volume;    /* [N] */
-  const int32_t *resolved; /* [N]; NULL on lattices */
-  const char *interaction; /* name of the bonds: the lattice's name */
-  long bond_count;
-  const int32_t *bonds; /* [M][2] */
+  const double *reference;   /* [N][dimensions] */
+  const int32_t *body;       /* [N] number of the body in the deck, from 0 */
+  const double *volume;      /* [N] */
+  const int32_t *resolved;   /* [N]; NULL on lattices */
+  const result_bonds *bonds; /* [interaction_count] */
+  int interaction_count;
   const result_field *fields;
   int field_count;
 } result_header;

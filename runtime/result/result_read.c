@@ -27,6 +27,8 @@ struct result_file {
   char trouble[1600];
   result_names known[NAMED_GROUPS]; /* listed when they are first asked for */
   bool listed[NAMED_GROUPS];
+  result_names interactions; /* likewise, */
+  long *first_bond;          /* [interactions + 1] where theirs begin among all bonds */
 };
 
 /* --- opening ---------------------------------------------------------------------------------- */
@@ -93,6 +95,8 @@ result_file *result_read(const char *path, char *error, size_t size) {
 void result_read_close(result_file *f) {
   for (int k = 0; k < NAMED_GROUPS; k++)
     result_names_free(&f->known[k]);
+  result_names_free(&f->interactions);
+  free(f->first_bond);
   if (f->field >= 0) H5Dclose(f->field);
   H5Fclose(f->file);
   free(f);
@@ -220,11 +224,17 @@ static const char *last_part(const char *name) {
   return slash ? slash + 1 : name;
 }
 
+static bool is_sum(const char *name) {
+  return strncmp(name, "energy/", 7) == 0;
+}
+
+/* Of energies that several have the last part means the sum. */
 static void index_names(result_names *n) {
   for (int k = 0; k < n->count; k++) {
     name_index_add(&n->whole, n->items[k], k);
     int *of_part = name_index_add(&n->last, last_part(n->items[k]), k);
-    if (*of_part != k) *of_part = -1;
+    if (*of_part == k || (*of_part >= 0 && is_sum(n->items[*of_part]))) continue;
+    *of_part = is_sum(n->items[k]) ? k : -1;
   }
 }
 
@@ -325,14 +335,28 @@ static hid_t open_named(result_file *f, const char *group, const char *given, ch
   return set;
 }
 
+/* How many have a field of that name on their bonds. */
+static int interactions_with(const result_names *n, const char *field) {
+  int count = 0;
+  for (int k = 0; k < n->count; k++)
+    count += strchr(n->items[k], '/') && strcmp(last_part(n->items[k]), field) == 0;
+  return count;
+}
+
 bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
                  char *error, size_t error_size) {
   const result_names *n = names_in(f, group);
   const int k = result_names_find(n, given);
   const bool is_time = k < 0 && strcmp(group, "/history") == 0 && strcmp(given, "time") == 0;
   snprintf(name, size, "%s", k < 0 ? given : n->items[k]);
-  if (k < 0 && !is_time) no_such_name(f, group, given, error, error_size);
-  return k >= 0 || is_time;
+  if (k >= 0 || is_time) return true;
+  const char *field = strncmp(given, "*/", 2) == 0 ? given + 2 : given;
+  if (strcmp(group, "/frames") == 0 && interactions_with(n, field) > 0) {
+    snprintf(name, size, "*/%s", field);
+    return true;
+  }
+  no_such_name(f, group, given, error, error_size);
+  return false;
 }
 
 /* --- values ----------------------------------------------------------------------------------- */
@@ -383,9 +407,9 @@ static double *read_slab(hid_t set, long frame, int rank, const hsize_t shape[3]
   return NULL;
 }
 
-double *result_read_frame(result_file *f, const char *field, long frame, long *count,
-                          int *components, char *unit_text, size_t unit_size, char *error,
-                          size_t size) {
+/* A frame of one data set. */
+static double *read_one(result_file *f, const char *field, long frame, long *count, int *components,
+                        char *unit_text, size_t unit_size, char *error, size_t size) {
   hid_t set = open_field(f, field, error, size);
   if (set < 0) return NULL;
   int rank = 0;
@@ -411,6 +435,91 @@ double *result_read_frame(result_file *f, const char *field, long frame, long *c
   return values;
 }
 
+/* --- fields of bonds -------------------------------------------------------------------------- */
+
+static long bonds_in(result_file *f, const char *interaction) {
+  char path[512];
+  hsize_t shape[3] = {0, 0, 0};
+  int rank;
+  snprintf(path, sizeof path, "/bonds/%.500s", interaction);
+  const hid_t set = open_set(f, path);
+  const bool good = set >= 0 && shape_of(set, 0, &rank, shape) && rank == 2;
+  if (set >= 0) H5Dclose(set);
+  return good ? (long)shape[0] : 0;
+}
+
+static const result_names *interactions_of(result_file *f) {
+  if (f->first_bond) return &f->interactions;
+  f->interactions = result_list(f, "/bonds");
+  f->first_bond = must_calloc((size_t)f->interactions.count + 1, sizeof *f->first_bond);
+  for (int k = 0; k < f->interactions.count; k++)
+    f->first_bond[k + 1] = f->first_bond[k] + bonds_in(f, f->interactions.items[k]);
+  return &f->interactions;
+}
+
+static bool is_of(const char *field, const char *interaction) {
+  const size_t own = strlen(interaction);
+  return strncmp(field, interaction, own) == 0 && field[own] == '/';
+}
+
+/* Puts the field of one interaction where its bonds are among all. False with a sentence. */
+static bool put_bonds(result_file *f, const char *field, int interaction, long frame, double *all,
+                      char *unit_text, size_t unit_size, char *error, size_t size) {
+  char found[64] = "";
+  long count = 0;
+  int components = 0;
+  const long first = f->first_bond[interaction], bonds = f->first_bond[interaction + 1] - first;
+  double *values = read_one(f, field, frame, &count, &components, found, sizeof found, error, size);
+  bool good = values != NULL;
+  if (good && (count != bonds || components != 1)) {
+    snprintf(error, size, "`%s` in `%s` is not one number a bond", field, f->path);
+    good = false;
+  }
+  if (good && *unit_text && strcmp(unit_text, found) != 0) {
+    snprintf(error, size, "`%s` has one unit in `%s` and another elsewhere: give the whole name",
+             last_part(field), field);
+    good = false;
+  }
+  snprintf(unit_text, unit_size, "%s", found);
+  if (good) memcpy(all + first, values, (size_t)bonds * sizeof *all);
+  free(values);
+  return good;
+}
+
+/* In the order of result_read_bonds; NaN where an interaction has no such field. */
+static double *read_bonds_of_all(result_file *f, const char *name, long frame, long *count,
+                                 char *unit_text, size_t unit_size, char *error, size_t size) {
+  const result_names *all = interactions_of(f), *fields = names_in(f, "/frames");
+  const bool any = strncmp(name, "*/", 2) == 0;
+  *count = f->first_bond[all->count];
+  double *values = must_calloc((size_t)*count + 1, sizeof *values);
+  bool good = true;
+  for (long b = 0; b < *count; b++)
+    values[b] = NAN;
+  *unit_text = 0;
+  for (int k = 0; good && k < fields->count; k++) {
+    const char *field = fields->items[k];
+    if (any ? strcmp(last_part(field), name + 2) != 0 : strcmp(field, name) != 0) continue;
+    for (int n = 0; good && n < all->count; n++)
+      if (is_of(field, all->items[n]))
+        good = put_bonds(f, field, n, frame, values, unit_text, unit_size, error, size);
+  }
+  if (good) return values;
+  free(values);
+  return NULL;
+}
+
+double *result_read_frame(result_file *f, const char *field, long frame, long *count,
+                          int *components, char *unit_text, size_t unit_size, char *error,
+                          size_t size) {
+  char name[512];
+  if (!result_find(f, "/frames", field, name, sizeof name, error, size)) return NULL;
+  if (!strchr(name, '/') || interactions_of(f)->count < 2)
+    return read_one(f, name, frame, count, components, unit_text, unit_size, error, size);
+  *components = 1;
+  return read_bonds_of_all(f, name, frame, count, unit_text, unit_size, error, size);
+}
+
 static bool is_damage(result_file *f, const char *field) {
   char path[512], kind[16] = "";
   snprintf(path, sizeof path, "/frames/%.500s", field);
@@ -426,7 +535,7 @@ static double *larger_of(double *most, long bonds, double *more, long count) {
   if (!most) return more;
   const bool fits = more && count == bonds;
   for (long b = 0; fits && b < bonds; b++)
-    if (more[b] > most[b]) most[b] = more[b];
+    if (!(most[b] >= more[b]) && !isnan(more[b])) most[b] = more[b];
   free(more);
   if (fits) return most;
   free(most);
@@ -434,19 +543,17 @@ static double *larger_of(double *most, long bonds, double *more, long count) {
 }
 
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size) {
-  result_names interactions = result_list(f, "/bonds"), fields = result_members(f, "/frames");
-  const size_t own = interactions.count ? strlen(interactions.items[0]) : 0;
+  const result_names *fields = names_in(f, "/frames");
   double *most = NULL;
   bool good = true;
   error[0] = 0;
   *bonds = 0;
-  for (int k = 0; own && good && k < fields.count; k++) {
-    const char *name = fields.items[k];
+  for (int k = 0; good && k < fields->count; k++) {
+    const char *name = fields->items[k];
     char unit_text[16];
     long count = 0;
     int components = 0;
-    if (strncmp(name, interactions.items[0], own) != 0 || name[own] != '/' || !is_damage(f, name))
-      continue;
+    if (!strchr(name, '/') || !is_damage(f, name)) continue;
     double *more = result_read_frame(f, name, frame, &count, &components, unit_text,
                                      sizeof unit_text, error, size);
     if (more && components != 1) { /* one number a bond */
@@ -458,8 +565,8 @@ double *result_read_damage(result_file *f, long frame, long *bonds, char *error,
     *bonds = count;
     good = most != NULL;
   }
-  result_names_free(&interactions);
-  result_names_free(&fields);
+  for (long b = 0; most && b < *bonds; b++) /* of interactions whose law has no damage */
+    if (isnan(most[b])) most[b] = 0;
   return most;
 }
 
@@ -498,22 +605,40 @@ static bool name_particles(const int32_t *pairs, long bonds, long particles) {
   return true;
 }
 
-int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
+static int32_t *read_pairs(result_file *f, const char *interaction, long particles, long *bonds) {
   char path[512];
-  result_names all = result_list(f, "/bonds");
-  const char *first = all.count ? all.items[0] : "";
-  snprintf(path, sizeof path, "/bonds/%s", interaction ? interaction : first);
-  result_names_free(&all);
   int columns;
+  snprintf(path, sizeof path, "/bonds/%.500s", interaction);
   int32_t *pairs = read_table(f, path, H5T_NATIVE_INT32, sizeof *pairs, 2, 2, bonds, &columns);
-  long particles;
-  free(result_read_reference(f, &particles, &columns));
   if (!pairs || name_particles(pairs, *bonds, particles)) return pairs;
   snprintf(f->trouble, sizeof f->trouble, "`%s` of `%s` names particles that are not there", path,
            f->path);
   free(pairs);
-  *bonds = 0;
   return NULL;
+}
+
+int32_t *result_read_bonds(result_file *f, const char *interaction, long *bonds) {
+  const result_names *names = interactions_of(f);
+  long particles = 0;
+  int columns;
+  free(result_read_reference(f, &particles, &columns));
+  *bonds = 0;
+  if (interaction) return read_pairs(f, interaction, particles, bonds);
+  int32_t *all = NULL;
+  for (int k = 0; k < names->count; k++) {
+    long count = 0;
+    int32_t *more = read_pairs(f, names->items[k], particles, &count);
+    if (!more) {
+      free(all);
+      *bonds = 0;
+      return NULL;
+    }
+    all = must_realloc(all, 2 * (size_t)(*bonds + count + 1) * sizeof *all);
+    if (count) memcpy(all + 2 * *bonds, more, 2 * (size_t)count * sizeof *all);
+    *bonds += count;
+    free(more);
+  }
+  return all;
 }
 
 double *result_read_frame_times(result_file *f, long *frames) {

@@ -38,8 +38,9 @@ void result_names_free(result_names *n);
 /* Position of the name given in full or, where that says which, by its last part ("kinetic"); else
    -1. */
 int result_names_find(const result_names *n, const char *given);
-/* The full name of a history or a field that is given so. False with a sentence that lists what
-   there is. */
+/* The full name of a history or a field that is given so; a field of bonds that several interactions
+   have, of all of them, is named with a star for the interaction. False with a sentence that lists
+   what there is. */
 bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
                  char *error, size_t error_size);
 
@@ -50,14 +51,16 @@ void result_read_unchecked(result_file *f, const char *name, char *why, size_t s
 double *result_read_series(result_file *f, const char *name, long *count, char *unit,
                            size_t unit_size, char *error,
                            size_t size); /* "time", "load", "energy/kinetic" */
+/* Of bonds there is a value for each of result_read_bonds, NaN where an interaction has no such
+   field. */
 double *result_read_frame(result_file *f, const char *field, long frame, long *count,
                           int *components, char *unit, size_t unit_size, char *error, size_t size);
 double *result_read_reference(result_file *f, long *particles,
                               int *dimensions);              /* [N][2] or [N][3] */
 double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
-                           long *bonds); /* [M][2]; NULL name: the first */
-/* Largest of the damages of each bond; NULL when the frame cannot be read or holds none (error "").
+                           long *bonds); /* [M][2]; NULL name: of all, one after the other */
+/* Largest of the damages of each bond (of all interactions); NULL when the frame cannot be read or holds none (error "").
    */
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);

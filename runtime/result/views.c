@@ -3,7 +3,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dsl/base/arena.h"
 #include "runtime/result/hdf5_tools.h"
 
 enum { NAME = 512, LINE = 3 }; /* VTK's number of a cell that is a line */
@@ -12,36 +11,117 @@ int views_components(const result_field *f) {
   return f->components == 1 ? 1 : 3;
 }
 
-/* --- fields ----------------------------------------------------------------------------------- */
+/* --- arrays ----------------------------------------------------------------------------------- */
+
+static bool is_same(const result_field *a, const result_field *b) {
+  return a->interaction && b->interaction && strcmp(a->name, b->name) == 0 &&
+         strcmp(a->unit, b->unit) == 0 && a->components == b->components;
+}
+
+/* Two fields of bonds may have one name and other units. */
+static bool is_taken(const views_array *arrays, int count, const result_field *f) {
+  for (int k = 0; k < count; k++)
+    if (arrays[k].field->interaction && f->interaction && strcmp(arrays[k].name, f->name) == 0)
+      return true;
+  return false;
+}
+
+int views_arrays(const result_header *h, views_array *arrays, arena *texts) {
+  int count = 0;
+  for (int k = 0; k < h->field_count; k++) {
+    const result_field *f = &h->fields[k];
+    bool shown = false;
+    for (int n = 0; n < count; n++)
+      shown = shown || is_same(arrays[n].field, f);
+    if (shown) continue;
+    const bool taken = is_taken(arrays, count, f);
+    arrays[count++] = (views_array){
+        f, taken ? arena_printf(texts, "%s of %s", f->name, f->interaction) : f->name};
+  }
+  return count;
+}
+
+static long all_bonds(const result_header *h) {
+  long sum = 0;
+  for (int k = 0; k < h->interaction_count; k++)
+    sum += h->bonds[k].count;
+  return sum;
+}
+
+long views_count(const result_header *h, const result_field *f) {
+  return f->interaction ? all_bonds(h) : h->particle_count;
+}
 
 static const char *place_of(const result_field *f) {
   return f->interaction ? "bonds" : "particles";
 }
 
-void views_frame_name(const result_field *f, long frame, char *name, size_t size) {
-  snprintf(name, size, "/xdmf/%s/%s/%ld", place_of(f), f->name, frame);
+void views_frame_name(const views_array *a, long frame, char *name, size_t size) {
+  snprintf(name, size, "/xdmf/%s/%s/%ld", place_of(a->field), a->name, frame);
 }
 
-/* `count` frames of a field from `first` on, one behind the other. */
-static bool show_frames(hid_t file, const char *name, const result_field *f, long first,
-                        long count) {
-  char set[NAME];
-  const hsize_t shape[2] = {(hsize_t)(count * f->count), 3};
-  snprintf(set, sizeof set, "/frames/%s%s%s", f->interaction ? f->interaction : "",
+/* What an array is made of. */
+typedef struct sources {
+  h5_block *blocks; /* [interactions] */
+  char (*sets)[NAME];
+  int count;
+  bool gaps;
+} sources;
+
+static void add_source(sources *s, const result_field *f, long first, long count, long before,
+                       long all) {
+  char *set = s->sets[s->count];
+  snprintf(set, NAME, "/frames/%s%s%s", f->interaction ? f->interaction : "",
            f->interaction ? "/" : "", f->name);
-  return h5_make_view(file, name, views_components(f) == 1 ? 1 : 2, shape,
-                      &(h5_block){set,
-                                  {(hsize_t)first},
-                                  {(hsize_t)count, (hsize_t)f->count, (hsize_t)f->components}});
+  s->blocks[s->count++] =
+      (h5_block){.set = set,
+                 .start = {(hsize_t)first},
+                 .count = {(hsize_t)count, (hsize_t)f->count, (hsize_t)f->components},
+                 .first = (hsize_t)before,
+                 .rows = (hsize_t)f->count,
+                 .every = (hsize_t)all};
 }
 
-static bool show_each_frame(hid_t file, const result_field *f, long frames) {
+/* `count` frames from `first` on. */
+static void find_sources(const result_header *h, const result_field *of, long first, long count,
+                         sources *s) {
+  const long all = views_count(h, of);
+  long before = 0;
+  s->count = 0;
+  s->gaps = false;
+  if (!of->interaction) add_source(s, of, first, count, 0, all);
+  for (int b = 0; of->interaction && b < h->interaction_count; b++) {
+    const int had = s->count;
+    for (int k = 0; k < h->field_count; k++)
+      if (is_same(&h->fields[k], of) && strcmp(h->fields[k].interaction, h->bonds[b].name) == 0)
+        add_source(s, &h->fields[k], first, count, before, all);
+    s->gaps = s->gaps || (s->count == had && h->bonds[b].count > 0);
+    before += h->bonds[b].count;
+  }
+}
+
+/* `count` frames of an array from `first` on, one behind the other. */
+static bool show_frames(hid_t file, const result_header *h, const char *name, const result_field *f,
+                        long first, long count) {
+  const size_t most = (size_t)h->interaction_count + 1;
+  const hsize_t shape[2] = {(hsize_t)(count * views_count(h, f)), 3};
+  sources s = {.blocks = must_calloc(most, sizeof *s.blocks),
+               .sets = must_calloc(most, sizeof *s.sets)};
+  find_sources(h, f, first, count, &s);
+  const bool good =
+      h5_make_view(file, name, views_components(f) == 1 ? 1 : 2, shape, s.blocks, s.count, s.gaps);
+  free(s.blocks);
+  free(s.sets);
+  return good;
+}
+
+static bool show_each_frame(hid_t file, const result_header *h, const views_array *a, long frames) {
   char name[NAME];
-  snprintf(name, sizeof name, "/xdmf/%s/%s", place_of(f), f->name);
+  snprintf(name, sizeof name, "/xdmf/%s/%s", place_of(a->field), a->name);
   bool good = h5_make_group(file, name);
   for (long k = 0; good && k < frames; k++) {
-    views_frame_name(f, k, name, sizeof name);
-    good = show_frames(file, name, f, k, 1);
+    views_frame_name(a, k, name, sizeof name);
+    good = show_frames(file, h, name, a->field, k, 1);
   }
   return good;
 }
@@ -69,19 +149,37 @@ static bool write_lines(hid_t file, long count) {
   return good;
 }
 
+/* The bonds of all interactions, one after the other. */
+static bool show_bonds(hid_t file, const result_header *h) {
+  const hsize_t ends[1] = {2 * (hsize_t)all_bonds(h)};
+  const size_t most = (size_t)h->interaction_count;
+  h5_block *blocks = must_calloc(most, sizeof *blocks);
+  char(*sets)[NAME] = must_calloc(most, sizeof *sets);
+  hsize_t before = 0;
+  for (int b = 0; b < h->interaction_count; b++) {
+    const hsize_t count = (hsize_t)h->bonds[b].count;
+    snprintf(sets[b], NAME, "/bonds/%s", h->bonds[b].name);
+    blocks[b] = (h5_block){
+        .set = sets[b], .count = {count, 2}, .first = before, .rows = 2 * count, .every = ends[0]};
+    before += 2 * count;
+  }
+  const bool good =
+      h5_make_view(file, VIEWS_CONNECTIVITY, 1, ends, blocks, h->interaction_count, false);
+  free(blocks);
+  free(sets);
+  return good;
+}
+
 static bool write_grid(hid_t file, const result_header *h) {
-  char bonds[NAME];
-  const hsize_t points[2] = {(hsize_t)h->particle_count, 3}, ends[1] = {2 * (hsize_t)h->bond_count};
-  snprintf(bonds, sizeof bonds, "/bonds/%s", h->interaction);
+  const long bonds = all_bonds(h);
+  const hsize_t points[2] = {(hsize_t)h->particle_count, 3};
+  const h5_block places = {.set = "/particles/reference",
+                           .count = {points[0], (hsize_t)h->dimensions}};
   return write_count(file, "/VTKHDF/NumberOfPoints", h->particle_count) &&
-         write_count(file, "/VTKHDF/NumberOfCells", h->bond_count) &&
-         write_count(file, "/VTKHDF/NumberOfConnectivityIds", 2 * h->bond_count) &&
-         h5_make_view(
-             file, VIEWS_POINTS, 2, points,
-             &(h5_block){"/particles/reference", {0}, {points[0], (hsize_t)h->dimensions}}) &&
-         h5_make_view(file, VIEWS_CONNECTIVITY, 1, ends,
-                      &(h5_block){bonds, {0}, {(hsize_t)h->bond_count, 2}}) &&
-         write_lines(file, h->bond_count);
+         write_count(file, "/VTKHDF/NumberOfCells", bonds) &&
+         write_count(file, "/VTKHDF/NumberOfConnectivityIds", 2 * bonds) &&
+         h5_make_view(file, VIEWS_POINTS, 2, points, &places, 1, false) && show_bonds(file, h) &&
+         write_lines(file, bonds);
 }
 
 /* For each frame where something begins: `stride` further each time. */
@@ -113,13 +211,13 @@ static bool write_steps(hid_t file, long frames) {
          write_beginnings(file, "/VTKHDF/Steps/ConnectivityIdOffsets", 2, frames, 0, 0);
 }
 
-static bool write_array(hid_t file, const result_field *f, long frames) {
+static bool write_array(hid_t file, const result_header *h, const views_array *a, long frames) {
   char name[NAME], offsets[NAME];
-  const char *data = f->interaction ? "CellData" : "PointData";
-  snprintf(name, sizeof name, "/VTKHDF/%s/%s", data, f->name);
-  snprintf(offsets, sizeof offsets, "/VTKHDF/Steps/%sOffsets/%s", data, f->name);
-  return show_frames(file, name, f, 0, frames) &&
-         write_beginnings(file, offsets, 1, frames, 0, f->count);
+  const char *data = a->field->interaction ? "CellData" : "PointData";
+  snprintf(name, sizeof name, "/VTKHDF/%s/%s", data, a->name);
+  snprintf(offsets, sizeof offsets, "/VTKHDF/Steps/%sOffsets/%s", data, a->name);
+  return show_frames(file, h, name, a->field, 0, frames) &&
+         write_beginnings(file, offsets, 1, frames, 0, views_count(h, a->field));
 }
 
 static bool begin_groups(hid_t file) {
@@ -138,7 +236,12 @@ static bool begin_groups(hid_t file) {
 
 bool views_write(hid_t file, const result_header *h, long frames) {
   bool good = begin_groups(file) && write_grid(file, h) && (!frames || write_steps(file, frames));
-  for (int k = 0; good && frames && k < h->field_count; k++)
-    good = write_array(file, &h->fields[k], frames) && show_each_frame(file, &h->fields[k], frames);
+  arena *texts = arena_new();
+  views_array *arrays = must_calloc((size_t)h->field_count + 1, sizeof *arrays);
+  const int count = frames ? views_arrays(h, arrays, texts) : 0;
+  for (int k = 0; good && k < count; k++)
+    good = write_array(file, h, &arrays[k], frames) && show_each_frame(file, h, &arrays[k], frames);
+  free(arrays);
+  arena_free(texts);
   return good;
 }

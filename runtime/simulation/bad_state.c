@@ -6,20 +6,24 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/bond_probe.h"
-#include "runtime/interaction/sweep.h"
+#include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
 
 struct bad_search {
-  const sweep *state;
-  const double *parameters; /* of the law */
-  double *const *varying;   /* of random fields */
-  const rows_bond *bonds;
+  const run_body *bodies;
+  int body_count;
   const run_clock *clock;
+  const run_body *of; /* the bad one */
+  const sweep *state; /* of it */
   bad_state found;
   double *own_parameters; /* of the bad bond */
   double *fields;         /* [law's fields], of the bad bond; families: [1 + neighbours] of these */
   bad_neighbour *family;
 };
+
+static long in_results(const bad_search *s, int32_t particle) {
+  return (long)s->of->first_particle + particle;
+}
 
 /* From a bad particle on, or from a little before it, its row has not moved; all else has. */
 static void ends_before(const bad_search *s, int64_t site, double u[3], double v[3]) {
@@ -37,11 +41,11 @@ static double wrapped(double angle) {
 }
 
 static bond_motion motion_of(const bad_search *s, const rows_bond *b, int direction) {
-  const double *reference = s->state->body->lattice->chord[direction],
-               length = s->state->body->lattice->length[direction];
+  const double *reference = s->of->lattice_rows->chord[direction],
+               length = s->of->lattice_rows->length[direction];
   double ui[3], uj[3], vi[3], vj[3];
-  ends_before(s, s->state->body->lattice->particle_site[b->i], ui, vi);
-  ends_before(s, s->state->body->lattice->particle_site[b->j], uj, vj);
+  ends_before(s, s->of->lattice_rows->particle_site[b->i], ui, vi);
+  ends_before(s, s->of->lattice_rows->particle_site[b->j], uj, vj);
   const double c[2] = {reference[0] + uj[0] - ui[0], reference[1] + uj[1] - ui[1]};
   const double turn = pl_atan2(reference[0] * c[1] - reference[1] * c[0],
                                reference[0] * c[0] + reference[1] * c[1]);
@@ -67,15 +71,15 @@ static double *parameters_of_bond(const bad_search *s, const rows_bond *b) {
   const pl_law *law = s->state->law;
   double *values = must_calloc((size_t)law->parameter_count + 1, sizeof *values);
   for (int p = 0; p < law->parameter_count; p++)
-    values[p] = s->parameters[p];
+    values[p] = s->of->parameters[p];
   for (int k = 0; k < law->varying_count; k++)
-    values[law->varying[k]] = s->varying[k][b->slot];
+    values[law->varying[k]] = s->state->parameter[k][b->slot];
   return values;
 }
 
 /* The largest of N and M/s. */
 static double bond_force(const bad_search *s, const rows_bond *b, int direction, bond_motion k) {
-  const pl_bond_class c = rows_bond_class(s->state->body->lattice, direction);
+  const pl_bond_class c = rows_bond_class(s->of->lattice_rows, direction);
   double *parameters = parameters_of_bond(s, b), forces[PL_STATE_RESULTS];
   bond_probe *p = bond_probe_new(s->state->law, parameters, &c);
   for (int f = 0; f < s->state->law->field_count; f++)
@@ -103,12 +107,12 @@ static void keep_fields(bad_search *s, const rows_bond *b) {
 static void fields_at(const bad_search *s, long site, long there, int k, double *values) {
   for (int f = 0; f < s->state->law->field_count; f++) {
     const bool own = s->state->law->fields[f].place == PL_ON_PARTICLE;
-    values[f] = s->state->field[f][own ? there : k * s->state->body->lattice->size + site];
+    values[f] = s->state->field[f][own ? there : k * s->of->lattice_rows->size + site];
   }
 }
 
 static void look_at_neighbour(bad_search *s, long site, int k) {
-  const rows *g = s->state->body->lattice;
+  const rows *g = s->of->lattice_rows;
   const long there = rows_partner(g, site, k);
   double chord[3];
   const double length = rows_chord(g, site, k, chord);
@@ -124,48 +128,64 @@ static void look_at_neighbour(bad_search *s, long site, int k) {
   bad_neighbour *n = &s->family[s->found.family_count++];
   double *fields = s->fields + s->found.family_count * s->state->law->field_count;
   fields_at(s, site, there, k, fields);
-  *n = (bad_neighbour){g->site_particle[there], now / length - 1, growth / (now * length), fields};
+  *n = (bad_neighbour){in_results(s, g->site_particle[there]), now / length - 1,
+                       growth / (now * length), fields};
 }
 
 static void look_at_family(bad_search *s, long site) {
   s->found.family = s->family;
   s->found.own_fields = s->fields;
   fields_at(s, site, site, 0, s->fields);
-  for (int k = 0; k < 2 * s->state->body->lattice->directions; k++)
-    if (rows_has_neighbour(s->state->body->lattice, site, k)) look_at_neighbour(s, site, k);
+  for (int k = 0; k < 2 * s->of->lattice_rows->directions; k++)
+    if (rows_has_neighbour(s->of->lattice_rows, site, k)) look_at_neighbour(s, site, k);
 }
 
-void bad_search_velocity(bad_search *s) {
-  const body_block *at = &s->state->body->blocks[body_bad(s->state->body)];
-  const int32_t particle = s->state->body->lattice->site_particle[at->bad_site];
+/* Of the bonds of the particle the one that pulls most, and what its law read. */
+static void look_at_bonds(bad_search *s, int32_t particle) {
   double worst = 0;
-  s->found = (bad_state){.step = (long)s->clock->at.step,
-                         .time = run_clock_time(s->clock),
-                         .particle = particle,
-                         .bond_particle = -1};
-  rows_place(s->state->body->lattice, at->bad_site, s->found.place);
-  s->found.what = !isfinite(at->bad_velocity)                                ? "not a number"
-                  : at->bad_component >= s->state->body->lattice->dimensions ? "runaway rotation"
-                                                                             : "runaway velocity";
-  if (s->state->law->kind == PL_STATE) {
-    look_at_family(s, at->bad_site);
-    return;
-  }
-  for (long m = 0; m < s->state->body->lattice->bond_count; m++) {
-    const rows_bond *b = &s->bonds[m];
+  for (long m = 0; m < s->of->lattice_rows->bond_count; m++) {
+    const rows_bond *b = &s->of->bonds[m];
     if (b->i != particle && b->j != particle) continue;
-    const int direction = (int)(b->slot / s->state->body->lattice->size);
+    const int direction = (int)(b->slot / s->of->lattice_rows->size);
     const bond_motion k = motion_of(s, b, direction);
     const double force = bond_force(s, b, direction, k);
     if (s->found.bond_particle >= 0 && !is_worse(force, worst)) continue;
     worst = force;
-    s->found.bond_particle = b->i == particle ? b->j : b->i;
+    s->found.bond_particle = in_results(s, b->i == particle ? b->j : b->i);
     s->found.stretch = k.stretch;
     s->found.stretch_rate = k.rate;
     s->found.theta_i = k.theta_i;
     s->found.theta_j = k.theta_j;
     keep_fields(s, b);
   }
+}
+
+static int first_bad(const bad_search *s) {
+  int b = 0;
+  while (body_bad(s->bodies[b].body) < 0)
+    b++;
+  return b;
+}
+
+void bad_search_velocity(bad_search *s) {
+  const int bad = first_bad(s);
+  s->of = &s->bodies[bad];
+  s->state = s->of->state;
+  const body_block *at = &s->of->body->blocks[body_bad(s->of->body)];
+  const int32_t particle = s->of->lattice_rows->site_particle[at->bad_site];
+  s->found = (bad_state){.body = bad,
+                         .step = (long)s->clock->at.step,
+                         .time = run_clock_time(s->clock),
+                         .particle = in_results(s, particle),
+                         .bond_particle = -1};
+  rows_place(s->of->lattice_rows, at->bad_site, s->found.place);
+  s->found.what = !isfinite(at->bad_velocity)                            ? "not a number"
+                  : at->bad_component >= s->of->lattice_rows->dimensions ? "runaway rotation"
+                                                                         : "runaway velocity";
+  if (s->of->law->kind == PL_STATE)
+    look_at_family(s, at->bad_site);
+  else
+    look_at_bonds(s, particle);
 }
 
 void bad_search_energy(bad_search *s, const char *what) {
@@ -182,14 +202,18 @@ const bad_state *bad_search_found(const bad_search *s) {
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-bad_search *bad_search_new(const sweep *state, const double *parameters, double *const *varying,
-                           const rows_bond *bonds, const run_clock *clock) {
-  const size_t neighbours = 2 * (size_t)state->body->lattice->directions;
+bad_search *bad_search_new(const run_body *bodies, int count, const run_clock *clock) {
+  size_t values = 0, neighbours = 0;
   bad_search *s = must_calloc(1, sizeof *s);
-  *s = (bad_search){
-      .state = state, .parameters = parameters, .varying = varying, .bonds = bonds, .clock = clock};
+  *s = (bad_search){.bodies = bodies, .body_count = count, .clock = clock};
   s->found = (bad_state){.particle = -1, .bond_particle = -1, .what = ""};
-  s->fields = must_calloc((1 + neighbours) * (size_t)state->law->field_count + 1, sizeof(double));
+  for (int b = 0; b < count; b++) {
+    const size_t n = 2 * (size_t)bodies[b].lattice_rows->directions,
+                 all = (1 + n) * (size_t)bodies[b].law->field_count;
+    neighbours = n > neighbours ? n : neighbours;
+    values = all > values ? all : values;
+  }
+  s->fields = must_calloc(values + 1, sizeof(double));
   s->family = must_calloc(neighbours, sizeof *s->family);
   return s;
 }

@@ -7,22 +7,23 @@
 
 C_LINKAGE_BEGIN
 
+struct run_body;
 struct run_clock;
-struct sweep;
 
-typedef struct bad_neighbour { /* of a law of families */
-  long particle;
+typedef struct bad_neighbour {  /* of a law of families */
+  long particle;                /* in the order of results */
   double stretch, stretch_rate; /* before the step */
   const double *fields; /* [law's fields] at its beginning: toward it; those on particles its own */
 } bad_neighbour;
 
-/* When STEP_BAD: `particle` is -1 where only the energies tell (ledger.h). Else it is the lowest
+/* When STEP_BAD: of the first body that is bad. `particle` is -1 where only the energies tell (ledger.h). Else it is the lowest
    particle whose velocity was no number or took it further than a spacing (half a turn) in one
    step, and its bond that gave such a force, or else the largest. A row was not moved from about
    the first bad particle on, so that the state there is that before the step; a partner elsewhere
    is moved back by its velocity. With a law of families there is no such bond, but all neighbours.
    */
 typedef struct bad_state {
+  int body; /* of the run */
   long step;
   double time;
   long particle;
@@ -41,12 +42,10 @@ typedef struct bad_state {
 
 typedef struct bad_search bad_search;
 
-/* `parameters` of the law, `varying` in random fields; all must stay. */
-bad_search *bad_search_new(const struct sweep *state, const double *parameters,
-                           double *const *varying, const rows_bond *bonds,
-                           const struct run_clock *clock);
+/* All must stay. */
+bad_search *bad_search_new(const struct run_body *bodies, int count, const struct run_clock *clock);
 void bad_search_free(bad_search *s);
-/* After a sweep that found a velocity beyond its limit. */
+/* After a step in which some body had a velocity beyond its limit. */
 void bad_search_velocity(bad_search *s);
 /* The energies just sampled are none that a stable step allows. */
 void bad_search_energy(bad_search *s, const char *what);

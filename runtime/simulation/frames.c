@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #include "dsl/base/arena.h"
@@ -11,18 +12,25 @@
 #include "runtime/simulation/load_steps.h"
 
 typedef struct frame_source frame_source;
+typedef struct frames_of { /* where values come from */
+  const run_body *body;
+  long step;
+} frames_of;
 typedef void values_of(const frames_of *of, const frame_source *from, double *values);
 
-struct frame_source { /* where a frame field comes from */
-  values_of *values;
+struct frame_source { /* where a body's values of a frame field come from */
+  values_of *values;  /* NULL: the body has no such field */
   int components;
   int index; /* of the law's fields, outputs, or parameters that differ from bond to bond */
 };
 
 struct frame_set {
-  frames_of of;
+  const deck_output *asked;
+  const run_body *bodies;
+  int body_count;
+  const run_clock *clock;
   frame_field *fields;
-  frame_source *sources;
+  frame_source *sources; /* [count][body_count]; of bonds only that of their body */
   int count;
 };
 
@@ -30,15 +38,15 @@ struct frame_set {
 
 static void site_values(const frames_of *of, double *const *arrays, int components,
                         double *values) {
-  const rows *g = of->state->body->lattice;
+  const rows *g = of->body->lattice_rows;
   for (long p = 0; p < g->particle_count; p++)
     for (int c = 0; c < components; c++)
       values[p * components + c] = arrays[c][g->particle_site[p]];
 }
 
 static void bond_values(const frames_of *of, const double *array, double *values) {
-  for (long b = 0; b < of->state->body->lattice->bond_count; b++)
-    values[b] = sweep_bond_value(of->state, array, &of->bonds[b]);
+  for (long b = 0; b < of->body->lattice_rows->bond_count; b++)
+    values[b] = sweep_bond_value(of->body->state, array, &of->body->bonds[b]);
 }
 
 static bool on_bonds(const pl_field *f) {
@@ -54,53 +62,54 @@ static void law_values(const frames_of *of, const pl_field *field, double *array
 }
 
 static void values_of_state(const frames_of *of, const frame_source *from, double *values) {
-  law_values(of, &of->state->law->fields[from->index], of->state->new_field[from->index], values);
+  law_values(of, &of->body->law->fields[from->index], of->body->state->new_field[from->index],
+             values);
 }
 
 static void values_of_output(const frames_of *of, const frame_source *from, double *values) {
-  const pl_field *field = &of->state->law->outputs[from->index];
-  const size_t planes = (size_t)sweep_planes(of->state, field->place);
-  double *array = must_calloc(planes * (size_t)of->state->body->lattice->size, sizeof *array);
-  sweep_output(of->state, from->index, array);
+  const pl_field *field = &of->body->law->outputs[from->index];
+  const size_t planes = (size_t)sweep_planes(of->body->state, field->place);
+  double *array = must_calloc(planes * (size_t)of->body->lattice_rows->size, sizeof *array);
+  sweep_output(of->body->state, from->index, array);
   law_values(of, field, array, values);
   free(array);
 }
 
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  bond_values(of, of->parameter[from->index], values);
+  bond_values(of, of->body->state->parameter[from->index], values);
 }
 
 /* --- fields of any law ------------------------------------------------------------------------ */
 
 static void values_of_displacement(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->state->body->displacement, from->components, values);
+  site_values(of, of->body->body->displacement, from->components, values);
 }
 
 static void values_of_velocity(const frames_of *of, const frame_source *from, double *values) {
-  const rows *g = of->state->body->lattice;
+  const rows *g = of->body->lattice_rows;
   for (long p = 0; p < g->particle_count; p++)
     for (int c = 0; c < from->components; c++)
-      values[p * from->components + c] = load_steps_velocity(
-          of->loads, of->state->body, c, g->particle_site[p], (long)of->clock->at.step);
+      values[p * from->components + c] = load_steps_velocity(of->body->loads, of->body->state->body,
+                                                             c, g->particle_site[p], of->step);
 }
 
 static void values_of_rotation(const frames_of *of, const frame_source *from, double *values) {
-  const body *w = of->state->body;
+  const body *w = of->body->body;
   site_values(of, w->displacement + w->dimensions, from->components, values);
 }
 
 static void values_of_force(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->state->body->force, from->components, values);
+  site_values(of, of->body->body->force, from->components, values);
 }
 
 static void values_of_damage(const frames_of *of, const frame_source *from, double *values) {
   (void)from;
-  damage_of_particles(of->state, of->bonds, values);
+  damage_of_particles(of->body->state, of->body->bonds, values);
 }
 
 /* Energy lost in the bonds that a particle owns (those to the right and above). */
 static void values_of_dissipated(const frames_of *of, const frame_source *from, double *values) {
-  const sweep *w = of->state;
+  const sweep *w = of->body->state;
   (void)from;
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     const int32_t site = w->body->lattice->particle_site[p];
@@ -170,14 +179,42 @@ static bool is_asked(const deck_output *o, const char *name) {
   return false;
 }
 
-static size_t most_fields(const pl_law *law) {
-  return OWN_FIELDS + (size_t)law->field_count + (size_t)law->output_count +
-         (size_t)law->varying_count;
+static size_t most_fields(const run_body *bodies, int count) {
+  size_t most = OWN_FIELDS;
+  for (int b = 0; b < count; b++)
+    most += (size_t)(bodies[b].law->field_count + bodies[b].law->output_count +
+                     bodies[b].law->varying_count);
+  return most;
 }
 
+static long particles_of(const run_body *bodies, int count) {
+  long sum = 0;
+  for (int b = 0; b < count; b++)
+    sum += bodies[b].lattice_rows->particle_count;
+  return sum;
+}
+
+/* The place of a field that another body has brought, or -1. */
+static int find_shared(const frame_set *f, const frame_field *field) {
+  for (int k = 0; k < f->count && !field->on_bonds; k++) {
+    const frame_field *other = &f->fields[k];
+    if (!other->on_bonds && other->body != field->body && other->components == field->components &&
+        strcmp(other->name, field->name) == 0 && strcmp(other->unit, field->unit) == 0 &&
+        strcmp(other->kind, field->kind) == 0)
+      return k;
+  }
+  return -1;
+}
+
+/* `field` says whose it is. */
 static void add(frame_set *f, frame_field field, values_of *values, int index) {
-  f->fields[f->count] = field;
-  f->sources[f->count++] = (frame_source){values, field.components, index};
+  const int shared = find_shared(f, &field), at = shared < 0 ? f->count++ : shared;
+  if (shared < 0) {
+    field.count = field.on_bonds ? f->bodies[field.body].lattice_rows->bond_count
+                                 : particles_of(f->bodies, f->body_count);
+    f->fields[at] = field;
+  }
+  f->sources[at * f->body_count + field.body] = (frame_source){values, field.components, index};
 }
 
 static const char *words_of(const char *doc, const char *otherwise) {
@@ -185,58 +222,78 @@ static const char *words_of(const char *doc, const char *otherwise) {
 }
 
 /* What is stored of any law. */
-static void add_own(frame_set *f) {
-  const pl_law *law = f->of.state->law;
-  for (const own_field *own = own_fields; own < own_fields + OWN_FIELDS; own++) {
-    if (!is_asked(f->of.asked, own->name) || !own->exists(f->of.asked, law)) continue;
-    const bool largest = own->values == values_of_damage && damage_on_particles(law);
-    add(f,
-        (frame_field){.name = own->name,
-                      .unit = own->unit,
-                      .components = component_count(own->components, law),
-                      .kind = own->kind,
-                      .long_name = largest ? "the largest damage of the particle" : own->words},
-        own->values, 0);
-  }
+static void add_own(frame_set *f, const own_field *own, int b) {
+  const pl_law *law = f->bodies[b].law;
+  if (!is_asked(f->asked, own->name) || !own->exists(f->asked, law)) return;
+  const bool largest = own->values == values_of_damage && damage_on_particles(law);
+  add(f,
+      (frame_field){.name = own->name,
+                    .unit = own->unit,
+                    .components = component_count(own->components, law),
+                    .body = b,
+                    .kind = own->kind,
+                    .long_name = largest ? "the largest damage of the particle" : own->words},
+      own->values, 0);
 }
 
-static void add_of_law(frame_set *f) {
-  const pl_law *law = f->of.state->law;
-  const deck_output *asked = f->of.asked;
+static void add_of_law(frame_set *f, int b) {
+  const pl_law *law = f->bodies[b].law;
+  const deck_output *asked = f->asked;
   for (int k = 0; k < law->field_count; k++) {
     const pl_field *s = &law->fields[k];
     const bool damages = s->kind == PL_FIELD_DAMAGE;
     if (!is_asked(asked, s->name) && !(damages && is_asked(asked, "damage"))) continue;
     add(f,
-        (frame_field){s->name, s->unit, on_bonds(s), 1, damages ? "damage" : "state",
-                      words_of(s->doc, damages ? "damage of the law" : "state of the law")},
+        (frame_field){.name = s->name,
+                      .unit = s->unit,
+                      .on_bonds = on_bonds(s),
+                      .components = 1,
+                      .body = b,
+                      .kind = damages ? "damage" : "state",
+                      .long_name =
+                          words_of(s->doc, damages ? "damage of the law" : "state of the law")},
         values_of_state, k);
   }
   for (int k = 0; k < law->output_count; k++) {
     const pl_field *o = &law->outputs[k];
     if (!is_asked(asked, o->name)) continue;
     add(f,
-        (frame_field){o->name, o->unit, on_bonds(o), 1, "output",
-                      words_of(o->doc, "output of the law")},
+        (frame_field){.name = o->name,
+                      .unit = o->unit,
+                      .on_bonds = on_bonds(o),
+                      .components = 1,
+                      .body = b,
+                      .kind = "output",
+                      .long_name = words_of(o->doc, "output of the law")},
         values_of_output, k);
   }
   for (int k = 0; k < law->varying_count; k++) {
     const pl_parameter *p = &law->parameters[law->varying[k]];
     if (!is_asked(asked, p->name)) continue;
     add(f,
-        (frame_field){p->name, p->unit, true, 1, "other", words_of(p->doc, "parameter of the law")},
+        (frame_field){.name = p->name,
+                      .unit = p->unit,
+                      .on_bonds = true,
+                      .components = 1,
+                      .body = b,
+                      .kind = "other",
+                      .long_name = words_of(p->doc, "parameter of the law")},
         values_of_parameter, k);
   }
 }
 
-frame_set *frames_new(const frames_of *of) {
-  const size_t most = most_fields(of->state->law);
+frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
+                      const run_clock *clock) {
+  const size_t most = most_fields(bodies, count);
   frame_set *f = must_calloc(1, sizeof *f);
-  f->of = *of;
+  *f = (frame_set){.asked = asked, .bodies = bodies, .body_count = count, .clock = clock};
   f->fields = must_calloc(most, sizeof *f->fields);
-  f->sources = must_calloc(most, sizeof *f->sources);
-  add_own(f);
-  add_of_law(f);
+  f->sources = must_calloc(most * (size_t)count, sizeof *f->sources);
+  for (const own_field *own = own_fields; own < own_fields + OWN_FIELDS; own++)
+    for (int b = 0; b < count; b++)
+      add_own(f, own, b);
+  for (int b = 0; b < count; b++)
+    add_of_law(f, b);
   return f;
 }
 
@@ -252,28 +309,62 @@ int frames_fields(const frame_set *f, const frame_field **fields) {
   return f->count;
 }
 
+/* Of a body that does not have the field. */
+static void fill_without(const frame_set *f, const frame_field *field, int b, double *values) {
+  const long count = f->bodies[b].lattice_rows->particle_count * field->components;
+  const double none = strcmp(field->kind, "damage") == 0 ? 0 : NAN;
+  for (long k = 0; k < count; k++)
+    values[k] = none;
+}
+
 void frames_values(const frame_set *f, int field, double *values) {
-  f->sources[field].values(&f->of, &f->sources[field], values);
+  const frame_field *of = &f->fields[field];
+  for (int b = of->on_bonds ? of->body : 0; b < (of->on_bonds ? of->body + 1 : f->body_count);
+       b++) {
+    const frame_source *from = &f->sources[field * f->body_count + b];
+    const frames_of here = {&f->bodies[b], (long)f->clock->at.step};
+    double *at = of->on_bonds ? values : values + f->bodies[b].first_particle * of->components;
+    if (from->values)
+      from->values(&here, from, at);
+    else
+      fill_without(f, of, b, at);
+  }
 }
 
 /* --- what the deck asks for ------------------------------------------------------------------- */
 
+static bool exists_in_run(const own_field *own, const deck_output *o, const run_body *bodies,
+                          int count) {
+  for (int b = 0; b < count; b++)
+    if (own->exists(o, bodies[b].law)) return true;
+  return false;
+}
+
+static int add_law_names(const pl_law *law, const char **names, int count) {
+  for (int f = 0; f < law->field_count; f++)
+    names[count++] = law->fields[f].name;
+  for (int f = 0; f < law->output_count; f++)
+    names[count++] = law->outputs[f].name;
+  for (int k = 0; k < law->varying_count; k++)
+    names[count++] = law->parameters[law->varying[k]].name;
+  return count;
+}
+
 /* Names that this run can store, or with `all` that some run can; to be freed. */
-static const char **field_names(const deck_output *o, const pl_law *law, bool all, int *count) {
-  const char **names = must_calloc(most_fields(law), sizeof *names);
+static const char **field_names(const deck_output *o, const run_body *bodies, int bodies_count,
+                                bool all, int *count) {
+  const char **names = must_calloc(most_fields(bodies, bodies_count), sizeof *names);
   *count = 0;
   for (int k = 0; k < OWN_FIELDS; k++)
-    if (all || own_fields[k].exists(o, law)) names[(*count)++] = own_fields[k].name;
-  for (int f = 0; f < law->field_count; f++)
-    names[(*count)++] = law->fields[f].name;
-  for (int f = 0; f < law->output_count; f++)
-    names[(*count)++] = law->outputs[f].name;
-  for (int k = 0; k < law->varying_count; k++)
-    names[(*count)++] = law->parameters[law->varying[k]].name;
+    if (all || exists_in_run(&own_fields[k], o, bodies, bodies_count))
+      names[(*count)++] = own_fields[k].name;
+  for (int b = 0; b < bodies_count; b++)
+    *count = add_law_names(bodies[b].law, names, *count);
   return names;
 }
 
-static void report_no_field(const deck_output *o, const pl_law *law, int k, diagnostics *d) {
+static void report_no_field(const deck_output *o, const run_body *bodies, int bodies_count, int k,
+                            diagnostics *d) {
   diag_report(d, DIAG_BAD_VALUE, o->field_where[k], "there is no field `%s` to store",
               o->fields[k]);
   if (strcasecmp(o->fields[k], "energy") == 0) {
@@ -282,14 +373,25 @@ static void report_no_field(const deck_output *o, const pl_law *law, int k, diag
     return;
   }
   int count;
-  const char **names = field_names(o, law, false, &count);
+  const char **names = field_names(o, bodies, bodies_count, false, &count);
   deck_suggest(d, o->fields[k], names, count, "this run can store");
   free(names);
 }
 
-bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
+static void warn_of_none(const deck_output *o, const run_body *bodies, int count, int k,
+                         diagnostics *d) {
+  if (count == 1)
+    diag_report(d, DIAG_DECK_WARNING, o->field_where[k],
+                "this run with the law `%s` has no `%s` to store", bodies[0].law->name,
+                o->fields[k]);
+  else
+    diag_report(d, DIAG_DECK_WARNING, o->field_where[k],
+                "none of the laws of this run has `%s` to store", o->fields[k]);
+}
+
+bool frames_check(const deck_output *o, const run_body *bodies, int bodies_count, diagnostics *d) {
   int count;
-  const char **names = field_names(o, law, true, &count);
+  const char **names = field_names(o, bodies, bodies_count, true, &count);
   bool good = true;
   for (int k = 0; o->field_where && k < o->field_count; k++) {
     const own_field *own = find_own(o->fields[k]);
@@ -298,10 +400,9 @@ bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
       known |= strcasecmp(names[n], o->fields[k]) == 0;
     good &= known;
     if (!known)
-      report_no_field(o, law, k, d);
-    else if (own && !own->exists(o, law))
-      diag_report(d, DIAG_DECK_WARNING, o->field_where[k],
-                  "this run with the law `%s` has no `%s` to store", law->name, o->fields[k]);
+      report_no_field(o, bodies, bodies_count, k, d);
+    else if (own && !exists_in_run(own, o, bodies, bodies_count))
+      warn_of_none(o, bodies, bodies_count, k, d);
   }
   free(names);
   return good;
@@ -311,26 +412,26 @@ bool frames_check(const deck_output *o, const pl_law *law, diagnostics *d) {
 
 /* Position at which a frame is due; the first is that of the undeformed body. */
 static int64_t position_of(const frame_set *f, int64_t frame) {
-  const int64_t end = run_clock_end(f->of.clock), count = f->of.asked->frames;
+  const int64_t end = run_clock_end(f->clock), count = f->asked->frames;
   return (int64_t)llround((double)frame * (double)end / (double)count);
 }
 
 /* The first frame after the present position, from `frame` on. */
 static int64_t frame_after(const frame_set *f, int64_t frame) {
-  const int64_t here = run_clock_position(f->of.clock), count = f->of.asked->frames;
+  const int64_t here = run_clock_position(f->clock), count = f->asked->frames;
   while (count > 0 && frame <= count && position_of(f, frame) <= here)
     frame++;
   return frame;
 }
 
 int64_t frames_next(const frame_set *f) {
-  const int64_t count = f->of.asked->frames, frame = frame_after(f, f->of.clock->at.next_frame);
+  const int64_t count = f->asked->frames, frame = frame_after(f, f->clock->at.next_frame);
   return count > 0 && frame <= count ? position_of(f, frame) : INT64_MAX;
 }
 
 bool frames_due(const frame_set *f) {
-  const run_progress *at = &f->of.clock->at;
-  if (f->of.asked->frames <= 0 || at->last_frame_step == at->step) return false;
+  const run_progress *at = &f->clock->at;
+  if (f->asked->frames <= 0 || at->last_frame_step == at->step) return false;
   if (at->status != STEP_OK) return true; /* the last state is always worth a frame */
   return frame_after(f, at->next_frame) > at->next_frame;
 }

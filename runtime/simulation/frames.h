@@ -1,4 +1,6 @@
-/* What is stored in frames, when, and its values in the order of results. */
+/* What is stored in frames, when, and its values in the order of results: particles of all bodies,
+   body by body, bonds of each for themselves. A field of particles that a body does not have is NaN
+   there, a damage 0. */
 #ifndef PERILAT_RUNTIME_FRAMES_H
 #define PERILAT_RUNTIME_FRAMES_H
 
@@ -7,28 +9,18 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
-#include "runtime/interaction/sweep.h"
 #include "runtime/simulation/frame_field.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
 
 typedef struct frame_set frame_set;
 
-/* Where values come from; all must stay. */
-typedef struct frames_of {
-  const deck_output *asked;
-  sweep *state;
-  const loads *loads;
-  const rows_bond *bonds;   /* [bond_count] */
-  double *const *parameter; /* [varying] of random fields */
-  const run_clock *clock;
-} frames_of;
-
 /* False with a diagnostic when the deck asks for fields that no run has. */
-bool frames_check(const deck_output *asked, const pl_law *law, diagnostics *d);
-/* What the deck asks for and the run has; `damage` is that of particles and all damages of the law.
-   */
-frame_set *frames_new(const frames_of *of);
+bool frames_check(const deck_output *asked, const run_body *bodies, int count, diagnostics *d);
+/* What the deck asks for and the run has; `damage` is that of particles and all damages of the
+   laws. Bodies and clock must stay. */
+frame_set *frames_new(const deck_output *asked, const run_body *bodies, int count,
+                      const run_clock *clock);
 void frames_free(frame_set *f);
 
 int frames_fields(const frame_set *f, const frame_field **fields);

@@ -7,11 +7,13 @@
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/relaxation.h"
 
-/* Series: the deck's monitors, then the energy terms, then what an increment took. */
+/* Series: the deck's monitors; the energy terms, in sum, then, of several bodies, those of each;
+   what an increment took. */
 typedef struct history {
   const monitors *monitors;
   const relaxation *relaxation; /* NULL: a dynamic run */
   int energies;                 /* series of energies, or 0 */
+  char **names;                 /* [energies] */
   int series_count;
   int64_t capacity;
   double *time, *values; /* [capacity]; [series][capacity] */
@@ -20,15 +22,18 @@ typedef struct history {
 
 history history_new(const monitors *m, const relaxation *r, bool energies, int64_t capacity);
 void history_free(history *h);
-/* Where the energies of a sample are to be put: [LEDGER_COUNT]; NULL without. */
+/* Where the energies of a sample are to be put: those of all bodies, [LEDGER_COUNT], or of one;
+   NULL without. */
 double *history_energies(const history *h);
+double *history_energies_of(const history *h, int body);
 /* Sample number `sample` is what stands in `sampled`, and of the increment that has ended. */
 void history_add(history *h, int64_t sample, double time);
 
 const char *history_series(const history *h, int k, const char **unit, const double **values);
 /* What a series is, in words. */
 char *history_words(const history *h, int k, arena *a);
-/* The series that judges the run, the imbalance of its energies, or -1. */
-int history_imbalance(const history *h);
+/* The series that judges the run, the imbalance of its energies, or -1; with a body of several, its
+   own. */
+int history_imbalance(const history *h, int body);
 
 #endif

@@ -3,15 +3,15 @@
 #include <string.h>
 #include <strings.h>
 
-span law_fits_where(const deck *k) {
-  const deck_lattice *lattice = &k->lattices[0];
-  const int m = deck_find_material(k, lattice->name);
-  return m < 0 ? lattice->item.where : deck_where(&k->materials[m].item, "model");
+span law_fits_where(const deck *k, int lattice) {
+  const deck_lattice *l = &k->lattices[lattice];
+  const int m = deck_find_material(k, l->name);
+  return m < 0 ? l->item.where : deck_where(&k->materials[m].item, "model");
 }
 
-bool law_fits_motion(const pl_law *law, const deck *k, diagnostics *d) {
+bool law_fits_motion(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
   if (law->density >= 0) return true;
-  diag_report(d, DIAG_MISSING_KEY, law_fits_where(k),
+  diag_report(d, DIAG_MISSING_KEY, law_fits_where(k, lattice),
               "the law `%s` has no parameter `rho`, so its particles have no mass", law->name);
   for (int p = 0; p < law->parameter_count; p++)
     if (strcasecmp(law->parameters[p].name, "rho") == 0) {
@@ -23,14 +23,24 @@ bool law_fits_motion(const pl_law *law, const deck *k, diagnostics *d) {
   return false;
 }
 
+static const deck_protect *protected_on(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->protect_count; i++) {
+    const int r = k->protects[i].region ? deck_find_region(k, k->protects[i].region) : -1;
+    if (r >= 0 && k->regions[r].lattice && strcmp(k->regions[r].lattice, lattice) == 0)
+      return &k->protects[i];
+  }
+  return NULL;
+}
+
 /* Protection keeps damage as it is: a law that softens through a plain state is not held back by
    it. */
-void law_fits_protection(const pl_law *law, const deck *k, diagnostics *d) {
+void law_fits_protection(const pl_law *law, const deck *k, int lattice, diagnostics *d) {
   for (int f = 0; f < law->field_count; f++)
     if (law->fields[f].kind == PL_FIELD_DAMAGE) return;
-  if (k->protect_count > 0 && law->field_count > 0)
+  const deck_protect *in_vain = protected_on(k, k->lattices[lattice].name);
+  if (in_vain && law->field_count > 0)
     diag_report(
-        d, DIAG_DECK_WARNING, k->protects[0].item.where,
+        d, DIAG_DECK_WARNING, in_vain->item.where,
         "the law `%s` has no damage that could be held back; its states go on as they do elsewhere",
         law->name);
 }
@@ -39,10 +49,10 @@ void law_fits_protection(const pl_law *law, const deck *k, diagnostics *d) {
 
 /* The kernel of a law of families is made for lattices or for lists. A solver has one, and its deck
    may change. */
-static bool topology_serves(const pl_law *law, const deck *k, const rows *lattice, diagnostics *d) {
-  const deck_lattice *l = &k->lattices[0];
-  const bool list = lattice->list != NULL;
-  const int neighbours = 2 * lattice->directions;
+static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows *w,
+                            diagnostics *d) {
+  const bool list = w->list != NULL;
+  const int neighbours = 2 * w->directions;
   const bool same = (law->topology == PL_LIST) == list;
   if (law->kind == PL_STATE && same && law->neighbours && law->neighbours != neighbours) {
     diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, l->horizon > 0 ? "horizon" : "shells"),
@@ -67,12 +77,13 @@ static bool topology_serves(const pl_law *law, const deck *k, const rows *lattic
   return false;
 }
 
-bool law_fits_lattice(const pl_law *law, const deck *k, const rows *lattice, diagnostics *d) {
-  const deck_lattice *l = &k->lattices[0];
-  const bool same = law->dimensions == lattice->dimensions;
-  if (same && (law->kind == PL_STATE || lattice->list)) return topology_serves(law, k, lattice, d);
+bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w,
+                      diagnostics *d) {
+  const deck_lattice *l = &k->lattices[lattice];
+  const bool same = law->dimensions == w->dimensions;
+  if (same && (law->kind == PL_STATE || w->list)) return topology_serves(law, l, w, d);
   if (same && bravais_is_hexagon(l)) return true;
-  if (law->dimensions != lattice->dimensions) {
+  if (!same) {
     diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
                 "the law `%s` is of %s, the lattice is in %s", law->name,
                 law->dimensions == 2 ? "the plane" : "space",
@@ -90,27 +101,68 @@ bool law_fits_lattice(const pl_law *law, const deck *k, const rows *lattice, dia
   return false;
 }
 
-/* --- the result ------------------------------------------------------------------------------- */
+/* --- several bodies --------------------------------------------------------------------------- */
 
-/* In a result stand side by side: the times, fields of particles, a folder for those of bonds. */
-static bool is_named_once(const deck *k, const frame_field *f, int count, int field) {
-  const char *name = f[field].name;
-  bool once = strcmp(name, "time") != 0;
-  for (int n = 0; n < count; n++)
-    if (n != field && strcmp(f[n].on_bonds ? k->lattices[0].name : f[n].name, name) == 0)
-      once = false;
-  return once || f[field].on_bonds;
+static bool are_alike(const deck *k, const run_body *bodies, int count, diagnostics *d) {
+  for (int b = 1; b < count; b++) {
+    if (bodies[b].law->dimensions == bodies[0].law->dimensions) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&k->lattices[b].item, "kind"),
+                "`%s` is in %s, `%s` in %s: the bodies of a run are all of the plane or all in "
+                "space",
+                bodies[b].name, bodies[b].law->dimensions == 2 ? "the plane" : "space",
+                bodies[0].name, bodies[0].law->dimensions == 2 ? "the plane" : "space");
+    return false;
+  }
+  return true;
 }
 
-bool law_fits_result(const pl_law *law, const deck *k, const frame_field *fields, int count,
+/* In the history a folder for the energies of each body stands beside the times, the monitors and
+   the energies of all. */
+static bool has_own_name(const deck *k, int lattice, diagnostics *d) {
+  const char *name = k->lattices[lattice].name;
+  const int monitor = deck_find_monitor(k, name);
+  if (monitor >= 0) {
+    diag_report(d, DIAG_RESERVED_NAME, deck_where(&k->monitors[monitor].item, "name"),
+                "a monitor cannot be named as a lattice, `%s`, where there are several", name);
+    diag_note(d, deck_where(&k->lattices[lattice].item, "name"), "the lattice");
+    return false;
+  }
+  if (strcmp(name, "energy") != 0 && strcmp(name, "time") != 0) return true;
+  diag_report(d, DIAG_RESERVED_NAME, deck_where(&k->lattices[lattice].item, "name"),
+              "a result has another `%s`: one of several lattices cannot be named so", name);
+  return false;
+}
+
+bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d) {
+  bool good = are_alike(k, bodies, count, d);
+  for (int b = 0; b < count && count > 1; b++)
+    good = has_own_name(k, b, d) && good;
+  return good;
+}
+
+/* --- the result ------------------------------------------------------------------------------- */
+
+/* In a result stand side by side: the times, fields of particles, a folder for the bonds of each
+   lattice; in such a folder the fields of its bonds. */
+static bool is_named_once(const deck *k, const frame_field *f, int count, int field) {
+  const char *name = f[field].name;
+  if (f[field].on_bonds) return true;
+  bool once = strcmp(name, "time") != 0;
+  for (int n = 0; n < count; n++)
+    if (n != field)
+      once = once && strcmp(f[n].on_bonds ? k->lattices[f[n].body].name : f[n].name, name) != 0;
+  return once;
+}
+
+bool law_fits_result(const deck *k, const run_body *bodies, const frame_field *fields, int count,
                      diagnostics *d) {
   const int errors = d->errors;
   for (int n = 0; n < count; n++) {
     const char *name = fields[n].name;
     if (strcmp(fields[n].kind, "other") == 0 || is_named_once(k, fields, count, n)) continue;
-    diag_report(d, DIAG_RESERVED_NAME, law_fits_where(k),
+    diag_report(d, DIAG_RESERVED_NAME, law_fits_where(k, fields[n].body),
                 "`%s` of the law `%s` cannot be stored: a result has another `%s` there", name,
-                law->name, name);
+                bodies[fields[n].body].law->name, name);
     diag_hint(d, "give it another name in the law, or leave it out of `fields` in &output");
   }
   return d->errors == errors;

@@ -1,5 +1,5 @@
-/* Does a law suit its lattice and deck: dimensions, kind of lattice, mass, names of what is stored.
-   */
+/* Does a law suit its lattice and deck, and do laws suit each other: dimensions, kind of lattice,
+   mass, names of what is stored. */
 #ifndef PERILAT_RUNTIME_LAW_FITS_H
 #define PERILAT_RUNTIME_LAW_FITS_H
 
@@ -8,19 +8,24 @@
 #include "runtime/kernel.h"
 #include "runtime/lattice/rows.h"
 #include "runtime/simulation/frame_field.h"
+#include "runtime/simulation/run_body.h"
 
-/* Where the deck says which law the lattice has. */
-span law_fits_where(const deck *k);
+/* Where the deck says which law the lattice of that number has. */
+span law_fits_where(const deck *k, int lattice);
 
 /* A law is of the plane or of space. Laws of bonds run on the hexagonal lattice of nearest
    neighbours. */
-bool law_fits_lattice(const pl_law *law, const deck *k, const rows *lattice, diagnostics *d);
+bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows *w, diagnostics *d);
 /* Particles have a mass: the law has a density. */
-bool law_fits_motion(const pl_law *law, const deck *k, diagnostics *d);
-/* A warning where the deck protects particles in vain. */
-void law_fits_protection(const pl_law *law, const deck *k, diagnostics *d);
-/* Fields of the law have other names than what stands beside them in a result. */
-bool law_fits_result(const pl_law *law, const deck *k, const frame_field *fields, int count,
+bool law_fits_motion(const pl_law *law, const deck *k, int lattice, diagnostics *d);
+/* A warning where the deck protects particles of the lattice in vain. */
+void law_fits_protection(const pl_law *law, const deck *k, int lattice, diagnostics *d);
+/* Bodies of one run are all of the plane or all in space, and what the result calls after them has
+   no other name there. */
+bool bodies_fit(const deck *k, const run_body *bodies, int count, diagnostics *d);
+/* What the laws of a run store has other names than what stands beside it in the result: fields of
+   other laws, folders of lattices. */
+bool law_fits_result(const deck *k, const run_body *bodies, const frame_field *fields, int count,
                      diagnostics *d);
 
 #endif

@@ -7,9 +7,10 @@
 #include "dsl/base/arena.h"
 #include "runtime/lattice/rows_select.h"
 
+/* NULL: a region of another lattice. */
 static const region_sites *region_of(const loads *l, const char *name) {
   const int r = deck_find_region(l->deck, name);
-  return r < 0 ? NULL : &l->regions[r];
+  return r < 0 || !l->regions[r].here ? NULL : &l->regions[r];
 }
 
 /* --- motions ---------------------------------------------------------------------------------- */
@@ -211,7 +212,8 @@ static void check_velocities(const loads *l, const motions *m) {
   mark_held(l, set);
   for (int i = 0; i < l->deck->initial_velocity_count; i++) {
     const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
-    if (has_component(m, v->component, deck_where(&v->item, "component")))
+    if (region_of(l, v->region) &&
+        has_component(m, v->component, deck_where(&v->item, "component")))
       check_velocity(l, i, set, m->said);
   }
   free(set);
@@ -278,7 +280,8 @@ bool loads_initial_velocity(const loads *l, body *w, diagnostics *d) {
   for (int i = 0; i < l->deck->initial_velocity_count; i++) {
     const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
     const region_sites *at = region_of(l, v->region);
-    for (long p = 0; at && p < at->count; p++)
+    if (!at) continue;
+    for (long p = 0; p < at->count; p++)
       w->velocity[v->component][l->lattice->particle_site[at->particles[p]]] = v->value;
     if (fabs(v->value) < w->limit[v->component]) continue;
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),

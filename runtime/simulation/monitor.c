@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <strings.h>
 
 #include "dsl/base/arena.h"
@@ -39,21 +40,29 @@ static const char *unit_of(const deck_monitor *m, int dimensions) {
   return "1";
 }
 
+/* The body that a region's particles are of; NULL without a region. */
+static const run_body *body_of(const deck *k, const run_body *bodies, int count, const char *name) {
+  const int r = name ? deck_find_region(k, name) : -1;
+  for (int b = 0; b < count && r >= 0; b++)
+    if (strcmp(bodies[b].name, k->regions[r].lattice) == 0) return &bodies[b];
+  return NULL;
+}
+
 static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
-  const int r = name ? deck_find_region(all->deck, name) : -1;
-  if (r < 0) return;
-  const region_sites *at = &all->loads->regions[r];
+  const run_body *of = m->of[list];
+  if (!of) return;
+  const region_sites *at = &of->loads->regions[deck_find_region(all->deck, name)];
   m->indices[list] = must_calloc((size_t)at->count + 1, sizeof(int32_t));
   m->index_count[list] = at->count;
   for (long p = 0; p < at->count; p++)
-    m->indices[list][p] = all->state->body->lattice->particle_site[at->particles[p]];
+    m->indices[list][p] = of->lattice_rows->particle_site[at->particles[p]];
 }
 
 static void take_reactions(monitor *m, int list, const monitors *all, const char *name) {
-  const int r = name ? deck_find_region(all->deck, name) : -1;
-  if (r >= 0)
-    m->index_count[list] =
-        loads_constraints_of(all->loads, r, m->deck->component, &m->indices[list]);
+  const run_body *of = m->of[list];
+  if (of)
+    m->index_count[list] = loads_constraints_of(of->loads, deck_find_region(all->deck, name),
+                                                m->deck->component, &m->indices[list]);
 }
 
 static bool check_component(const deck_monitor *m, const pl_law *law, diagnostics *d) {
@@ -63,10 +72,19 @@ static bool check_component(const deck_monitor *m, const pl_law *law, diagnostic
   return false;
 }
 
-static bool check_damage(const deck_monitor *m, const pl_law *law, diagnostics *d) {
-  if (!counts_damage(m) || damage_on_bonds(law) || damage_on_particles(law)) return true;
+static bool can_be_damaged(const run_body *b) {
+  return damage_on_bonds(b->law) || damage_on_particles(b->law);
+}
+
+static bool check_damage(const deck_monitor *m, const run_body *bodies, int count, diagnostics *d) {
+  bool some = !counts_damage(m);
+  for (int b = 0; b < count; b++)
+    some = some || can_be_damaged(&bodies[b]);
+  if (some) return true;
   diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
-              "the law `%s` has no damage to count", law->name);
+              count > 1 ? "none of the laws has damage to count"
+                        : "the law `%s` has no damage to count",
+              bodies[0].law->name);
   return false;
 }
 
@@ -97,11 +115,16 @@ static bool check_field(const deck_monitor *m, const pl_law *law, diagnostics *d
   return false;
 }
 
-bool monitors_check(const deck *k, const pl_law *law, diagnostics *d) {
+bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostics *d) {
   bool good = true;
   for (int i = 0; i < k->monitor_count; i++) {
     const deck_monitor *m = &k->monitors[i];
-    good = check_component(m, law, d) && check_damage(m, law, d) && check_field(m, law, d) && good;
+    const char *const regions[] = {m->region, m->between[0], m->between[1]};
+    good = check_damage(m, bodies, count, d) && good;
+    for (int r = 0; r < 3; r++) {
+      const run_body *of = body_of(k, bodies, count, regions[r]);
+      good = (!of || (check_component(m, of->law, d) && check_field(m, of->law, d))) && good;
+    }
   }
   return good;
 }
@@ -123,19 +146,26 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
 
 static monitor_time when_known(const monitor *m, const monitors *all) {
   const bool field = m->deck->kind == MONITOR_FIELD;
-  if (all->deck->relaxation.increments > 0 || (field && m->field >= all->state->law->field_count))
+  if (all->deck->relaxation.increments > 0 || (field && m->field >= m->of[0]->law->field_count))
     return KNOWN_WHEN_OBSERVED;
   const bool reaction = m->deck->kind == MONITOR_REACTION || m->deck->kind == MONITOR_REACTIONS;
   return field || reaction ? KNOWN_ONE_LATE : KNOWN_AFTER_STEP;
 }
 
+static void find_bodies(monitor *m, const monitors *all) {
+  const bool two = m->deck->between[0] != NULL;
+  const char *const regions[] = {two ? m->deck->between[0] : m->deck->region, m->deck->between[1]};
+  for (int r = 0; r < 2; r++)
+    m->of[r] = body_of(all->deck, all->bodies, all->body_count, regions[r]);
+}
+
 static void new_monitor(monitors *all, int index, diagnostics *d) {
-  const pl_law *law = all->state->law;
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
-  m->unit = unit_of(m->deck, all->state->body->dimensions);
+  m->unit = unit_of(m->deck, all->bodies[0].body->dimensions);
   m->window = 1;
   if (!find_steps(m, all, d)) return;
+  find_bodies(m, all);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     take_reactions(m, 0, all, m->deck->region);
@@ -153,8 +183,8 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_FIELD:
-    m->field = find_field(m->deck, law);
-    m->unit = law_field(law, m->field)->unit;
+    m->field = find_field(m->deck, m->of[0]->law);
+    m->unit = law_field(m->of[0]->law, m->field)->unit;
     take_sites(m, 0, all, m->deck->region);
     break;
   case MONITOR_DAMAGED:
@@ -164,16 +194,22 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   m->known = when_known(m, all);
 }
 
-monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
-                       double interval, diagnostics *d) {
+static size_t largest_size(const run_body *bodies, int count) {
+  long most = 0;
+  for (int b = 0; b < count; b++)
+    if (bodies[b].lattice_rows->size > most) most = bodies[b].lattice_rows->size;
+  return (size_t)most;
+}
+
+monitors *monitors_new(const deck *k, const run_body *bodies, int count, double interval,
+                       diagnostics *d) {
   const int before = d->errors;
   monitors *m = must_calloc(1, sizeof *m);
   *m = (monitors){.interval = interval,
                   .count = k->monitor_count,
                   .deck = k,
-                  .state = state,
-                  .loads = l,
-                  .bonds = bonds};
+                  .bodies = bodies,
+                  .body_count = count};
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
   for (int i = 0; i < m->count; i++) {
     new_monitor(m, i, d);
@@ -183,7 +219,7 @@ monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_b
     monitors_free(m);
     return NULL;
   }
-  m->values = must_calloc((size_t)state->body->lattice->size, sizeof(double));
+  m->values = must_calloc(largest_size(bodies, count), sizeof(double));
   m->ring_memory = must_calloc((size_t)m->ring_size + 1, sizeof(double));
   double *at = m->ring_memory;
   for (int i = 0; i < m->count; at += m->items[i].window, i++)
@@ -207,7 +243,7 @@ void monitors_free(monitors *m) {
 
 static char *component_words(const monitors *all, const monitor *m, const char *quantity,
                              arena *a) {
-  const int c = m->deck->component, dimensions = all->state->body->dimensions;
+  const int c = m->deck->component, dimensions = all->bodies[0].body->dimensions;
   return arena_printf(a, "%s %s %s", quantity, c < dimensions ? "along" : "in",
                       deck_component_name(dimensions, c));
 }
@@ -223,14 +259,22 @@ static char *region_words(const monitors *all, const monitor *m, const char *qua
 }
 
 static char *count_words(const monitors *all, const monitor *m, arena *a) {
+  bool bonds = false, particles = false;
+  for (int b = 0; b < all->body_count; b++) {
+    bonds = bonds || damage_on_bonds(all->bodies[b].law);
+    particles = particles ||
+                (!damage_on_bonds(all->bodies[b].law) && damage_on_particles(all->bodies[b].law));
+  }
   return arena_printf(a, "%s with %s %.6g",
-                      damage_on_bonds(all->state->law) ? "bonds" : "particles",
+                      bonds && particles ? "bonds, or particles where damage is on these,"
+                      : bonds            ? "bonds"
+                                         : "particles",
                       m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
                       m->deck->above);
 }
 
-static char *field_words(const monitors *all, const monitor *m, arena *a) {
-  const pl_field *f = law_field(all->state->law, m->field);
+static char *field_words(const monitor *m, arena *a) {
+  const pl_field *f = law_field(m->of[0]->law, m->field);
   char *words = arena_printf(a, "mean `%s` of `%s`", f->name, m->deck->region);
   return f->doc && *f->doc ? arena_printf(a, "%s (%s)", words, f->doc) : words;
 }
@@ -248,7 +292,7 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
   case MONITOR_VELOCITY:
     return region_words(all, m, "mean velocity", a);
   case MONITOR_FIELD:
-    return field_words(all, m, a);
+    return field_words(m, a);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
@@ -276,10 +320,10 @@ static double mean_at(const double *values, const int32_t *sites, long count) {
   return count ? sum / (double)count : 0;
 }
 
-static double reaction_sum(const monitors *all, const monitor *m, int list) {
+static double reaction_sum(const monitor *m, int list) {
   double sum = 0;
   for (long c = 0; c < m->index_count[list]; c++)
-    sum += all->loads->constraints[m->indices[list][c]].reaction;
+    sum += m->of[list]->loads->constraints[m->indices[list][c]].reaction;
   return sum;
 }
 
@@ -299,66 +343,76 @@ static long count_in_places(const rows *g, const monitor *m, const double *damag
 }
 
 /* Bonds, or particles where the law's damage is on particles alone. */
-static double count_damaged(const monitors *all, const monitor *m) {
-  const rows *g = all->state->body->lattice;
-  const bool bonds = damage_on_bonds(all->state->law);
-  const double *in_places = damage_of_all_bonds(all->state);
+static long count_damaged(const run_body *of, const monitor *m) {
+  const rows *g = of->lattice_rows;
+  const bool bonds = damage_on_bonds(of->law);
+  const double *in_places = damage_of_all_bonds(of->state);
   long count = 0;
-  if (in_places) return (double)count_in_places(g, m, in_places);
+  if (!can_be_damaged(of)) return 0;
+  if (in_places) return count_in_places(g, m, in_places);
   for (long b = 0; bonds && b < g->bond_count; b++)
-    count += is_counted(m, damage_of_bond(all->state, &all->bonds[b]));
+    count += is_counted(m, damage_of_bond(of->state, &of->bonds[b]));
   for (long p = 0; !bonds && p < g->particle_count; p++)
-    count += is_counted(m, damage_of_site(all->state, g->particle_site[p]));
+    count += is_counted(m, damage_of_site(of->state, g->particle_site[p]));
+  return count;
+}
+
+static double count_all_damaged(const monitors *all, const monitor *m) {
+  long count = 0;
+  for (int b = 0; b < all->body_count; b++)
+    count += count_damaged(&all->bodies[b], m);
   return (double)count;
 }
 
 /* Of a law's field or output on particles. */
 static double field_mean(const monitors *all, const monitor *m, double *const *fields) {
-  const int count = all->state->law->field_count;
+  const int count = m->of[0]->law->field_count;
   const double *values = m->field < count ? fields[m->field] : all->values;
-  if (m->field >= count) sweep_output(all->state, m->field - count, all->values);
+  if (m->field >= count) sweep_output(m->of[0]->state, m->field - count, all->values);
   return mean_at(values, m->indices[0], m->index_count[0]);
 }
 
-static double velocity_mean(const monitors *all, const monitor *m, long step) {
+static double velocity_mean(const monitor *m, long step) {
+  const run_body *of = m->of[0];
   double sum = 0;
   for (long p = 0; p < m->index_count[0]; p++)
-    sum += load_steps_velocity(all->loads, all->state->body, m->deck->component, m->indices[0][p],
-                               step);
+    sum += load_steps_velocity(of->loads, of->body, m->deck->component, m->indices[0][p], step);
   return m->index_count[0] ? sum / (double)m->index_count[0] : 0;
+}
+
+static double displacement_mean(const monitor *m, int list) {
+  return mean_at(m->of[list]->body->displacement[m->deck->component], m->indices[list],
+                 m->index_count[list]);
 }
 
 /* A value at the instant of the state observed. */
 static double value_now(const monitors *all, const monitor *m, long step) {
-  const int c = m->deck->component;
   switch (m->deck->kind) {
   case MONITOR_REACTION:
-    return reaction_sum(all, m, 0);
+    return reaction_sum(m, 0);
   case MONITOR_REACTIONS:
-    return 0.5 * (reaction_sum(all, m, 1) - reaction_sum(all, m, 0));
+    return 0.5 * (reaction_sum(m, 1) - reaction_sum(m, 0));
   case MONITOR_DISPLACEMENT:
-    return mean_at(all->state->body->displacement[c], m->indices[0], m->index_count[0]);
+    return displacement_mean(m, 0);
   case MONITOR_VELOCITY:
-    return velocity_mean(all, m, step);
+    return velocity_mean(m, step);
   case MONITOR_OPENING:
-    return mean_at(all->state->body->displacement[c], m->indices[1], m->index_count[1]) -
-           mean_at(all->state->body->displacement[c], m->indices[0], m->index_count[0]);
+    return displacement_mean(m, 1) - displacement_mean(m, 0);
   case MONITOR_FIELD:
-    return field_mean(all, m, all->state->new_field);
+    return field_mean(all, m, m->of[0]->state->new_field);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
   }
-  return count_damaged(all, m);
+  return count_all_damaged(all, m);
 }
 
 /* What a step has made known for a window: the velocity in it, the field of the state that it left;
    the same for all else. */
 static double value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
-    return mean_at(all->state->body->velocity[m->deck->component], m->indices[0],
-                   m->index_count[0]);
-  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, all->state->field);
+    return mean_at(m->of[0]->body->velocity[m->deck->component], m->indices[0], m->index_count[0]);
+  if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, m->of[0]->state->field);
   return value_now(all, m, step);
 }
 

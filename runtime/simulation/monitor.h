@@ -11,8 +11,7 @@
 
 #include "dsl/base/diagnostics.h"
 #include "runtime/deck/deck.h"
-#include "runtime/interaction/sweep.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/simulation/run_body.h"
 
 typedef struct monitor_state { /* what a later step depends on */
   double zero;                 /* value subtracted */
@@ -29,6 +28,8 @@ typedef enum monitor_time {
 
 typedef struct monitor {
   const deck_monitor *deck;
+  /* of its regions; NULL where it has none and counts in all bodies */
+  const run_body *of[2];
   const char *unit;
   monitor_state state;
   int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
@@ -45,19 +46,19 @@ typedef struct monitors {
   monitor *items;
   int count;
   const deck *deck;
-  sweep *state;
-  const loads *loads;
-  const rows_bond *bonds; /* [lattice->bond_count], not owned */
-  double *values;         /* [size] an output while it is looked at */
-  double *ring_memory;    /* all rings in one */
+  const run_body *bodies; /* [body_count] */
+  int body_count;
+  double *values;      /* of the largest body: an output while it is looked at */
+  double *ring_memory; /* all rings in one */
   long ring_size;
 } monitors;
 
-/* False with diagnostics where the deck watches what particles of the law do not have. */
-bool monitors_check(const deck *k, const pl_law *law, diagnostics *d);
-/* Of a deck that was checked. NULL with a diagnostic when a mean does not fit into memory. */
-monitors *monitors_new(const deck *k, sweep *state, const loads *l, const rows_bond *bonds,
-                       double interval, diagnostics *d);
+/* False with diagnostics where the deck watches what particles of the laws do not have. */
+bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostics *d);
+/* Of a deck that was checked; the bodies must stay. NULL with a diagnostic when a mean does not fit
+   into memory. */
+monitors *monitors_new(const deck *k, const run_body *bodies, int count, double interval,
+                       diagnostics *d);
 void monitors_free(monitors *m);
 /* "reaction along y of `loader`, times -1, mean over 0.0001 s": what a monitor watches. */
 char *monitor_words(const monitors *m, int index, arena *a);

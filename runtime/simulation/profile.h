@@ -4,7 +4,7 @@
 #ifndef PERILAT_RUNTIME_PROFILE_H
 #define PERILAT_RUNTIME_PROFILE_H
 
-#include "runtime/body/body.h"
+#include "runtime/simulation/run_body.h"
 
 /* X(code, name) */
 #define PROFILE_PARTS(X)                                                                           \
@@ -31,7 +31,7 @@ typedef struct profile {
 
 extern const char *const profile_names[PROFILE_PART_COUNT];
 
-/* From what the blocks of the body have measured so far. */
-void profile_sum(profile *p, const body *w);
+/* From what the blocks of the bodies have measured so far, on so many threads. */
+void profile_sum(profile *p, const run_body *bodies, int count, int threads);
 
 #endif

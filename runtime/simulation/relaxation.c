@@ -30,39 +30,53 @@ static long ramp_of(const rows *g, double part) {
   return (long)ceil(4 * (longest / g->spacing + 1) / part);
 }
 
-relaxation *relaxation_new(const deck *k, body *w, loads *l, double part) {
+relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, double part) {
   relaxation *r = must_calloc(1, sizeof *r);
-  const size_t size = (size_t)w->lattice->size;
+  size_t largest = 0;
   r->deck = &k->relaxation;
-  r->body = w;
-  r->loads = l;
+  r->bodies = bodies;
+  r->body_count = count;
   r->interval = k->simulation.end_time / k->relaxation.increments;
-  r->ramp = ramp_of(w->lattice, part);
-  for (int d = 0; d < w->dof; d++) {
-    r->displacement[d] = must_calloc(size, sizeof(double));
-    r->force[d] = must_calloc(size, sizeof(double));
+  r->looked_at = must_calloc((size_t)count, sizeof *r->looked_at);
+  for (int b = 0; b < count; b++) {
+    const size_t size = (size_t)bodies[b].lattice_rows->size;
+    const long ramp = ramp_of(bodies[b].lattice_rows, part);
+    r->ramp = ramp > r->ramp ? ramp : r->ramp;
+    largest = size > largest ? size : largest;
+    for (int d = 0; d < bodies[b].body->dof; d++) {
+      r->looked_at[b].displacement[d] = must_calloc(size, sizeof(double));
+      r->looked_at[b].force[d] = must_calloc(size, sizeof(double));
+    }
   }
-  r->total = must_calloc(size, sizeof *r->total);
+  r->total = must_calloc(largest, sizeof *r->total);
   return r;
 }
 
 void relaxation_free(relaxation *r) {
   if (!r) return;
-  for (int d = 0; d < r->body->dof; d++) {
-    free(r->displacement[d]);
-    free(r->force[d]);
-  }
+  for (int b = 0; b < r->body_count; b++)
+    for (int d = 0; d < r->bodies[b].body->dof; d++) {
+      free(r->looked_at[b].displacement[d]);
+      free(r->looked_at[b].force[d]);
+    }
+  free(r->looked_at);
   free(r->total);
   free(r);
 }
 
+/* The clocks of all loads are the same. */
+static int64_t first_step(const relaxation *r) {
+  return r->bodies[0].loads->clock.first;
+}
+
 static bool is_loading(const relaxation *r, int64_t step) {
-  return step - r->loads->clock.first < r->ramp;
+  return step - first_step(r) < r->ramp;
 }
 
 static void damp(relaxation *r, int64_t step) {
   const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
-  r->body->decay = pl_exp(-rate * r->body->time_step);
+  for (int b = 0; b < r->body_count; b++)
+    r->bodies[b].body->decay = pl_exp(-rate * r->bodies[b].body->time_step);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -73,34 +87,39 @@ load_clock relaxation_clock(const relaxation *r, int64_t first) {
 }
 
 void relaxation_next(relaxation *r, int64_t step) {
-  load_steps_increment(r->loads, r->body, relaxation_clock(r, step));
+  for (int b = 0; b < r->body_count; b++)
+    load_steps_increment(r->bodies[b].loads, r->bodies[b].body, relaxation_clock(r, step));
   damp(r, step);
 }
 
 void relaxation_begin(relaxation *r) {
-  r->state.rate = 2 * M_PI / ((double)r->ramp * r->body->time_step);
+  r->state.rate = 2 * M_PI / ((double)r->ramp * r->bodies[0].body->time_step);
   relaxation_next(r, 0);
 }
 
 bool relaxation_due(const relaxation *r, int64_t step) {
-  return (step - r->loads->clock.first) % LOOK_EVERY == 0;
+  return (step - first_step(r)) % LOOK_EVERY == 0;
 }
 
 /* --- a look ----------------------------------------------------------------------------------- */
 
 /* Since the last look: work of the forces, and its motion. */
-static void adapt(relaxation *r) {
-  const body *w = r->body;
-  double work = 0, motion = 0;
+static void add_motion(const body *w, relaxed_body *last, double *work, double *motion) {
   for (int d = 0; d < w->dof; d++)
     for (long p = 0; p < w->lattice->particle_count; p++) {
       const long q = w->lattice->particle_site[p];
-      const double way = w->displacement[d][q] - r->displacement[d][q];
-      work -= way * (w->force[d][q] - r->force[d][q]);
-      motion += body_mass(w, d, q) * way * way;
-      r->displacement[d][q] = w->displacement[d][q];
-      r->force[d][q] = w->force[d][q];
+      const double way = w->displacement[d][q] - last->displacement[d][q];
+      *work -= way * (w->force[d][q] - last->force[d][q]);
+      *motion += body_mass(w, d, q) * way * way;
+      last->displacement[d][q] = w->displacement[d][q];
+      last->force[d][q] = w->force[d][q];
     }
+}
+
+static void adapt(relaxation *r) {
+  double work = 0, motion = 0;
+  for (int b = 0; b < r->body_count; b++)
+    add_motion(r->bodies[b].body, &r->looked_at[b], &work, &motion);
   if (work > 0 && motion > 0) r->state.rate = 2 * sqrt(work / motion);
 }
 
@@ -112,9 +131,9 @@ typedef struct squares { /* N^2 */
   double free, held, applied;
 } squares;
 
-static void add_component(const relaxation *r, int d, squares *sum) {
-  const body *w = r->body;
-  const loads *l = r->loads;
+static void add_component(const relaxation *r, const run_body *of, int d, squares *sum) {
+  const body *w = of->body;
+  const loads *l = of->loads;
   const double arm = d < w->dimensions ? 1 : w->lattice->spacing;
   const double gravity = d < w->dimensions ? w->gravity[d] : 0;
   for (long p = 0; p < w->lattice->particle_count; p++) {
@@ -140,8 +159,9 @@ static void add_component(const relaxation *r, int d, squares *sum) {
 
 static double unbalance_of(relaxation *r) {
   squares sum = {0, 0, 0};
-  for (int d = 0; d < r->body->dof; d++)
-    add_component(r, d, &sum);
+  for (int b = 0; b < r->body_count; b++)
+    for (int d = 0; d < r->bodies[b].body->dof; d++)
+      add_component(r, &r->bodies[b], d, &sum);
   const double needed = sqrt(pl_fmax(sum.held, sum.applied));
   r->state.largest = pl_fmax(r->state.largest, needed);
   const double against = pl_fmax(needed, forgotten * r->state.largest);
@@ -149,7 +169,7 @@ static double unbalance_of(relaxation *r) {
 }
 
 bool relaxation_look(relaxation *r, int64_t step) {
-  const int64_t steps = step - r->loads->clock.first;
+  const int64_t steps = step - first_step(r);
   adapt(r);
   damp(r, step);
   r->state.unbalance = unbalance_of(r);

@@ -17,8 +17,7 @@
 #ifndef PERILAT_RUNTIME_RELAXATION_H
 #define PERILAT_RUNTIME_RELAXATION_H
 
-#include "runtime/body/body.h"
-#include "runtime/simulation/loads.h"
+#include "runtime/simulation/run_body.h"
 
 typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */
@@ -29,22 +28,26 @@ typedef struct relaxation_state { /* what a later step depends on */
   double largest;                 /* N: the largest force that it was compared with */
 } relaxation_state;
 
+typedef struct relaxed_body {                           /* a body at the last look */
+  double *displacement[PL_MAX_DOF], *force[PL_MAX_DOF]; /* [size] */
+} relaxed_body;
+
 typedef struct relaxation {
   relaxation_state state;
-  double *displacement[PL_MAX_DOF]; /* [size] at the last look */
-  double *force[PL_MAX_DOF];
-  double interval; /* s of the deck's time in an increment */
-  long ramp;       /* steps */
+  relaxed_body *looked_at; /* [body_count] */
+  double interval;         /* s of the deck's time in an increment */
+  long ramp;               /* steps */
 
   /* own */
   const deck_relaxation *deck;
-  body *body;
-  loads *loads;
-  double *total; /* [size] */
+  const run_body *bodies;
+  int body_count;
+  double *total; /* [size] of the largest body */
 } relaxation;
 
-/* Forces of the sweep must be kept. `part` of the largest stable step is taken. */
-relaxation *relaxation_new(const deck *k, body *w, loads *l, double part);
+/* Of all bodies together: they come to rest before the next increment. Forces of the sweeps must
+   be kept. `part` of the largest stable step is taken. */
+relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, double part);
 void relaxation_free(relaxation *r);
 
 /* Before the first step. */

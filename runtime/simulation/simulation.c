@@ -1,95 +1,71 @@
 #include "runtime/simulation/simulation.h"
 
-#include <omp.h>
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
 #include "runtime/base/subnormals.h"
-#include "runtime/interaction/interaction.h"
-#include "runtime/lattice/lattice.h"
 #include "runtime/simulation/law_fits.h"
-#include "runtime/simulation/material.h"
 #include "runtime/simulation/simulation_state.h"
 #include "runtime/simulation/time_loop.h"
 
 /* --- set-up ----------------------------------------------------------------------------------- */
 
-/* Small bodies are not worth many threads: a block has at least eight rows, of a list two, unless
-   the deck insists. */
-static int choose_threads(const simulation *s) {
-  const int asked = s->deck->simulation.threads;
-  if (asked > 0) return asked;
-  const int least = s->lattice->list ? 2 : 8;
-  const int offered = omp_get_max_threads(), sensible = s->lattice->row_count / least;
-  return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
-}
-
-static bool open_fields(simulation *s, diagnostics *d) {
-  const deck *k = s->deck;
-  if (k->field_count > 0 && s->law->kind == PL_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, k->fields[0].item.where,
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                s->law->name);
-    return false;
-  }
-  if (k->field_count == 0 && s->law->varying_count == 0) return true;
-  s->fields = random_fields_new(k, 0, s->lattice, s->law, s->parameters, d);
-  return s->fields != NULL;
-}
-
-/* What asks for the values of parameters. */
-static bool open_material(simulation *s, diagnostics *d) {
-  const deck *k = s->deck;
-  const bool fields = open_fields(s, d), mass = law_fits_motion(s->law, k, d);
-  if (mass) rows_set_density(s->lattice, material_density(s->law, s->parameters));
-  if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
-  return fields && mass &&
-         step_choose(k, s->law, s->parameters, s->fields, s->lattice, &s->limit, d) &&
-         step_plan_make(k, &s->limit, &s->plan, d);
-}
-
-static bool open_lattice(simulation *s, diagnostics *d) {
-  if (s->deck->lattice_count > 1) {
-    diag_report(d, DIAG_NOT_SUPPORTED, s->deck->lattices[1].item.where,
-                "a run can have one lattice, this is the second");
-    return false;
-  }
-  if (!s->lattice) s->lattice = lattice_build(s->deck, 0, d);
-  return s->lattice != NULL;
-}
-
-/* Everything that can be said of the deck with this lattice, or nothing and true. Laws and
+/* Everything that can be said of the deck with these lattices, or nothing and true. Laws and
    parameters may be missing, when they are wrong themselves. */
-static bool is_sound(simulation *s, diagnostics *d) {
-  enum { ANY_DOF = PL_MAX_DOF };
+static bool is_sound(simulation *s, rows *const *lattices, diagnostics *d) {
   const deck *k = s->deck;
-  const bool fits = s->law && law_fits_lattice(s->law, k, s->lattice, d);
-  s->loads = loads_new(k, 0, s->lattice, fits ? s->law->name : "", fits ? s->law->dof : ANY_DOF, d);
-  if (!fits) return false;
-  law_fits_protection(s->law, k, d);
-  const bool frames = deck_lacks(k, "output") || frames_check(&k->output, s->law, d),
-             watched = monitors_check(k, s->law, d);
-  return s->parameters && open_material(s, d) && s->loads && frames && watched;
+  bool good = true;
+  for (int b = 0; b < s->body_count; b++)
+    good = run_body_open(&s->bodies[b], k, lattices ? lattices[b] : NULL, d) && good;
+  for (int b = 0; b < s->body_count; b++)
+    if (!s->bodies[b].fits) return false;
+  if (!bodies_fit(k, s->bodies, s->body_count, d)) return false;
+  const bool frames =
+                 deck_lacks(k, "output") || frames_check(&k->output, s->bodies, s->body_count, d),
+             watched = monitors_check(k, s->bodies, s->body_count, d);
+  return good && frames && watched;
 }
 
-static bool is_quasi_static(const simulation *s) {
-  return s->deck->relaxation.increments > 0;
+/* The shortest of the bodies' steps is that of the run. */
+static bool choose_step(simulation *s, diagnostics *d) {
+  for (int b = 1; b < s->body_count; b++)
+    if (s->bodies[b].limit.limit < s->bodies[s->ruling].limit.limit) s->ruling = b;
+  const run_body *rules = &s->bodies[s->ruling];
+  s->limit = rules->limit;
+  return step_choose(s->deck, rules->law, s->body_count > 1 ? rules->name : NULL, &s->limit, d) &&
+         step_plan_make(s->deck, &s->limit, &s->plan, d);
 }
 
-static bool open_state(simulation *s, diagnostics *d) {
-  s->bonds = rows_bonds(s->lattice);
-  s->state = interaction_new(s->lattice, s->law, s->parameters, s->limit.step, choose_threads(s),
-                             s->deck->output.energy, is_quasi_static(s));
-  s->body = s->state->body;
-  s->team = team_new(s->body->block_count);
-  if (s->fields) s->state->parameter = s->fields->value;
-  if (s->deck->gravity_count > 0) body_add_gravity(s->body);
-  return loads_initial_velocity(s->loads, s->body, d);
+static int most(int a, int b) {
+  return a > b ? a : b;
+}
+
+/* Their blocks are dealt out to a team with as many as the largest body has. */
+static bool open_bodies(simulation *s, diagnostics *d) {
+  bool good = true;
+  int32_t particles = 0;
+  int blocks = 0;
+  for (int b = 0; b < s->body_count; b++) {
+    run_body *of = &s->bodies[b];
+    good = run_body_begin(of, s->deck, s->limit.step, d) && good;
+    of->first_particle = particles;
+    of->first_block = blocks;
+    particles += (int32_t)of->lattice_rows->particle_count;
+    blocks += of->body->block_count;
+    s->blocks = most(s->blocks, of->body->block_count);
+    s->step_stages = most(s->step_stages, of->state->engine.step_stages);
+    s->observe_stages = most(s->observe_stages, of->state->engine.observe_stages);
+  }
+  for (int b = 0; b < s->body_count; b++)
+    s->bodies[b].first_block %= s->blocks;
+  s->team = team_new(s->blocks);
+  return good;
 }
 
 static void open_clock(simulation *s) {
-  if (is_quasi_static(s))
-    s->relaxation = relaxation_new(s->deck, s->body, s->loads, s->limit.step / s->limit.limit);
+  if (s->deck->relaxation.increments > 0)
+    s->relaxation =
+        relaxation_new(s->deck, s->bodies, s->body_count, s->limit.step / s->limit.limit);
   s->clock = (run_clock){
       .time_step = s->limit.step, .step_count = s->plan.step_count, .relaxation = s->relaxation};
   s->clock.at.last_frame_step = s->clock.at.stop = s->observed_step = -1;
@@ -97,7 +73,7 @@ static void open_clock(simulation *s) {
 
 static bool open_monitors(simulation *s, diagnostics *d) {
   const deck *k = s->deck;
-  s->monitors = monitors_new(k, s->state, s->loads, s->bonds,
+  s->monitors = monitors_new(k, s->bodies, s->body_count,
                              s->relaxation ? s->relaxation->interval : s->limit.step, d);
   if (!s->monitors) return false;
   s->history = history_new(s->monitors, s->relaxation, k->output.energy, s->plan.history_capacity);
@@ -106,33 +82,32 @@ static bool open_monitors(simulation *s, diagnostics *d) {
 
 static bool open_frames(simulation *s, diagnostics *d) {
   const frame_field *fields;
-  s->frames = frames_new(&(frames_of){.asked = &s->deck->output,
-                                      .state = s->state,
-                                      .loads = s->loads,
-                                      .bonds = s->bonds,
-                                      .parameter = s->state->parameter,
-                                      .clock = &s->clock});
+  s->frames = frames_new(&s->deck->output, s->bodies, s->body_count, &s->clock);
   const int count = frames_fields(s->frames, &fields);
-  return law_fits_result(s->law, s->deck, fields, count, d);
+  return law_fits_result(s->deck, s->bodies, fields, count, d);
 }
 
-static bool set_up(simulation *s, diagnostics *d) {
-  if (!open_lattice(s, d) || !is_sound(s, d) || deck_lacks(s->deck, NULL)) return false;
-  if (!open_state(s, d)) return false;
+static bool set_up(simulation *s, rows *const *lattices, diagnostics *d) {
+  if (!is_sound(s, lattices, d) || deck_lacks(s->deck, NULL)) return false;
+  if (!choose_step(s, d) || !open_bodies(s, d)) return false;
   open_clock(s);
   if (!open_monitors(s, d) || !open_frames(s, d)) return false;
-  s->bad = bad_search_new(s->state, s->parameters, s->state->parameter, s->bonds, &s->clock);
+  s->bad = bad_search_new(s->bodies, s->body_count, &s->clock);
   return true;
 }
 
-simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
+simulation *simulation_new_on(rows *const *lattices, const deck *k, const simulation_law *laws,
                               diagnostics *d) {
   simulation *s = must_calloc(1, sizeof *s);
   s->deck = k;
-  s->law = laws[0].law;
-  s->parameters = laws[0].parameters;
-  s->lattice = lattice;
-  if (set_up(s, d) && d->errors == 0) return s;
+  s->body_count = k->lattice_count;
+  s->bodies = must_calloc((size_t)s->body_count + 1, sizeof *s->bodies);
+  for (int b = 0; b < s->body_count; b++) {
+    s->bodies[b].lattice = b;
+    s->bodies[b].law = laws[b].law;
+    s->bodies[b].parameters = laws[b].parameters;
+  }
+  if (set_up(s, lattices, d) && d->errors == 0) return s;
   simulation_free(s);
   return NULL;
 }
@@ -145,29 +120,33 @@ void simulation_free(simulation *s) {
   if (!s) return;
   monitors_free(s->monitors);
   relaxation_free(s->relaxation);
-  loads_free(s->loads);
-  sweep_free(s->state);
-  team_free(s->team);
-  random_fields_free(s->fields);
-  free(s->bonds);
-  if (s->lattice) rows_free(s->lattice);
   frames_free(s->frames);
   history_free(&s->history);
   bad_search_free(s->bad);
+  for (int b = 0; b < s->body_count; b++)
+    run_body_free(&s->bodies[b]);
+  team_free(s->team);
+  free(s->bodies);
   free(s);
 }
 
-const random_fields *simulation_fields(const simulation *s) {
-  return s->fields;
+int simulation_bodies(const simulation *s) {
+  return s->body_count;
 }
 
-const rows *simulation_rows(const simulation *s, int lattice) {
-  (void)lattice; /* there is one */
-  return s->lattice;
+const random_fields *simulation_fields(const simulation *s, int number) {
+  return s->bodies[number].fields;
+}
+
+const rows *simulation_rows(const simulation *s, int number) {
+  return s->bodies[number].lattice_rows;
 }
 
 const step_limit *simulation_step_limit(const simulation *s) {
   return &s->limit;
+}
+int simulation_ruling_body(const simulation *s) {
+  return s->ruling;
 }
 long simulation_step_count(const simulation *s) {
   return (long)s->clock.step_count;
@@ -186,25 +165,22 @@ double simulation_time(const simulation *s) {
   return run_clock_time(&s->clock);
 }
 int simulation_threads(const simulation *s) {
-  return s->body->block_count;
+  return s->blocks;
 }
-sweep *simulation_state(simulation *s) {
-  return s->state;
+sweep *simulation_state(simulation *s, int number) {
+  return s->bodies[number].state;
 }
 
 double simulation_memory(const simulation *s) {
-  const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
-  const double looks = s->relaxation ? (double)sizeof(double) * (2 * s->body->dof + 1) : 0;
-  const rows *g = s->lattice;
-  const double list =
-      g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
-              : 0;
-  return (double)s->body->bytes + list * (double)g->size +
-         (s->fields ? (double)s->fields->bytes : 0) + looks * (double)s->lattice->size +
-         site * (double)s->lattice->size +
-         (double)sizeof(rows_bond) * (double)s->lattice->bond_count +
-         (double)sizeof(double) * ((double)s->history.capacity * (s->history.series_count + 1) +
-                                   (double)s->monitors->ring_size);
+  double sum =
+      (double)sizeof(double) * ((double)s->history.capacity * (s->history.series_count + 1) +
+                                (double)s->monitors->ring_size);
+  for (int b = 0; b < s->body_count; b++) {
+    const run_body *of = &s->bodies[b];
+    const double looks = s->relaxation ? (double)sizeof(double) * (2 * of->body->dof + 1) : 0;
+    sum += run_body_memory(of) + looks * (double)of->lattice_rows->size;
+  }
+  return sum;
 }
 
 const deck_stop *simulation_stopped_by(const simulation *s) {
@@ -241,8 +217,20 @@ char *simulation_series_words(const simulation *s, int k, arena *a) {
 }
 
 int simulation_imbalance(const simulation *s, const char **unchecked) {
-  *unchecked = ledger_unchecked(s->law);
-  return history_imbalance(&s->history);
+  *unchecked = NULL;
+  for (int b = 0; b < s->body_count && !*unchecked; b++)
+    *unchecked = ledger_unchecked(s->bodies[b].law);
+  return history_imbalance(&s->history, -1);
+}
+
+bool simulation_judges(const simulation *s, int series, const char **unchecked) {
+  if (series == simulation_imbalance(s, unchecked)) return true;
+  for (int b = 0; b < s->body_count; b++) {
+    *unchecked = ledger_unchecked(s->bodies[b].law);
+    if (series == history_imbalance(&s->history, b)) return true;
+  }
+  *unchecked = NULL;
+  return false;
 }
 
 int simulation_frame_fields(const simulation *s, const frame_field **fields) {

@@ -41,16 +41,20 @@ typedef struct simulation_law {
    Deck, laws and parameters must stay until the simulation is freed. With an automatic step the run
    ends with the first step at or past end_time. */
 simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostics *d);
-/* The same on the deck's lattice as lattice_build has built it, which belongs to the simulation
-   from then on; NULL: to be built. */
-simulation *simulation_new_on(rows *lattice, const deck *k, const simulation_law *laws,
+/* The same on the deck's lattices as lattice_build has built them, which belong to the simulation
+   from then on; NULL: all or this one is to be built. */
+simulation *simulation_new_on(rows *const *lattices, const deck *k, const simulation_law *laws,
                               diagnostics *d);
 void simulation_free(simulation *s);
 
+/* As many as the deck has lattices, in their order. */
+int simulation_bodies(const simulation *s);
 /* Random fields of the law's parameters; NULL without. */
-const struct random_fields *simulation_fields(const simulation *s);
-const rows *simulation_rows(const simulation *s, int lattice);
+const struct random_fields *simulation_fields(const simulation *s, int body);
+const rows *simulation_rows(const simulation *s, int body);
+/* The shortest that a body has, and whose it is. */
 const step_limit *simulation_step_limit(const simulation *s);
+int simulation_ruling_body(const simulation *s);
 long simulation_step_count(
     const simulation *s); /* planned; without meaning for quasi-static runs */
 long simulation_step_done(const simulation *s);
@@ -63,9 +67,9 @@ int simulation_threads(const simulation *s);   /* that will work on it */
 /* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay.
    */
 void simulation_measure(simulation *s, struct profile *p);
-/* The arrays of the state, for tools and tests; before the first step they may be set (an initial
+/* The arrays of the state of a body, for tools and tests; before the first step they may be set (an initial
  * velocity, say). */
-struct sweep *simulation_state(simulation *s);
+struct sweep *simulation_state(simulation *s, int body);
 
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */
 const deck_stop *simulation_stopped_by(const simulation *s);
@@ -76,7 +80,8 @@ step_status simulation_advance(simulation *s, long steps, const volatile sig_ato
 
 bad_state simulation_bad(const simulation *s);
 
-/* History so far. Series 0.. are the deck's monitors, then the energy terms; of quasi-static runs
+/* History so far. Series 0.. are the deck's monitors, then the energy terms, in sum and, of several
+   bodies, of each; of quasi-static runs
    then the steps that the increment took and the unbalanced force at its end (relaxation.h). */
 long simulation_history(const simulation *s, const double **time);
 int simulation_series_count(const simulation *s);
@@ -86,6 +91,8 @@ char *simulation_series_words(const simulation *s, int k, arena *a);
 /* The series that judges the run, the imbalance of its energies, or -1; *unchecked: why it says
    nothing (ledger.h), or NULL. */
 int simulation_imbalance(const simulation *s, const char **unchecked);
+/* The series is such an imbalance, of the run or of a body; *unchecked likewise. */
+bool simulation_judges(const simulation *s, int series, const char **unchecked);
 double simulation_monitor_peak(const simulation *s, int monitor,
                                double *time); /* value that is largest in size, its sign kept */
 

@@ -5,7 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_state.h"
 
 typedef struct part_list {
@@ -18,9 +18,10 @@ static void add_part(part_list *l, const char *name, void *data, size_t bytes) {
   l->items[l->count++] = (checkpoint_part){name, data, bytes};
 }
 
-static void add_state(part_list *l, const simulation *s) {
-  const sweep *w = s->state;
-  const size_t site = (size_t)s->lattice->size * sizeof(double);
+static void add_state(part_list *l, const run_body *of) {
+  const sweep *w = of->state;
+  const size_t site = (size_t)of->lattice_rows->size * sizeof(double),
+               row = (size_t)of->lattice_rows->row_count * sizeof(double);
   for (int d = 0; d < w->body->dof; d++) {
     add_part(l, "displacement", w->body->displacement[d], site);
     add_part(l, "velocity", w->body->velocity[d], site);
@@ -33,20 +34,29 @@ static void add_state(part_list *l, const simulation *s) {
     add_part(l, "dissipated_rate", w->dissipated_rate, site);
   }
   if (w->body->weight) {
-    add_part(l, "work_of_gravity", w->body->row_gravity,
-             (size_t)s->lattice->row_count * sizeof(double));
-    add_part(l, "gravity", s->body->gravity, sizeof s->body->gravity);
-    add_part(l, "gravity_work", s->body->gravity_work, sizeof s->body->gravity_work);
+    add_part(l, "work_of_gravity", w->body->row_gravity, row);
+    add_part(l, "gravity", w->body->gravity, sizeof w->body->gravity);
+    add_part(l, "gravity_work", w->body->gravity_work, sizeof w->body->gravity_work);
   }
-  add_part(l, "dissipated_mass", w->body->row_mass, (size_t)s->lattice->row_count * sizeof(double));
-  add_part(l, "internal", w->body->row_internal, (size_t)s->lattice->row_count * sizeof(double));
+  add_part(l, "dissipated_mass", w->body->row_mass, row);
+  add_part(l, "internal", w->body->row_internal, row);
+  add_part(l, "decay", &w->body->decay, sizeof(double));
 }
 
-static void add_relaxation(part_list *l, relaxation *r, size_t site) {
+static void add_loads(part_list *l, loads *of) {
+  add_part(l, "clock", &of->clock, sizeof(load_clock));
+  add_part(l, "constraints", of->constraints, (size_t)of->constraint_count * sizeof(constraint));
+  add_part(l, "forces", of->forces, (size_t)of->force_count * sizeof(applied));
+}
+
+static void add_relaxation(part_list *l, relaxation *r) {
   add_part(l, "relaxation", &r->state, sizeof r->state);
-  for (int d = 0; d < r->body->dof; d++) {
-    add_part(l, "displacement looked at", r->displacement[d], site);
-    add_part(l, "force looked at", r->force[d], site);
+  for (int b = 0; b < r->body_count; b++) {
+    const size_t site = (size_t)r->bodies[b].lattice_rows->size * sizeof(double);
+    for (int d = 0; d < r->bodies[b].body->dof; d++) {
+      add_part(l, "displacement looked at", r->looked_at[b].displacement[d], site);
+      add_part(l, "force looked at", r->looked_at[b].force[d], site);
+    }
   }
 }
 
@@ -55,17 +65,15 @@ static part_list parts_of(const simulation *s, run_progress *head) {
   part_list l = {NULL, 0};
   add_part(&l, "progress", head, sizeof *head);
   const size_t samples = (size_t)head->samples * sizeof(double);
-  add_state(&l, s);
-  add_part(&l, "decay", &s->body->decay, sizeof(double));
-  add_part(&l, "clock", &s->loads->clock, sizeof(load_clock));
-  if (s->relaxation) add_relaxation(&l, s->relaxation, (size_t)s->lattice->size * sizeof(double));
-  add_part(&l, "constraints", s->loads->constraints,
-           (size_t)s->loads->constraint_count * sizeof(constraint));
-  add_part(&l, "forces", s->loads->forces, (size_t)s->loads->force_count * sizeof(applied));
+  for (int b = 0; b < s->body_count; b++) {
+    add_state(&l, &s->bodies[b]);
+    add_loads(&l, s->bodies[b].loads);
+    add_part(&l, "ledger", &s->bodies[b].ledger, sizeof s->bodies[b].ledger);
+  }
+  if (s->relaxation) add_relaxation(&l, s->relaxation);
   for (int m = 0; m < s->monitors->count; m++)
     add_part(&l, s->deck->monitors[m].name, &s->monitors->items[m].state, sizeof(monitor_state));
   add_part(&l, "rings", s->monitors->ring_memory, (size_t)s->monitors->ring_size * sizeof(double));
-  add_part(&l, "ledger", (void *)&s->ledger, sizeof s->ledger);
   add_part(&l, "time", s->history.time, samples);
   for (int k = 0; k < s->history.series_count; k++)
     add_part(&l, "history", s->history.values + k * s->history.capacity, samples);
@@ -114,8 +122,7 @@ static own_places keep_places(const loads *l) {
 }
 
 /* Of what was read only what steps change is taken over. */
-static void put_places_back(const simulation *s, own_places *own) {
-  loads *l = s->loads;
+static void put_places_back(loads *l, const own_places *own) {
   for (long k = 0; k < l->constraint_count; k++) {
     const constraint read = l->constraints[k];
     constraint *c = &l->constraints[k];
@@ -135,10 +142,15 @@ static void put_places_back(const simulation *s, own_places *own) {
     l->forces[k].velocity = read.velocity;
     l->forces[k].sums = read.sums;
   }
+}
+
+/* Counts that index arrays. */
+static void put_counts_right(const simulation *s) {
   if (s->relaxation &&
       s->clock.at.samples > 0) { /* one at the start, and one after each increment */
     s->relaxation->state.done = s->clock.at.samples - 1;
-    l->clock = relaxation_clock(s->relaxation, l->clock.first);
+    for (int b = 0; b < s->body_count; b++)
+      s->bodies[b].loads->clock = relaxation_clock(s->relaxation, s->bodies[0].loads->clock.first);
   }
   for (int m = 0; m < s->monitors->count;
        m++) { /* one push a step, and perhaps one before the first */
@@ -156,14 +168,20 @@ bool simulation_restore(simulation *s, const char *path, const char *fingerprint
     return false;
   }
   part_list l = parts_of(s, &head);
-  own_places own = keep_places(s->loads);
+  own_places *own = must_calloc((size_t)s->body_count, sizeof *own);
+  for (int b = 0; b < s->body_count; b++)
+    own[b] = keep_places(s->bodies[b].loads);
   const bool good = checkpoint_read(path, fingerprint, l.items, l.count, error, size);
   free(l.items);
   if (good) s->clock.at = head;
-  if (good) put_places_back(s, &own);
-  if (good) sweep_fields_set(s->state);
+  for (int b = 0; b < s->body_count; b++) {
+    if (good) put_places_back(s->bodies[b].loads, &own[b]);
+    if (good) sweep_fields_set(s->bodies[b].state);
+    free(own[b].constraints);
+    free(own[b].forces);
+  }
+  free(own);
+  if (good) put_counts_right(s);
   if (good && frames) *frames = head.frames;
-  free(own.constraints);
-  free(own.forces);
   return good;
 }

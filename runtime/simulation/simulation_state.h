@@ -3,40 +3,34 @@
 #define PERILAT_RUNTIME_SIMULATION_STATE_H
 
 #include "runtime/base/team.h"
-#include "runtime/interaction/sweep.h"
-#include "runtime/lattice/random_field.h"
 #include "runtime/simulation/frames.h"
 #include "runtime/simulation/history.h"
-#include "runtime/simulation/ledger.h"
-#include "runtime/simulation/loads.h"
 #include "runtime/simulation/monitor.h"
 #include "runtime/simulation/profile.h"
 #include "runtime/simulation/relaxation.h"
+#include "runtime/simulation/run_body.h"
 #include "runtime/simulation/run_clock.h"
 #include "runtime/simulation/simulation.h"
 #include "runtime/simulation/step_choice.h"
 
 struct simulation {
   const deck *deck;
-  rows *lattice;
-  const pl_law *law;
-  double *parameters;    /* the caller's; those of random fields become their mean */
-  random_fields *fields; /* NULL without */
-  sweep *state;
-  body *body; /* of the state */
-  team *team; /* of the threads; each has a block of the body */
-  loads *loads;
+  run_body *bodies; /* [body_count] in the order of the deck's lattices */
+  int body_count;
+  team *team; /* of the threads */
+  int blocks; /* of a round of the team; each has a block of some bodies */
   monitors *monitors;
   relaxation *relaxation; /* NULL: a dynamic run */
-  ledger ledger;
-  step_limit limit;
+  step_limit limit;       /* the shortest of the bodies', */
+  int ruling;             /* which is this one's */
   step_plan plan;
   run_clock clock;
   history history;
-  rows_bond *bonds;
   frame_set *frames;
   bad_search *bad;
   /* The time loop's: */
+  int step_stages;       /* of a step: as many as the body with the most has */
+  int observe_stages;    /* the same of observing */
   bool observe, go_on;   /* set by one thread for all */
   int64_t observed_step; /* of the state observed last; -1: none */
   profile *profile;      /* NULL: nothing is measured */

@@ -6,10 +6,10 @@
 #include "runtime/analysis/stability.h"
 #include "runtime/simulation/law_fits.h"
 
-static bool is_stable_at_rest(const step_limit *limit, const pl_law *law, const deck *k,
+static bool is_stable_at_rest(const step_limit *limit, const pl_law *law, span where,
                               diagnostics *d) {
   if (limit->least >= STABILITY_LEAST) return true;
-  diag_report(d, DIAG_STIFFNESS, law_fits_where(k),
+  diag_report(d, DIAG_STIFFNESS, where,
               "the virgin body is unstable at rest: by the law `%s` a small motion pushes its "
               "particles on (smallest eigenvalue of its stiffness %.3g of the largest)",
               law->name, limit->least);
@@ -29,24 +29,26 @@ static bool ends_after_a_step(const step_limit *limit, const deck *k, diagnostic
   return false;
 }
 
-bool step_choose(const deck *of, const pl_law *law, const double *parameters,
-                 const random_fields *fields, const rows *lattice, step_limit *limit,
+bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
+                   const random_fields *fields, const rows *w, step_limit *limit, diagnostics *d) {
+  stability_limit(law, parameters, fields, w, limit);
+  if (!is_stable_at_rest(limit, law, law_fits_where(k, lattice), d)) return false;
+  if (limit->limit > 0) return true;
+  diag_report(d, DIAG_UNSTABLE_STEP, k->simulation.item.where,
+              "the law `%s` has no finite stiffness at rest, so that no step is stable", law->name);
+  diag_hint(d,
+            "look for a division by zero or a root where stretch, rotations and states are all 0");
+  return false;
+}
+
+bool step_choose(const deck *of, const pl_law *law, const char *lattice, step_limit *limit,
                  diagnostics *d) {
   const deck_simulation *k = &of->simulation;
-  stability_limit(law, parameters, fields, lattice, limit);
   const double most = limit->limit;
-  if (!is_stable_at_rest(limit, law, of, d)) return false;
-  if (!(most > 0)) {
-    diag_report(d, DIAG_UNSTABLE_STEP, k->item.where,
-                "the law `%s` has no finite stiffness at rest, so that no step is stable",
-                law->name);
-    diag_hint(
-        d, "look for a division by zero or a root where stretch, rotations and states are all 0");
-    return false;
-  }
   if (k->step > most) {
     diag_report(d, DIAG_UNSTABLE_STEP, deck_where(&k->item, "step"),
-                "a step of %.6g s is unstable: the largest stable one is %.6g s", k->step, most);
+                "a step of %.6g s is unstable: the largest stable one%s%s%s is %.6g s", k->step,
+                lattice ? " of `" : "", lattice ? lattice : "", lattice ? "`" : "", most);
     diag_hint(d, "leave `step` away to have it chosen: %.2g of the limit, %.4g s", k->step_safety,
               k->step_safety * most);
     return false;

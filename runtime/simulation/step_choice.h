@@ -15,10 +15,12 @@ typedef struct step_plan {
   int64_t history_capacity; /* samples, at most */
 } step_plan;
 
-/* The stable step of the virgin body, and the deck's part of it. False with a diagnostic where none
-   is stable. */
-bool step_choose(const deck *k, const pl_law *law, const double *parameters,
-                 const random_fields *fields, const rows *lattice, step_limit *limit,
+/* The stable step of the virgin body. False with a diagnostic where none is stable. */
+bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
+                   const random_fields *fields, const rows *w, step_limit *limit, diagnostics *d);
+/* limit->step, the deck's part of the shortest of these limits. It is that of `law`, and of
+   `lattice` where there are others, too (else NULL). */
+bool step_choose(const deck *k, const pl_law *law, const char *lattice, step_limit *limit,
                  diagnostics *d);
 /* False with a diagnostic where there are too many steps. */
 bool step_plan_make(const deck *k, const step_limit *limit, step_plan *plan, diagnostics *d);

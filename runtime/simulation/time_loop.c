@@ -31,48 +31,71 @@ static void end_badly(simulation *s, const char *what) {
   s->clock.at.status = STEP_BAD;
 }
 
+static void add_up(const simulation *s) {
+  double *sum = history_energies(&s->history);
+  if (s->body_count == 1) return;
+  for (int term = 0; term < LEDGER_COUNT; term++) {
+    sum[term] = 0;
+    for (int b = 0; b < s->body_count; b++)
+      sum[term] += history_energies_of(&s->history, b)[term];
+  }
+}
+
 /* Energies of the state observed; they tell of a run that has gone wrong. */
-static void sample_energies(simulation *s, const load_look *look) {
-  double *terms = history_energies(&s->history);
+static void sample_energies(simulation *s) {
   const bool last = run_clock_position(&s->clock) == run_clock_end(&s->clock);
-  if (!ledger_sample(&s->ledger, s->state, s->loads, look, s->limit.omega_max, terms))
-    end_badly(s, "energy from nothing");
+  for (int b = 0; b < s->body_count; b++) {
+    run_body *of = &s->bodies[b];
+    if (!ledger_sample(&of->ledger, of->state, of->loads, &of->look, of->limit.omega_max,
+                       history_energies_of(&s->history, b)))
+      end_badly(s, "energy from nothing");
+  }
+  add_up(s);
+  const double *terms = history_energies(&s->history);
   if (last && !isfinite(terms[LEDGER_KINETIC] + terms[LEDGER_STORED]))
     end_badly(s, "energies that are not finite");
 }
 
 /* Values of the state observed into the history. The end is sampled also when it lies between two
  * samples. */
-static void take_sample(simulation *s, const load_look *look) {
+static void take_sample(simulation *s) {
   run_progress *at = &s->clock.at;
   const double time = run_clock_time(&s->clock);
   monitors_sample(s->monitors, (long)at->step, time, s->history.sampled);
   at->stop = monitors_stop(s->monitors, time, s->history.sampled);
   if (at->stop >= 0) at->status = STEP_STOPPED;
-  if (s->deck->output.energy) sample_energies(s, look);
+  if (s->deck->output.energy) sample_energies(s);
   history_add(&s->history, at->samples++, time);
   at->next_sample = s->relaxation ? at->samples : next_sample(s);
   if (at->status != STEP_OK) s->go_on = false;
 }
 
-static void record_sample(simulation *s, const load_look *look) {
+static void record_sample(simulation *s) {
   const double begun = s->profile ? monotonic_seconds() : 0;
-  take_sample(s, look);
+  take_sample(s);
   if (s->profile) s->profile->sampled += monotonic_seconds() - begun;
 }
 
 /* --- time loop -------------------------------------------------------------------------------- */
 
+static bool some_body_is_bad(const simulation *s) {
+  for (int b = 0; b < s->body_count; b++)
+    if (body_bad(s->bodies[b].body) >= 0) return true;
+  return false;
+}
+
 /* What one thread does after all have moved their rows and what is loaded in them. */
 static void after_step(simulation *s) {
-  if (body_bad(s->body) >= 0) {
+  if (some_body_is_bad(s)) {
     bad_search_velocity(s->bad);
     s->clock.at.status = STEP_BAD;
     s->go_on = s->observe = false;
     return;
   }
-  sweep_turn(s->state);
-  load_steps_turn(s->loads, s->body, (long)s->clock.at.step);
+  for (int b = 0; b < s->body_count; b++) {
+    sweep_turn(s->bodies[b].state);
+    load_steps_turn(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
+  }
   s->clock.at.step++;
   s->go_on = s->clock.at.step < s->until && !(s->interrupted && *s->interrupted);
   if (s->relaxation) {
@@ -84,10 +107,10 @@ static void after_step(simulation *s) {
 }
 
 /* Quasi-static runs observe to see whether the body has come to rest. */
-static void end_increment(simulation *s, const load_look *look) {
+static void end_increment(simulation *s) {
   if (!relaxation_look(s->relaxation, s->clock.at.step)) return;
   monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
-  record_sample(s, look);
+  record_sample(s);
   if (run_clock_position(&s->clock) == run_clock_end(&s->clock))
     s->clock.at.status = s->clock.at.status == STEP_OK ? STEP_END : s->clock.at.status;
   else
@@ -95,16 +118,22 @@ static void end_increment(simulation *s, const load_look *look) {
   if (s->clock.at.status != STEP_OK || frames_due(s->frames)) s->go_on = false;
 }
 
+static void look_at_loads(simulation *s) {
+  for (int b = 0; b < s->body_count; b++)
+    s->bodies[b].look =
+        load_steps_observe(s->bodies[b].loads, s->bodies[b].body, (long)s->clock.at.step);
+}
+
 static void after_observing(simulation *s) {
-  const load_look look = load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
+  look_at_loads(s);
   s->observe = false;
   s->observed_step = s->clock.at.step;
   if (s->relaxation && s->clock.at.step > 0) {
-    end_increment(s, &look);
+    end_increment(s);
     return;
   }
   monitors_look(s->monitors, (long)s->clock.at.step, (long)run_clock_position(&s->clock));
-  if (sample_due(s)) record_sample(s, &look);
+  if (sample_due(s)) record_sample(s);
 }
 
 /* Adds the time from `begun` to now, and returns now; nothing where nothing is measured. */
@@ -115,37 +144,49 @@ static double add_time(const simulation *s, double begun, double *sum) {
   return now;
 }
 
-/* Tasks of the team: the stages of a step, then those of observing. */
-static void do_stage(void *of, int task, int block) {
-  simulation *s = of;
-  const sweep_engine *engine = &s->state->engine;
-  body_block *b = &s->body->blocks[block];
+/* A block of a body in a stage of a step or of observing; some bodies have fewer stages. */
+static void do_block(simulation *s, run_body *of, int task, int block) {
+  const sweep_engine *engine = &of->state->engine;
+  body_block *b = &of->body->blocks[block];
   double now = s->profile ? monotonic_seconds() : 0;
-  if (task >= engine->step_stages) {
-    engine->observe(s->state, task - engine->step_stages, block);
+  if (task >= s->step_stages) {
+    const int stage = task - s->step_stages;
+    if (stage < engine->observe_stages) engine->observe(of->state, stage, block);
     add_time(s, now, &b->observing);
     return;
   }
-  engine->step(s->state, task, block);
+  if (task >= engine->step_stages) return;
+  engine->step(of->state, task, block);
   now = add_time(s, now, &b->stepping);
   if (task < engine->step_stages - 1) return;
-  load_steps_apply(s->loads, s->body, block, (long)s->clock.at.step);
+  load_steps_apply(of->loads, of->body, block, (long)s->clock.at.step);
   add_time(s, now, &b->loading);
+}
+
+/* Tasks of the team: the stages of a step, then those of observing. The blocks of one body after
+   the other are dealt out to those of the team. */
+static void do_stage(void *of, int task, int block) {
+  simulation *s = of;
+  for (int b = 0; b < s->body_count; b++) {
+    run_body *at = &s->bodies[b];
+    const int own = (block - at->first_block + s->blocks) % s->blocks;
+    if (own < at->body->block_count) do_block(s, at, task, own);
+  }
 }
 
 /* Blocks keep the times of what they do in steps only. */
 static int next_task(simulation *s) {
-  s->body->timed = s->profile && !s->observe;
-  return s->observe ? s->state->engine.step_stages : s->go_on ? 0 : TEAM_END;
+  for (int b = 0; b < s->body_count; b++)
+    s->bodies[b].body->timed = s->profile && !s->observe;
+  return s->observe ? s->step_stages : s->go_on ? 0 : TEAM_END;
 }
 
 /* What one thread does between stages; sampling counts its time for itself (record_sample). */
 static int after_stage(void *of, int task) {
   simulation *s = of;
   profile *p = s->profile;
-  const sweep_engine *engine = &s->state->engine;
-  const bool stepped = task == engine->step_stages - 1,
-             observed = task == engine->step_stages + engine->observe_stages - 1;
+  const bool stepped = task == s->step_stages - 1,
+             observed = task == s->step_stages + s->observe_stages - 1;
   if (!stepped && !observed) return task + 1;
   const double begun = p ? monotonic_seconds() : 0, sampled = p ? p->sampled : 0;
   (stepped ? after_step : after_observing)(s);
@@ -162,30 +203,36 @@ static int64_t next_stop(const simulation *s, long steps) {
   return frame < until ? frame : until;
 }
 
+static void observe_all(simulation *s) {
+  for (int b = 0; b < s->body_count; b++)
+    sweep_observe(s->bodies[b].state);
+}
+
 static void begin(simulation *s) {
   if (s->clock.at.begun) return;
   s->clock.at.begun = 1;
   if (s->relaxation) relaxation_begin(s->relaxation);
-  load_steps_begin(s->loads, s->body);
-  if (!s->relaxation) {
-    sweep_observe(s->state);
-    load_steps_set_back(s->loads, s->body);
-    monitors_step(s->monitors, 0);
-  }
+  for (int b = 0; b < s->body_count; b++)
+    load_steps_begin(s->bodies[b].loads, s->bodies[b].body);
+  if (s->relaxation) return;
+  observe_all(s);
+  for (int b = 0; b < s->body_count; b++)
+    load_steps_set_back(s->bodies[b].loads, s->bodies[b].body);
+  monitors_step(s->monitors, 0);
 }
 
 void time_loop_observe(simulation *s) {
   begin(s);
   if (s->observed_step == s->clock.at.step) return;
-  sweep_observe(s->state);
-  load_steps_observe(s->loads, s->body, (long)s->clock.at.step);
+  observe_all(s);
+  look_at_loads(s);
   s->observed_step = s->clock.at.step;
 }
 
 static void run_team(simulation *s) {
   const team_work work = {.of = s, .block = do_stage, .next = after_stage};
   team_begin(s->team, next_task(s));
-#pragma omp parallel num_threads(s->body->block_count)
+#pragma omp parallel num_threads(s->blocks)
   {
     const unsigned environment = subnormals_off();
     team_join(s->team, &work);
@@ -204,7 +251,7 @@ step_status time_loop_run(simulation *s, long steps, const volatile sig_atomic_t
   run_team(s);
   if (s->profile) {
     s->profile->elapsed += monotonic_seconds() - begun;
-    profile_sum(s->profile, s->body);
+    profile_sum(s->profile, s->bodies, s->body_count, s->blocks);
   }
   if (s->clock.at.status == STEP_OK && s->clock.at.step == s->clock.step_count)
     s->clock.at.status = STEP_END;

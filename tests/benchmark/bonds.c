@@ -11,8 +11,8 @@
 #include <string.h>
 
 #include "generator/kernel/model.h"
-#include "runtime/deck/deck_read.h"
 #include "runtime/base/subnormals.h"
+#include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/simulation/simulation.h"
 #include "tests/benchmark/handwritten.h"
@@ -94,10 +94,10 @@ static void sweep_advance(void *state, long steps) {
 }
 
 static void run_set(void *state, const motion *from) {
-  sweep_set(simulation_state(state), from);
+  sweep_set(simulation_state(state, 0), from);
 }
 static void run_get(const void *state, motion *to) {
-  sweep_get(simulation_state((simulation *)state), to);
+  sweep_get(simulation_state((simulation *)state, 0), to);
 }
 
 static void run_advance(void *state, long steps) {

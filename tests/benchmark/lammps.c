@@ -153,7 +153,7 @@ static void steps_of(sweep *w, long steps) {
 /* At rest in the bonds the first kick is none: velocities then stand half a step after the
    displacements, as they do in LAMMPS within a step. */
 static block_result run_here(block *b) {
-  sweep *w = simulation_state(b->trial->run);
+  sweep *w = simulation_state(b->trial->run, 0);
   block_result r;
   set_velocities(w);
   keep_velocities(b, w);

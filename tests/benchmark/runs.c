@@ -313,7 +313,7 @@ static void measure_fast_math(figures *f, const char *name, const char *folder) 
   t[1]->law.law = compile_fast(&t[1]->model, name, folder, &fast);
   t[1]->run = simulation_new(t[1]->deck, &t[1]->law, &t[1]->said);
   if (!t[1]->run) give_up("a kernel compiled with -ffast-math does not run");
-  trial_shake(simulation_state(t[1]->run));
+  trial_shake(simulation_state(t[1]->run, 0));
   take_turns(t, 2, processor_seconds, median);
   printf("  as fast as with -ffast-math, %-29s %8.2f\n", name, median[1] / median[0]);
   figures_add(f, median[1] / median[0], "%s_of_fast_math", name);

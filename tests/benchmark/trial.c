@@ -84,7 +84,7 @@ trial *trial_open(const char *deck_text) {
   }
   if (!t->run) diag_print(&t->said, stderr);
   if (!t->run) give_up("a deck is faulty");
-  trial_shake(simulation_state(t->run));
+  trial_shake(simulation_state(t->run, 0));
   return t;
 }
 

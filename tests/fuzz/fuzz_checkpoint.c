@@ -6,7 +6,7 @@
 #include <string.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/fuzz/memory_file.h"
 #include "tests/runtime/small_run.h"
@@ -73,7 +73,7 @@ static void restore_right(void) {
 }
 
 static void try_bytes(const uint8_t *bytes, size_t size) {
-  const sweep *w = simulation_state(run.simulation);
+  const sweep *w = simulation_state(run.simulation, 0);
   const double before = w->body->displacement[0][w->body->lattice->size / 2];
   const long step = simulation_step_done(run.simulation);
   frame_mark frames = {-1, 0};

@@ -68,9 +68,8 @@ static void write_right(const char *path) {
                            .reference = reference,
                            .body = body,
                            .volume = volume,
-                           .interaction = "concrete",
-                           .bond_count = BONDS,
-                           .bonds = bonds,
+                           .bonds = &(result_bonds){"concrete", BONDS, bonds},
+                           .interaction_count = 1,
                            .fields = fields,
                            .field_count = 2};
   result *r = result_open(&h, false, error, sizeof error);

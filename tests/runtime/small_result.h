@@ -13,7 +13,8 @@ static const result_field small_fields[] = {
 
 static inline result_header small_header(const char *path) {
   static const double volume[PARTICLES] = {1, 2, 3};
-  static const int32_t body[PARTICLES] = {0, 0, 1}, bonds[2 * BONDS] = {0, 1, 1, 2};
+  static const int32_t body[PARTICLES] = {0, 0, 1}, pairs[2 * BONDS] = {0, 1, 1, 2};
+  static const result_bonds bonds = {"concrete", BONDS, pairs};
   return (result_header){.path = path,
                          .fingerprint = "small",
                          .title = "three particles",
@@ -26,9 +27,8 @@ static inline result_header small_header(const char *path) {
                          .reference = small_reference,
                          .body = body,
                          .volume = volume,
-                         .interaction = "concrete",
-                         .bond_count = BONDS,
-                         .bonds = bonds,
+                         .bonds = &bonds,
+                         .interaction_count = 1,
                          .fields = small_fields,
                          .field_count = 2};
 }

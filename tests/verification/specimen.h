@@ -83,7 +83,7 @@ static inline outcome specimen_run(const char *deck_name, const char *end_time, 
   if (more) overrides[count++] = more;
   deck_case c;
   assert_true(deck_case_run(&c, deck_name, overrides, count));
-  const sweep *w = simulation_state(c.simulation);
+  const sweep *w = simulation_state(c.simulation, 0);
   long *image = specimen_images(w->body->lattice);
   outcome o = {.asymmetry = image ? 0 : NAN};
   step_status status = STEP_OK;

@@ -131,7 +131,7 @@ static void left_is_the_image_of_right(void **state) {
   while (status == STEP_OK && simulation_time(c.simulation) < 4.15e-3) {
     status = simulation_advance(c.simulation, 500, NULL);
     highest = simulation_monitor_peak(c.simulation, 0, &until);
-    worst = fmax(worst, asymmetry(simulation_state(c.simulation), 0.1143));
+    worst = fmax(worst, asymmetry(simulation_state(c.simulation, 0), 0.1143));
   }
   const long samples = simulation_history(c.simulation, NULL);
   const double *damaged = deck_case_series(&c, "energy/dissipated_damage");

@@ -56,7 +56,7 @@ static void open_threads(deck_case *c, int which, const char *threads, bool inte
 }
 
 static void assert_same(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
   const rows *g = x->body->lattice;
   const size_t site = (size_t)g->size * sizeof(double);
   for (long p = 0; p < g->particle_count; p++)
@@ -71,7 +71,7 @@ static void assert_same(const deck_case *a, const deck_case *b) {
 
 /* Share of the bonds' values that are not 0; both ends have the same. */
 static double broken_share(const deck_case *c) {
-  const sweep *w = simulation_state(c->simulation);
+  const sweep *w = simulation_state(c->simulation, 0);
   const rows *g = w->body->lattice;
   long broken = 0, values = 0;
   for (long p = 0; p < g->particle_count; p++)
@@ -97,7 +97,7 @@ static void check_threads(int which) {
   print_message("%.1f %% of the bonds are broken\n", 100 * broken);
   const double *cracks;
   simulation_series(one.simulation, 0, NULL, &cracks);
-  const rows *g = simulation_state(one.simulation)->body->lattice;
+  const rows *g = simulation_state(one.simulation, 0)->body->lattice;
   assert_true(cracks[simulation_history(one.simulation, NULL) - 1] ==
               round(broken * (double)g->bond_count));
   assert_true(broken > 0.01 && broken < 0.5);

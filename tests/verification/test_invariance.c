@@ -58,7 +58,7 @@ static void a_rigid_motion_costs_nothing(void **state) {
   for (int k = 0; k < 5; k++) {
     small_run r;
     open_patch(&r, &elastic_beam, 17, 0.5);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     const double c = cos(angles[k]), s = sin(angles[k]);
     for (long p = 0; p < w->body->lattice->particle_count; p++) {
       const long q = w->body->lattice->particle_site[p];
@@ -84,7 +84,7 @@ static void a_translation_stays_a_translation(void **state) {
   (void)state;
   small_run r;
   open_patch(&r, &elastic_beam, 17, 0.5);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     w->body->velocity[0][w->body->lattice->particle_site[p]] = 3;
     w->body->velocity[1][w->body->lattice->particle_site[p]] = -1.7;
@@ -107,7 +107,7 @@ static void a_spinning_patch_keeps_its_angular_momentum(void **state) {
   for (int k = 0; k < 2; k++) {
     small_run r;
     open_patch(&r, laws[k], 17, 0.5);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     const double spin = 500; /* rad/s: 30 m/s at the rim, a stretch of 4e-5 */
     for (long p = 0; p < w->body->lattice->particle_count; p++) {
       const long q = w->body->lattice->particle_site[p];
@@ -154,7 +154,7 @@ static double shaken_energy_error(double step_safety) {
   small_run r;
   small_open(&r, &elastic_beam, text);
   assert_non_null(r.simulation);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   uint64_t seed = 5;
   for (long p = 0; p < w->body->lattice->particle_count; p++)
     for (int d = 0; d < 3; d++) {
@@ -209,7 +209,7 @@ static void mirror_images_stay_mirror_images(void **state) {
   assert_non_null(r.simulation);
   assert_int_equal(small_go(&r), STEP_END);
   assert_true(small_last(&r, "cracks") > 0);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   double difference = 0, largest = 0;
   long pairs = 0;

@@ -77,7 +77,7 @@ static void every_family_has_it(void **state) {
   deck_case c;
   const double strain = 1e-8;
   assert_true(start(&c, "splm_elastic", "plane_stress", 12, ""));
-  sweep *w = simulation_state(c.simulation);
+  sweep *w = simulation_state(c.simulation, 0);
   const rows *g = w->body->lattice;
   for (long p = 0; p < g->particle_count; p++) {
     const long q = g->particle_site[p];
@@ -133,7 +133,7 @@ static double measured_modulus(int neighbours) {
   assert_int_equal(deck_case_go(&c), STEP_END);
   const long samples = simulation_history(c.simulation, NULL);
   const double load = deck_case_series(&c, "load")[samples - 1];
-  const double modulus = load / (0.1 * 0.1) / strain_of(simulation_state(c.simulation));
+  const double modulus = load / (0.1 * 0.1) / strain_of(simulation_state(c.simulation, 0));
   print_message("bar of blue noise, k = %2d: E %+.2f %%\n", neighbours, 100 * (modulus / E - 1));
   deck_case_close(&c);
   return modulus;
@@ -220,8 +220,8 @@ static void on_a_lattice_it_is_the_lattice_s_own(void **state) {
       path);
   assert_true(deck_case_text(&list, text));
   double *mine[2], *theirs[2];
-  const double most = forces_of(simulation_state(lattice.simulation), mine);
-  forces_of(simulation_state(list.simulation), theirs);
+  const double most = forces_of(simulation_state(lattice.simulation, 0), mine);
+  forces_of(simulation_state(list.simulation, 0), theirs);
   long inside = 0;
   for (long p = 0; p < g->particle_count; p++) {
     if (!is_inside(g, p)) continue;
@@ -268,7 +268,7 @@ static void a_free_body_keeps_what_it_has(void **state) {
   deck_case c;
   double before[2], after[2], spin_before, spin_after, size = 0;
   assert_true(start(&c, "splm_elastic", "plane_stress", 12, ""));
-  sweep *w = simulation_state(c.simulation);
+  sweep *w = simulation_state(c.simulation, 0);
   for (long p = 0; p < w->body->lattice->particle_count; p++)
     for (int d = 0; d < 2; d++) {
       const long q = w->body->lattice->particle_site[p];

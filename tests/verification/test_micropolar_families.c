@@ -109,7 +109,7 @@ static void a_rigid_motion_leaves_no_force(void **state) {
     deck_case c;
     double worst = 0;
     open_body(&c, dimensions, 1e-4, 0.5, 17, 0.2);
-    sweep *w = simulation_state(c.simulation);
+    sweep *w = simulation_state(c.simulation, 0);
     body *b = w->body;
     for (int n = 0; n < 8; n++) {
       rigid_turn(b, angles[n], 0.01);
@@ -135,7 +135,7 @@ static drifts spin(int dimensions, double safety) {
   deck_case c;
   drifts d = {0, 0, 0};
   open_body(&c, dimensions, end, safety, 17, 0.1);
-  body *b = simulation_state(c.simulation)->body;
+  body *b = simulation_state(c.simulation, 0)->body;
   rigid_spin(b, rate, 2, 0.01);
   const momenta before = momenta_of(b);
   while (simulation_advance(c.simulation, 400, NULL) == STEP_OK) {
@@ -207,7 +207,7 @@ static void open_loaded(deck_case *c, int dimensions, int threads) {
 }
 
 static void same_bits(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
   const long size = x->body->lattice->size;
   for (int d = 0; d < x->body->dof; d++) {
     assert_memory_equal(x->body->displacement[d], y->body->displacement[d], (size_t)size * 8);
@@ -231,7 +231,7 @@ static void neither_threads_nor_a_stop_change_bits(void **state) {
     frame_mark frames = {0, 0};
     open_loaded(&one, dimensions, 1);
     assert_int_equal(deck_case_go(&one), STEP_END);
-    const sweep *w = simulation_state(one.simulation);
+    const sweep *w = simulation_state(one.simulation, 0);
     const long bonds = w->body->lattice->directions * w->body->lattice->size;
     assert_true(dimensions == 3 || w->field[0][largest_of(w->field[0], bonds)] > 0.5);
     for (int threads = 2; threads <= 3; threads++) {

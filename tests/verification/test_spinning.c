@@ -65,7 +65,7 @@ static void a_rigid_rotation_stretches_nothing(void **state) {
   for (int r = 0; r < 2; r++) {
     deck_case c;
     open_patch(&c, rotations[r], 1e-3, 0.05, 0.5);
-    sweep *w = simulation_state(c.simulation);
+    sweep *w = simulation_state(c.simulation, 0);
     double worst = 0, at_14 = 0;
     for (size_t a = 0; a < sizeof angles / sizeof *angles; a++)
       for (int o = 0; o < 3; o++) {
@@ -121,7 +121,7 @@ static drifts spin(double zeta, double safety) {
   const double rate = 500, end = 4 * 2 * 3.141592653589793 / rate, drift[2] = {2, -1};
   deck_case c;
   open_patch(&c, 17, end, zeta, safety);
-  sweep *w = simulation_state(c.simulation);
+  sweep *w = simulation_state(c.simulation, 0);
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     const long q = w->body->lattice->particle_site[p];
     w->body->velocity[0][q] = drift[0] - rate * w->body->lattice->y[q];

@@ -61,7 +61,7 @@ static double growth(const deck_case *c, double part, int steps) {
   const double quiet = 1e-9 * g->spacing * limit->omega_max;
   sweep *w =
       interaction_new(g, c->law.law, c->law.parameters, part * limit->limit, 1, false, false);
-  const random_fields *f = simulation_fields(c->simulation);
+  const random_fields *f = simulation_fields(c->simulation, 0);
   if (f) w->parameter = f->value;
   seed = 11;
   for (int d = 0; d < w->body->dof; d++)
@@ -190,7 +190,7 @@ static void no_body_of_random_bonds_is_faster(void **state) {
     open_case(&c, text);
     const step_limit *limit = simulation_step_limit(c.simulation);
     step_limit whole = {0};
-    body_limit(c.law.law, c.law.parameters, simulation_fields(c.simulation)->value,
+    body_limit(c.law.law, c.law.parameters, simulation_fields(c.simulation, 0)->value,
                simulation_rows(c.simulation, 0), &whole);
     print_message("seed %d: limit %.6g us, of the body itself %.6g us\n", n, 1e6 * limit->limit,
                   1e6 * whole.limit);

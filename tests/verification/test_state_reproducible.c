@@ -42,7 +42,7 @@ static long different(const sweep *a, const double *x, const double *y, int plan
 }
 
 static void assert_same(const deck_case *a, const deck_case *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
   for (int d = 0; d < x->body->dof; d++) {
     assert_int_equal(different(x, x->body->displacement[d], y->body->displacement[d], 1), 0);
     assert_int_equal(different(x, x->body->velocity[d], y->body->velocity[d], 1), 0);
@@ -65,7 +65,7 @@ static void any_number_of_threads_gives_the_same_bits(void **state) {
   deck_case one, more;
   open_prism(&one, "simulation.threads=1");
   assert_int_equal(deck_case_go(&one), STEP_END);
-  const sweep *w = simulation_state(one.simulation);
+  const sweep *w = simulation_state(one.simulation, 0);
   for (int f = 0; f < w->law->field_count; f++) { /* every rule of the law was at work */
     print_message("%s: %ld of %ld particles\n", w->law->fields[f].name, touched(w, f),
                   w->body->lattice->particle_count);

@@ -187,21 +187,21 @@ static void write_hostile_result(const workplace *w) {
       {"om\x1b[5mega", "1", "\x1b[7mconcrete", 1, BONDS, "damage", NULL}};
   h.title = "\x1b]0;title\x07";
   h.overrides = "simulation.title='\x1b[31m'\n";
-  h.interaction = "\x1b[7mconcrete";
+  const result_bonds bonds = {"\x1b[7mconcrete", BONDS, h.bonds->pairs};
+  h.bonds = &bonds;
   h.fields = fields;
   result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);
   double u[2 * PARTICLES], omega[BONDS], t[] = {0, 1, 2};
   small_frame(0, u, omega);
   assert_true(result_frame(r, 0, (const double *const[]){u, omega}, error, sizeof error));
-  const result_series series[] = {
-      {.name = "load\x1b[31m", .unit = "N\x1b[32m", .values = t},
-      {.name = "two\nperilat: error: lines", .unit = "m", .values = t},
-      {.name = "\xe2\x80\xae\xc2\x9b",
-       .unit = "a,\"b\"\n",
-       .values = t,
-       .judges = true,
-       .unchecked = "\x1b[35mwhy\n"}};
+  const result_series series[] = {{.name = "load\x1b[31m", .unit = "N\x1b[32m", .values = t},
+                                  {.name = "two\nperilat: error: lines", .unit = "m", .values = t},
+                                  {.name = "\xe2\x80\xae\xc2\x9b",
+                                   .unit = "a,\"b\"\n",
+                                   .values = t,
+                                   .judges = true,
+                                   .unchecked = "\x1b[35mwhy\n"}};
   const result_ending e = {.ended = "\x1b[31mat the end",
                            .dt = 0.1,
                            .steps = 3,

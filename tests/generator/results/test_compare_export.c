@@ -41,7 +41,8 @@ static void make_result(const workplace *w, const char *name, variant v) {
   reference[0] = v.first_x;
   result_header h = small_header(in_workplace(w, name));
   h.reference = reference;
-  h.interaction = v.lattice;
+  const result_bonds bonds = {v.lattice, BONDS, h.bonds->pairs};
+  h.bonds = &bonds;
   result_field fields[2] = {small_fields[0], small_fields[1]};
   fields[1].interaction = v.lattice;
   h.fields = fields;

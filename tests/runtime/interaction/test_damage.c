@@ -40,7 +40,7 @@ static void the_largest_damage_of_a_bond_counts(void **state) {
   const pl_law law = law_of(3);
   small_run r;
   open_row(&r, &law);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   rows_bond *bonds = rows_bonds(w->body->lattice);
   const double given[2][3] = {{0.3, 0.99, 0.6}, {0.9, 0.99, 0.1}};
   double values[3];
@@ -65,7 +65,7 @@ static void one_damage_is_the_array_itself(void **state) {
   (void)state;
   small_run r;
   open_row(&r, &elastic_bar);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   assert_true(damage_of_all_bonds(w) == w->new_field[0]);
   small_close(&r);
 }
@@ -81,7 +81,7 @@ static void without_damage_all_is_sound(void **state) {
   small_run r;
   double values[3] = {-1, -1, -1};
   open_row(&r, &law);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   rows_bond *bonds = rows_bonds(w->body->lattice);
   w->new_field[0][bonds[0].slot] = 0.7;
   assert_true(damage_of_bond(w, &bonds[0]) == 0 &&

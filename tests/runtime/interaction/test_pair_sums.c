@@ -31,7 +31,7 @@ static void sums_hold_all_rows_that_bonds_reach(void **state) {
   small_run r;
   open_block(&r, &law);
   law.sum_count = 3;
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   assert_int_equal(w->body->block_count, 3);
   for (int b = 0; b < w->body->block_count; b++) {
@@ -64,7 +64,7 @@ static void marks_stand_where_fields_are_not_0(void **state) {
   (void)state;
   small_run r;
   open_block(&r, &elastic_bar);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   const size_t before = w->body->bytes;
   uint64_t **marks = pair_marks_new(w);

@@ -45,7 +45,7 @@ static double uniform(uint64_t *state) {
 
 /* Random displacements and velocities on the particles, random damage on the bonds. */
 static void shake(small_run *r, uint64_t seed) {
-  sweep *w = simulation_state(r->simulation);
+  sweep *w = simulation_state(r->simulation, 0);
   const rows *g = w->body->lattice;
   for (long p = 0; p < g->particle_count; p++)
     for (int d = 0; d < w->body->dof; d++) {
@@ -92,7 +92,7 @@ static void check_against_list(const pl_law *law, double rotation, int threads) 
   small_run r;
   open_ragged(&r, law, rotation, threads);
   shake(&r, 7);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   double *force = forces_by_list(w), *v = must_calloc((size_t)g->particle_count * 3, sizeof *v),
          scale[3] = {0};
@@ -146,7 +146,7 @@ static void blocks_are_alike(void **state) {
   for (int threads = 1; threads <= 8; threads++) {
     small_run r;
     open_disc(&r, &elastic_beam, 0.3, 0, threads);
-    const sweep *w = simulation_state(r.simulation);
+    const sweep *w = simulation_state(r.simulation, 0);
     long all = 0, longest = 0;
     for (int row = 0; row < w->body->lattice->row_count; row++) {
       all += w->body->count[row];
@@ -178,7 +178,7 @@ static void threads_do_not_change_a_bit(void **state) {
     shake(&many, 3);
     simulation_advance(many.simulation, 40, NULL);
     assert_int_equal(simulation_step_done(many.simulation), 40);
-    same_arrays(simulation_state(one.simulation), simulation_state(many.simulation));
+    same_arrays(simulation_state(one.simulation, 0), simulation_state(many.simulation, 0));
     const double *a, *b;
     assert_int_equal(simulation_series_count(one.simulation), 6);
     for (int t = 0; t < 6; t++) {
@@ -198,8 +198,8 @@ static void observing_changes_no_state(void **state) {
   open_ragged(&b, &elastic_beam, 0, 2);
   shake(&a, 5);
   shake(&b, 5);
-  sweep_observe(simulation_state(a.simulation));
-  same_arrays(simulation_state(a.simulation), simulation_state(b.simulation));
+  sweep_observe(simulation_state(a.simulation, 0));
+  same_arrays(simulation_state(a.simulation, 0), simulation_state(b.simulation, 0));
   small_close(&a);
   small_close(&b);
 }
@@ -211,7 +211,7 @@ static void absent_sites_stay_at_rest(void **state) {
   open_ragged(&r, &elastic_beam, 17, 3);
   shake(&r, 9);
   simulation_advance(r.simulation, 20, NULL);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   for (long site = 0; site < w->body->lattice->size; site++)
     for (int d = 0; d < w->body->dof && !w->body->lattice->present[site]; d++) {
       assert_true(w->body->displacement[d][site] == 0);
@@ -227,7 +227,7 @@ static void a_number_gone_bad_is_caught_in_its_step(void **state) {
     open_ragged(&r, &elastic_beam, 0, threads);
     shake(&r, 11);
     assert_int_equal(simulation_advance(r.simulation, 3, NULL), STEP_OK);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     rows_bond *bonds = rows_bonds(w->body->lattice);
     const rows_bond broken = bonds[w->body->lattice->bond_count / 2];
     w->field[0][broken.slot] = NAN;
@@ -252,7 +252,7 @@ static void a_runaway_is_caught(void **state) {
   (void)state;
   small_run r;
   open_ragged(&r, &elastic_beam, 0, 2);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const long site = w->body->lattice->particle_site[w->body->lattice->particle_count / 3];
   w->body->displacement[2][site] =
       1; /* a rotation that its neighbours answer with far too large a moment */
@@ -272,7 +272,7 @@ static void rows_alike_share_their_flags(void **state) {
   (void)state;
   small_run r;
   open_ragged(&r, &elastic_beam, 0, 1);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   int shared = 0, own = 0;
   for (int row = 0; row < g->row_count; row++) {

@@ -270,7 +270,8 @@ static void the_sidecar_is_xml_whatever_the_names(void **state) {
                                      {"omega", "1", "a<b", 1, BONDS, "damage", NULL}};
   char text[16384];
   result_header h = header("result_<&>.h5");
-  h.interaction = "a<b";
+  const result_bonds bonds = {"a<b", BONDS, h.bonds->pairs};
+  h.bonds = &bonds;
   h.fields = odd;
   result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);
@@ -564,8 +565,8 @@ static void write_cube(const char *path) {
   h.reference = places;
   h.volume = volumes;
   h.body = bodies;
-  h.bond_count = LINKS;
-  h.bonds = pairs;
+  const result_bonds bonds = {"concrete", LINKS, pairs};
+  h.bonds = &bonds;
   h.fields = of_cube;
   result *r = small_begin(&h, error, sizeof error);
   const double *values[] = {u, omega};

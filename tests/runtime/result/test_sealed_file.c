@@ -59,11 +59,12 @@ static void write_large(void) {
     time[k] = 1e-3 * k;
   result_header h = small_header(name);
   h.overrides = "material.E=1e9\n";
-  h.particle_count = h.bond_count = MANY;
+  h.particle_count = MANY;
   h.reference = places;
   h.volume = volumes;
   h.body = bodies;
-  h.bonds = pairs;
+  const result_bonds bonds = {"concrete", MANY, pairs};
+  h.bonds = &bonds;
   h.fields = fields;
   result *r = small_begin(&h, error, sizeof error);
   assert_non_null(r);

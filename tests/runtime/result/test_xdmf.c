@@ -84,7 +84,7 @@ static void fields_stand_on_points_or_cells(void **state) {
       count_of(text, "<Attribute Name=\"omega\" AttributeType=\"Scalar\" Center=\"Cell\">"), 2);
   for (long frame = 0; frame < 2; frame++)
     for (int f = 0; f < 2; f++) {
-      views_frame_name(&h.fields[f], frame, set, sizeof set);
+      views_frame_name(&(views_array){&h.fields[f], h.fields[f].name}, frame, set, sizeof set);
       snprintf(expected, sizeof expected, "Dimensions=\"%s\">small.h5:%s<", f ? "2" : "3 3", set);
       assert_int_equal(count_of(text, expected), 1);
     }

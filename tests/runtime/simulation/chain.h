@@ -38,7 +38,7 @@ static inline void must_open(small_run *r, const pl_law *law, const char *text) 
 /* Both particles of a coasting chain at 2 m/s along x. */
 static inline void must_coast(small_run *r, const char *text) {
   must_open(r, &elastic_bar, text);
-  body *b = simulation_state(r->simulation)->body;
+  body *b = simulation_state(r->simulation, 0)->body;
   for (int p = 0; p < 2; p++)
     b->velocity[0][b->lattice->particle_site[p]] = 2;
 }

@@ -7,7 +7,7 @@
 
 /* Steps, motion, fields and histories. */
 static inline void same_runs(const small_run *a, const small_run *b) {
-  const sweep *x = simulation_state(a->simulation), *y = simulation_state(b->simulation);
+  const sweep *x = simulation_state(a->simulation, 0), *y = simulation_state(b->simulation, 0);
   const size_t site = (size_t)x->body->lattice->size * sizeof(double);
   assert_int_equal(simulation_step_done(a->simulation), simulation_step_done(b->simulation));
   assert_int_equal(x->body->lattice->size, y->body->lattice->size);

@@ -9,7 +9,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 #include "runtime/simulation/simulation_save.h"
 #include "tests/runtime/simulation/same_runs.h"
 

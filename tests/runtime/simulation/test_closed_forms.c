@@ -20,7 +20,7 @@ static double measured_frequency(double step) {
            step, 1.0 * SPACING);
   small_run r;
   must_open(&r, &elastic_bar, text);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   assert_int_equal(w->body->lattice->particle_count, 2);
   const double *u = &w->body->displacement[0][w->body->lattice->particle_site[1]];
   w->body->velocity[0][w->body->lattice->particle_site[0]] = -1e-3;

@@ -149,7 +149,7 @@ static void frames_hold_fields_where_they_stand(void **state) {
             "fields = 'displacement', 'force', 'damage', 'most', 'stretches', 'xx', 'energy' /");
   small_go(&r);
   const rows *g = simulation_rows(r.simulation, 0);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   double *damage = frame_of(&r, "damage", "damage", false);
   double *omega = frame_of(&r, "omega", "damage", false);
   double *most = frame_of(&r, "most", "state", true);
@@ -195,12 +195,12 @@ static void monitors_watch_fields_and_outputs(void **state) {
     if (middle < 0 ||
         far < hypot(g->x[g->particle_site[middle]] - 0.05, g->y[g->particle_site[middle]] - 0.03))
       middle = p;
-    damaged += simulation_state(r.simulation)->field[0][site] > 0;
+    damaged += simulation_state(r.simulation, 0)->field[0][site] > 0;
   }
   double *strain = frame_of(&r, "xx", "output", false);
   assert_true(small_last(&r, "strain") == strain[middle] && strain[middle] != 0);
   assert_true(small_last(&r, "worst") ==
-              simulation_state(r.simulation)->field[0][g->particle_site[middle]]);
+              simulation_state(r.simulation, 0)->field[0][g->particle_site[middle]]);
   assert_true(small_last(&r, "cracks") == (double)damaged); /* particles: no damage on bonds */
   simulation_series(r.simulation, small_series(&r, "worst"), &unit_text, NULL);
   assert_string_equal(unit_text, "1");
@@ -301,7 +301,7 @@ static void protection_holds_damage(void **state) {
       "/\n&protect region = 'right' radius = 1.01 /\n&protect region = 'left' radius = 1.01 /");
   small_go(&r);
   const rows *g = simulation_rows(r.simulation, 0);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   double inside = 0, outside = 0;
   for (long p = 0; p < g->particle_count; p++) {
     const long site = g->particle_site[p];
@@ -318,7 +318,7 @@ static void a_state_gone_bad_is_named_with_its_family(void **state) {
     small_run r;
     open_busy(&r, threads, broken, "/");
     assert_int_equal(simulation_advance(r.simulation, 20, NULL), STEP_OK);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     const rows *g = w->body->lattice;
     const long particle = g->particle_count / 2, site = g->particle_site[particle];
     w->field[0][site] = NAN;
@@ -352,7 +352,7 @@ static double growth(double part) {
              "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n"
              "&output frames = 0 energy = .false. sample = 1 /\n");
   assert_non_null(r.simulation);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   w->body->time_step = part * simulation_step_limit(r.simulation)->limit;
   double first = 0, last = 0;

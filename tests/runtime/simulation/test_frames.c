@@ -78,7 +78,7 @@ static void the_larger_of_two_damages_counts(void **state) {
            2.0 * SPACING);
   small_run r;
   must_open(&r, &law, text);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   rows_bond *bonds = rows_bonds(simulation_rows(r.simulation, 0));
   assert_int_equal(w->body->lattice->bond_count, 2);
   const double given[2][3] = {{0.3, 0.99, 0.6},
@@ -154,10 +154,11 @@ static void every_field_of_the_table_can_be_stored(void **state) {
   assert_int_equal(r.said.items[r.said.count - 1].code, DIAG_BAD_VALUE);
   diagnostics said;
   diag_begin(&said, &r.sources);
-  assert_false(frames_check(&r.deck->output, &elastic_beam, &said));
+  const run_body beam = {.law = &elastic_beam};
+  assert_false(frames_check(&r.deck->output, &beam, 1, &said));
   deck without = *r.deck;
   without.output.field_count--;
-  assert_true(frames_check(&without.output, &elastic_beam, &said));
+  assert_true(frames_check(&without.output, &beam, 1, &said));
   assert_int_equal(said.errors, 1);
   r.said.errors = 0;
   r.simulation = simulation_new(&without, &r.law, &r.said);

@@ -47,7 +47,7 @@ static void a_free_body_falls_as_a_whole(void **state) {
   assert_int_equal(small_go(&r), STEP_END);
   const double dt = simulation_step_limit(r.simulation)->step;
   const double n = (double)simulation_step_done(r.simulation);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   const double way = dt * dt * n * n / 2;
   for (long q = 0; q < w->body->lattice->size; q++) {
     const double here = w->body->lattice->present[q] ? way : 0; /* absent sites stay */
@@ -74,7 +74,7 @@ static void gravity_runs_away_before_it_moves(void **state) {
   assert_int_equal(small_go(&r), STEP_BAD);
   assert_int_equal(simulation_bad(r.simulation).step, 0);
   assert_string_equal(simulation_bad(r.simulation).what, "runaway velocity");
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   for (long q = 0; q < w->body->lattice->size; q++)
     assert_true(w->body->displacement[1][q] == 0);
   small_close(&r);
@@ -170,7 +170,7 @@ static void a_thrown_body_keeps_its_velocity(void **state) {
                 "&output frames = 0 /\n");
   assert_int_equal(small_go(&r), STEP_END);
   const double t = simulation_time(r.simulation), energy = 0.5 * block_mass(&r) * 0.25;
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     const int64_t q = w->body->lattice->particle_site[p];
     assert_true(fabs(w->body->displacement[0][q] / (0.3 * t) - 1) < 1e-10);

@@ -41,7 +41,7 @@ static void monitors_come_first_then_energies_then_increments(void **state) {
   check_series(&h, h.series_count - 2, "relaxation_steps", "1");
   check_series(&h, h.series_count - 1, "relaxation_unbalance", "1");
   assert_string_equal(history_words(&h, h.series_count - 2, memory), "steps of the increment");
-  assert_string_equal(ledger_names[history_imbalance(&h) - MONITORS], "energy/imbalance");
+  assert_string_equal(ledger_names[history_imbalance(&h, -1) - MONITORS], "energy/imbalance");
   assert_ptr_equal(history_energies(&h), h.sampled + MONITORS);
   history_free(&h);
   arena_free(memory);
@@ -54,10 +54,10 @@ static void without_energies_nothing_judges(void **state) {
           quasi_static = history_new(&both, &r, false, SAMPLES);
   assert_int_equal(dynamic.series_count, MONITORS);
   assert_null(history_energies(&dynamic));
-  assert_int_equal(history_imbalance(&dynamic), -1);
+  assert_int_equal(history_imbalance(&dynamic, -1), -1);
   assert_int_equal(quasi_static.series_count, MONITORS + 2);
   check_series(&quasi_static, MONITORS, "relaxation_steps", "1");
-  assert_int_equal(history_imbalance(&quasi_static), -1);
+  assert_int_equal(history_imbalance(&quasi_static, -1), -1);
   history_free(&dynamic);
   history_free(&quasi_static);
 }

@@ -199,7 +199,7 @@ static void damage_of_a_family_is_that_of_its_places(void **state) {
              "&simulation end_time = 1e-4 /\n" FAMILY "&output frames = 0 /\n");
   if (!r.simulation) small_print(&r);
   assert_non_null(r.simulation);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const long size = w->body->lattice->size;
   double *seen = must_calloc((size_t)size, sizeof *seen), grown = 0;
   for (int n = 0; n < 60; n++) {
@@ -300,7 +300,7 @@ static void energy_from_nothing_stops_a_run(void **state) {
     small_open(&r, &springs, text);
     if (!r.simulation) small_print(&r);
     assert_non_null(r.simulation);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     for (int d = 0; d < 3 && side == 1; d++)
       w->body->mass[d] /= 4.1;
     const step_status status = small_go(&r);

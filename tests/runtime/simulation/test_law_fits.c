@@ -61,7 +61,7 @@ static void a_law_is_of_its_lattice(void **state) {
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     built_rows b;
     build_rows(&b, cases[k].deck);
-    const bool fits = law_fits_lattice(cases[k].law, b.deck, b.rows, &b.said);
+    const bool fits = law_fits_lattice(cases[k].law, b.deck, 0, b.rows, &b.said);
     if (fits == (cases[k].at != NULL)) fail_msg("case %zu: %s", k, fits ? "fits" : "does not");
     if (cases[k].at)
       check_said(&b, cases[k].deck, cases[k].at, cases[k].sentence);
@@ -80,14 +80,14 @@ static void a_law_without_density_has_no_mass(void **state) {
   law.parameters = named;
   built_rows b;
   read_deck(&b, PLANE(NEAREST));
-  assert_true(law_fits_motion(&law, b.deck, &b.said));
+  assert_true(law_fits_motion(&law, b.deck, 0, &b.said));
   law.density = -1;
   named[ELASTIC_RHO].name = "Rho";
-  assert_false(law_fits_motion(&law, b.deck, &b.said));
+  assert_false(law_fits_motion(&law, b.deck, 0, &b.said));
   check_said(&b, PLANE(NEAREST), "'m'", "no parameter `rho`");
   assert_non_null(strstr(b.said.items[0].hint, "write `rho` for `Rho`"));
   named[ELASTIC_RHO].name = "density";
-  assert_false(law_fits_motion(&law, b.deck, &b.said));
+  assert_false(law_fits_motion(&law, b.deck, 0, &b.said));
   assert_non_null(strstr(b.said.items[1].hint, "add a mass density"));
   built_end(&b);
 }
@@ -103,11 +103,11 @@ static void protection_is_for_damage(void **state) {
   built_rows b;
   read_deck(&b, text);
   assert_int_equal(b.said.count, 0);
-  law_fits_protection(&softening, b.deck, &b.said);
-  law_fits_protection(&springs, b.deck, &b.said); /* without states */
+  law_fits_protection(&softening, b.deck, 0, &b.said);
+  law_fits_protection(&springs, b.deck, 0, &b.said); /* without states */
   assert_int_equal(b.said.count, 0);
   plain[0].kind = PL_FIELD_STATE;
-  law_fits_protection(&softening, b.deck, &b.said);
+  law_fits_protection(&softening, b.deck, 0, &b.said);
   check_said(&b, text, "&protect", "has no damage that could be held back");
   assert_int_equal(b.said.errors, 0);
   built_end(&b);
@@ -123,12 +123,13 @@ static void fields_are_named_once_in_a_result(void **state) {
                                 {.name = "time", .kind = "state", .on_bonds = true},
                                 {.name = "c", .kind = "damage", .on_bonds = true},
                                 {.name = "stress", .kind = "output"}};
+  const run_body bar = {.law = &elastic_bar};
   built_rows b;
   read_deck(&b, PLANE(NEAREST));
-  assert_true(law_fits_result(&elastic_bar, b.deck, fields + 4, 3, &b.said));
-  assert_true(law_fits_result(&elastic_bar, b.deck, fields, 1, &b.said));
+  assert_true(law_fits_result(b.deck, &bar, fields + 4, 3, &b.said));
+  assert_true(law_fits_result(b.deck, &bar, fields, 1, &b.said));
   assert_int_equal(b.said.count, 0);
-  assert_false(law_fits_result(&elastic_bar, b.deck, fields, 7, &b.said));
+  assert_false(law_fits_result(b.deck, &bar, fields, 7, &b.said));
   assert_int_equal(b.said.count, 3);
   static const char *const refused[] = {"`velocity` of", "`time` of", "`c` of"};
   for (int k = 0; k < 3; k++) {

@@ -86,7 +86,7 @@ static void open_swinging_pair(small_run *r, int steps) {
            "&material lattice = 'c' model = 'm' /\n&output frames = 0 sample = %.17g /\n",
            (steps - 0.01) * step, step, 1.0 * SPACING, step);
   must_open(r, &elastic_bar, text);
-  sweep *w = simulation_state(r->simulation);
+  sweep *w = simulation_state(r->simulation, 0);
   const double speed = 0.5e-3 * SPACING * pair_frequency() / 1e3;
   w->body->velocity[0][w->body->lattice->particle_site[0]] = -speed;
   w->body->velocity[0][w->body->lattice->particle_site[1]] = speed;
@@ -134,7 +134,7 @@ static void steps_that_make_energy_are_told(void **state) {
   assert_true(negative < LONG_RUN);
   open_swinging_pair(&r, negative);
   assert_int_equal(small_go(&r), STEP_END);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   rows *lattice = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, lattice, "m", 2, &r.said);
   ledger g = {0};

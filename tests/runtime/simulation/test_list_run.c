@@ -135,7 +135,7 @@ static void a_bad_state_names_its_family(void **state) {
   open_busy(&r, 2, broken, "");
   const rows *g = simulation_rows(r.simulation, 0);
   const long site = g->particle_site[g->particle_count / 2];
-  simulation_state(r.simulation)->field[0][site] = NAN;
+  simulation_state(r.simulation, 0)->field[0][site] = NAN;
   assert_int_equal(small_go(&r), STEP_BAD);
   const bad_state b = simulation_bad(r.simulation);
   assert_true(b.particle >= 0);

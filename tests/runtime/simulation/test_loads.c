@@ -54,7 +54,7 @@ static void an_end_moment_is_a_pure_moment(void **state) {
   loads_free(l);
   rows_free(w);
   simulation_advance(r.simulation, 200, NULL); /* counter-clockwise: the upper part goes left */
-  const sweep *s = simulation_state(r.simulation);
+  const sweep *s = simulation_state(r.simulation, 0);
   double low = 0, high = 0;
   for (long p = 0; p < s->body->lattice->particle_count; p++) {
     const long site = s->body->lattice->particle_site[p];
@@ -82,7 +82,7 @@ static void each_end_moment_comes_in_its_own_time(void **state) {
             "&end_moment region = 'start' moment = 70 start = 1 /\n"
             "&end_moment region = 'end' moment = 0.05 /\n&output frames = 0 /\n");
   simulation_advance(r.simulation, TURNS, NULL);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   double momentum = 0;
   for (long p = 0; p < w->body->lattice->particle_count; p++) {
     const long q = w->body->lattice->particle_site[p];
@@ -124,7 +124,7 @@ static void a_drive_is_followed_exactly_from_its_start(void **state) {
       1 * SPACING);
   small_run r;
   must_open(&r, &elastic_bar, text);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const long left = w->body->lattice->particle_site[0], right = w->body->lattice->particle_site[1];
   w->body->velocity[0][left] = w->body->velocity[0][right] = 1; /* free until the start */
   simulation_advance(r.simulation, 100, NULL);
@@ -161,7 +161,7 @@ static void reactions_balance_the_momentum(void **state) {
       "&output frames = 0 /\n";
   small_run r;
   must_open(&r, &elastic_beam, text);
-  sweep *w = simulation_state(r.simulation);
+  sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   rows *copy = lattice_build(r.deck, 0, &r.said);
   loads *l = loads_new(r.deck, 0, copy, "m", 3, &r.said);
@@ -270,7 +270,7 @@ static void each_of_many_drives_goes_its_own_way(void **state) {
   (void)state;
   small_run r;
   open_many(&r, "&drive region = 'p%d' component = 'y' velocity = '%d um/s' /\n");
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   assert_int_equal(small_go(&r), STEP_END);
   for (int k = 0; k < MANY; k++) {
     const double way = 1e-5 * (k + 1) * 1e-6;
@@ -286,7 +286,7 @@ static void each_of_many_forces_is_its_own(void **state) {
   small_run r;
   open_many(&r, "&force region = 'p%d' component = 'y' force = %de-6 history = 'ramp' rise = "
                 "1e-5 /\n");
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   assert_int_equal(small_go(&r), STEP_END);
   for (int k = 0; k < MANY; k++) {
     const double slope = (k + 1) * 1e-6 / 1e-5;

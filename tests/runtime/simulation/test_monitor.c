@@ -94,7 +94,7 @@ static void the_reaction_between_two_regions_is_the_mean_of_both_ends(void **sta
 typedef struct watched {
   small_run run;
   rows *lattice;
-  loads *loads;
+  run_body of;
   monitors *monitors;
 } watched;
 
@@ -107,22 +107,22 @@ typedef struct watched {
   "&stop monitor = 'mean' below = 0.5 of = 'peak' /\n"                                             \
   "&output frames = 0 energy = .false. /\n"
 
-static watched watch(void) {
-  watched w;
+static void watch(watched *w) {
   char text[2048];
   snprintf(text, sizeof text, WATCHED, 1.0 * SPACING);
-  must_open(&w.run, &elastic_bar, text);
-  w.lattice = lattice_build(w.run.deck, 0, &w.run.said);
-  w.loads = loads_new(w.run.deck, 0, w.lattice, "m", 2, &w.run.said);
-  w.monitors = monitors_new(w.run.deck, simulation_state(w.run.simulation), w.loads, NULL, 1e-7,
-                            &w.run.said);
-  assert_non_null(w.monitors);
-  return w;
+  must_open(&w->run, &elastic_bar, text);
+  w->lattice = lattice_build(w->run.deck, 0, &w->run.said);
+  w->of = (run_body){.name = "c", .lattice_rows = w->lattice, .law = &elastic_bar};
+  w->of.loads = loads_new(w->run.deck, 0, w->lattice, "m", 2, &w->run.said);
+  w->of.state = simulation_state(w->run.simulation, 0);
+  w->of.body = w->of.state->body;
+  w->monitors = monitors_new(w->run.deck, &w->of, 1, 1e-7, &w->run.said);
+  assert_non_null(w->monitors);
 }
 
 static void watch_no_more(watched *w) {
   monitors_free(w->monitors);
-  loads_free(w->loads);
+  loads_free(w->of.loads);
   rows_free(w->lattice);
   small_close(&w->run);
 }
@@ -130,8 +130,9 @@ static void watch_no_more(watched *w) {
 /* The right particle is put at n^2 mm after step n: means of three, less the mean at step 5. */
 static void a_window_holds_the_last_steps(void **state) {
   (void)state;
-  watched w = watch();
-  sweep *s = simulation_state(w.run.simulation);
+  watched w;
+  watch(&w);
+  sweep *s = simulation_state(w.run.simulation, 0);
   const long left = s->body->lattice->particle_site[0], right = s->body->lattice->particle_site[1];
   double values[2], zero = 0;
   assert_int_equal(w.monitors->items[1].window, 3);
@@ -156,7 +157,8 @@ static void a_window_holds_the_last_steps(void **state) {
 
 static void the_first_stop_that_applies_is_told(void **state) {
   (void)state;
-  watched w = watch();
+  watched w;
+  watch(&w);
   w.monitors->items[1].state.peak = -8;
   assert_int_equal(monitors_stop(w.monitors, 5e-6, (double[]){2.9, 4.1}), -1);
   assert_int_equal(monitors_stop(w.monitors, 5e-6, (double[]){-3.1, 3.9}), 0); /* by its size */
@@ -170,7 +172,8 @@ static void the_first_stop_that_applies_is_told(void **state) {
 
 static void what_is_watched_stands_in_words(void **state) {
   (void)state;
-  watched w = watch();
+  watched w;
+  watch(&w);
   assert_string_equal(monitor_words(w.monitors, 0, w.run.memory),
                       "mean displacement along x of `left`, times -2");
   assert_string_equal(

@@ -317,7 +317,7 @@ static void threads_and_resuming_change_no_bit(void **state) {
   }
   double most = 0;
   for (long p = 0; p < simulation_rows(straight.simulation, 0)->particle_count; p++)
-    most = fmax(most, simulation_state(straight.simulation)
+    most = fmax(most, simulation_state(straight.simulation, 0)
                           ->field[0][simulation_rows(straight.simulation, 0)->particle_site[p]]);
   assert_true(most > 0.1);
   small_close(&straight);
@@ -339,25 +339,28 @@ static void threads_and_resuming_change_no_bit(void **state) {
 typedef struct pair {
   small_run run;
   rows *lattice;
+  run_body of;
   loads *loads;
   sweep *sweep;
   relaxation *relaxation;
   long left, right;
 } pair;
 
-static pair relax_pair(void) {
+static void relax_pair(pair *to) {
   pair p;
   small_open(&p.run, &elastic_bar, PAIR);
   if (!p.run.simulation) small_print(&p.run);
   assert_non_null(p.run.simulation);
-  p.sweep = simulation_state(p.run.simulation);
+  p.sweep = simulation_state(p.run.simulation, 0);
   p.lattice = lattice_build(p.run.deck, 0, &p.run.said);
   p.loads = loads_new(p.run.deck, 0, p.lattice, "m", 2, &p.run.said);
-  p.relaxation = relaxation_new(p.run.deck, p.sweep->body, p.loads, 0.5);
+  p.of = (run_body){
+      .lattice_rows = p.lattice, .body = p.sweep->body, .state = p.sweep, .loads = p.loads};
   p.left = p.lattice->particle_site[0];
   p.right = p.lattice->particle_site[1];
-  relaxation_begin(p.relaxation);
-  return p;
+  *to = p;
+  to->relaxation = relaxation_new(to->run.deck, &to->of, 1, 0.5);
+  relaxation_begin(to->relaxation);
 }
 
 static void relax_no_more(pair *p) {
@@ -371,7 +374,8 @@ static void relax_no_more(pair *p) {
    steps of a period. While the loads move there is a tenth of the critical damping. */
 static void an_increment_begins_with_a_ramp(void **state) {
   (void)state;
-  pair p = relax_pair();
+  pair p;
+  relax_pair(&p);
   assert_int_equal(p.relaxation->ramp, 16);
   assert_true(fabs(p.relaxation->interval - 0.1) < 1e-16);
   assert_true(fabs(p.sweep->body->decay - exp(-0.1 * 2 * acos(-1) / 16)) < 1e-15);
@@ -389,7 +393,8 @@ static void an_increment_begins_with_a_ramp(void **state) {
    sqrt(k/m). */
 static void damping_is_critical_for_the_motion_seen(void **state) {
   (void)state;
-  pair p = relax_pair();
+  pair p;
+  relax_pair(&p);
   const double k = 3e7, u = 1e-6;
   p.sweep->body->displacement[0][p.right] = u;
   p.sweep->body->force[0][p.right] = -k * u;
@@ -407,7 +412,8 @@ static void damping_is_critical_for_the_motion_seen(void **state) {
 /* 100 N are applied, bonds carry 90 of them: a tenth is unbalanced. */
 static void an_increment_ends_in_balance_or_after_most_steps(void **state) {
   (void)state;
-  pair p = relax_pair();
+  pair p;
+  relax_pair(&p);
   assert_int_equal(p.loads->force_count, 1);
   p.loads->forces[0].now = 100;
   p.sweep->body->force[0][p.right] = -90;

@@ -133,7 +133,7 @@ static void a_rigid_motion_leaves_no_force(void **state) {
   for (int dimensions = PLANE; dimensions <= SPACE; dimensions++) {
     const pl_law law = beams_in(dimensions, PL_ROWS);
     small_run r = free_body(&law, 1e-3, 0.5);
-    sweep *w = simulation_state(r.simulation);
+    sweep *w = simulation_state(r.simulation, 0);
     body *b = w->body;
     double worst = 0;
     for (int n = 0; n < 7; n++) {
@@ -159,7 +159,7 @@ typedef struct drifts {
 static drifts spin(const pl_law *law, double safety) {
   const double rate = 300;
   small_run r = free_body(law, 0.8 * acos(-1) / rate, safety);
-  body *b = simulation_state(r.simulation)->body;
+  body *b = simulation_state(r.simulation, 0)->body;
   drifts d = {0, 0, 0};
   rigid_spin(b, rate, 0.5, 0.003);
   const momenta before = momenta_of(b);
@@ -263,7 +263,7 @@ static void frames_hold_a_rotation_about_each_axis(void **state) {
              "&output frames = 1 fields = 'rotation' /\n",
              bodies[k]);
     small_run r = run_of(&laws[k], text);
-    body *b = simulation_state(r.simulation)->body;
+    body *b = simulation_state(r.simulation, 0)->body;
     assert_int_equal(simulation_frame_fields(r.simulation, &fields), 1);
     assert_string_equal(fields[0].name, "rotation");
     assert_string_equal(fields[0].unit, "rad");
@@ -294,7 +294,7 @@ static void particles_of_unlike_size_have_their_own_inertia(void **state) {
             "&lattice name = 'c' kind = 'blue_noise' spacing = 0.01 thickness = 0.1 seed = 3 /\n"
             "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n"
             "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.1 /\n");
-  body *b = simulation_state(r.simulation)->body;
+  body *b = simulation_state(r.simulation, 0)->body;
   const rows *g = b->lattice;
   double lightest = INFINITY, heaviest = 0;
   for (long p = 0; p < g->particle_count; p++) {
@@ -308,7 +308,7 @@ static void particles_of_unlike_size_have_their_own_inertia(void **state) {
     b->displacement[2][q] = 1e-6;
   }
   assert_true(heaviest > 1.1 * lightest);
-  sweep_find_forces(simulation_state(r.simulation));
+  sweep_find_forces(simulation_state(r.simulation, 0));
   double expected[5];
   for (long p = 0; p < 5; p++) {
     const long q = g->particle_site[p];

@@ -391,7 +391,7 @@ static void ramps_act_as_they_are(void **state) {
       FIXED "&force region = 'right' component = 'x' total = 100 start = %.17g rise = 1e-5 /\n",
       40.3, "u", NULL, 1};
   small_run r = open_run(&m, STEPS);
-  const sweep *w = simulation_state(r.simulation);
+  const sweep *w = simulation_state(r.simulation, 0);
   const long right = w->body->lattice->particle_site[1];
   const double dt = w->body->time_step, start = m.start * end_time() / STEPS;
   simulation_advance(r.simulation, 40, NULL);

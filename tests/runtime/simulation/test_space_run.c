@@ -87,7 +87,7 @@ static void a_face_parts_the_bonds(void **state) {
   (void)state;
   small_run r = run_of(PULLED("'cubic'", ""));
   const rows *w = simulation_rows(r.simulation, 0);
-  const sweep *s = simulation_state(r.simulation);
+  const sweep *s = simulation_state(r.simulation, 0);
   long cut = 0;
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p], up = rows_partner(w, site, 2);
@@ -127,7 +127,7 @@ static void threads_do_not_change_bits(void **state) {
   (void)state;
   small_run one = run_of(PULLED("'fcc'", "threads = 1")),
             three = run_of(PULLED("'fcc'", "threads = 3"));
-  const sweep *a = simulation_state(one.simulation), *b = simulation_state(three.simulation);
+  const sweep *a = simulation_state(one.simulation, 0), *b = simulation_state(three.simulation, 0);
   const size_t bytes = (size_t)simulation_rows(one.simulation, 0)->size * sizeof(double);
   for (int c = 0; c < 3; c++)
     assert_memory_equal(a->body->displacement[c], b->body->displacement[c], bytes);

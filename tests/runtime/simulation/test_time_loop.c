@@ -135,19 +135,21 @@ static void parts_of_a_simulation_agree(void **state) {
     small_run r;
     must_open(&r, &elastic_bar, text);
     const simulation *s = r.simulation;
-    assert_ptr_equal(s->body, s->state->body);
-    assert_ptr_equal(s->body->lattice, s->lattice);
-    assert_ptr_equal(s->monitors->state, s->state);
+    const run_body *b = &s->bodies[0];
+    assert_int_equal(s->body_count, 1);
+    assert_ptr_equal(b->body, b->state->body);
+    assert_ptr_equal(b->body->lattice, b->lattice_rows);
+    assert_ptr_equal(s->monitors->bodies, s->bodies);
     assert_ptr_equal(s->history.monitors, s->monitors);
     assert_true(s->clock.time_step == 1e-7 && s->limit.step == 1e-7);
-    assert_true(s->body->time_step == s->clock.time_step);
+    assert_true(b->body->time_step == s->clock.time_step);
     assert_int_equal(s->clock.step_count, s->plan.step_count);
     assert_int_equal(s->history.capacity, s->plan.history_capacity);
-    assert_int_equal(s->bonds[0].i + s->bonds[0].j, 1);
+    assert_int_equal(b->bonds[0].i + b->bonds[0].j, 1);
     assert_true((s->relaxation != NULL) == quasi_static);
     assert_ptr_equal(s->clock.relaxation, s->relaxation);
     assert_ptr_equal(s->history.relaxation, s->relaxation);
-    if (quasi_static) assert_ptr_equal(s->relaxation->body, s->body);
+    if (quasi_static) assert_ptr_equal(s->relaxation->bodies, s->bodies);
     assert_int_equal(s->clock.at.begun + s->clock.at.step + s->clock.at.samples, 0);
     assert_int_equal(s->clock.at.status, STEP_OK);
     assert_int_equal(s->clock.at.stop, -1);
@@ -166,8 +168,8 @@ static void a_state_is_observed_once(void **state) {
   small_run r;
   must_open(&r, &elastic_bar, text);
   simulation *s = r.simulation;
-  const int32_t *site = s->lattice->particle_site;
-  double *const u = s->body->displacement[0], *const f = s->body->force[0];
+  const int32_t *site = s->bodies[0].lattice_rows->particle_site;
+  double *const u = s->bodies[0].body->displacement[0], *const f = s->bodies[0].body->force[0];
   u[site[1]] = 1e-6;
   time_loop_observe(s);
   const double expected = rigidity_axial(0.2) * 1e-6 / SPACING;
@@ -198,18 +200,18 @@ static void advances_may_be_of_any_length(void **state) {
     small_run r;
     must_open(&r, &elastic_bar, text);
     simulation *s = r.simulation;
-    const long site = s->lattice->particle_site[1];
-    s->body->velocity[0][site] = 2;
+    const long site = s->bodies[0].lattice_rows->particle_site[1];
+    s->bodies[0].body->velocity[0][site] = 2;
     long done = 0;
     for (step_status at = STEP_OK; at == STEP_OK; done += lengths[k]) {
       assert_int_equal(s->clock.at.step, done);
       at = time_loop_run(s, lengths[k], NULL);
     }
     assert_int_equal(s->clock.at.step, 100);
-    way[k] = s->body->displacement[0][site];
-    velocity[k] = s->body->velocity[0][site];
+    way[k] = s->bodies[0].body->displacement[0][site];
+    velocity[k] = s->bodies[0].body->velocity[0][site];
     assert_int_equal(time_loop_run(s, 5, NULL), STEP_END);
-    assert_true(s->body->displacement[0][site] == way[k]);
+    assert_true(s->bodies[0].body->displacement[0][site] == way[k]);
     assert_true(s->clock.at.step == 100 && way[k] == way[0] && velocity[k] == velocity[0]);
     small_close(&r);
   }

@@ -1,4 +1,4 @@
-#include "runtime/simulation/checkpoint.h"
+#include "runtime/result/checkpoint.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,0 +1,97 @@
+#include "runtime/simulation/run_body.h"
+
+#include <omp.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "runtime/interaction/interaction.h"
+#include "runtime/lattice/lattice.h"
+#include "runtime/simulation/law_fits.h"
+#include "runtime/simulation/material.h"
+#include "runtime/simulation/step_choice.h"
+
+/* --- what fits -------------------------------------------------------------------------------- */
+
+static const deck_field *field_of(const deck *k, const char *lattice) {
+  for (int f = 0; f < k->field_count; f++)
+    if (strcmp(k->fields[f].lattice, lattice) == 0) return &k->fields[f];
+  return NULL;
+}
+
+static bool open_fields(run_body *b, const deck *k, diagnostics *d) {
+  const deck_field *asked = field_of(k, b->name);
+  if (asked && b->law->kind == PL_STATE) {
+    diag_report(d, DIAG_NOT_SUPPORTED, asked->item.where,
+                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
+                b->law->name);
+    return false;
+  }
+  if (!asked && b->law->varying_count == 0) return true;
+  b->fields = random_fields_new(k, b->lattice, b->lattice_rows, b->law, b->parameters, d);
+  return b->fields != NULL;
+}
+
+/* What asks for the values of parameters. */
+static bool open_material(run_body *b, const deck *k, diagnostics *d) {
+  const bool fields = open_fields(b, k, d), mass = law_fits_motion(b->law, k, b->lattice, d);
+  if (mass) rows_set_density(b->lattice_rows, material_density(b->law, b->parameters));
+  if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
+  return fields && mass &&
+         step_limit_of(k, b->lattice, b->law, b->parameters, b->fields, b->lattice_rows, &b->limit,
+                       d);
+}
+
+bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
+  enum { ANY_DOF = PL_MAX_DOF };
+  b->name = k->lattices[b->lattice].name;
+  b->lattice_rows = lattice ? lattice : lattice_build(k, b->lattice, d);
+  if (!b->lattice_rows) return false;
+  b->fits = b->law && law_fits_lattice(b->law, k, b->lattice, b->lattice_rows, d);
+  b->loads = loads_new(k, b->lattice, b->lattice_rows, b->fits ? b->law->name : "",
+                       b->fits ? b->law->dof : ANY_DOF, d);
+  if (!b->fits) return false;
+  law_fits_protection(b->law, k, b->lattice, d);
+  return b->parameters && open_material(b, k, d) && b->loads;
+}
+
+/* --- the state -------------------------------------------------------------------------------- */
+
+/* Small bodies are not worth many threads: a block has at least eight rows, of a list two, unless
+   the deck insists. */
+static int choose_threads(const run_body *b, const deck *k) {
+  const int asked = k->simulation.threads;
+  if (asked > 0) return asked;
+  const int least = b->lattice_rows->list ? 2 : 8;
+  const int offered = omp_get_max_threads(), sensible = b->lattice_rows->row_count / least;
+  return sensible < 1 ? 1 : offered < sensible ? offered : sensible;
+}
+
+bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
+  b->limit.step = step;
+  b->bonds = rows_bonds(b->lattice_rows);
+  b->state = interaction_new(b->lattice_rows, b->law, b->parameters, step, choose_threads(b, k),
+                             k->output.energy, k->relaxation.increments > 0);
+  b->body = b->state->body;
+  if (b->fields) b->state->parameter = b->fields->value;
+  if (k->gravity_count > 0) body_add_gravity(b->body);
+  return loads_initial_velocity(b->loads, b->body, d);
+}
+
+void run_body_free(run_body *b) {
+  loads_free(b->loads);
+  sweep_free(b->state);
+  random_fields_free(b->fields);
+  free(b->bonds);
+  if (b->lattice_rows) rows_free(b->lattice_rows);
+}
+
+double run_body_memory(const run_body *b) {
+  const rows *g = b->lattice_rows;
+  const double site = 2 * sizeof(double) + sizeof(int64_t) + sizeof(int32_t) + 1; /* of rows */
+  const double list =
+      g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
+              : 0;
+  return (double)b->body->bytes + (list + site) * (double)g->size +
+         (b->fields ? (double)b->fields->bytes : 0) +
+         (double)sizeof(rows_bond) * (double)g->bond_count;
+}
