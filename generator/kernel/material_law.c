@@ -204,7 +204,7 @@ static bool can_vary(const deck_material *m, const law *of, bool families, diagn
   if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
   if (families) {
     diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "on this lattice the law of bonds `%s` runs as one of families, whose parameters "
+                "on this lattice the central law `%s` runs as one of families, whose parameters "
                 "cannot differ from bond to bond",
                 of->tree->name);
     diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");
