@@ -91,8 +91,8 @@ static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *
   ir *g = plan->graph;
   const bond_actions a = actions_of(plan, of);
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] = (segment_root){
-        .node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
+    roots[d] =
+        (segment_root){.node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
   for (int k = 0; k < plan->rotations; k++) {
     const ir_node even = family_sum(g, a.even[k]), odd = family_sum(g, a.odd[k]);
     roots[plan->dimensions + k] = (segment_root){.node = ir_neg(g, ir_add(g, even, odd)),

@@ -69,7 +69,8 @@ static void laws_of_families_are_put_on_lattices(void **state) {
   expect(w, "info lps --horizon far", 1, "--horizon needs a number from 1 to 8");
   expect(w, "info lps --lattice cubic --horizon 7", 1, "no neighbours, or more than");
   expect(w, "info mplm_bilinear --lattice square", 0, "On a square lattice of 4 neighbours");
-  expect(w, "info mplm_space", 0, "E = 30 GPa along x, 30 GPa along y; nu = 0.2, 0.2; G = 12.5 GPa");
+  expect(w, "info mplm_space", 0,
+         "E = 30 GPa along x, 30 GPa along y; nu = 0.2, 0.2; G = 12.5 GPa");
 }
 
 static void what_a_law_implies_says_what_it_is_measured_on(void **state) {
@@ -166,8 +167,7 @@ static void a_length_of_its_own_is_judged_on_the_lattice_of_the_deck(void **stat
   expect(w, "check repulsion.plm", 1, "[rest-force]");
   expect(w, "check two.nml", 0, "no errors");
   /* that the two verdicts differ both say */
-  assert_non_null(
-      strstr(w->said, "with these values on this lattice, but not with all"));
+  assert_non_null(strstr(w->said, "with these values on this lattice, but not with all"));
   expect(w, "check two.nml --set material.reach=2.1", 1, "[rest-force]");
 }
 

@@ -181,8 +181,7 @@ static void turn_body(turning_body *b, const double r[3]) {
     const long site = b->p->inside[k];
     patch_position(b->p, site, at);
     for (int d = 0; d < dimensions_of(b); d++)
-      b->p->displacement[d][site] =
-          R[d][0] * at[0] + R[d][1] * at[1] + R[d][2] * at[2] - at[d];
+      b->p->displacement[d][site] = R[d][0] * at[0] + R[d][1] * at[1] + R[d][2] * at[2] - at[d];
     for (int d = 0; d < rotations; d++)
       b->p->displacement[dimensions_of(b) + d][site] = r[rotations == 1 ? 2 : d];
   }
@@ -209,8 +208,8 @@ static void assert_rotation_is_free(const char *kind, int shells, const double r
 
 static void rotation_leaves_no_force(void **state) {
   (void)state;
-  static const double about[][3] = {
-      {0, 0, 14}, {0, 0, -0.2}, {0, 0, 3.14159}, {8, -9, 7.4}, {0.1, 0.1, -0.05}, {3, -0.9, 0}};
+  static const double about[][3] = {{0, 0, 14},   {0, 0, -0.2},      {0, 0, 3.14159},
+                                    {8, -9, 7.4}, {0.1, 0.1, -0.05}, {3, -0.9, 0}};
   static const char *const plane[] = {"hexagonal", "square"};
   for (size_t k = 0; k < sizeof about / sizeof *about; k++) {
     for (int q = 0; q < 2 && about[k][0] == 0; q++)
@@ -257,12 +256,10 @@ static void forces_and_moments_are_in_balance(void **state) {
   static const struct {
     const char *law, *kind;
     int shells;
-  } bodies[] = {{"models/mplm_bilinear", "square", 2},
-                {"models/mplm_linear", "hexagonal", 2},
-                {"tests/generator/laws/frame", "square", 1},
-                {"tests/generator/laws/frame", "fcc", 1},
-                {"tests/generator/laws/shear", "cubic", 2},
-                {"models/mplm_space", "fcc", 2}};
+  } bodies[] = {
+      {"models/mplm_bilinear", "square", 2},       {"models/mplm_linear", "hexagonal", 2},
+      {"tests/generator/laws/frame", "square", 1}, {"tests/generator/laws/frame", "fcc", 1},
+      {"tests/generator/laws/shear", "cubic", 2},  {"models/mplm_space", "fcc", 2}};
   for (size_t k = 0; k < sizeof bodies / sizeof *bodies; k++)
     for (int how = INTERPRETED; how <= COMPILED; how++) {
       turning_body *b = open_free(bodies[k].law, bodies[k].kind, bodies[k].shells, how);
@@ -286,12 +283,11 @@ typedef struct strip_bond {
   double field[LANES], force[4][LANES];
 } strip_bond;
 
-static void strip_forces(const pl_law *strips, const double *uniforms, const patch *p, long i, long j,
-                         double damage, strip_bond *s) {
+static void strip_forces(const pl_law *strips, const double *uniforms, const patch *p, long i,
+                         long j, double damage, strip_bond *s) {
   int64_t flags[LANES] = {PL_PRESENT(0)};
   double *fields[] = {s->field}, *forces[4];
-  pl_strip strip = {
-      .count = LANES, .flags = flags, .unheld = 1, .field = fields, .force = forces};
+  pl_strip strip = {.count = LANES, .flags = flags, .unheld = 1, .field = fields, .force = forces};
   memset(s, 0, sizeof *s);
   s->field[0] = damage;
   for (int d = 0; d < 3; d++) {
