@@ -12,7 +12,7 @@
 
 #include "runtime/interaction/sweep.h"
 #include "runtime/simulation/simulation_save.h"
-#include "tests/runtime/beam_law.h"
+#include "tests/runtime/rigid_motion.h"
 #include "tests/runtime/simulation/same_runs.h"
 
 static small_run run_of(const pl_law *law, const char *text) {
@@ -126,12 +126,6 @@ static small_run free_body(const pl_law *law, double end_time, double safety) {
   return run_of(law, text);
 }
 
-static void rotation_about(int dimensions, double angle, double theta[3]) {
-  const double axis[3] = {1 / sqrt(14), 2 / sqrt(14), 3 / sqrt(14)};
-  for (int k = 0; k < 3; k++)
-    theta[k] = angle * (dimensions == SPACE ? axis[k] : k == 2);
-}
-
 /* Wherever it has turned, a body that moves as a whole feels nothing. */
 static void a_rigid_motion_leaves_no_force(void **state) {
   (void)state;
@@ -143,17 +137,7 @@ static void a_rigid_motion_leaves_no_force(void **state) {
     body *b = w->body;
     double worst = 0;
     for (int n = 0; n < 7; n++) {
-      for (long p = 0; p < b->lattice->particle_count; p++) {
-        const long q = b->lattice->particle_site[p];
-        double theta[3], at[3], moved[3];
-        rotation_about(dimensions, angles[n], theta);
-        rows_place(b->lattice, q, at);
-        beam_turned(theta, at, moved);
-        for (int d = 0; d < dimensions; d++)
-          b->displacement[d][q] = moved[d] + 0.3;
-        for (int d = dimensions; d < law.dof; d++)
-          b->displacement[d][q] = theta[dimensions == SPACE ? d - 3 : 2];
-      }
+      rigid_turn(b, angles[n], 0.3);
       sweep_find_forces(w);
       for (int d = 0; d < law.dof; d++)
         for (long p = 0; p < b->lattice->particle_count; p++)
@@ -166,72 +150,22 @@ static void a_rigid_motion_leaves_no_force(void **state) {
   }
 }
 
-typedef struct momenta {
-  double linear[3], angular[3];
-} momenta;
-
-static momenta momenta_of(const body *b) {
-  momenta m = {{0}, {0}};
-  for (long p = 0; p < b->lattice->particle_count; p++) {
-    const long q = b->lattice->particle_site[p];
-    double at[3], v[3] = {0, 0, 0}, spin[3] = {0, 0, 0}, arm[3];
-    rows_place(b->lattice, q, at);
-    for (int d = 0; d < b->dimensions; d++) {
-      at[d] += b->displacement[d][q];
-      v[d] = body_mass(b, d, q) * b->velocity[d][q];
-    }
-    for (int d = b->dimensions; d < b->dof; d++)
-      spin[b->dof == 6 ? d - 3 : 2] = body_mass(b, d, q) * b->velocity[d][q];
-    beam_cross(at, v, arm);
-    for (int k = 0; k < 3; k++) {
-      m.linear[k] += v[k];
-      m.angular[k] += arm[k] + spin[k];
-    }
-  }
-  return m;
-}
-
 typedef struct drifts {
-  double linear, angular, energy; /* relative */
-  double turned;                  /* rad, of the first particle about z */
+  double momenta, energy; /* relative */
+  double turned;          /* rad, of the first particle about z */
 } drifts;
 
 /* Spins about an oblique axis, flies and breathes. */
-static void set_moving(body *b, const double omega[3]) {
-  for (long p = 0; p < b->lattice->particle_count; p++) {
-    const long q = b->lattice->particle_site[p];
-    double at[3], v[3];
-    rows_place(b->lattice, q, at);
-    beam_cross(omega, at, v);
-    for (int d = 0; d < b->dimensions; d++)
-      b->velocity[d][q] = v[d] + 0.5 + 0.02 * sin(300 * at[d]);
-    for (int d = b->dimensions; d < b->dof; d++)
-      b->velocity[d][q] = omega[b->dof == 6 ? d - 3 : 2];
-  }
-}
-
-static double size_of(const double v[3]) {
-  return sqrt(beam_dot(v, v));
-}
-
 static drifts spin(const pl_law *law, double safety) {
   const double rate = 300;
   small_run r = free_body(law, 0.8 * acos(-1) / rate, safety);
   body *b = simulation_state(r.simulation)->body;
-  double omega[3];
-  drifts d = {0};
-  rotation_about(law->dimensions, rate, omega);
-  set_moving(b, omega);
+  drifts d = {0, 0, 0};
+  rigid_spin(b, rate, 0.5, 0.003);
   const momenta before = momenta_of(b);
   while (simulation_advance(r.simulation, 100, NULL) == STEP_OK) {
     const momenta now = momenta_of(b);
-    double linear[3], angular[3];
-    for (int k = 0; k < 3; k++) {
-      linear[k] = now.linear[k] - before.linear[k];
-      angular[k] = now.angular[k] - before.angular[k];
-    }
-    d.linear = fmax(d.linear, size_of(linear) / size_of(before.linear));
-    d.angular = fmax(d.angular, size_of(angular) / size_of(before.angular));
+    d.momenta = fmax(d.momenta, momenta_apart(&now, &before));
   }
   d.energy = small_largest(&r, "energy/imbalance") / small_largest(&r, "energy/kinetic");
   d.turned = b->displacement[law->dof - 1][b->lattice->particle_site[0]];
@@ -250,11 +184,11 @@ static void a_spinning_body_keeps_its_momenta(void **state) {
     double energy[2];
     for (int fine = 0; fine < 2; fine++) {
       const drifts d = spin(&law, fine ? 0.25 : 0.5);
-      print_message("%dD, turned by %.4f about z: momentum %.1e, angular %.1e, energy %.1e\n",
-                    dimensions, d.turned, d.linear, d.angular, d.energy);
-      assert_true(fabs(d.turned / (0.8 * acos(-1) * (dimensions == SPACE ? 3 / sqrt(14) : 1)) - 1) <
-                  1e-2);
-      assert_true(d.linear < 1e-12 && d.angular < 1e-12);
+      const double whole = 0.8 * acos(-1) * (dimensions == SPACE ? 3 / sqrt(14) : 1);
+      print_message("%dD, turned by %.4f about z: momenta %.1e, energy %.1e\n", dimensions,
+                    d.turned, d.momenta, d.energy);
+      assert_true(fabs(d.turned / whole - 1) < 1e-2);
+      assert_true(d.momenta < 1e-12);
       energy[fine] = d.energy;
     }
     assert_true(energy[0] < 1e-3 && energy[0] / energy[1] > 3);
