@@ -395,8 +395,7 @@ static bool reads_thickness(const family_planner *p) {
   return rewrite_depends(p->g, p->step.fields, l->fields.count, &t, 1);
 }
 
-/* Axes along which particles move, and about which those of micropolar laws turn. */
-static void take_axes(kernel_plan *plan) {
+void plan_axes(kernel_plan *plan) {
   const bool turns = plan->law->tree->law == LAW_MICROPOLAR_BOND;
   plan->dimensions = lower_dimensions(plan->law);
   plan->rotations = !turns ? 0 : plan->dimensions == 2 ? 1 : 3;
@@ -406,7 +405,7 @@ static void take_axes(kernel_plan *plan) {
 
 bool plan_programs(kernel_plan *plan, diagnostics *d) {
   family_planner p = {.plan = plan, .g = plan->graph};
-  take_axes(plan);
+  plan_axes(plan);
   const law *l = plan->law;
   if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
       !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))
