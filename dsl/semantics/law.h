@@ -76,12 +76,12 @@ typedef enum law_setting {
 typedef struct law {
   struct tree *tree;
   law_setting setting; /* first that the law names; may be changed before it is lowered */
-  bool irregular; /* lowered for particles that stand on no lattice */
-  int neighbours; /* of a full family, where they are known; else 0 */
+  bool irregular;      /* lowered for particles that stand on no lattice */
+  int neighbours;      /* of a full family, where they are known; else 0 */
   /* Lowered for bonds that bend across two axes and twist: bending quantities are vectors across
      the bond, in the axes of the lattice. Else they are numbers, and no bond twists. */
   bool bends_in_space;
-  arena *memory;  /* not owned */
+  arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;
   symbol_list fields; /* states and damages, in the order declared */

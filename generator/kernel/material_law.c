@@ -91,7 +91,7 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 /* --- the lattice ------------------------------------------------------------------------------ */
 
 static law_setting setting_of(const deck_lattice *l) {
-  for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
   return SETTING_PLANE_STRESS;
 }
@@ -100,13 +100,13 @@ static law_setting setting_of(const deck_lattice *l) {
 static int neighbours_of(const deck_lattice *l) {
   bravais_neighbour list[PL_MAX_DIRECTIONS];
   bravais b;
-  if (!l || deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  if (deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
   return 2 * bravais_family(&b, l->horizon, l->shells, list);
 }
 
 /* What a bond knows of the third direction its law must say; `for` is the word that it has. */
 static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
-  if (!l || m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+  if (m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
       m->tree->setting_count > 0)
     return;
   diag_report(
@@ -119,12 +119,12 @@ static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnost
             "else take another one, such as `splm_elastic`");
 }
 
-/* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
+/* The law takes the setting of its lattice; without one it keeps the first that it names. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
   char meant[96];
-  if (!l && out->law->tree->law == LAW_STATE) return true;
-  const bool irregular = l && deck_lattice_is_irregular(l);
+  if (!l) return true;
+  const bool irregular = deck_lattice_is_irregular(l);
   out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
   if (out->law->irregular && !model_suits_irregular(out)) {
@@ -204,7 +204,7 @@ static bool can_vary(const deck_material *m, const law *of, bool families, diagn
   if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
   if (families) {
     diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "on this lattice the law of bonds `%s` runs as one of families, whose parameters "
+                "on this lattice the central law `%s` runs as one of families, whose parameters "
                 "cannot differ from bond to bond",
                 of->tree->name);
     diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");

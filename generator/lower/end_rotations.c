@@ -81,10 +81,9 @@ typedef struct quaternion {
 
 /* Of the rotation vector: (cos(|r|/2), r sin(|r|/2)/|r|), for |r| < 1/4 Taylor's series. */
 static quaternion quaternion_of(ir *g, vector r, ir_node square, ir_node expected) {
-  static const double of_cosine[] = {1,           -1.0 / 8,        1.0 / 384,
-                                     -1.0 / 46080, 1.0 / 10321920, -1.0 / 3715891200},
-                      of_sine[] = {1.0 / 2, -1.0 / 48, 1.0 / 3840, -1.0 / 645120,
-                                   1.0 / 185794560};
+  static const double of_cosine[] =
+      {1, -1.0 / 8, 1.0 / 384, -1.0 / 46080, 1.0 / 10321920, -1.0 / 3715891200},
+                      of_sine[] = {1.0 / 2, -1.0 / 48, 1.0 / 3840, -1.0 / 645120, 1.0 / 185794560};
   const ir_node length = at_least(g, ir_unary(g, IR_SQRT, square), 1e-100);
   const ir_node half = ir_mul(g, ir_constant(g, 0.5), length);
   const ir_node sine = ir_div(g, ir_unary(g, IR_SIN, half), length);
@@ -154,8 +153,8 @@ static void find_twist(ir *g, const moving_chord *c, quaternion q, ir_node expec
   const ir_node far = ir_binary(g, IR_ATAN2, sine, ir_unary(g, IR_SQRT, rest));
   const ir_node near = ir_mul(g, kinematics_arc_sine_ratio(g, square), sine);
   r->twist = ir_mul(g, ir_constant(g, 2), choose(g, expected, near, far));
-  const ir_node u = choose(g, expected, polynomial(g, square, series, 7),
-                           ir_unary(g, IR_INVERSE_ROOT, rest));
+  const ir_node u =
+      choose(g, expected, polynomial(g, square, series, 7), ir_unary(g, IR_INVERSE_ROOT, rest));
   r->along = ir_mul(g, u, w);
   keep(g, r->turn, times(g, u, cross(g, v, e)), names);
   ir_set_name(g, r->twist, "twist", (span){0, 0, 0});
@@ -168,8 +167,10 @@ static ir_node smaller(ir *g, ir_node a, ir_node b) {
 end_rotations end_rotations_in_space(ir *g, const moving_chord *c, bool near) {
   static const ends_input phi_i[] = {ENDS_PHI_IX, ENDS_PHI_IY, ENDS_PHI_IZ},
                           phi_j[] = {ENDS_PHI_JX, ENDS_PHI_JY, ENDS_PHI_JZ};
-  static const char *const i_names[] = {"theta_ix", "theta_iy", "theta_iz"},
-                           *const j_names[] = {"theta_jx", "theta_jy", "theta_jz"};
+  static const char *const i_names[] = {"theta_ix", "theta_iy", "theta_iz"}, *const j_names[] = {
+                                                                                 "theta_jx",
+                                                                                 "theta_jy",
+                                                                                 "theta_jz"};
   vector r_i, r_j, theta_i, theta_j;
   for (int k = 0; k < 3; k++) {
     r_i.of[k] = kinematics_input(g, phi_i[k]);

@@ -28,9 +28,9 @@
 /* In the plane theta_i[0] and theta_j[0] alone; all others are IR_NONE. */
 typedef struct end_rotations {
   ir_node theta_i[BENDING_AXES], theta_j[BENDING_AXES], twist; /* rad */
-  ir_node h[2], k[2]; /* of A_i and A_j */
-  ir_node turn[3];    /* u w x e */
-  ir_node along;      /* u w_0 */
+  ir_node h[2], k[2];                                          /* of A_i and A_j */
+  ir_node turn[3];                                             /* u w x e */
+  ir_node along;                                               /* u w_0 */
 } end_rotations;
 
 /* In space, of a bond with that reference chord, relative displacement, present chord, direction
@@ -51,7 +51,7 @@ typedef struct bond_actions {
 } bond_actions;
 bond_actions end_actions_in_plane(ir *g, const lowered_law *p, const ir_node *e,
                                   ir_node per_length);
-bond_actions end_actions_in_space(ir *g, const lowered_law *p, const ir_node *e,
-                                  ir_node per_length, const end_rotations *r);
+bond_actions end_actions_in_space(ir *g, const lowered_law *p, const ir_node *e, ir_node per_length,
+                                  const end_rotations *r);
 
 #endif

@@ -117,8 +117,8 @@ typedef struct family_kinematics {
   ir_node now[3];       /* present direction, i to j */
   ir_node reference[3]; /* reference direction */
   ir_node reference_chord[3];
-  ir_node d[3];               /* relative displacement, m */
-  ir_node theta_i, theta_j;   /* rad, with rotations in the plane */
+  ir_node d[3];             /* relative displacement, m */
+  ir_node theta_i, theta_j; /* rad, with rotations in the plane */
 } family_kinematics;
 family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near);
 

@@ -143,8 +143,9 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
     return;
   }
   if (s->shape == SHAPE_BENDING && c->law->bends_in_space) {
-    lower_fail(c, s->where, "a state that is a bending quantity would have to turn with its bond "
-                            "in space: that cannot be compiled; keep a number, such as its `norm`");
+    lower_fail(c, s->where,
+               "a state that is a bending quantity would have to turn with its bond "
+               "in space: that cannot be compiled; keep a number, such as its `norm`");
     return;
   }
   ir_node old = lower_field(c->graph, c->law, s->index);
@@ -232,7 +233,7 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
     out->N = force_of_energy(c, out->W);
   if (c->law->tree->law == LAW_MICROPOLAR_BOND) lower_moments(c, out);
   static const char *const of_i[] = {"M_ix", "M_iy", "M_iz"}, *const of_j[] = {"M_jx", "M_jy",
-                                                                              "M_jz"};
+                                                                               "M_jz"};
   const bool space = c->law->bends_in_space;
   span nowhere = {0, 0, 0};
   lower_name_node(c->graph, out->N, "N", nowhere);

@@ -73,8 +73,7 @@ static ir_node affine_energy(ir *g, const energy_parts *p) {
   moving[p->count] = p->length;
   ir_node k = ir_derivative(g, N, p->motion[0]);
   if (rewrite_depends(g, &N, 1, moving + 1, p->count) ||
-      rewrite_depends(g, &k, 1, moving, p->count + 1) ||
-      ir_operation(g, k) == IR_CONSTANT)
+      rewrite_depends(g, &k, 1, moving, p->count + 1) || ir_operation(g, k) == IR_CONSTANT)
     return IR_NONE;
   ir_node one = ir_constant(g, 1);
   ir_node none = ir_binary(g, IR_EQ, k, ir_constant(g, 0));

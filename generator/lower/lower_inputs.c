@@ -17,8 +17,8 @@ ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis) {
                                                      {"theta_jx", "theta_jy", "theta_jz"}};
   const int end = theta == QUANTITY_THETA_J;
   if (!l->bends_in_space) return lower_quantity(g, theta);
-  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + BENDING_AXES * end + axis,
-                  names[end][axis], ON_BOND);
+  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + BENDING_AXES * end + axis, names[end][axis],
+                  ON_BOND);
 }
 
 ir_node lower_parameter(ir *g, const law *l, int k) {

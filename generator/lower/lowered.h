@@ -43,8 +43,8 @@ typedef struct lowered_law {
   ir_node N; /* results; `force V` and `energy W` are resolved here */
   /* end moments: components about the axes of the lattice, of plane bending the first */
   ir_node M_i[BENDING_AXES], M_j[BENDING_AXES];
-  ir_node T;           /* twisting moment on end j, on end i the opposite; in space */
-  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  ir_node T; /* twisting moment on end j, on end i the opposite; in space */
+  ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
   bool along_reference; /* it acts along the reference bond */
   ir_node W;            /* the law's own `energy`, or IR_NONE */
   ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */

@@ -91,8 +91,8 @@ static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *
   ir *g = plan->graph;
   const bond_actions a = actions_of(plan, of);
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] = (segment_root){
-        .node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
+    roots[d] =
+        (segment_root){.node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
   for (int k = 0; k < plan->rotations; k++) {
     const ir_node even = family_sum(g, a.even[k]), odd = family_sum(g, a.odd[k]);
     roots[plan->dimensions + k] = (segment_root){.node = ir_neg(g, ir_add(g, even, odd)),
@@ -395,8 +395,7 @@ static bool reads_thickness(const family_planner *p) {
   return rewrite_depends(p->g, p->step.fields, l->fields.count, &t, 1);
 }
 
-/* Axes along which particles move, and about which those of micropolar laws turn. */
-static void take_axes(kernel_plan *plan) {
+void plan_axes(kernel_plan *plan) {
   const bool turns = plan->law->tree->law == LAW_MICROPOLAR_BOND;
   plan->dimensions = lower_dimensions(plan->law);
   plan->rotations = !turns ? 0 : plan->dimensions == 2 ? 1 : 3;
@@ -406,7 +405,7 @@ static void take_axes(kernel_plan *plan) {
 
 bool plan_programs(kernel_plan *plan, diagnostics *d) {
   family_planner p = {.plan = plan, .g = plan->graph};
-  take_axes(plan);
+  plan_axes(plan);
   const law *l = plan->law;
   if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
       !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))

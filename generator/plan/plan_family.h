@@ -5,6 +5,10 @@
 #include "generator/plan/plan.h"
 #include "generator/plan/program.h"
 
+/* Axes along which particles move, and about which those of micropolar laws turn; the law of the
+   plan is then for bonds that do. */
+void plan_axes(kernel_plan *p);
+
 /* Fills in a plan of families. False after a diagnostic. */
 bool plan_programs(kernel_plan *p, diagnostics *d);
 
