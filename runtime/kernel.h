@@ -23,7 +23,8 @@
    A law that reads a particle's whole family comes as programs instead: passes over runs of
    particles, one after the other over the whole body. A pass reads what neighbours had at the
    beginning of the step, and what earlier passes of the program left in links. In the plane or in
-   space; dof = dimensions. */
+   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6 in
+   space (about x, y, z); of all others dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 
@@ -146,7 +147,10 @@ typedef struct pl_family {
   const uint64_t *bonds;
   /* [count] not 0: the damage of this particle, and of its bonds, stays as it is. */
   const uint64_t *held;
-  const double *displacement[3], *velocity[3]; /* [dimensions][count] m, m/s */
+  /* [dof][count]: displacements, then rotations (m, rad); velocities, then rates of rotation (m/s,
+     rad/s). In space a rotation vector, and how quickly the particle turns about x, y and z: in a
+     step of h it turns by h w, after what it has turned. */
+  const double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
      is some vector that is not 0. */
   const int32_t *neighbour;    /* [neighbours][plane] sites from here to the neighbour */
@@ -175,7 +179,8 @@ typedef struct pl_family {
   double *const *link;
   /* [bond_link_count] the same of values toward each neighbour, in planes like a field's */
   double *const *bond_link;
-  /* [dimensions][count] N: sum over the bonds, written by the last pass of the step */
+  /* [dof][count]: sums over the bonds, written by the last pass of the step: forces (N), then
+     moments (N m) on the particle */
   double *const *force;
   /* [1 + output_count]: stored energy (J), then each output; on particles one plane, else planes */
   double *const *observed;

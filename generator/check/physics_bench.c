@@ -90,7 +90,8 @@ static void open_probes(bench *b) {
   const lowered_law *s = &b->law_step, *f = &b->law_frozen;
   int n = b->field_count;
   ir_node *roots = must_alloc((size_t)(FORCE_COUNT + 2 * n + 1) * sizeof *roots);
-  ir_node results[FORCE_COUNT] = {s->N, s->M_i, s->M_j}, held[FORCE_COUNT] = {f->N, f->M_i, f->M_j};
+  ir_node results[FORCE_COUNT] = {s->N, s->M_i[0], s->M_j[0]},
+          held[FORCE_COUNT] = {f->N, f->M_i[0], f->M_j[0]};
   memcpy(roots, results, sizeof results);
   for (int k = 0; k < n; k++) {
     roots[FORCE_COUNT + k] = s->fields[k];

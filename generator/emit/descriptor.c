@@ -103,7 +103,7 @@ static void write_programs(c_text *out, const kernel_plan *p) {
              p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
              p->links.of_bonds, program_sum_count(&p->step),
              program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
-             p->law->tree->law == LAW_CENTRAL_BOND);
+             p->law->tree->law != LAW_STATE);
   if (p->variation.varying_count && p->law->tree->law == LAW_STATE)
     c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
   if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");

@@ -393,7 +393,7 @@ static void describe(interpreted *p) {
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
-  p->law.pairwise = l->tree->law == LAW_CENTRAL_BOND;
+  p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
   p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);

@@ -153,7 +153,7 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
     r->shape[k] = f->shape[k] + first;
   for (int k = 0; k < ENDS_COUNT; k++) {
     const ends_origin *o = &ends_origins[k];
-    if (o->owner != OF_I || o->component >= r->plan->dimensions) continue;
+    if (o->owner != OF_I || o->component >= r->plan->dof) continue;
     if (o->array == FROM_DISPLACEMENT) r->ends[k] = f->displacement[o->component] + first;
     if (o->array == FROM_VELOCITY) r->ends[k] = f->velocity[o->component] + first;
   }
@@ -194,7 +194,7 @@ static const double *at_links(family_runner *r, const pl_family *f, const double
 static void point_at_motion(family_runner *r, const pl_family *f, long first, long k) {
   for (int e = 0; e < ENDS_COUNT; e++) {
     const ends_origin *o = &ends_origins[e];
-    if (o->owner != OF_J || o->component >= r->plan->dimensions) continue;
+    if (o->owner != OF_J || o->component >= r->plan->dof) continue;
     if (o->array == FROM_DISPLACEMENT)
       r->ends[e] = at_neighbours(r, f, f->displacement[o->component], first, k);
     if (o->array == FROM_VELOCITY)

@@ -119,7 +119,7 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 /* --- the lattice ------------------------------------------------------------------------------ */
 
 static law_setting setting_of(const deck_lattice *l) {
-  for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
   return SETTING_PLANE_STRESS;
 }
@@ -128,13 +128,13 @@ static law_setting setting_of(const deck_lattice *l) {
 static int neighbours_of(const deck_lattice *l) {
   bravais_neighbour list[PL_MAX_DIRECTIONS];
   bravais b;
-  if (!l || deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  if (deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
   return 2 * bravais_family(&b, l->horizon, l->shells, list);
 }
 
 /* What a bond knows of the third direction its law must say; `for` is the word that it has. */
 static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
-  if (!l || m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+  if (m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
       m->tree->setting_count > 0)
     return;
   diag_report(
@@ -147,12 +147,12 @@ static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnost
             "else take another one, such as `splm_elastic`");
 }
 
-/* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
+/* The law takes the setting of its lattice; without one it keeps the first that it names. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
   char meant[96];
-  if (!l && out->law->tree->law == LAW_STATE) return true;
-  const bool irregular = l && deck_lattice_is_irregular(l);
+  if (!l) return true;
+  const bool irregular = deck_lattice_is_irregular(l);
   out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
   if (out->law->irregular && !model_suits_irregular(out)) {
@@ -252,10 +252,10 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a
-   central law runs as one of families. */
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices as laws
+   of families. */
 static bool needs_families(const deck_lattice *l, const law *of) {
-  return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
+  return of->tree->law != LAW_STATE && !bravais_is_hexagon(l);
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,

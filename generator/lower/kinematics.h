@@ -11,8 +11,8 @@
    of families); CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS:
    of the particles (lists of families). SHARE: of the particle's law in it (pl_family). PROTECTED: 1 where the damage of the bond stays as it is,
    else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families;
-   what belongs to particle i is ON_PARTICLE there. Rotations and third directions share component
-   2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
+   what belongs to particle i is ON_PARTICLE there. The rotation in a plane and the third direction
+   share component 2; in space the rotations PHI_X, PHI_Y, PHI_Z follow. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
    it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
@@ -48,7 +48,13 @@
   X(SHARE_I, "share_i", FROM_SHARE, OF_I, 0)                                                       \
   X(SHARE_J, "share_j", FROM_SHARE, OF_J, 0)                                                       \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
-  X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)
+  X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)                                                \
+  X(PHI_IX, "phi_ix", FROM_DISPLACEMENT, OF_I, 3)                                                  \
+  X(PHI_IY, "phi_iy", FROM_DISPLACEMENT, OF_I, 4)                                                  \
+  X(PHI_IZ, "phi_iz", FROM_DISPLACEMENT, OF_I, 5)                                                  \
+  X(PHI_JX, "phi_jx", FROM_DISPLACEMENT, OF_J, 3)                                                  \
+  X(PHI_JY, "phi_jy", FROM_DISPLACEMENT, OF_J, 4)                                                  \
+  X(PHI_JZ, "phi_jz", FROM_DISPLACEMENT, OF_J, 5)
 
 typedef enum ends_input {
 #define X(code, name, array, owner, component) ENDS_##code,
@@ -85,6 +91,9 @@ extern const ends_origin ends_origins[ENDS_COUNT];
    MASS_I and SHARE_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
+/* asin(x)/x of the square of x, for |x| < 1/16. */
+ir_node kinematics_arc_sine_ratio(ir *g, ir_node square);
+
 typedef struct bond_kinematics {
   ir_node stretch, stretch_rate, theta_i, theta_j, length;
   ir_node s;                          /* reference length, m */
@@ -101,6 +110,7 @@ typedef struct bond_kinematics {
 bond_kinematics kinematics_bond(ir *g, bool rotations);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row.
+   Rotations are of the plane (end_rotations.h has those in space).
    With `near` it is expected that bonds are nearly as long as at first (stretched by less than
    1/256). */
 typedef struct family_kinematics {
@@ -110,8 +120,10 @@ typedef struct family_kinematics {
   ir_node now[3];       /* present direction, i to j */
   ir_node reference[3]; /* reference direction */
   ir_node reference_chord[3];
+  ir_node d[3];             /* relative displacement, m */
+  ir_node theta_i, theta_j; /* rad, with rotations in the plane */
 } family_kinematics;
-family_kinematics kinematics_family(ir *g, int dimensions, bool near);
+family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near);
 
 /* Forces on end i and end moments (the particles receive the opposite of these):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes

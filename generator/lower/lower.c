@@ -166,6 +166,12 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
     lower_fail(c, s->where, "states that are tensors or vectors cannot be compiled yet");
     return;
   }
+  if (s->shape == SHAPE_BENDING && c->law->bends_in_space) {
+    lower_fail(c, s->where,
+               "a state that is a bending quantity would have to turn with its bond "
+               "in space: that cannot be compiled; keep a number, such as its `norm`");
+    return;
+  }
   ir_node old = lower_field(c->graph, c->law, s->index);
   ir_node value = lower_expr(c, rule->value);
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
@@ -192,10 +198,16 @@ static void lower_rule(lowering *c, const stmt *rule) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
+/* Of a symbol; of count 0 without one. */
+static components components_of(const lowering *c, const symbol *s) {
+  const components *known = s ? lower_binding_of(c, s) : NULL;
+  return known ? *known : (components){0};
+}
+
 /* Value of a symbol that is one number, or IR_NONE. */
-static ir_node value_of(lowering *c, const symbol *s) {
-  components *known = s ? lower_binding_of(c, s) : NULL;
-  return known && known->count == 1 ? known->of[0] : IR_NONE;
+static ir_node value_of(const lowering *c, const symbol *s) {
+  const components v = components_of(c, s);
+  return v.count == 1 ? v.of[0] : IR_NONE;
 }
 
 static ir_node result_node(lowering *c, law_result which) {
@@ -210,14 +222,32 @@ static ir_node force_of_energy(lowering *c, ir_node W) {
   return ir_add(g, ir_div(g, by_stretch, lower_quantity(g, QUANTITY_S)), by_length);
 }
 
-static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quantity theta) {
+static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quantity theta,
+                          int axis) {
   ir *g = c->graph;
-  ir_node moment = result_node(c, which), shear = result_node(c, RESULT_V);
-  if (moment != IR_NONE) return moment;
-  if (shear != IR_NONE)
-    return ir_div(g, ir_mul(g, shear, lower_quantity(g, QUANTITY_LENGTH)), ir_constant(g, 2));
-  if (W != IR_NONE) return ir_derivative(g, W, lower_quantity(g, theta));
+  const components moment = components_of(c, c->law->results[which]),
+                   shear = components_of(c, c->law->results[RESULT_V]);
+  if (axis < moment.count) return moment.of[axis];
+  if (axis < shear.count)
+    return ir_div(g, ir_mul(g, shear.of[axis], lower_quantity(g, QUANTITY_LENGTH)),
+                  ir_constant(g, 2));
+  if (W != IR_NONE) return ir_derivative(g, W, lower_bending(g, c->law, theta, axis));
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
+}
+
+static ir_node twisting_moment(lowering *c, ir_node W) {
+  const ir_node given = result_node(c, RESULT_T);
+  if (given != IR_NONE) return given;
+  return W != IR_NONE ? ir_derivative(c->graph, W, lower_quantity(c->graph, QUANTITY_TWIST))
+                      : IR_NONE;
+}
+
+static void lower_moments(lowering *c, lowered_law *out) {
+  for (int k = 0; k < lower_bending_axes(c->law); k++) {
+    out->M_i[k] = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I, k);
+    out->M_j[k] = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J, k);
+  }
+  if (c->law->bends_in_space) out->T = twisting_moment(c, out->W);
 }
 
 static void lower_bond_results(lowering *c, lowered_law *out) {
@@ -226,14 +256,17 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
     out->N = lower_fail(c, c->law->tree->name_where, "the law gives no force");
   else if (out->N == IR_NONE)
     out->N = force_of_energy(c, out->W);
-  if (c->law->tree->law == LAW_MICROPOLAR_BOND) {
-    out->M_i = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I);
-    out->M_j = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J);
-  }
+  if (c->law->tree->law == LAW_MICROPOLAR_BOND) lower_moments(c, out);
+  static const char *const of_i[] = {"M_ix", "M_iy", "M_iz"}, *const of_j[] = {"M_jx", "M_jy",
+                                                                               "M_jz"};
+  const bool space = c->law->bends_in_space;
   span nowhere = {0, 0, 0};
   lower_name_node(c->graph, out->N, "N", nowhere);
-  lower_name_node(c->graph, out->M_i, "M_i", nowhere);
-  lower_name_node(c->graph, out->M_j, "M_j", nowhere);
+  for (int k = 0; k < BENDING_AXES; k++)
+    lower_name_node(c->graph, out->M_i[k], space ? of_i[k] : "M_i", nowhere);
+  for (int k = 0; k < BENDING_AXES; k++)
+    lower_name_node(c->graph, out->M_j[k], space ? of_j[k] : "M_j", nowhere);
+  lower_name_node(c->graph, out->T, "T", nowhere);
 }
 
 /* What the law gives is the particle's, and where that is of another law, nothing. What the law
@@ -331,10 +364,11 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     ir_substitution_add(known, from[k], to[k]);
   }
   ir_substitution_free(known);
-  ir_node *results[] = {&out->N, &out->M_i, &out->M_j, &out->F, &out->W};
-  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
-    if (*results[k] != IR_NONE)
-      ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
+  ir_node *results[LOWERED_FORCES + 1];
+  int count = lowered_forces(out, results);
+  if (out->W != IR_NONE) results[count++] = &out->W;
+  for (int k = 0; k < count; k++)
+    ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
   ir_substitute(g, out->outputs, c->law->outputs.count, from, to, c->rule_count, out->outputs);
   resolve_text(c, from, to);
   free(from);
@@ -357,7 +391,9 @@ bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation
   int fields = l->fields.count;
   size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
   lowering c = {.law = l, .graph = g, .mode = mode, .variation = v, .memory = memory, .said = d};
-  *out = (lowered_law){.N = IR_NONE, .M_i = IR_NONE, .M_j = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  for (int k = 0; k < BENDING_AXES; k++)
+    out->M_i[k] = out->M_j[k] = IR_NONE;
   c.text.rules = arena_alloc(memory, field_bytes);
   c.new_value = must_alloc(field_bytes);
   c.rule = must_alloc(field_bytes);

@@ -44,14 +44,23 @@ typedef struct lowered_text {
   int line_count, place_count, flow_count;
 } lowered_text;
 
+enum { BENDING_AXES = 3, LOWERED_FORCES = 2 * BENDING_AXES + 3 };
+
+/* What a law does not give is IR_NONE. */
 typedef struct lowered_law {
-  ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
-  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  ir_node N; /* results; `force V` and `energy W` are resolved here */
+  /* end moments: components about the axes of the lattice, of plane bending the first */
+  ir_node M_i[BENDING_AXES], M_j[BENDING_AXES];
+  ir_node T; /* twisting moment on end j, on end i the opposite; in space */
+  ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
   bool along_reference; /* it acts along the reference bond */
   ir_node W;            /* the law's own `energy`, or IR_NONE */
   ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
   ir_node *outputs;     /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
+
+/* The places of N, M_i, M_j, T and F that are not IR_NONE. Returns how many. */
+int lowered_forces(lowered_law *p, ir_node **forces);
 
 #endif

@@ -48,10 +48,10 @@ static kernel_plan *plan_families(const law *l, const law_variation *v, family_f
 }
 
 /* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them
-   only where they change. */
+   only where they change. So are end rotations, which are dear. */
 static bool is_for_pairs(const law *l) {
   enum { WRITTEN_OUT_FASTER = 12 };
-  bool on_bonds = false;
+  bool on_bonds = l->tree->law == LAW_MICROPOLAR_BOND;
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
   return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;

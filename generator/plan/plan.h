@@ -84,6 +84,7 @@ typedef struct kernel_plan {
   pass passes[PASS_COUNT];
   loop_cutting cutting;
   int kind, dimensions, dof, force_planes;
+  int rotations;     /* of a particle, behind its dimensions: dof in all */
   ir_node *uniforms; /* [uniform_count] ascending: values hoisted into `prepare`. All nodes, inputs
                         too but no constants, with ir_place <= ON_BODY that a local node or a root
                         of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]

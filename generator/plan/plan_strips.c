@@ -51,7 +51,7 @@ static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, co
 
 static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,
                            const ir_node *to, int pairs) {
-  ir_node *results[PL_STATE_RESULTS] = {&p->N, &p->M_i, &p->M_j};
+  ir_node *results[PL_STATE_RESULTS] = {&p->N, &p->M_i[0], &p->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     substitute(g, results[k], 1, from, to, pairs);
   substitute(g, p->fields, l->fields.count, from, to, pairs);
@@ -70,13 +70,13 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
   size_t field_bytes = (size_t)fields * sizeof(ir_node);
   ir_node *all = must_alloc(PL_STATE_RESULTS * sizeof *all + field_bytes);
   all[0] = p->N;
-  all[1] = p->M_i; /* IR_NONE stays IR_NONE */
-  all[2] = p->M_j;
+  all[1] = p->M_i[0]; /* IR_NONE stays IR_NONE */
+  all[2] = p->M_j[0];
   memcpy(all + PL_STATE_RESULTS, p->fields, field_bytes);
   rewrite_reciprocals(g, all, PL_STATE_RESULTS + fields, all);
   p->N = all[0];
-  p->M_i = all[1];
-  p->M_j = all[2];
+  p->M_i[0] = all[1];
+  p->M_j[0] = all[2];
   memcpy(p->fields, all + PL_STATE_RESULTS, field_bytes);
   free(all);
 }
@@ -146,12 +146,12 @@ static seen_law see_law(planner *p) {
   pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
   substitute_law(g, l, &t.step, from, to, pairs);
-  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
+  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i[0], t.step.M_j[0]);
 
-  t.stored = lower_stored_energy(g, &p->frozen);
+  t.stored = lower_stored_energy(g, l, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
+  t.rate_power = lower_rate_power(g, l, &p->frozen, k.theta_rate_i, k.theta_rate_j);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
@@ -237,7 +237,7 @@ static lowered_law unprotected_step(planner *p) {
 static void plan_states(planner *p, const lowered_law *bare) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, PASS_STATES, PL_STATE_RESULTS + fields);
-  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
   for (int k = 0; k < fields; k++)
@@ -255,7 +255,7 @@ static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
 static void plan_tangent(planner *p, const lowered_law *bare) {
   ir *g = p->plan->graph;
   pass *a = begin_pass(p->plan, PASS_TANGENT, PL_TANGENTS);
-  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     for (int q = 0; q < PL_STATE_RATES; q++) {
       ir_node d = results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);

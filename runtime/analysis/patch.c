@@ -196,7 +196,7 @@ static void new_particles(patch *p) {
   p->held = site_array(p, 1, sizeof *p->held);
   for (long q = -p->lead; q < p->size - p->lead; q++)
     p->bonds[q] = UINT64_MAX;
-  for (int d = 0; d < p->law->dimensions; d++) {
+  for (int d = 0; d < p->law->dof; d++) {
     p->displacement[d] = site_array(p, 1, sizeof(double));
     p->velocity[d] = site_array(p, 1, sizeof(double));
     p->force[d] = site_array(p, 1, sizeof(double));
@@ -263,7 +263,7 @@ static void free_arrays(const patch *p, double **arrays, int count) {
 
 void patch_free(patch *p) {
   if (!p) return;
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < PL_MAX_DOF; d++) {
     free_array(p, p->displacement[d], sizeof(double));
     free_array(p, p->velocity[d], sizeof(double));
     free_array(p, p->force[d], sizeof(double));
@@ -389,7 +389,7 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
                    .new_field = from_first(&s, p->new_field, law->field_count),
                    .link = from_first(&s, p->link, law->link_count),
                    .bond_link = from_first(&s, p->bond_link, law->bond_link_count),
-                   .force = from_first(&s, p->force, law->dimensions),
+                   .force = from_first(&s, p->force, law->dof),
                    .observed = from_first(&s, p->observed, p->observed_count),
                    .sum = from_first(&s, p->sum, law->sum_count),
                    .ahead_only = ahead_only,
@@ -399,7 +399,7 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
   run.shape = (const double *const *)from_first(&s, p->shape, PL_SHAPE_PLANES(law->dimensions));
   run.parameter = (const double *const *)from_first(&s, p->parameter, law->varying_count);
   run.old_field = (const double *const *)from_first(&s, p->field, law->field_count);
-  for (int d = 0; d < law->dimensions; d++) {
+  for (int d = 0; d < law->dof; d++) {
     run.displacement[d] = p->displacement[d] + first;
     run.velocity[d] = p->velocity[d] + first;
   }

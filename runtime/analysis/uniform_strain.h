@@ -1,8 +1,8 @@
-/* What particles that stand on no lattice make of a uniform strain, before anything has happened to
-   them. The mean stress of a free body follows from the forces on its particles alone, -sum(f x)/V
-   (virial theorem); a body with exact families has that of the material, whatever its shape. The
-   forces themselves should be 0 inside; how far they are from it is what a particle feels of the
-   irregularity of its surroundings. */
+/* What particles make of a uniform strain, before anything has happened to them; those that rotate
+   are in balance of moments. The mean stress of a free body follows from the forces on its
+   particles alone, -sum(f x)/V (virial theorem); a body with exact families has that of the
+   material, whatever its shape. The forces themselves should be 0 inside; how far they are from it
+   is what a particle feels of the irregularity of its surroundings. */
 #ifndef PERILAT_RUNTIME_UNIFORM_STRAIN_H
 #define PERILAT_RUNTIME_UNIFORM_STRAIN_H
 

@@ -88,6 +88,7 @@ char *deck_file_path(const char *deck_path, const char *name) {
 }
 
 const char *deck_component_name(int dimensions, int component) {
-  static const char *const names[] = {"x", "y", "rotation", "z"};
-  return names[dimensions == 3 && component == 2 ? 3 : component];
+  static const char *const plane[] = {"x", "y", "rotation"};
+  static const char *const space[] = {"x", "y", "z", "rotation_x", "rotation_y", "rotation_z"};
+  return (dimensions == 3 ? space : plane)[component];
 }

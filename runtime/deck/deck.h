@@ -120,7 +120,7 @@ typedef struct deck_region {
 } deck_region;
 
 /* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in
-   space 0 x, 1 y, 2 z. Bits of `fix` are 1 << component. */
+   space 0 x, 1 y, 2 z, and 3, 4, 5 rotation about x, y, z. Bits of `fix` are 1 << component. */
 enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
 
 typedef struct deck_support {
@@ -357,7 +357,7 @@ deck_names *deck_names_new(arena *a);
    malloc'ed. */
 char *deck_file_path(const char *deck_path, const char *name);
 
-/* "x", "y", and "rotation" in the plane or "z" in space. */
+/* "x", "y", and "rotation" in the plane; "x", "y", "z", "rotation_x", ... in space. */
 const char *deck_component_name(int dimensions, int component);
 
 C_LINKAGE_END

@@ -15,12 +15,12 @@ static const deck_key_info support_keys[] = {
     REGION_KEY(support, "what is held"),
     {.name = "fix",
      .type = DECK_FIXED,
-     .choices = "x|y|z|xy|xz|yz|xyz|rotation",
+     .choices = "x|y|z|xy|xz|yz|xyz|rotation|rotation_x|rotation_y|rotation_z",
      .required = true,
      DECK_AT(support, fix),
-     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` is "
-            "for lattices in "
-            "space, `rotation` for those in the plane"},
+     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` and "
+            "rotations about x, y and z are for lattices in space, `rotation` for those in the "
+            "plane; in space `fix = 'rotation'` holds all three"},
 };
 
 /* Of all regions; NULL where the region is not known. */
@@ -35,7 +35,7 @@ static deck_motions *motions_of(deck_reader *r, const char *region) {
 static void note_motions(deck_reader *r, const char *region, int components, span where) {
   deck_motions *m = motions_of(r, region);
   r->moved |= components;
-  for (int c = 0; m && c < 3; c++)
+  for (int c = 0; m && c < PL_MAX_DOF; c++)
     if (components & 1 << c && m->of[c].end == 0) m->of[c] = where;
 }
 
@@ -44,15 +44,9 @@ static void check_support(deck_reader *r, const namelist_group *from, void *into
   (void)from;
   const int errors = r->d->errors;
   const span where = deck_where(&item->item, "fix");
-  int fix = 0;
   deck_item_region_known(r, &item->item, item->region);
-  for (int k = 0; k <= DECK_WRITTEN_ROTATION; k++) {
-    if (!(item->fix & 1 << k)) continue;
-    const int component = deck_component(r, where, item->region, k);
-    if (component >= 0) fix |= 1 << component;
-  }
-  item->fix = fix;
-  if (r->d->errors == errors) note_motions(r, item->region, fix, where);
+  item->fix = deck_components(r, where, item->region, item->fix);
+  if (r->d->errors == errors) note_motions(r, item->region, item->fix, where);
 }
 
 DECK_LIST(support, .identity = "region", .check = check_support,
@@ -155,7 +149,7 @@ static const deck_key_info force_keys[] = {
     {.name = "component",
      .type = DECK_LATER,
      .choices = DECK_COMPONENTS,
-     .fallback = "= 'rotation' with a moment; else required",
+     .fallback = "= 'rotation' with a moment in the plane; else required",
      DECK_NOT_KEPT,
      .doc = "direction of the load"},
     {.name = "total",
@@ -168,7 +162,7 @@ static const deck_key_info force_keys[] = {
      .type = DECK_LATER,
      .unit = "N*m",
      DECK_NOT_KEPT,
-     .doc = "full moment, of all particles together (`rotation`)"},
+     .doc = "full moment, of all particles together (`rotation`; in space about an axis)"},
     DECK_TIME_KEYS,
 };
 
@@ -176,6 +170,18 @@ static const deck_key_info force_keys[] = {
 static const namelist_key *source_of(const namelist_group *from) {
   const namelist_key *written = namelist_find(from, "formula");
   return written ? written : namelist_find(from, "file");
+}
+
+/* A force has a direction, and so has a moment in space. */
+static bool lacks_component(deck_reader *r, const namelist_group *from, const char *region,
+                            bool rotates) {
+  const bool space = deck_dimensions_of_region(r, region) == 3;
+  if (rotates && !space) return false;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
+  diag_hint(r->d, rotates ? "component = 'rotation_x', 'rotation_y' or 'rotation_z'"
+                  : space ? "component = 'x', 'y' or 'z'"
+                          : "component = 'x' or 'y'");
+  return true;
 }
 
 static void check_force(deck_reader *r, const namelist_group *from, void *into) {
@@ -189,14 +195,9 @@ static void check_force(deck_reader *r, const namelist_group *from, void *into) 
   const bool rotates = kind == 1;
   item->component = rotates ? DECK_WRITTEN_ROTATION : 0;
   if (component) item->component = deck_choice_read(r->memory, component, DECK_COMPONENTS, r->d);
+  if (!component && lacks_component(r, from, item->region, rotates)) return;
   if (item->component < 0 || !deck_take_component(r, &item->item, item->region, &item->component))
     return;
-  if (!component && !rotates) {
-    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
-    diag_hint(r->d, deck_dimensions_of_region(r, item->region) == 3 ? "component = 'x', 'y' or 'z'"
-                                                                    : "component = 'x' or 'y'");
-    return;
-  }
   if (rotates != deck_is_rotation(r, item->region, item->component)) {
     const namelist_key *key = namelist_find(from, kinds[kind].key);
     diag_report(r->d, DIAG_CONFLICT, key ? key->name_where : source_of(from)->value_where,

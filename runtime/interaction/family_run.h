@@ -17,7 +17,7 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
   double **new_field, **link, **bond_link, **observed;
   const double **parameter;
   const double *shape[SHAPE_PLANES];
-  double *force[3];
+  double *force[PL_MAX_DOF];
   char apart[BODY_APART];
 } family_block;
 

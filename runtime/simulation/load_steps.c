@@ -326,7 +326,7 @@ static void apply_forces(const load_run *r) {
     const double change = given_by(w, f->component, f->site, f->now);
     correct_free_way(w, f->component, f->site, f->velocity, *v, change, &f->sums);
     *v += change;
-    w->displacement[f->component][f->site] += w->time_step * change;
+    motion_shift(r->w, f->component, f->site, w->time_step * change);
   }
 }
 
@@ -367,17 +367,17 @@ static double force_for(const body *w, const constraint *c, double change) {
   return body_mass(w, c->component, c->site) * change / (w->time_step * motion_force_part(w));
 }
 
-/* Moves the particle to `target` instead of where it would go. What this takes works with the mean
-   of the velocities before and after. */
-static double pull(const body *w, constraint *c, double target) {
-  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
+/* Moves the particle to `target` instead of where it would go (take_place). What this takes works
+   with the mean of the velocities before and after. */
+static double pull(body *w, constraint *c, double target) {
+  double *v = &w->velocity[c->component][c->site];
   const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
   const double force = force_for(w, c, prescribed - *v);
   correct_free_way(w, c->component, c->site, before, *v, prescribed - *v, &c->sums);
   c->sums.work += 0.5 * w->time_step * force * (before + prescribed);
+  motion_shift(w, c->component, c->site, w->time_step * (prescribed - *v));
   c->held = target;
   *v = prescribed;
-  *u = target;
   return force;
 }
 
@@ -388,7 +388,7 @@ static double impulsive(const body *w, const constraint *c) {
 
 /* A motion that begins between the ends of the step: until then the particle was free. */
 static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
-  const body *w = r->w;
+  body *w = r->w;
   if (has_ended(r->l, w, c, r->step)) return;
   const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
   if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
@@ -402,7 +402,7 @@ static void begin_on_the_way(const load_run *r, constraint *c, remembered *after
 
 /* The part of the step that the drive still covers decides its force. */
 static void let_go(const load_run *r, constraint *c) {
-  const body *w = r->w;
+  body *w = r->w;
   const double free = w->velocity[c->component][c->site];
   const double velocity = velocity_let_go(r->l, w, c, r->step, free);
   c->reaction = pull(w, c, c->held + w->time_step * velocity) - impulsive(w, c);
@@ -410,7 +410,7 @@ static void let_go(const load_run *r, constraint *c) {
 }
 
 static void apply_motion(const load_run *r, constraint *c, remembered *after) {
-  const body *w = r->w;
+  body *w = r->w;
   const bool held = c->active;
   c->reaction = 0;
   if (held && lets_go(r->l, w, c, r->step))
@@ -424,10 +424,17 @@ static void apply_motion(const load_run *r, constraint *c, remembered *after) {
   c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
 }
 
+/* After all have moved: in space a turn about one axis moves the rotations about the others. */
+static void take_place(const load_run *r, const constraint *c) {
+  if (c->active && has_moved(r, c->site)) r->w->displacement[c->component][c->site] = c->held;
+}
+
 static void apply_motions(const load_run *r) {
   remembered after = {{0}, {0}};
   for (long i = r->first_constraint; i < r->last_constraint; i++)
     if (has_moved(r, r->l->constraints[i].site)) apply_motion(r, &r->l->constraints[i], &after);
+  for (long i = r->first_constraint; i < r->last_constraint; i++)
+    take_place(r, &r->l->constraints[i]);
 }
 
 /* A force works with the mean of its values at both ends of the way. */

@@ -77,7 +77,7 @@ static void add_motions(loads *l, motions *m) {
   int *supports = NULL;
   for (int i = 0; i < k->support_count; i++) {
     const region_sites *at = region_of(l, k->supports[i].region);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < PL_MAX_DOF; c++) {
       if (!at || !(k->supports[i].fix & (1 << c))) continue;
       bool good = has_component(m, c, deck_where(&k->supports[i].item, "fix"));
       for (long p = 0; good && p < at->count; p++)

@@ -36,7 +36,7 @@ static bool open_material(run_body *b, const deck *k, diagnostics *d) {
 }
 
 bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
-  enum { ANY_DOF = 3 };
+  enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
   b->lattice_rows = lattice ? lattice : lattice_build(k, b->lattice, d);
   if (!b->lattice_rows) return false;

@@ -16,7 +16,7 @@ typedef struct small_run {
   source_set sources;
   diagnostics said;
   const deck *deck;
-  double parameters[ELASTIC_PARAMETERS];
+  double parameters[16]; /* of any law by hand */
   simulation_law law;
   simulation *simulation;
 } small_run;

@@ -64,6 +64,9 @@ static void arguments_are_checked(void **state) {
       {"info --builtins > /dev/full", 2, "cannot write to the standard output"},
       {"help path | grep -c ' ()$'", 1, "0"},
       {"info mplm_bilinear --shells 1.5", 1, "--shells needs a whole number, not `1.5`"},
+      /* 24 EI/s over the inertia: four bonds, whose ends turn alike */
+      {"info elastic_micropolar --lattice square", 0, "rotation waves above 788252 rad/s"},
+      {"info mplm_space", 0, "E = 30 GPa along x, 30 GPa along y; nu = 0.2, 0.2; G = 12.5 GPa"},
       {"info splm_elastic --lattice square --horizon 3.015", 0,
        "wave speeds           none: the virgin lattice has no stiffness"},
       {"info --builtins --json", 1, "--builtins takes no other option"},
