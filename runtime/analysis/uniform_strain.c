@@ -37,13 +37,6 @@ typedef struct probe {
       *way; /* [rotations * size] N m left, and where to turn to; NULL without rotations */
 } probe;
 
-static double volume_of(const rows *w, long site) {
-  const double V = w->site_volume ? w->site_volume[site] : w->volume;
-  return w->dimensions == 2 && w->site_area > 0
-             ? V / w->volume * w->site_area * w->stiffness_thickness
-             : V;
-}
-
 /* Engineering shear: both halves; nothing turned. */
 static void displace(probe *p, int strain, double size) {
   const int a = p->first[strain], b = p->second[strain];
@@ -172,7 +165,7 @@ static double momentum_of(const probe *p) {
 
 /* The face of a particle: of the square or cube that has its volume. */
 static double face_of(const rows *w, long site) {
-  const double V = volume_of(w, site), t = w->stiffness_thickness;
+  const double V = rows_stressed_volume(w, site), t = w->stiffness_thickness;
   return w->dimensions == 2 ? sqrt(V * t) : pl_cbrt(V * V);
 }
 
@@ -233,7 +226,7 @@ static probe probe_new(const pl_law *law, const double *parameters, const rows *
   for (int d = 0; d < p.dimensions; d++)
     p.force[d] = must_calloc((size_t)w->size, sizeof(double));
   for (long n = 0; n < w->particle_count; n++)
-    p.volume += volume_of(w, w->particle_site[n]);
+    p.volume += rows_stressed_volume(w, w->particle_site[n]);
   p.left = must_calloc((size_t)w->particle_count * (size_t)p.strains, sizeof *p.left);
   if (law->dof > law->dimensions) {
     p.moment = must_calloc((size_t)turning_count(&p), sizeof *p.moment);
@@ -296,7 +289,7 @@ static double section_stress(const probe *p, const window *v, int b) {
     const long q = p->lattice->particle_site[n];
     rows_place(p->lattice, q, at);
     force -= p->force[b][q] * integral_at(v, at[v->axis]);
-    area += volume_of(p->lattice, q) * weight_at(v, at[v->axis]);
+    area += rows_stressed_volume(p->lattice, q) * weight_at(v, at[v->axis]);
   }
   return force / area;
 }
