@@ -17,7 +17,7 @@ static void check_law_on(const char *name, law_setting setting, int neighbours) 
   snprintf(path, sizeof path, "%s/%s.plm", SOURCE_DIR, name);
   assert_true(model_open(&m, path, NULL, 0));
   m.law = law_on_lattice(m.law, setting, neighbours == 0, neighbours);
-  if (!model_plan_of_families(&m)) {
+  if (!model_plan_of_families(&m, &(law_variation){.varying_count = 0})) {
     diag_print(&m.said, stderr);
     fail_msg("%s cannot be planned", path);
   }
