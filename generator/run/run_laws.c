@@ -79,10 +79,16 @@ static deck_lattice lattice_like(const deck_lattice *d, const rows *w) {
 
 bool obeys_mechanics(run *r, int lattice) {
   const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattices[lattice]);
+  const simulation_law *l = &r->laws[lattice];
   model *opened = r->model_of[lattice];
-  return run_law_obeys(opened, &like, r->laws[lattice].parameters,
-                       deck_where(&deck_material_of(r->deck, lattice)->item, "model"),
-                       &opened->said, &r->said);
+  bool good = run_law_obeys(opened, &like, l->parameters,
+                            deck_where(&deck_material_of(r->deck, lattice)->item, "model"),
+                            &opened->said, &r->said);
+  for (int k = 0; k < l->regional_count && good; k++)
+    good =
+        run_law_obeys(opened, &like, l->regional[k].parameters,
+                      deck_where(&l->regional[k].material->item, "model"), &opened->said, &r->said);
+  return good;
 }
 
 /* --- opening ---------------------------------------------------------------------------------- */

@@ -183,6 +183,11 @@ static void verdicts_that_depend_on_values_say_so(void **state) {
   expect(w, "check turning.plm", 1, "a deck is judged with its own values");
   expect(w, "check deck.nml", 0, "but not with all that its bounds allow");
   expect(w, "check deck.nml --set material.c=0.6", 1, "[stiffness]");
+  shell(w,
+        "cat deck.nml > regional.nml; echo \"&region name = 'r' shape = 'disc' centre = 0, 0 "
+        "radius = '30 mm' / &material lattice = 'l' region = 'r' model = './turning.plm' c = 0.6 "
+        "E = '3 GPa' /\" >> regional.nml");
+  expect(w, "check regional.nml", 1, "[stiffness]");
   expect(w, "check turning.plm --set c=0.4", 0, "no errors");
   expect(w, "info turning.plm --set E='30 GPa' --set c=0.4 --spacing 10mm", 0,
          "but not with all that its bounds allow");
