@@ -103,13 +103,11 @@ int deck_dimensions_of(const deck_reader *r, const char *lattice) {
 /* --- directions ------------------------------------------------------------------------------- */
 
 int deck_dimensions_of_region(const deck_reader *r, const char *name) {
-  if (!name) return deck_dimensions_of(r, NULL);
-  const int k = deck_find_region(r->k, name);
+  const int k = name ? deck_find_region(r->k, name) : -1;
   return k < 0 ? 0 : deck_dimensions_of(r, r->k->regions[k].lattice);
 }
 
-int deck_component(deck_reader *r, span where, const char *region, int written) {
-  const int dimensions = deck_dimensions_of_region(r, region);
+int deck_component_in(deck_reader *r, span where, int dimensions, int written) {
   if (written < DECK_WRITTEN_Z) return written;
   if (dimensions == 2 && written == DECK_WRITTEN_Z)
     diag_report(r->d, DIAG_BAD_VALUE, where, "there is no direction z in the plane");
@@ -118,6 +116,10 @@ int deck_component(deck_reader *r, span where, const char *region, int written) 
   else
     return 2;
   return -1;
+}
+
+int deck_component(deck_reader *r, span where, const char *region, int written) {
+  return deck_component_in(r, where, deck_dimensions_of_region(r, region), written);
 }
 
 bool deck_take_component(deck_reader *r, const deck_item *item, const char *region,

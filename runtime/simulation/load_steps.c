@@ -408,20 +408,25 @@ load_look load_steps_observe(loads *l, const body *w, long step) {
   return sum;
 }
 
-static double mean_velocity(const loads *l, const body *w, const constraint *c, long step) {
-  return 0.5 * (c->velocity + c->impulse + prescribed_velocity(l, w, c, step));
-}
-
-double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {
+velocity_instant load_steps_velocities(const loads *l, const body *w, int component, int64_t site,
+                                       long step) {
+  const double before = w->velocity[component][site];
   const long count = l->constraint_count;
   long i = first_at(l->constraints, count, sizeof *l->constraints, site);
-  for (; i < count && l->constraints[i].site == site; i++)
-    if (l->constraints[i].component == component && l->constraints[i].active)
-      return mean_velocity(l, w, &l->constraints[i], step);
+  for (; i < count && l->constraints[i].site == site; i++) {
+    const constraint *c = &l->constraints[i];
+    if (c->component != component || !c->active) continue;
+    const double after = prescribed_velocity(l, w, c, step);
+    return (velocity_instant){c->velocity, 0.5 * (c->velocity + c->impulse + after), after};
+  }
   double after = free_velocity(w, component, site);
   i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
   for (; i < l->force_count && l->forces[i].site == site; i++)
     if (l->forces[i].component == component)
       after += given_by(w, component, site, l->forces[i].now);
-  return 0.5 * (w->velocity[component][site] + after);
+  return (velocity_instant){before, 0.5 * (before + after), after};
+}
+
+double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {
+  return load_steps_velocities(l, w, component, site, step).now;
 }
