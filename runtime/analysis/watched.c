@@ -157,12 +157,13 @@ double watched_velocity(const watched_part *w) {
   return sum / (double)w->count;
 }
 
-/* From the velocity half a step before to that at the instant. */
 static double acceleration(const watched_part *w, const watch_instant *at) {
   double sum = 0;
-  for (long p = 0; p < w->count; p++)
-    sum += at->velocity(at->velocities, w->deck->component, w->sites[p]);
-  return (sum / (double)w->count - watched_velocity(w)) / (0.5 * w->of->time_step);
+  for (long p = 0; p < w->count; p++) {
+    const velocity_instant v = at->velocity(at->velocities, w->deck->component, w->sites[p]);
+    sum += v.after - v.before;
+  }
+  return sum / ((double)w->count * w->of->time_step);
 }
 
 static double energy(const watched_part *w, const watch_instant *at) {
@@ -222,6 +223,7 @@ static const char *place_words(const watched_part *w, const double at[3], arena 
 
 static const char *part_words(const watched_part *w, arena *a) {
   if (w->deck->region) return arena_printf(a, "of `%s`", w->deck->region);
+  if (!w->deck->placed && w->deck->lattice) return arena_printf(a, "of `%s`", w->deck->lattice);
   if (!w->deck->placed) return "of all particles";
   double here[3];
   rows_place(w->of->lattice, w->sites[0], here);

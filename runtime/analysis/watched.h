@@ -12,7 +12,7 @@
 typedef struct watched_part watched_part;
 
 typedef struct watch_instant { /* the state looked at, which was observed */
-  velocity_now *velocity;
+  velocities_of *velocity;
   const void *velocities;
   bond_forces *forces;  /* found; NULL unless asked for */
   double *const *field; /* [law's fields] */

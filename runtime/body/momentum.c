@@ -3,7 +3,8 @@
 double momentum_of(const moving_particles *m, int component) {
   double sum = 0;
   for (long p = 0; p < m->count; p++)
-    sum += body_mass(m->of, component, m->sites[p]) * m->velocity(m->from, component, m->sites[p]);
+    sum +=
+        body_mass(m->of, component, m->sites[p]) * m->velocity(m->from, component, m->sites[p]).now;
   return sum;
 }
 
@@ -25,8 +26,8 @@ double momentum_angular(const moving_particles *m, const double about[3], int ax
   double sum = spin < 0 ? 0 : momentum_of(m, spin);
   for (long p = 0; p < m->count; p++) {
     const long q = m->sites[p];
-    sum += body_mass(m->of, 0, q) * (arm(m->of, about, a, q) * m->velocity(m->from, b, q) -
-                                     arm(m->of, about, b, q) * m->velocity(m->from, a, q));
+    sum += body_mass(m->of, 0, q) * (arm(m->of, about, a, q) * m->velocity(m->from, b, q).now -
+                                     arm(m->of, about, b, q) * m->velocity(m->from, a, q).now);
   }
   return sum;
 }
@@ -36,8 +37,8 @@ double momentum_kinetic(const moving_particles *m) {
   for (int d = 0; d < m->of->dof; d++)
     for (long p = 0; p < m->count; p++) {
       const long q = m->sites[p];
-      const double before = m->of->velocity[d][q], after = 2 * m->velocity(m->from, d, q) - before;
-      sum += 0.5 * body_mass(m->of, d, q) * before * after;
+      const velocity_instant v = m->velocity(m->from, d, q);
+      sum += 0.5 * body_mass(m->of, d, q) * v.before * v.after;
     }
   return sum;
 }

@@ -1,18 +1,23 @@
 /* Sums over the motion of some particles of a body at one instant, whose velocities the caller
-   knows (those of a body are half a step before). */
+   knows: those of a body are half a step before. */
 #ifndef PERILAT_RUNTIME_MOMENTUM_H
 #define PERILAT_RUNTIME_MOMENTUM_H
 
 #include "runtime/body/body.h"
 
-/* m/s, rad/s: of a site at that instant. */
-typedef double velocity_now(const void *from, int component, long site);
+/* m/s, rad/s: at an instant, and half a step before and after. Where a drive begins with a jump
+   `now` is not their mean. */
+typedef struct velocity_instant {
+  double before, now, after;
+} velocity_instant;
+
+typedef velocity_instant velocities_of(const void *from, int component, long site);
 
 typedef struct moving_particles {
   const body *of;
   const int32_t *sites;
   long count;
-  velocity_now *velocity;
+  velocities_of *velocity; /* of a site */
   const void *from;
 } moving_particles;
 

@@ -221,7 +221,8 @@ typedef struct deck_monitor {
   deck_item item;
   const char *name;
   monitor_kind kind;
-  const char *region; /* NULL: `between`, `at` or all particles */
+  const char *region;  /* NULL: `between`, or of `lattice` all particles, or those at `at` */
+  const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
   /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM the

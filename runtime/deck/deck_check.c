@@ -103,8 +103,7 @@ int deck_dimensions_of(const deck_reader *r, const char *lattice) {
 /* --- directions ------------------------------------------------------------------------------- */
 
 int deck_dimensions_of_region(const deck_reader *r, const char *name) {
-  if (!name) return deck_dimensions_of(r, NULL);
-  const int k = deck_find_region(r->k, name);
+  const int k = name ? deck_find_region(r->k, name) : -1;
   return k < 0 ? 0 : deck_dimensions_of(r, r->k->regions[k].lattice);
 }
 
@@ -114,8 +113,7 @@ static int report_component(deck_reader *r, span where, const char *what, const 
   return -1;
 }
 
-int deck_component(deck_reader *r, span where, const char *region, int written) {
-  const int dimensions = deck_dimensions_of_region(r, region);
+int deck_component_in(deck_reader *r, span where, int dimensions, int written) {
   if (written < DECK_WRITTEN_Z) return written;
   if (dimensions == 2 && written == DECK_WRITTEN_Z)
     return report_component(r, where, "there is no direction z in the plane", NULL);
@@ -126,6 +124,10 @@ int deck_component(deck_reader *r, span where, const char *region, int written) 
     return report_component(r, where, "in space particles rotate about three axes",
                             "write `rotation_x`, `rotation_y` or `rotation_z`");
   return written > DECK_WRITTEN_ROTATION ? written - 1 : 2;
+}
+
+int deck_component(deck_reader *r, span where, const char *region, int written) {
+  return deck_component_in(r, where, deck_dimensions_of_region(r, region), written);
 }
 
 int deck_components(deck_reader *r, span where, const char *region, int written) {

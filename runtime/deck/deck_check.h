@@ -41,7 +41,6 @@ void deck_check_places(deck_reader *r, const namelist_group *from, const deck_gr
                        int dimensions);
 /* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
 int deck_dimensions_of(const deck_reader *r, const char *lattice);
-/* The same of the region's; NULL: of the only one. */
 int deck_dimensions_of_region(const deck_reader *r, const char *region);
 
 /* Directions as written; their positions are those of DECK_FIXED's bits, too. */
@@ -50,6 +49,8 @@ enum { DECK_WRITTEN_Z = 2, DECK_WRITTEN_ROTATION = 3, DECK_WRITTEN_COUNT = 7 };
 /* The degree of freedom of a direction as written. -1 after a message: it is none of the region's
    particles. */
 int deck_component(deck_reader *r, span where, const char *region, int written);
+/* The same where the dimensions are known, or 0. */
+int deck_component_in(deck_reader *r, span where, int dimensions, int written);
 /* The same for the item's key `component`, in place. False after a message. */
 bool deck_take_component(deck_reader *r, const deck_item *item, const char *region, int *component);
 /* Bits 1 << component of directions as written, bits 1 << direction: `rotation` is all rotations

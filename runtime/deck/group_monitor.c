@@ -24,7 +24,7 @@ static const deck_key_info monitor_keys[] = {
                 "momentum|angular_momentum|energy|force|tip|tip_speed|stress|strain",
      .required = true,
      DECK_AT(monitor, kind),
-     .doc = "decides which of the next nine keys are needed"},
+     .doc = "decides which of the next ten keys are needed"},
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
@@ -32,6 +32,11 @@ static const deck_key_info monitor_keys[] = {
             "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
             "energy: of its particles, without it of all; force: only bonds between its particles; "
             "tip, tip_speed: only bonds of its particles"},
+    {.name = "lattice",
+     .type = DECK_NAME,
+     .fallback = "= the only one; damaged, broken: all",
+     DECK_AT(monitor, lattice),
+     .doc = "in place of `region`: the lattice that is watched, where the deck has several"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(monitor, between),
@@ -119,6 +124,8 @@ enum {
   OF_TURNS = 1 << MONITOR_ANGULAR_MOMENTUM,
   OF_ENERGY = 1 << MONITOR_ENERGY,
   OF_PART = OF_TURNS | OF_ENERGY | 1 << MONITOR_MOMENTUM, /* of a region or of all */
+  OF_WHOLE = OF_PLACE | OF_PART | OF_SECTION | OF_TIP,    /* of a lattice without a region */
+  OF_LATTICE = OF_WHOLE | OF_DAMAGE,
   ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
 };
 static const char *const monitor_words[] = {"a reaction monitor",
@@ -140,6 +147,7 @@ static const char *const monitor_words[] = {"a reaction monitor",
                                             "a reaction monitor with `between`"};
 static const deck_key_use monitor_uses[] = {
     {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP, false},
+    {"lattice", OF_LATTICE, false},
     {"between", OF_PAIR, true},
     {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION, false},
     {"field", OF_FIELD, true},
@@ -216,6 +224,22 @@ static void check_broken(deck_reader *r, const namelist_group *from, deck_monito
 
 static const char *watched_region(const deck_monitor *item) {
   return item->region ? item->region : item->between[0];
+}
+
+static int dimensions_of(const deck_reader *r, const deck_monitor *item) {
+  const char *region = watched_region(item);
+  return region ? deck_dimensions_of_region(r, region) : deck_dimensions_of(r, item->lattice);
+}
+
+/* A region says which lattice; without one it must be said where there are several. */
+static bool check_lattice(deck_reader *r, const namelist_group *from, const deck_monitor *item) {
+  if (item->region && item->lattice) deck_refuse_both(r, from, "region", "lattice");
+  if (item->lattice) return deck_lattice_known(r, &item->item, item->lattice) && !item->region;
+  if (item->region || !is_kind(item, OF_WHOLE) || r->k->lattice_count < 2) return true;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `region` or `lattice` here",
+              monitor_words[item->kind]);
+  diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+  return false;
 }
 
 /* One of the two says of which particles. */
@@ -296,12 +320,15 @@ static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor
                             in_sum ? "'x', 'y' and, in space, 'z'"
                                    : "'x', 'y', in space 'z', and of particles that turn "
                                      "'rotation', in space 'rotation_x' and so on");
-  return deck_take_component(r, &item->item, watched_region(item), &item->component);
+  const int found = deck_component_in(r, deck_where(&item->item, "component"),
+                                      dimensions_of(r, item), item->component);
+  if (found >= 0) item->component = found;
+  return found >= 0;
 }
 
 static bool take_component(deck_reader *r, const namelist_group *from, deck_monitor *item) {
   const namelist_key *key = namelist_find(from, "component");
-  const int dimensions = deck_dimensions_of_region(r, watched_region(item));
+  const int dimensions = dimensions_of(r, item);
   if (is_kind(item, OF_TURNS)) return take_axis(r, from, key, item, dimensions);
   if (!key) {
     item->component = is_kind(item, OF_SECTION) ? -1 : 0;
@@ -321,7 +348,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   item->placed = namelist_find(from, "at") != NULL;
   const bool whole = has_needs(r, from, item);
   if (!deck_keys_fit(from, monitor_uses, USES, (int)item->kind, monitor_words[item->kind], r->d) ||
-      !whole || !check_place(r, from, item) || !check_tip(r, item))
+      !whole || !check_lattice(r, from, item) || !check_place(r, from, item) || !check_tip(r, item))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
@@ -329,7 +356,7 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   if (item->region) deck_item_region_known(r, &item->item, item->region);
   for (int i = 0; between && i < 2; i++)
     deck_region_known(r, between->values[i].where, item->between[i]);
-  const int dimensions = deck_dimensions_of_region(r, watched_region(item));
+  const int dimensions = dimensions_of(r, item);
   if (dimensions) deck_check_places(r, from, &deck_group_monitor, dimensions);
   if (item->kind == MONITOR_FORCE && !has_length(r, &item->item, "normal", item->normal)) return;
   if (!take_component(r, from, item)) return;
@@ -374,8 +401,8 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
 }
 
 static const char *unit_of(const deck_reader *r, const deck_monitor *m) {
-  return deck_monitor_unit(m, is_kind(m, ALONG_AXIS) &&
-                                  deck_is_rotation(r, watched_region(m), m->component));
+  return deck_monitor_unit(m,
+                           is_kind(m, ALONG_AXIS) && m->component == 2 && dimensions_of(r, m) != 3);
 }
 
 /* --- stops ------------------------------------------------------------------------------------ */

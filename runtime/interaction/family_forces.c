@@ -28,7 +28,7 @@ struct family_forces {
   planes link, bond_link; /* of the whole body */
   planes shown;           /* bond_link with 0 for bonds that are not seen, where they are shared */
   planes force;           /* [dof] */
-  unsigned char *shared;  /* [bond_link_count] owners keep it for both ends */
+  bool *shared;           /* [bond_link_count] owners keep it for both ends */
   uint64_t *run[RUNS];    /* [size] bit k: of direction k seen in that run */
   uint64_t *seen, *incoming; /* [size] bonds that the last pass sees */
   pair_sums sums;
@@ -85,13 +85,19 @@ static planes new_fields(sweep *w) {
   return p;
 }
 
+/* Bits of a word: there are 32 such links at most. */
+static bool is_shared(const pl_program *step, int link) {
+  uint64_t bits = 0;
+  for (int p = 0; p < step->pass_count && step->shared && link < 32; p++)
+    bits |= step->shared[p] >> 2 * link & 3;
+  return bits != 0;
+}
+
 static void find_shared(family_forces *f) {
-  const pl_program *step = &f->w->law->step;
-  f->shared = must_calloc((size_t)f->bond_link.count + 1, 1);
+  f->shared = must_calloc((size_t)f->bond_link.count + 1, sizeof *f->shared);
   f->shown = planes_new(f->bond_link.count);
   for (int k = 0; k < f->bond_link.count; k++) {
-    for (int p = 0; p < step->pass_count && step->shared; p++)
-      f->shared[k] |= (step->shared[p] >> 2 * k & 3) != 0;
+    f->shared[k] = is_shared(&f->w->law->step, k);
     f->shown.all[k] = f->shared[k] ? body_doubles(f->w->body, sweep_planes(f->w, PL_ON_NEIGHBOUR) *
                                                                   f->w->body->lattice->size)
                                    : f->bond_link.all[k];

@@ -539,15 +539,21 @@ load_look load_steps_observe(loads *l, const body *w, long step) {
   return sum;
 }
 
-static double mean_velocity(const loads *l, const body *w, const constraint *c, long step) {
-  return 0.5 * (c->velocity + c->impulse + prescribed_velocity(l, w, c, step));
+velocity_instant load_steps_velocities(const loads *l, const body *w, int component, int64_t site,
+                                       long step) {
+  const double before = w->velocity[component][site];
+  const long count = l->constraint_count;
+  long i = first_at(l->constraints, count, sizeof *l->constraints, site);
+  for (; i < count && l->constraints[i].site == site; i++) {
+    const constraint *c = &l->constraints[i];
+    if (c->component != component || !c->active) continue;
+    const double after = prescribed_velocity(l, w, c, step);
+    return (velocity_instant){c->velocity, 0.5 * (c->velocity + c->impulse + after), after};
+  }
+  const double after = loaded_velocity(l, w, component, site);
+  return (velocity_instant){before, 0.5 * (before + after), after};
 }
 
 double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step) {
-  const long count = l->constraint_count;
-  long i = first_at(l->constraints, count, sizeof *l->constraints, site);
-  for (; i < count && l->constraints[i].site == site; i++)
-    if (l->constraints[i].component == component && l->constraints[i].active)
-      return mean_velocity(l, w, &l->constraints[i], step);
-  return 0.5 * (w->velocity[component][site] + loaded_velocity(l, w, component, site));
+  return load_steps_velocities(l, w, component, site, step).now;
 }

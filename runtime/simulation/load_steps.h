@@ -25,6 +25,7 @@
 #ifndef PERILAT_RUNTIME_LOAD_STEPS_H
 #define PERILAT_RUNTIME_LOAD_STEPS_H
 
+#include "runtime/body/momentum.h"
 #include "runtime/simulation/loads.h"
 
 /* At the state observed: what loaded particles add to the sums over the body, J. */
@@ -54,5 +55,8 @@ load_look load_steps_observe(loads *l, const body *w, long step);
 /* Then: velocity (m/s, rad/s) of a particle at this instant, the mean of those half a step before
    and after. */
 double load_steps_velocity(const loads *l, const body *w, int component, int64_t site, long step);
+/* The same with those half a step before and after. */
+velocity_instant load_steps_velocities(const loads *l, const body *w, int component, int64_t site,
+                                       long step);
 
 #endif

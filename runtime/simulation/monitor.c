@@ -30,12 +30,20 @@ static bool follows_tip(const deck_monitor *m) {
   return m->kind == MONITOR_TIP || m->kind == MONITOR_TIP_SPEED;
 }
 
-/* The body that a region's particles are of; NULL without a region. */
-static const run_body *body_of(const deck *k, const run_body *bodies, int count, const char *name) {
-  const int r = name ? deck_find_region(k, name) : -1;
-  for (int b = 0; b < count && r >= 0; b++)
-    if (strcmp(bodies[b].name, k->regions[r].lattice) == 0) return &bodies[b];
-  return NULL;
+/* Of the first region that it watches, or of the second: the name of its lattice, or NULL. */
+static const char *lattice_of(const deck *k, const deck_monitor *m, int end) {
+  const char *region = end || m->between[0] ? m->between[end] : m->region;
+  const int r = region ? deck_find_region(k, region) : -1;
+  return r >= 0 ? k->regions[r].lattice : end ? NULL : m->lattice;
+}
+
+/* NULL where it watches all bodies, or has no second region. */
+static const run_body *body_of(const deck *k, const run_body *bodies, int count,
+                               const deck_monitor *m, int end) {
+  const char *lattice = lattice_of(k, m, end);
+  for (int b = 0; b < count && lattice; b++)
+    if (strcmp(bodies[b].name, lattice) == 0) return &bodies[b];
+  return !lattice && !end && count == 1 ? bodies : NULL;
 }
 
 static void take_sites(monitor *m, int list, const monitors *all, const char *name) {
@@ -112,10 +120,10 @@ bool monitors_check(const deck *k, const run_body *bodies, int count, diagnostic
   bool good = true;
   for (int i = 0; i < k->monitor_count; i++) {
     const deck_monitor *m = &k->monitors[i];
-    const char *const regions[] = {m->region, m->between[0], m->between[1]};
-    good = check_damage(m, bodies, count, d) && good;
-    for (int r = 0; r < 3; r++) {
-      const run_body *of = body_of(k, bodies, count, regions[r]);
+    const run_body *first = body_of(k, bodies, count, m, 0);
+    good = check_damage(m, first ? first : bodies, first ? 1 : count, d) && good;
+    for (int end = 0; end < 2; end++) {
+      const run_body *of = body_of(k, bodies, count, m, end);
       good = (!of || (check_component(m, of->law, d) && check_field(m, of->law, d))) && good;
     }
   }
@@ -161,12 +169,6 @@ static monitor_time when_known(const monitor *m, const monitors *all) {
 /* What watched.h watches, of a region or of all particles. */
 static void watch(monitor *m, monitors *all, diagnostics *d) {
   const run_body *of = m->of[0];
-  if (!of) {
-    diag_report(d, DIAG_MISSING_KEY, m->deck->item.where,
-                "`&monitor` of this kind needs `region` here");
-    diag_hint(d, "the deck has %d lattices", all->body_count);
-    return;
-  }
   const rows *g = of->lattice_rows;
   if (m->deck->region) take_sites(m, 0, all, m->deck->region);
   const bool whole = !m->deck->region;
@@ -183,14 +185,6 @@ static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
               "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
 }
 
-static void find_bodies(monitor *m, const monitors *all) {
-  const bool two = m->deck->between[0] != NULL;
-  const char *const regions[] = {two ? m->deck->between[0] : m->deck->region, m->deck->between[1]};
-  for (int r = 0; r < 2; r++)
-    m->of[r] = body_of(all->deck, all->bodies, all->body_count, regions[r]);
-  if (!regions[0] && all->body_count == 1) m->of[0] = &all->bodies[0];
-}
-
 static void new_monitor(monitors *all, int index, diagnostics *d) {
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
@@ -198,7 +192,8 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
                                            m->deck->component >= all->bodies[0].body->dimensions);
   m->window = 1;
   if (!find_steps(m, all, d)) return;
-  find_bodies(m, all);
+  for (int end = 0; end < 2; end++)
+    m->of[end] = body_of(all->deck, all->bodies, all->body_count, m->deck, end);
   check_speed(m, all, d);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
@@ -299,17 +294,25 @@ static char *region_words(const monitors *all, const monitor *m, const char *qua
   return arena_printf(a, "%s of `%s`", component_words(all, m, quantity, a), m->deck->region);
 }
 
+/* It watches this body, or all. */
+static bool watches(const monitors *all, const monitor *m, int b) {
+  return !m->of[0] || m->of[0] == &all->bodies[b];
+}
+
 static char *count_words(const monitors *all, const monitor *m, arena *a) {
   bool bonds = false, particles = false;
   for (int b = 0; b < all->body_count; b++) {
+    if (!watches(all, m, b)) continue;
     bonds = bonds || damage_on_bonds(all->bodies[b].law);
     particles = particles ||
                 (!damage_on_bonds(all->bodies[b].law) && damage_on_particles(all->bodies[b].law));
   }
-  return arena_printf(a, "%s with %s %.6g",
+  const char *of = m->deck->lattice ? arena_printf(a, " of `%s`", m->deck->lattice) : "";
+  return arena_printf(a, "%s%s with %s %.6g",
                       bonds && particles ? "bonds, or particles where damage is on these,"
                       : bonds            ? "bonds"
                                          : "particles",
+                      of,
                       m->deck->kind == MONITOR_BROKEN ? "a damage of at least" : "more damage than",
                       m->deck->above);
 }
@@ -402,7 +405,7 @@ static long count_damaged(const run_body *of, const monitor *m) {
 static double count_all_damaged(const monitors *all, const monitor *m) {
   long count = 0;
   for (int b = 0; b < all->body_count; b++)
-    count += count_damaged(&all->bodies[b], m);
+    if (watches(all, m, b)) count += count_damaged(&all->bodies[b], m);
   return (double)count;
 }
 
@@ -432,16 +435,16 @@ typedef struct instant_velocities { /* what a velocity at an instant is known by
   long step;
 } instant_velocities;
 
-static double velocity_at(const void *from, int component, long site) {
+static velocity_instant velocities_at(const void *from, int component, long site) {
   const instant_velocities *v = from;
-  return load_steps_velocity(v->of->loads, v->of->body, component, site, v->step);
+  return load_steps_velocities(v->of->loads, v->of->body, component, site, v->step);
 }
 
 /* What watched.h has; `field`: the law's fields in the state that is meant. */
 static double watched_now(const monitors *all, const monitor *m, long step, double *const *field) {
   const instant_velocities v = {m->of[0], step};
   bond_forces *forces = all->forces[m->of[0] - all->bodies];
-  const watch_instant at = {.velocity = velocity_at,
+  const watch_instant at = {.velocity = velocities_at,
                             .velocities = &v,
                             .forces = forces,
                             .field = field,

@@ -86,7 +86,14 @@ static void close_all(together *t) {
   "&monitor name = 'load' kind = 'reaction' region = 'foot' component = 'y' /\n"                   \
   "&monitor name = 'gap' kind = 'opening' between = 'tip', 'all' component = 'x' /\n"              \
   "&monitor name = 'worst' kind = 'field' field = 'omega' region = 'side' /\n"                     \
-  "&monitor name = 'cracks' kind = 'damaged' /\n"
+  "&monitor name = 'cracks' kind = 'damaged' /\n"                                                  \
+  "&monitor name = 'of_beam' kind = 'damaged' lattice = 'beam' /\n"                                \
+  "&monitor name = 'of_block' kind = 'damaged' lattice = 'block' /\n"                              \
+  "&monitor name = 'kinetic' kind = 'energy' lattice = 'beam' component = 'kinetic' /\n"           \
+  "&monitor name = 'stored' kind = 'energy' lattice = 'block' component = 'stored' /\n"            \
+  "&monitor name = 'p' kind = 'momentum' lattice = 'bar' component = 'x' /\n"                      \
+  "&monitor name = 'N' kind = 'force' lattice = 'beam' at = 0.1, 0 normal = 1, 0 /\n"              \
+  "&monitor name = 'sigma' kind = 'stress' lattice = 'block' at = 0.05, 0.4 component = 'yy' /\n"
 
 static void must_open_all(together *t, int threads, const char *more) {
   char text[8192];
@@ -225,6 +232,20 @@ static void monitors_watch_bodies(void **state) {
   assert_true(values_of(s, "cracks")[last] >= bonds + particles);
   assert_true(values_of(s, "cracks")[last] <= 1.1 * (bonds + particles) + 5);
   assert_true(fabs(values_of(s, "gap")[last] - (mean[1] - mean[0] / (double)count)) < 1e-15);
+  assert_true(values_of(s, "of_beam")[last] > 0 && values_of(s, "of_block")[last] > 0);
+  const double mass = b->mass * (double)b->particle_count;
+  double sigma = 0;
+  assert_true(fabs(values_of(s, "p")[0] - mass) < 1e-12 * mass);
+  for (long n = 0; n <= last; n++) {
+    const double kinetic = values_of(s, "beam/kinetic")[n],
+                 stored = values_of(s, "block/stored")[n];
+    assert_true(values_of(s, "of_beam")[n] + values_of(s, "of_block")[n] ==
+                values_of(s, "cracks")[n]);
+    assert_true(fabs(values_of(s, "kinetic")[n] - kinetic) <= 1e-10 * fabs(kinetic));
+    assert_true(fabs(values_of(s, "stored")[n] - stored) <= 1e-12 * stored);
+    sigma = fmax(sigma, fabs(values_of(s, "sigma")[n]));
+  }
+  assert_true(fabs(values_of(s, "N")[last]) > 1 && sigma > 1);
   assert_true(values_of(s, "worst")[last] > 0);
   assert_true(fabs(values_of(s, "load")[last]) > 1);
   close_all(&t);

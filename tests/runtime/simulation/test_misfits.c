@@ -67,6 +67,9 @@ static const misfit misfits[] = {
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'acceleration' region = 'edge' "
                        "component = 'rotation' /\n",
      DIAG_BAD_VALUE, "do not rotate"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'acceleration' at = 0, 0 "
+                       "component = 'rotation' /\n",
+     DIAG_BAD_VALUE, "do not rotate"},
     {RUN LAW BLOCK USE "&output fields = 'stress_zz' /\n", DIAG_BAD_VALUE,
      "there is no field `stress_zz` to store"},
     {RUN "&lattice name = 'stress_xx' kind = 'square' spacing = 1 thickness = 1 /\n",

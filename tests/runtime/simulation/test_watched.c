@@ -81,6 +81,40 @@ static void momentum_is_what_forces_have_given(void **state) {
   small_close(&r);
 }
 
+/* In a force that changes: largest error of the momentum over the last one. */
+static double momentum_error(double step) {
+  char text[2048];
+  small_run r;
+  snprintf(text, sizeof text,
+           "&simulation end_time = 6.4e-5 step = %.17g /\n" BLOCK
+           "&force region = 'left' component = 'x' total = 300 history = 'cosine' "
+           "rise = 6.4e-5 /\n"
+           "&monitor name = 'p' kind = 'momentum' component = 'x' /\n"
+           "&output frames = 0 sample = 1.6e-5 /\n",
+           step);
+  must_open(&r, &elastic_beam, text);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double w = M_PI / 6.4e-5, *time, *p = series(&r, "p");
+  const long samples = simulation_history(r.simulation, &time);
+  double worst = 0;
+  for (long k = 0; k < samples; k++)
+    worst = fmax(worst, fabs(p[k] - 150 * (time[k] - sin(w * time[k]) / w)));
+  const double last = p[samples - 1];
+  small_close(&r);
+  return worst / last;
+}
+
+static void momentum_is_of_the_second_order(void **state) {
+  (void)state;
+  double before = momentum_error(1.6e-6);
+  for (int k = 1; k < 3; k++) {
+    const double error = momentum_error(1.6e-6 / (1 << k));
+    assert_true(before / error > 3.95 && before / error < 4.05);
+    before = error;
+  }
+  assert_true(before < 1e-4);
+}
+
 /* In the monitor's own unit. */
 static void a_stop_looks_at_them(void **state) {
   (void)state;
@@ -287,6 +321,7 @@ static void the_tip_is_the_furthest_damaged_bond(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(momentum_is_what_forces_have_given),
+      cmocka_unit_test(momentum_is_of_the_second_order),
       cmocka_unit_test(a_stop_looks_at_them),
       cmocka_unit_test(angular_momentum_stays),
       cmocka_unit_test(accelerations_are_of_the_second_order),
