@@ -25,6 +25,8 @@ typedef struct patch {
   double *uniforms;       /* [neighbours][uniform_count] */
   uint64_t *bonds, *held; /* [size] as in pl_family */
   double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_PLANES(3)];
+  double **parameter;          /* [varying] the same everywhere */
+  double *share;               /* 1 everywhere */
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **sum;       /* of laws whose bonds add to both ends (pl_family) */

@@ -61,6 +61,7 @@ static bool *find_used_regions(const deck *k) {
     const int region = name ? deck_find_region(k, name) : -1;                                      \
     if (region >= 0) used[region] = true;                                                          \
   }
+  USED(material, region)
   USED(support, region)
   USED(drive, region)
   USED(force, region)

@@ -56,13 +56,13 @@ enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 typedef struct rows {
   bravais infinite; /* the lattice without ends */
   int dimensions;   /* 2 or 3 */
-  int row_count; /* from the first with sites to the last, empty ones between layers included */
-  int layer_rows; /* rows from the first of a layer to the first of the next */
-  int margin;     /* empty rows before the first, and as many behind the last */
-  long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
-  long first;     /* site at which row 0 starts */
-  long size;      /* length of every site array */
-  int directions; /* owned bonds of a site of the infinite lattice: half the neighbours */
+  int row_count;    /* from the first with sites to the last, empty ones between layers included */
+  int layer_rows;   /* rows from the first of a layer to the first of the next */
+  int margin;       /* empty rows before the first, and as many behind the last */
+  long pitch;       /* doubles between the starts of rows; multiple of PL_LANES */
+  long first;       /* site at which row 0 starts */
+  long size;        /* length of every site array */
+  int directions;   /* owned bonds of a site of the infinite lattice: half the neighbours */
   long offset[ROWS_CLASSES][ROWS_MAX_NEIGHBOURS];
   unsigned char *row_class;           /* [margin + row_count + margin] */
   double chord[PL_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */

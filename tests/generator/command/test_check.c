@@ -165,8 +165,7 @@ static void a_length_of_its_own_is_judged_on_the_lattice_of_the_deck(void **stat
   expect(w, "check repulsion.plm", 1, "[rest-force]");
   expect(w, "check two.nml", 0, "no errors");
   /* that the two verdicts differ both say */
-  assert_non_null(
-      strstr(w->said, "with these values on this lattice, but not with all"));
+  assert_non_null(strstr(w->said, "with these values on this lattice, but not with all"));
   expect(w, "check two.nml --set material.reach=2.1", 1, "[rest-force]");
 }
 
@@ -182,6 +181,11 @@ static void verdicts_that_depend_on_values_say_so(void **state) {
   expect(w, "check turning.plm", 1, "a deck is judged with its own values");
   expect(w, "check deck.nml", 0, "but not with all that its bounds allow");
   expect(w, "check deck.nml --set material.c=0.6", 1, "[stiffness]");
+  shell(w,
+        "cat deck.nml > regional.nml; echo \"&region name = 'r' shape = 'disc' centre = 0, 0 "
+        "radius = '30 mm' / &material lattice = 'l' region = 'r' model = './turning.plm' c = 0.6 "
+        "E = '3 GPa' /\" >> regional.nml");
+  expect(w, "check regional.nml", 1, "[stiffness]");
   expect(w, "check turning.plm --set c=0.4", 0, "no errors");
   expect(w, "info turning.plm --set E='30 GPa' --set c=0.4 --spacing 10mm", 0,
          "but not with all that its bounds allow");
@@ -197,18 +201,21 @@ static void commands_agree(void **state) {
   expect(w, "info mplm_bilinear --horizon 1.2", 0, "stable step");
   expect(w, "check beam.nml --set lattice.horizon=1.2", 0, "no errors");
   expect(w, "info mplm_bilinear --horizon 1.8", 1, "nearest neighbours only");
-  expect(w, "check beam.nml --set lattice.horizon=1.8", 1, "central laws of bonds without random");
-  /* random fields need bonds */
+  expect(w, "check beam.nml --set lattice.horizon=1.8", 1, "central laws of bonds");
+  /* random fields are for all laws */
   write_central(w, "plain", "  force N = E*s*t*stretch\n");
   snprintf(text, sizeof text,
            DECK_WITH("kind = 'square' spacing = '10 mm' thickness = '10 mm'",
                      "%s&field  parameter = 'E'  distribution = 'normal'  cv = 0.1  /\n", "plain"),
            plate);
   write_text(w, "field.nml", text);
-  expect(w, "check field.nml", 1,
-         "on this lattice the central law `plain` runs as one of families");
-  assert_non_null(strstr(w->said, "random fields need the hexagonal lattice"));
-  assert_null(strstr(w->said, "law of bonds: it runs"));
+  expect(w, "check field.nml", 0, "E differs from bond to bond");
+  expect(w, "check field.nml --set material.model=splm_elastic", 0,
+         "E differs from particle to particle");
+  expect(w, "check field.nml --set material.model=splm_elastic --set field.on=bond", 1,
+         "its parameters have values on particles");
+  expect(w, "check field.nml --set material.model=splm_elastic --set lattice.kind=blue_noise", 0,
+         "E differs from particle to particle");
   /* upper and lower case differ in laws */
   expect(w, "info plain.plm", 0, "stable step           2");
   shell(w, "sed 's/rho/Rho/' plain.plm > other.plm");
