@@ -53,9 +53,10 @@ typedef struct deck_lattice {
 
 typedef struct deck_assignment { /* parameter = value in a &material */
   const char *name;              /* as written */
-  double value;                  /* SI */
+  double value; /* SI; of a formula in the middle of the lattice's or region's bodies */
   bool has_unit;
-  dimension dim;    /* when has_unit */
+  dimension dim; /* when has_unit */
+  const struct formula *formula; /* of x, y, z, where the value differs from place to place */
   const char *word; /* a string that is not a number: an option's choice; else NULL */
   span name_where, value_where;
 } deck_assignment;
