@@ -224,7 +224,25 @@ static bool has_field(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
+/* The formula that gives it, of the material or one of its regions; or NULL. */
+static const deck_assignment *formula_of(const deck_material *m, const symbol *parameter) {
+  for (int k = -1; k < m->regional_count; k++) {
+    const deck_material *of = k < 0 ? m : m->regional[k];
+    for (int n = 0; n < of->assignment_count; n++)
+      if (of->assignments[n].formula && strcasecmp(of->assignments[n].name, parameter->name) == 0)
+        return &of->assignments[n];
+  }
+  return NULL;
+}
+
 static bool density_is_one(const deck_material *m, const law *l, diagnostics *said) {
+  const deck_assignment *by_place = l->rho ? formula_of(m, l->rho) : NULL;
+  if (by_place) {
+    diag_report(
+        said, DIAG_NOT_SUPPORTED, by_place->value_where,
+        "`rho` cannot differ from place to place: the particles of a lattice have one mass");
+    return false;
+  }
   for (int k = 0; l->rho && k < m->regional_count; k++) {
     const deck_material *of = m->regional[k];
     if (value_in(of, l->rho) == value_in(m, l->rho)) continue;
@@ -237,7 +255,7 @@ static bool density_is_one(const deck_material *m, const law *l, diagnostics *sa
   return true;
 }
 
-/* The parameters that random fields or regions make differ, as the law orders them. */
+/* The parameters that random fields, regions or formulas make differ, as the law orders them. */
 static bool find_variation(const deck_material *m, model *out, law_variation *v,
                            diagnostics *said) {
   const symbol_list *all = &out->law->parameters;
@@ -247,7 +265,8 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
   for (int k = 0; k < m->varying_count; k++)
     good = find_varying(m, k, out->law, said) >= 0 && good;
   for (int p = 0; p < all->count && good; p++)
-    if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]))
+    if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
+        formula_of(m, all->items[p]))
       varying[v->varying_count++] = p;
   return good;
 }

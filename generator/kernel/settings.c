@@ -8,7 +8,14 @@
 
 bool settings_of_group(arena *a, const namelist_group *g, deck_material *m, diagnostics *d) {
   m->item.where = g->where;
-  return deck_assignments_read(a, g, m, d);
+  bool good = deck_assignments_read(a, g, m, d);
+  for (int k = 0; k < m->assignment_count; k++) {
+    if (!m->assignments[k].formula) continue;
+    diag_report(d, DIAG_NOT_SUPPORTED, m->assignments[k].value_where,
+                "there are no places here that a formula of x, y, z could read");
+    good = false;
+  }
+  return good;
 }
 
 /* The rest of the text, without quotes and trimmed: `40 GPa`, `exponential`. */

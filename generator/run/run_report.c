@@ -146,10 +146,14 @@ static void announce_planes(const run *r, int lattice) {
   for (int k = 0; f && k < f->count; k++) {
     const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
-    const char *places = !f->random[k] ? "region to region"
-                         : particles   ? "particle to particle"
-                                       : "bond to bond";
-    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", f->random[k] ? "field" : "regions",
+    const char *places = f->placed[k]    ? "place to place"
+                         : !f->random[k] ? "region to region"
+                         : particles     ? "particle to particle"
+                                         : "bond to bond";
+    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s",
+           f->placed[k]   ? "formula"
+           : f->random[k] ? "field"
+                          : "regions",
            p->name, places, f->smallest[k], f->largest[k], *in ? " " : "", in);
     if (f->random[k]) printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
     putchar('\n');

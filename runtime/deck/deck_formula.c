@@ -1,9 +1,11 @@
 #include "runtime/deck/deck_formula.h"
 
 #include <ctype.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/text_table.h"
 #include "runtime/deck/time_function.h"
 
 static const formula_variable variables[FORMULA_VARIABLES] = {[FORMULA_X] = {"x", "m"},
@@ -50,12 +52,59 @@ const formula *deck_formula_read(arena *a, const namelist_value *v, const char *
   return NULL;
 }
 
-bool deck_placed_read(arena *a, const namelist_key *key, const char *unit_text, deck_placed *p,
-                      diagnostics *d) {
-  *p = (deck_placed){0};
+static bool read_value(arena *a, const namelist_key *key, const char *unit_text, deck_placed *p,
+                       diagnostics *d) {
   if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   if (!deck_is_formula(v)) return deck_real_read(v, key->name, unit_text, BOUND_NONE, &p->value, d);
   p->formula = deck_formula_read(a, v, key->name, &deck_formula_of_place, unit_text, d);
   return p->formula != NULL;
+}
+
+static bool ends_with(const char *text, const char *end) {
+  const size_t length = strlen(text), of_end = strlen(end);
+  return length >= of_end && strcmp(text + length - of_end, end) == 0;
+}
+
+/* The text of a table goes with the deck. */
+static bool keep_text(const char *path, span where, diagnostics *d) {
+  text_table t;
+  if (ends_with(path, ".h5")) return true;
+  const bool good = text_table_read(&t, must_copy(path), where, d);
+  if (good) text_table_source(&t, d);
+  text_table_free(&t);
+  return good;
+}
+
+static bool read_file(arena *a, const namelist_group *g, const namelist_key *key, deck_placed *p,
+                      diagnostics *d) {
+  if (!deck_values_counted(key, 1, d)) return false;
+  const namelist_value *v = &key->values[0];
+  const char *column = NULL;
+  if (v->kind != NAMELIST_TEXT || !*v->text) {
+    diag_report(d, DIAG_BAD_VALUE, v->where, "`file` is the name of a table or result in quotes");
+    return false;
+  }
+  char *name = text_table_split(v->text, &column);
+  char *path = deck_file_path(d->sources->items[g->where.file].name, name);
+  p->path = arena_text(a, path, strlen(path));
+  p->column = column;
+  free(name);
+  free(path);
+  return keep_text(p->path, v->where, d);
+}
+
+bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,
+                      diagnostics *d) {
+  const namelist_key *value = namelist_find(g, "value"), *file = namelist_find(g, "file");
+  *p = (deck_placed){.unit_text = unit_text};
+  if (value && !file) return read_value(a, value, unit_text, p, d);
+  if (file && !value) return read_file(a, g, file, p, d);
+  if (!value) {
+    diag_report(d, DIAG_MISSING_KEY, g->where, "`&%s` needs `value` or `file`", g->name);
+    return false;
+  }
+  diag_report(d, DIAG_CONFLICT, file->name_where, "`value` and `file` exclude each other");
+  diag_note(d, value->name_where, "`value` is given here");
+  return false;
 }

@@ -15,8 +15,8 @@ bool deck_is_formula(const namelist_value *v);
 const formula *deck_formula_read(arena *a, const namelist_value *v, const char *key,
                                  const formula_scope *scope, const char *unit_text, diagnostics *d);
 
-/* A number, or a formula of x, y, z. */
-bool deck_placed_read(arena *a, const namelist_key *key, const char *unit_text, deck_placed *p,
+/* What the group's `value` or `file` says: a number, a formula of x, y, z, or places and values. */
+bool deck_placed_read(arena *a, const namelist_group *g, const char *unit_text, deck_placed *p,
                       diagnostics *d);
 
 #endif

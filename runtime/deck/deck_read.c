@@ -1,9 +1,11 @@
 #include "runtime/deck/deck_read.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/semantics/formula.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_groups.h"
 #include "runtime/deck/deck_set.h"
@@ -339,6 +341,42 @@ static void link_regional(arena *a, deck *k) {
   }
 }
 
+/* Middle of the box that holds what a material is for; 0 where no shape says. */
+static void find_middle(const deck *k, const deck_material *m, double middle[3]) {
+  double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
+  const int region = m->region ? deck_find_region(k, m->region) : -1;
+  for (int b = 0; b < (region < 0 ? k->body_count : 1); b++) {
+    double low[3], high[3];
+    if (region < 0 && !deck_same_name(k->bodys[b].lattice, m->lattice)) continue;
+    shape_box(region < 0 ? &k->bodys[b].shape : &k->regions[region].shape, low, high);
+    for (int c = 0; c < 3; c++) {
+      lower[c] = fmin(lower[c], low[c]);
+      upper[c] = fmax(upper[c], high[c]);
+    }
+  }
+  for (int c = 0; c < 3; c++)
+    middle[c] = isfinite(lower[c] + upper[c]) ? 0.5 * (lower[c] + upper[c]) : 0;
+}
+
+/* What is asked of a parameter before there are particles, the middle answers. */
+static void take_middles(deck_reader *r) {
+  for (int i = 0; i < r->k->material_count; i++) {
+    const deck_material *m = &r->k->materials[i];
+    double middle[3];
+    find_middle(r->k, m, middle);
+    for (int n = 0; n < m->assignment_count; n++) {
+      deck_assignment *a = &m->assignments[n];
+      if (!a->formula) continue;
+      a->value = formula_value(a->formula, middle);
+      if (isfinite(a->value)) continue;
+      diag_report(r->d, DIAG_BAD_NUMBER, a->value_where,
+                  "this formula has no finite value in the middle, at x = %.6g m, y = %.6g m, z = "
+                  "%.6g m",
+                  middle[0], middle[1], middle[2]);
+    }
+  }
+}
+
 static bool has_regional(const deck *k, const char *lattice) {
   for (int i = 0; i < k->material_count; i++)
     if (k->materials[i].region && deck_same_name(k->materials[i].lattice, lattice)) return true;
@@ -354,6 +392,7 @@ static void check_whole(deck_reader *r) {
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_quasi_static(r);
   check_regional_materials(r);
+  take_middles(r);
   const bool *has_body = find_bodies(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];

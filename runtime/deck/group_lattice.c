@@ -1,10 +1,13 @@
 #include "runtime/deck/group_lattice.h"
 
 #include <ctype.h>
+#include <math.h>
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/semantics/formula.h"
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/lattice_kind.h"
 #include "runtime/deck/output_fields.h"
@@ -284,12 +287,30 @@ static const deck_key_info material_keys[] = {
             "`region`, too"},
 };
 
-static bool read_assignment(const namelist_key *key, deck_assignment *a, diagnostics *d) {
+/* One that reads no place is a number. */
+static bool read_formula(arena *memory, const namelist_value *v, deck_assignment *a,
+                         diagnostics *d) {
+  static const double anywhere[FORMULA_VARIABLES];
+  const formula *f = deck_formula_read(memory, v, a->name, &deck_formula_of_place, NULL, d);
+  if (!f) return false;
+  a->has_unit = !formula_is_zero(f);
+  a->dim = formula_dimension(f);
+  a->value = formula_value(f, anywhere);
+  for (int k = 0; k < FORMULA_VARIABLES; k++)
+    if (formula_reads(f, k)) a->formula = f;
+  if (a->formula || isfinite(a->value)) return true;
+  diag_report(d, DIAG_BAD_NUMBER, a->value_where, "this is not a finite number");
+  return false;
+}
+
+static bool read_assignment(arena *memory, const namelist_key *key, deck_assignment *a,
+                            diagnostics *d) {
   if (!deck_values_counted(key, 1, d)) return false;
   const namelist_value *v = &key->values[0];
   *a = (deck_assignment){
       .name = key->name, .name_where = key->name_where, .value_where = key->value_where};
   const char *text = v->kind == NAMELIST_TEXT ? v->text + strspn(v->text, " \t") : "0";
+  if (deck_is_formula(v)) return read_formula(memory, v, a, d);
   if (isalpha((unsigned char)*text) || *text == '_') {
     a->word = text;
     return true;
@@ -308,7 +329,7 @@ bool deck_assignments_read(arena *memory, const namelist_group *g, deck_material
   m->assignments = arena_alloc(memory, (size_t)g->key_count * sizeof *m->assignments);
   for (int i = 0; i < g->key_count; i++) {
     if (deck_key_find(&deck_group_material, g->keys[i].name) >= 0) continue;
-    if (read_assignment(&g->keys[i], &m->assignments[m->assignment_count], d))
+    if (read_assignment(memory, &g->keys[i], &m->assignments[m->assignment_count], d))
       m->assignment_count++;
   }
   return d->errors == errors;
@@ -325,10 +346,12 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
 }
 
-DECK_LIST(material, .identity = "lattice", .open = true, .check = check_material,
-          .doc =
-              "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
-              "parameter or an option of the law, e.g. `E = '30 GPa'`.");
+DECK_LIST(
+    material, .identity = "lattice", .open = true, .check = check_material,
+    .doc =
+        "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
+        "parameter or an option of the law, e.g. `E = '30 GPa'`, or by place `E = '30 [GPa]*(1 + "
+        "x/2 [m])'`.");
 
 /* --- random fields ---------------------------------------------------------------------------- */
 

@@ -344,9 +344,18 @@ DECK_LIST(gravity, .check = check_gravity,
        .required = true,                                                                           \
        DECK_AT(group, component),                                                                  \
        .doc = "direction of the motion"},                                                          \
+      {.name = "value",                                                                            \
+       .type = DECK_LATER,                                                                         \
+       .unit = unit_text,                                                                          \
+       .fallback = "= required, but for a file",                                                   \
+       DECK_NOT_KEPT,                                                                              \
+       .doc =                                                                                      \
+           what ", of each particle; or a formula of `x`, `y`, `z`, where the particle stands"},   \
   {                                                                                                \
-    .name = "value", .type = DECK_LATER, .unit = unit_text, .required = true, DECK_NOT_KEPT,       \
-    .doc = what ", of each particle; or a formula of `x`, `y`, `z`, where the particle stands"     \
+    .name = "file", .type = DECK_LATER, DECK_NOT_KEPT,                                             \
+    .doc = "instead: a table with columns `x`, `y`, in space `z`, and values, or a result, whose " \
+           "last frame counts, beside the deck; `'field.csv:v_x'`, `'run.h5:velocity'`. A "        \
+           "particle has the value of the nearest place, within half a spacing"                    \
   }
 
 static const deck_key_info initial_velocity_keys[] = {
@@ -360,9 +369,10 @@ static void check_initial(deck_reader *r, const namelist_group *from, deck_initi
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
   const int errors = r->d->errors;
-  if (deck_placed_read(r->memory, namelist_find(from, "value"),
-                       rotates ? unit_of_rotation : unit_text, &item->value, r->d))
-    return;
+  const bool good =
+      deck_placed_read(r->memory, from, rotates ? unit_of_rotation : unit_text, &item->value, r->d);
+  item->value.component = item->component;
+  if (good) return;
   const diagnostic *last = &r->d->items[r->d->count - 1];
   if (rotates && r->d->errors > errors && !last->hint) diag_hint(r->d, "%s", hint);
 }

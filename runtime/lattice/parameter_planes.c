@@ -7,6 +7,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/formula.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/lattice/rows_select.h"
 
@@ -171,6 +172,9 @@ typedef struct value_sources {
   const double *parameters;
   field_source *field; /* [varying] */
   const regional_values *regional;
+  /* [varying] for the material without region, then for each with one: NULL where it is a number */
+  const deck_assignment **formula;
+  int regions;
   int *region_of; /* [size] number in `regional`, or -1: the material without region; NULL */
 } value_sources;
 
@@ -202,6 +206,40 @@ static bool open_fields(const deck *k, int lattice, double *parameters, value_so
         open_source(f, s->places, &law->parameters[p], &parameters[p], &s->field[plane], d) && good;
   }
   return good;
+}
+
+static bool take_formula(value_sources *s, int region, const deck_assignment *a, diagnostics *d) {
+  const pl_law *law = s->places->law;
+  const int plane = find_plane(law, a->name, a->value_where, d);
+  if (plane < 0) return false;
+  s->formula[(region + 1) * law->varying_count + plane] = a;
+  const deck_field *f = s->field[plane].field;
+  if (!f) return true;
+  diag_report(d, DIAG_CONFLICT, f->item.where,
+              "`%s` differs at random, and the material gives it by a formula", a->name);
+  diag_note(d, a->value_where, "the formula");
+  return false;
+}
+
+static bool open_formulas(const deck *k, int lattice, int regions, value_sources *s,
+                          diagnostics *d) {
+  const int whole = deck_find_material(k, k->lattices[lattice].name);
+  bool good = true;
+  for (int region = -1; region < regions; region++) {
+    const deck_material *m = region < 0 ? &k->materials[whole] : s->regional[region].material;
+    for (int n = 0; n < m->assignment_count; n++)
+      if (m->assignments[n].formula) good = take_formula(s, region, &m->assignments[n], d) && good;
+  }
+  return good;
+}
+
+/* One of a plane; or NULL. */
+static const deck_assignment *any_formula(const value_sources *s, int regions, int plane) {
+  for (int region = 0; region <= regions; region++) {
+    const deck_assignment *a = s->formula[region * s->places->law->varying_count + plane];
+    if (a) return a;
+  }
+  return NULL;
 }
 
 static bool report_two_materials(const value_sources *s, const regional_values *first,
@@ -265,16 +303,21 @@ static bool open_regions(const deck *k, int count, value_sources *s, diagnostics
   return good;
 }
 
-static double value_of_region(const value_sources *s, int parameter, int64_t site) {
+static double value_of_material(const value_sources *s, int plane, int64_t site) {
+  const pl_law *law = s->places->law;
   const int region = s->region_of ? s->region_of[site] : -1;
-  return (region < 0 ? s->parameters : s->regional[region].parameters)[parameter];
+  const deck_assignment *by_place = s->formula[(region + 1) * law->varying_count + plane];
+  double at[3];
+  if (!by_place)
+    return (region < 0 ? s->parameters : s->regional[region].parameters)[law->varying[plane]];
+  rows_place(s->places->rows, site, at);
+  return formula_value(by_place->formula, at);
 }
 
 static double value_of(const value_sources *s, int plane, const value_place *at) {
-  const int parameter = s->places->law->varying[plane];
   if (s->field[plane].field) return field_value(&s->field[plane], at);
-  const double mine = value_of_region(s, parameter, at->site);
-  return at->partner < 0 ? mine : 0.5 * (mine + value_of_region(s, parameter, at->partner));
+  const double mine = value_of_material(s, plane, at->site);
+  return at->partner < 0 ? mine : 0.5 * (mine + value_of_material(s, plane, at->partner));
 }
 
 static void fill_plane(const value_sources *s, int plane, double *values) {
@@ -358,8 +401,11 @@ static void name_place(const value_places *p, const value_place *at, char *text,
 
 /* The group of the deck that a value comes from; where it is of no plane, the first one. */
 static span where_of(const value_sources *s, int plane) {
-  for (int k = plane < 0 ? 0 : plane; k < s->places->law->varying_count; k++)
+  for (int k = plane < 0 ? 0 : plane; k < s->places->law->varying_count; k++) {
+    const deck_assignment *by_place = any_formula(s, s->regions, k);
     if (s->field[k].field) return s->field[k].field->item.where;
+    if (by_place) return by_place->value_where;
+  }
   return s->regional[0].material->item.where;
 }
 
@@ -456,6 +502,7 @@ static parameter_planes *planes_new(const value_places *p) {
   r->smallest = must_calloc(count, sizeof *r->smallest);
   r->largest = must_calloc(count, sizeof *r->largest);
   r->random = must_calloc(count, sizeof *r->random);
+  r->placed = must_calloc(count, sizeof *r->placed);
   return r;
 }
 
@@ -463,6 +510,7 @@ static void sources_free(value_sources *s) {
   for (int k = 0; k < s->places->law->varying_count; k++)
     random_waves_free(s->field[k].waves);
   free(s->field);
+  free(s->formula);
   free(s->region_of);
 }
 
@@ -470,13 +518,17 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d) {
   value_places places = places_new(w, law);
-  value_sources s = {.places = &places, .parameters = parameters, .regional = regional};
+  value_sources s = {
+      .places = &places, .parameters = parameters, .regional = regional, .regions = regional_count};
   parameter_planes *r = planes_new(&places);
   s.field = must_calloc((size_t)r->count + 1, sizeof *s.field);
+  s.formula = must_calloc((size_t)(regional_count + 1) * (size_t)(r->count + 1), sizeof *s.formula);
   bool good = open_fields(k, lattice, parameters, &s, d);
+  good = open_formulas(k, lattice, regional_count, &s, d) && good;
   good = open_regions(k, regional_count, &s, d) && good;
   for (int n = 0; good && n < r->count; n++) {
     r->random[n] = s.field[n].field != NULL;
+    r->placed[n] = any_formula(&s, regional_count, n) != NULL;
     r->value[n] = new_plane(r, &places);
     fill_plane(&s, n, r->value[n]);
   }
@@ -497,5 +549,6 @@ void parameter_planes_free(parameter_planes *p) {
   free(p->smallest);
   free(p->largest);
   free(p->random);
+  free(p->placed);
   free(p);
 }

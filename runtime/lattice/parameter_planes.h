@@ -1,6 +1,7 @@
 /* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
-   particles for laws of families. They come from random fields (random_field.h), and from materials
-   of regions: a particle of the region has its values, a bond the mean of its ends'. */
+   particles for laws of families. They come from random fields (random_field.h), and from materials,
+   by formulas of the place and by regions: a particle has the value at its place, of its region, a
+   bond the mean of its ends'. */
 #ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
 #define PERILAT_RUNTIME_PARAMETER_PLANES_H
 
@@ -21,7 +22,8 @@ typedef struct parameter_planes {
                      [directions * size], of laws of families [2 directions * size]; the mean where
                      there is no particle or bond */
   double *smallest, *largest; /* [count] of the particles or bonds there are */
-  bool *random;               /* [count] by a random field, not by regions */
+  bool *random;               /* [count] by a random field, not by regions or formulas */
+  bool *placed;               /* [count] by formulas, perhaps in regions */
   size_t bytes;
 } parameter_planes;
 

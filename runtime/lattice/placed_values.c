@@ -5,11 +5,12 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/semantics/formula.h"
+#include "runtime/lattice/place_table.h"
 
-static bool report(const rows *w, const double at[3], span where, diagnostics *d) {
+static bool report(const rows *w, const double at[3], const char *what, span where,
+                   diagnostics *d) {
   char text[ROWS_PLACE_TEXT];
-  diag_report(d, DIAG_BAD_NUMBER, where, "this formula has no finite value at %s",
-              rows_place_text(w->dimensions, at, text));
+  diag_report(d, DIAG_BAD_NUMBER, where, "%s %s", what, rows_place_text(w->dimensions, at, text));
   return false;
 }
 
@@ -18,16 +19,47 @@ static bool evaluate(const deck_placed *p, const rows *w, int64_t site, span whe
   double at[FORMULA_VARIABLES] = {0};
   rows_place(w, site, at);
   *value = p->formula ? formula_value(p->formula, at) : p->value;
-  return isfinite(*value) || report(w, at, where, d);
+  return isfinite(*value) || report(w, at, "this formula has no finite value at", where, d);
+}
+
+static bool look_up(const place_table *t, const rows *w, const int32_t *particles, long count,
+                    span where, double *values, diagnostics *d) {
+  /* a little more: places of results are rounded */
+  const double within = (0.5 + 1e-6) * w->spacing;
+  for (long k = 0; k < count; k++) {
+    double at[3];
+    rows_place(w, w->particle_site[particles[k]], at);
+    const long nearest = place_table_nearest(t, at, within);
+    if (nearest < 0)
+      return report(w, at, "the file has no value within half a spacing of the particle at", where,
+                    d);
+    values[k] = t->value[nearest];
+    if (!isfinite(values[k]))
+      return report(w, at, "the file has no finite value for the particle at", where, d);
+  }
+  return true;
+}
+
+static bool from_file(const deck_placed *p, const rows *w, const int32_t *particles, long count,
+                      span where, double *values, diagnostics *d) {
+  place_table t;
+  const bool good = place_table_read(&t, p, w->dimensions, w->spacing, where, d) &&
+                    look_up(&t, w, particles, count, where, values, d);
+  place_table_free(&t);
+  return good;
+}
+
+static bool from_deck(const deck_placed *p, const rows *w, const int32_t *particles, long count,
+                      span where, double *values, diagnostics *d) {
+  for (long k = 0; k < count; k++)
+    if (!evaluate(p, w, w->particle_site[particles[k]], where, &values[k], d)) return false;
+  return true;
 }
 
 double *placed_values(const deck_placed *p, const rows *w, const int32_t *particles, long count,
                       span where, diagnostics *d) {
   double *values = must_calloc((size_t)count + 1, sizeof *values);
-  for (long k = 0; k < count; k++) {
-    if (evaluate(p, w, w->particle_site[particles[k]], where, &values[k], d)) continue;
-    free(values);
-    return NULL;
-  }
-  return values;
+  if ((p->path ? from_file : from_deck)(p, w, particles, count, where, values, d)) return values;
+  free(values);
+  return NULL;
 }

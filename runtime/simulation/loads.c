@@ -269,8 +269,8 @@ static void check_initial(const loads *l, const initial_list *list, int index, i
     }
     *given = index + 1;
   }
-  free(placed_values(&v->value, l->lattice, at->particles, at->count, deck_where(&v->item, "value"),
-                     d));
+  free(placed_values(&v->value, l->lattice, at->particles, at->count,
+                     deck_where(&v->item, v->value.path ? "file" : "value"), d));
 }
 
 static void check_initials(const loads *l, const motions *m, initial_list list) {
@@ -349,7 +349,7 @@ static bool set_initial(const loads *l, const deck_initial *v, double *const *in
   const region_sites *at = region_of(l, v->region);
   if (!at) return true;
   double *values = placed_values(&v->value, l->lattice, at->particles, at->count,
-                                 deck_where(&v->item, "value"), d);
+                                 deck_where(&v->item, v->value.path ? "file" : "value"), d);
   for (long p = 0; values && p < at->count; p++)
     into[v->component][l->lattice->particle_site[at->particles[p]]] = values[p];
   free(values);
@@ -361,7 +361,7 @@ static bool fits_a_step(const loads *l, const deck_initial *v, const body *w, di
   for (long p = 0; at && p < at->count; p++) {
     const int64_t site = l->lattice->particle_site[at->particles[p]];
     if (fabs(w->velocity[v->component][site]) < w->limit[v->component]) continue;
-    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),
+    diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, v->value.path ? "file" : "value"),
                 "this velocity takes a particle further than %s in one step",
                 v->component < w->dimensions ? "a spacing" : "half a turn");
     return false;

@@ -18,8 +18,17 @@ static bool has_field(const deck *k, const char *lattice) {
   return false;
 }
 
+static bool has_formula(const deck_material *m) {
+  for (int n = 0; n < m->assignment_count; n++)
+    if (m->assignments[n].formula) return true;
+  return false;
+}
+
 static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
-  if (!has_field(k, b->name) && b->regional_count == 0 && b->law->varying_count == 0) return true;
+  const int material = deck_find_material(k, b->name);
+  if (!has_field(k, b->name) && b->regional_count == 0 && b->law->varying_count == 0 &&
+      (material < 0 || !has_formula(&k->materials[material])))
+    return true;
   b->planes = parameter_planes_new(k, b->lattice, b->lattice_rows, b->law, b->parameters,
                                    b->regional, b->regional_count, d);
   return b->planes != NULL;

@@ -13,7 +13,7 @@ static const result_field small_fields[] = {
 
 static inline result_header small_header(const char *path) {
   static const double volume[PARTICLES] = {1, 2, 3};
-  static const int32_t body[PARTICLES] = {0, 0, 1}, pairs[2 * BONDS] = {0, 1, 1, 2};
+  static const int32_t body_of[PARTICLES] = {0, 0, 1}, pairs[2 * BONDS] = {0, 1, 1, 2};
   static const result_bonds bonds = {"concrete", BONDS, pairs};
   return (result_header){.path = path,
                          .fingerprint = "small",
@@ -25,7 +25,7 @@ static inline result_header small_header(const char *path) {
                          .particle_count = PARTICLES,
                          .dimensions = 2,
                          .reference = small_reference,
-                         .body = body,
+                         .body = body_of,
                          .volume = volume,
                          .bonds = &bonds,
                          .interaction_count = 1,

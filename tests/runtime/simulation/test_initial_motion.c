@@ -7,10 +7,14 @@
 
 #include <cmocka.h>
 
+#include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
+#include "runtime/lattice/place_table.h"
 #include "runtime/lattice/placed_values.h"
 #include "tests/runtime/simulation/chain.h"
+#include "tests/runtime/small_result.h"
 #include "tests/runtime/spring_law.h"
 
 enum { LINKS = 24 }; /* of the chain; one particle more */
@@ -30,21 +34,21 @@ static void open_chain(small_run *r, const pl_law *law, const char *groups) {
    cos(omega' t), sin(omega' dt/2) = omega dt/2, and one that begins with a velocity to sin(omega' t)
    over sin(omega' dt)/dt. */
 static void expect_mode(const char *groups, double amplitude, bool thrown) {
-  enum { MODE = 3, PARTICLES = LINKS + 1 };
+  enum { MODE = 3, SITES = LINKS + 1 };
   small_run r;
   open_chain(&r, &elastic_bar, groups);
   const sweep *w = simulation_state(r.simulation, 0);
   const rows *g = w->body->lattice;
   const double dt = w->body->time_step, pi = acos(-1);
   const double omega =
-      2 * sqrt(rigidity_axial(0.2) / SPACING / particle_mass()) * sin(pi * MODE / (2 * PARTICLES));
+      2 * sqrt(rigidity_axial(0.2) / SPACING / particle_mass()) * sin(pi * MODE / (2 * SITES));
   const double of_steps = 2 / dt * asin(omega * dt / 2);
   for (int n = 0; n < 20; n++) {
     const double t = simulation_time(r.simulation);
     const double part = thrown ? dt * sin(of_steps * t) / sin(of_steps * dt) : cos(of_steps * t);
     for (long p = 0; p < g->particle_count; p++) {
       const int64_t q = g->particle_site[p];
-      const double mode = cos(pi * MODE * (g->x[q] / SPACING + 0.5) / PARTICLES);
+      const double mode = cos(pi * MODE * (g->x[q] / SPACING + 0.5) / SITES);
       const double error = w->body->displacement[0][q] - amplitude * mode * part;
       if (!(fabs(error) <= 1e-9 * fabs(amplitude) * (thrown ? 1 / omega : 1)))
         fail_msg("step %ld: off by %g of %g", simulation_step_done(r.simulation), error, amplitude);
@@ -168,6 +172,100 @@ static void a_quasi_static_run_may_begin_displaced(void **state) {
   small_close(&r);
 }
 
+/* --- from files ------------------------------------------------------------------------------- */
+
+static void write_text(const char *path, const char *text) {
+  FILE *out = fopen(path, "wb");
+  assert_non_null(out);
+  fputs(text, out);
+  fclose(out);
+}
+
+/* A triangle of the hexagonal lattice with spacing 1 m, each particle with a value of the file. */
+static void open_triangle(small_run *r, const char *path, const char *columns) {
+  char text[4096];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1e-4 step = 1e-5 /\n"
+           "&lattice name = 'c' kind = 'hexagonal' spacing = 1 thickness = 0.1 /\n"
+           "&body lattice = 'c' shape = 'polygon' points = 0, 0, 1, 0, 0.5, 0.8661 /\n" ALL
+           "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n"
+           "&initial_displacement region = 'all' component = 'y' file = '%s:%s' /\n",
+           path, columns);
+  small_open(r, &elastic_bar, text);
+}
+
+static void expect_triangle(const small_run *r, const double expected[3]) {
+  if (!r->simulation) small_print(r);
+  assert_non_null(r->simulation);
+  const body *b = simulation_state(r->simulation, 0)->body;
+  assert_int_equal(b->lattice->particle_count, 3);
+  for (int p = 0; p < 3; p++)
+    assert_true(b->displacement[1][b->lattice->particle_site[p]] == expected[p]);
+}
+
+static void values_come_from_tables(void **state) {
+  (void)state;
+  char path[] = "/tmp/initial_motion_XXXXXX.csv";
+  const int file = mkstemps(path, 4);
+  assert_true(file >= 0);
+  close(file);
+  /* the nearest place counts, in whatever order they come */
+  write_text(path, "u [mm], x [m], y [cm], w\n3, 0.6, 70, 1\n1, 0, 0, 2\n2, 1.3, 20, 3\n"
+                   "7, 1.4, 20, 4\n8, 30, 40, 5\n");
+  small_run r;
+  open_triangle(&r, path, "u");
+  expect_triangle(&r, (const double[]){1e-3, 2e-3, 3e-3});
+  small_close(&r);
+  open_triangle(&r, path, "v");
+  assert_null(r.simulation);
+  assert_non_null(strstr(r.said.items[0].message, "`v`"));
+  small_close(&r);
+  write_text(path, "u [mm], x [m], y [cm]\n3, 0.6, 70\n1, 0, 0\n2, 1.6, 20\n");
+  open_triangle(&r, path, "u");
+  assert_null(r.simulation);
+  assert_string_equal(
+      r.said.items[0].message,
+      "the file has no value within half a spacing of the particle at (1000, 0) mm");
+  small_close(&r);
+  write_text(path, "u [N], x [m], y [cm]\n3, 0.6, 70\n1, 0, 0\n2, 1, 20\n");
+  open_triangle(&r, path, "u");
+  assert_null(r.simulation);
+  assert_int_equal(r.said.items[0].code, DIAG_UNITS);
+  small_close(&r);
+  unlink(path);
+}
+
+static void values_come_from_the_last_frame_of_results(void **state) {
+  (void)state;
+  char path[] = "/tmp/initial_motion_XXXXXX.h5", error[512];
+  const int file = mkstemps(path, 3);
+  assert_true(file >= 0);
+  close(file);
+  unlink(path);
+  const result_header h = small_header(path);
+  result *out = small_begin(&h, error, sizeof error);
+  assert_non_null(out);
+  double u[2 * PARTICLES], omega[BONDS];
+  for (int k = 0; k < 3; k++) {
+    small_frame(k, u, omega);
+    const double *values[] = {u, omega};
+    assert_true(result_frame(out, k, values, error, sizeof error));
+  }
+  assert_true(small_finish(out, (const double[]){0}, 1, NULL, 0, error, sizeof error));
+  result_close(out);
+  small_run r;
+  open_triangle(&r, path, "displacement");
+  expect_triangle(&r, (const double[]){u[1], u[3], u[5]});
+  small_close(&r);
+  open_triangle(&r, path, "omega");
+  assert_null(r.simulation);
+  assert_string_equal(r.said.items[0].message, "`omega` has no values on particles");
+  small_close(&r);
+  unlink(path);
+}
+
+/* --- what is refused -------------------------------------------------------------------------- */
+
 static void what_cannot_be_is_told(void **state) {
   (void)state;
   static const struct {
@@ -215,6 +313,8 @@ int main(void) {
       cmocka_unit_test(what_is_held_is_held_where_it_is),
       cmocka_unit_test(formulas_know_all_three_directions),
       cmocka_unit_test(a_quasi_static_run_may_begin_displaced),
+      cmocka_unit_test(values_come_from_tables),
+      cmocka_unit_test(values_come_from_the_last_frame_of_results),
       cmocka_unit_test(what_cannot_be_is_told),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
