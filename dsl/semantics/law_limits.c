@@ -6,6 +6,7 @@
 
 #include "dsl/base/elementary.h"
 #include "dsl/base/powers.h"
+#include "dsl/semantics/decided.h"
 
 /* The function that a call has a value of numbers for, or NULL. */
 static const builtin_function_info *plain_function(const expr *e) {
@@ -92,10 +93,26 @@ bool law_is_plain(const expr *e) {
   return false;
 }
 
+bool law_is_bound(const expr *e) {
+  if (e->kind != EXPR_CASES) return law_is_plain(e);
+  for (int k = 0; k < e->case_count; k++)
+    if (!law_is_plain(e->cases[k].value) ||
+        (e->cases[k].guard && !decided_early(e->cases[k].guard)))
+      return false;
+  return true;
+}
+
+static double bound_value(const law *l, const expr *e, const double *values) {
+  for (int k = 0; e->kind == EXPR_CASES && k < e->case_count; k++)
+    if (!e->cases[k].guard || decided_to_hold(l, e->cases[k].guard))
+      return law_constant_value(e->cases[k].value, values);
+  return law_constant_value(e, values);
+}
+
 law_limits law_parameter_limits(const law *l, int p, const double *values) {
   const bounds *in = &l->parameters.items[p]->declared->in;
-  return (law_limits){.lower = in->lower ? law_constant_value(in->lower, values) : -INFINITY,
-                      .upper = in->upper ? law_constant_value(in->upper, values) : INFINITY,
+  return (law_limits){.lower = in->lower ? bound_value(l, in->lower, values) : -INFINITY,
+                      .upper = in->upper ? bound_value(l, in->upper, values) : INFINITY,
                       .lower_open = in->lower_open || !in->lower,
                       .upper_open = in->upper_open || !in->upper};
 }

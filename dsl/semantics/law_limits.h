@@ -12,6 +12,8 @@ double law_constant_value(const expr *e, const double *values);
 
 /* Is it made of numbers, names, + - * / ** and functions with a value of numbers? */
 bool law_is_plain(const expr *e);
+/* Is it plain, or cases of such values that options and the lattice decide? */
+bool law_is_bound(const expr *e);
 
 /* The bounds as numbers: infinite where there is none, NAN where one depends on a value that is
    NAN; and whether the bound itself is left out. */

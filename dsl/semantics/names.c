@@ -181,7 +181,8 @@ static bool context_allows(checker *ck, const expr *e, const symbol *s) {
     diag_hint(ck->d, "for a value that follows from others write `constant x = ...`");
     return false;
   case IN_BOUNDS:
-    if (s->kind == SYMBOL_PARAMETER) return true;
+    if (s->kind == SYMBOL_PARAMETER || s->kind == SYMBOL_CHOICE || s->kind == SYMBOL_OPTION)
+      return true;
     complain(ck, DIAG_BOUNDS, e->name_where, "bounds are made of numbers and parameters");
     if (s->kind == SYMBOL_QUANTITY)
       diag_hint(ck->d,

@@ -12,12 +12,13 @@ static value check_plain(checker *ck, expr *e, context where) {
   ck->context = where;
   value v = check_number(ck, e);
   ck->context = before;
-  if (!v.broken && !law_is_plain(e)) {
-    complain(ck, DIAG_BAD_NUMBER, e->where,
-             "a value given here is made of numbers, + - * / ** and plain functions");
-    return BROKEN;
-  }
-  return v;
+  if (v.broken || (where == IN_BOUNDS ? law_is_bound(e) : law_is_plain(e))) return v;
+  complain(ck, DIAG_BAD_NUMBER, e->where,
+           "a value given here is made of numbers, + - * / ** and plain functions");
+  if (where == IN_BOUNDS && e->kind == EXPR_CASES)
+    diag_hint(ck->d, "cases of a bound are decided by options and by the lattice, such as "
+                     "`| 1/4 when plane_strain | 1/3 otherwise`");
+  return BROKEN;
 }
 
 static bool read_finite(checker *ck, const expr *e, double *number) {

@@ -22,21 +22,15 @@ static double middle(const symbol *p, double low, double high) {
   return usual;
 }
 
-static void limits(const law *l, int p, const double *values, double *low, double *high) {
-  const bounds *in = &l->parameters.items[p]->declared->in;
-  *low = in->given && in->lower ? law_constant_value(in->lower, values) : -INFINITY;
-  *high = in->given && in->upper ? law_constant_value(in->upper, values) : INFINITY;
-}
-
 static void start_values(const law *l, double *values) {
   for (int p = 0; p < l->parameters.count; p++) {
     const symbol *s = l->parameters.items[p];
     values[p] = s->initial;
   }
   for (int p = 0; p < l->parameters.count; p++) {
-    double low, high;
-    limits(l, p, values, &low, &high);
-    if (!l->parameters.items[p]->has_default) values[p] = middle(l->parameters.items[p], low, high);
+    const law_limits in = law_parameter_limits(l, p, values);
+    if (!l->parameters.items[p]->has_default)
+      values[p] = middle(l->parameters.items[p], in.lower, in.upper);
   }
 }
 
@@ -64,9 +58,8 @@ static void draw_values(const law *l, uint64_t *seed, double *values) {
   double *start = must_calloc((size_t)n + 1, sizeof *start);
   memcpy(start, values, (size_t)n * sizeof *start);
   for (int p = 0; p < n; p++) {
-    double low, high;
-    limits(l, p, values, &low, &high);
-    values[p] = vary(seed, start[p], low, high);
+    const law_limits in = law_parameter_limits(l, p, values);
+    values[p] = vary(seed, start[p], in.lower, in.upper);
   }
   /* Open ends and relations between parameters: back toward the defaults until all hold. */
   for (int back = 0; back < 40 && !all_within(l, values); back++)

@@ -43,10 +43,8 @@ static bool draw_parameters(hunt *h, int lane) {
   for (int k = 0; k < l->parameters.count; k++)
     values[k] = h->states[k][lane];
   for (int k = 0; k < l->parameters.count; k++) {
-    const bounds *in = &l->parameters.items[k]->declared->in;
-    double low = in->given && in->lower ? law_constant_value(in->lower, values) : -INFINITY;
-    double high = in->given && in->upper ? law_constant_value(in->upper, values) : INFINITY;
-    if (draw_bits(&b->seed) % 2) values[k] = draw_between(b, low, high, values[k]);
+    const law_limits in = law_parameter_limits(l, k, values);
+    if (draw_bits(&b->seed) % 2) values[k] = draw_between(b, in.lower, in.upper, values[k]);
   }
   bool within = true;
   char text[64];

@@ -2,6 +2,7 @@
 
 #include <string.h>
 
+#include "dsl/semantics/decided.h"
 #include "generator/ir/derive.h"
 #include "generator/ir/rewrite.h"
 #include "generator/lower/lower_family.h"
@@ -53,10 +54,7 @@ static ir_node lower_choice_name(lowering *c, const expr *e) {
   if (e->symbol->option)
     return lower_fail(c, e->where,
                       "an option's choice stands in a comparison with its option only");
-  const bool holds = strcmp(e->symbol->name, LAW_IRREGULAR) == 0
-                         ? c->law->irregular
-                         : strcmp(e->symbol->name, law_setting_name(c->law->setting)) == 0;
-  return ir_constant(c->graph, holds);
+  return ir_constant(c->graph, decided_to_hold(c->law, e));
 }
 
 /* Of the particle, or of the bond seen from it. */
@@ -116,8 +114,7 @@ static ir_node lower_option_test(lowering *c, const expr *e) {
   const expr *choice = option == e->left ? e->right : e->left;
   if (choice->kind != EXPR_NAME)
     return lower_fail(c, e->where, "an option is compared with one of its choices");
-  bool same = strcmp(c->law->chosen[option->symbol->index], choice->name) == 0;
-  return ir_constant(c->graph, same == (e->binary == OP_EQ));
+  return ir_constant(c->graph, decided_to_hold(c->law, e));
 }
 
 static ir_node lower_comparison(ir *g, binary_op op, ir_node a, ir_node b) {

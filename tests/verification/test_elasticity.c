@@ -1,5 +1,6 @@
-/* Elastic constants of the micropolar lattice against plane-stress isotropy, for any rotation: from
-   the law's symbolic tangent and from bond forces of the compiled kernel. */
+/* Elastic constants of the micropolar lattice against isotropy in the plane, for any rotation: from
+   the law's symbolic tangent and from bond forces of the compiled kernel, in plane stress and in
+   plane strain. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -16,7 +17,7 @@ static const double ratios[] = {0, 0.1, 0.2, 1.0 / 3};
 enum { ROTATIONS = 4, RATIOS = 4 };
 
 static const double spacing = 6.35e-3, thickness = 0.1524; /* m */
-static const double modulus = 30e9;                        /* Pa */
+static const double modulus = 30e9;                        /* Pa, as the plane sees it */
 
 static law_case law_under_test;
 
@@ -35,9 +36,14 @@ static void open_disc(deck_case *c, double rotation) {
   c->lattice->inertia = 0.1 * c->lattice->mass * spacing * spacing;
 }
 
-/* The law without damage: softening begins where no test goes. */
-static void use_ratio(double nu) {
+/* The law without damage: softening begins where no test goes. Hooke's law in plane strain is that
+   of plane stress with E/(1 - nu^2) and nu/(1 - nu): E and nu are chosen so that these are `modulus`
+   and `seen`. */
+static void use_ratio(double seen) {
+  const bool strain = law_under_test.model.law->setting == SETTING_PLANE_STRAIN;
+  const double nu = strain ? seen / (1 + seen) : seen;
   *law_case_value(&law_under_test, "nu") = nu;
+  *law_case_value(&law_under_test, "E") = strain ? modulus * (1 - nu * nu) : modulus;
   *law_case_value(&law_under_test, "S_t") = 0.5;
 }
 
@@ -49,7 +55,7 @@ static double worse(double *largest, double value, double expected, double scale
 
 /* --- the symbolic tangent --------------------------------------------------------------------- */
 
-/* Plane-stress isotropy (Asadollahi 2014, eqs 2.12, 2.24): E, nu, G = E/(2(1 + nu)). */
+/* Isotropy in the plane (Asadollahi 2014, eqs 2.12, 2.24): E, nu, G = E/(2(1 + nu)). */
 static void the_tangent_is_isotropic(void **state) {
   (void)state;
   double E = 0, nu = 0, G = 0, coupling = 0;
@@ -76,24 +82,31 @@ static void the_tangent_is_isotropic(void **state) {
   assert_true(E < 1e-12 && nu < 1e-12 && G < 1e-12 && coupling < 1e-12);
 }
 
+/* dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... of a bond at rest. */
+static void tangent_at_rest(double tangent[12]) {
+  deck_case c;
+  open_disc(&c, 17);
+  const pl_law *kernel = law_under_test.interpreted;
+  const pl_bond_class bond = rows_bond_class(c.lattice, 1);
+  double uniforms[64], *out[12], zero = 0, length = spacing;
+  assert_true(kernel->uniform_count <= 64 && kernel->field_count == 1);
+  kernel->prepare(kernel, law_under_test.parameters, &bond, uniforms);
+  const double *in[6] = {&zero, &zero, &zero, &zero, &length, &zero};
+  for (int k = 0; k < 12; k++)
+    out[k] = &tangent[k];
+  kernel->tangent(kernel, uniforms, 1, in, out);
+  deck_case_close(&c);
+}
+
 /* Axial and bending rigidity of a bond (eq 2.49), and E of the lattice from them (eq 2.24). */
 static void rigidities_have_their_closed_forms(void **state) {
   (void)state;
   const double s = spacing, t = thickness, root3 = sqrt(3);
   for (int n = 0; n < RATIOS; n++) {
     const double nu = ratios[n];
-    deck_case c;
-    open_disc(&c, 17);
+    double tangent[12];
     use_ratio(nu);
-    const pl_law *kernel = law_under_test.interpreted;
-    const pl_bond_class bond = rows_bond_class(c.lattice, 1);
-    double uniforms[64], tangent[12], *out[12], zero = 0, length = s;
-    assert_true(kernel->uniform_count <= 64 && kernel->field_count == 1);
-    kernel->prepare(kernel, law_under_test.parameters, &bond, uniforms);
-    const double *in[6] = {&zero, &zero, &zero, &zero, &length, &zero};
-    for (int k = 0; k < 12; k++)
-      out[k] = &tangent[k];
-    kernel->tangent(kernel, uniforms, 1, in, out);
+    tangent_at_rest(tangent);
     const double EA = modulus * s * t / (root3 * (1 - nu));
     const double EI = modulus * s * s * s * t * (1 - 3 * nu) / (12 * root3 * (1 - nu * nu));
     const double expected[12] = {EA,         0,          0, 0, 0,          0,
@@ -104,8 +117,45 @@ static void rigidities_have_their_closed_forms(void **state) {
     const double E = 2 * axial * (s * s * axial + 12 * bending) /
                      (root3 * s * t * (s * s * axial + 4 * bending));
     assert_true(fabs(E / modulus - 1) < 1e-14);
-    deck_case_close(&c);
   }
+}
+
+/* The rigidities as the source prints them for plane strain (Gerstle, Honarvar Gheitanbaf and
+   Asadollahi 2013, section 3.1): bending vanishes at nu = 1/4. */
+static void rigidities_in_plane_strain(void **state) {
+  (void)state;
+  const double s = spacing, t = thickness, root3 = sqrt(3), E = 30e9;
+  for (double nu = 0; nu < 0.26; nu += 0.05) {
+    double tangent[12];
+    *law_case_value(&law_under_test, "nu") = nu;
+    *law_case_value(&law_under_test, "E") = E;
+    tangent_at_rest(tangent);
+    const double common = E * s * t / (root3 * (1 + nu) * (1 - 2 * nu));
+    const double bending = common * s * s * (1 - 4 * nu) / 12;
+    assert_true(fabs(tangent[0] / common - 1) < 1e-14);
+    assert_true(fabs(tangent[6] * s / 4 - bending) < 1e-14 * common * s * s);
+  }
+}
+
+/* 30 GPa and 0.2 are 31.25 GPa and 0.25 in the plane; the stresses are those of Hooke's law with no
+   strain across it. */
+static void the_plane_sees_no_strain_across(void **state) {
+  (void)state;
+  const double E = 30e9, nu = 0.2, lame = E / ((1 + nu) * (1 - 2 * nu));
+  deck_case c;
+  implied_elasticity e;
+  *law_case_value(&law_under_test, "nu") = nu;
+  *law_case_value(&law_under_test, "E") = E;
+  open_disc(&c, 23.7);
+  assert_true(
+      implied_elastic(law_under_test.interpreted, law_under_test.parameters, c.lattice, &e));
+  for (int k = 0; k < 2; k++) {
+    assert_true(fabs(e.E[k] / 31.25e9 - 1) < 1e-12 && fabs(e.nu[k] - 0.25) < 1e-12);
+    assert_true(fabs(e.D[k][k] / (lame * (1 - nu)) - 1) < 1e-12);
+    assert_true(fabs(e.D[k][1 - k] / (lame * nu) - 1) < 1e-12);
+  }
+  assert_true(fabs(e.G / (E / (2 * (1 + nu))) - 1) < 1e-12);
+  deck_case_close(&c);
 }
 
 /* --- bond forces of the compiled kernel ------------------------------------------------------- */
@@ -285,6 +335,11 @@ static int open_law(void **state) {
   return law_case_open(&law_under_test, "mplm_bilinear") ? 0 : -1;
 }
 
+static int open_law_in_plane_strain(void **state) {
+  (void)state;
+  return law_case_open_in(&law_under_test, "mplm_bilinear", SETTING_PLANE_STRAIN) ? 0 : -1;
+}
+
 static int close_law(void **state) {
   (void)state;
   law_case_close(&law_under_test);
@@ -292,11 +347,18 @@ static int close_law(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {
+  const struct CMUnitTest in_plane_stress[] = {
       cmocka_unit_test(the_tangent_is_isotropic),
       cmocka_unit_test(rigidities_have_their_closed_forms),
       cmocka_unit_test(the_kernel_is_isotropic),
       cmocka_unit_test(unit_cell_forces),
   };
-  return cmocka_run_group_tests(tests, open_law, close_law);
+  const struct CMUnitTest in_plane_strain[] = {
+      cmocka_unit_test(the_tangent_is_isotropic),
+      cmocka_unit_test(rigidities_in_plane_strain),
+      cmocka_unit_test(the_plane_sees_no_strain_across),
+      cmocka_unit_test(the_kernel_is_isotropic),
+  };
+  return cmocka_run_group_tests(in_plane_stress, open_law, close_law) +
+         cmocka_run_group_tests(in_plane_strain, open_law_in_plane_strain, close_law);
 }

@@ -14,6 +14,7 @@
 
 #include "dsl/semantics/law_check.h"
 #include "dsl/semantics/law_limits.h"
+#include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
 
 /* One text and what became of it. */
@@ -136,13 +137,14 @@ static void micropolar_law_is_understood(void **state) {
   X("s**-2", "1/m^2", SCALAR)                                                                      \
   X("s**0.5*s**1.5", "m^2", SCALAR)                                                                \
   X("(s**2)**(3/4)", "m^1.5", SCALAR)                                                              \
-  X("stretch**rate_free", "1", SCALAR) X("2**stretch", "1", SCALAR)                                \
-      X("m*stretch_rate**2", "kg/s^2", SCALAR) X("theta_i - 2*theta_j", "1", BENDING)              \
-          X("EI*theta_i/s", "N*m", BENDING) X("norm(EI*theta_i/s**2)", "N", SCALAR)                \
-              X("theta_i : theta_j", "1", SCALAR) X("EI*(theta_i : theta_i)/s", "J", SCALAR) X(    \
-                  "sign(EA)", "1", SCALAR) X("positive_part(EA - 1 [kN])", "N", SCALAR)            \
-                  X("max(0, EA, 1 [kN])", "N", SCALAR) X("min(0, stretch)", "1", SCALAR) X(        \
-                      "atan2(s, spacing)", "1", SCALAR) X("exp(-stretch)*EA", "N", SCALAR)         \
+  X("stretch**rate_free", "1", SCALAR)                                                             \
+  X("2**stretch", "1", SCALAR) X("m*stretch_rate**2", "kg/s^2", SCALAR)                            \
+      X("theta_i - 2*theta_j", "1", BENDING) X("EI*theta_i/s", "N*m", BENDING)                     \
+          X("norm(EI*theta_i/s**2)", "N", SCALAR) X("theta_i : theta_j", "1", SCALAR)              \
+              X("EI*(theta_i : theta_i)/s", "J", SCALAR) X("sign(EA)", "1", SCALAR) X(             \
+                  "positive_part(EA - 1 [kN])", "N", SCALAR) X("max(0, EA, 1 [kN])", "N", SCALAR)  \
+                  X("min(0, stretch)", "1", SCALAR) X("atan2(s, spacing)", "1",                    \
+                                                      SCALAR) X("exp(-stretch)*EA", "N", SCALAR)   \
                       X("abs(EA)", "N", SCALAR) X("soft_sign(stretch)", "1", SCALAR) X(            \
                           "twist*EA", "N", SCALAR) X("diff(EA*stretch**2, stretch)", "N", SCALAR)  \
                           X("diff(EA*stretch, stretch_rate)", "N*s",                               \
@@ -296,6 +298,28 @@ static void options_are_chosen(void **state) {
   assert_string_equal(c.d.items[0].message, "option `onset` has no choice `mor`");
   assert_string_equal(c.d.items[0].hint, "did you mean `mohr`?");
   assert_string_equal(c.d.items[1].message, "this law has no option `onsat`");
+  release(&c);
+}
+
+/* Which bound counts, options and the lattice decide. */
+static void bounds_may_differ(void **state) {
+  (void)state;
+  const law_choice full = {"onset", "full"};
+  checked c = check(CENTRAL("option onset = half | full\n"
+                            "parameter nu = 0.2 in [0, (| 1/4 when plane_strain | 1/3 otherwise)]\n"
+                            "parameter b = 0.1 in [0, (| nu when onset == half and not irregular "
+                            "| 2*nu otherwise)]\nforce N = EA*stretch*(nu + b)"));
+  const double v[] = {2e6, 0.3, 0.4};
+  char text[80] = "";
+  const law *strain = law_on_lattice(c.law, SETTING_PLANE_STRAIN, false, 6);
+  assert_true(law_parameter_within(c.law, 1, v, text, sizeof text));
+  assert_false(law_parameter_within(strain, 1, v, text, sizeof text));
+  assert_string_equal(text, "[0, 0.25]");
+  assert_false(law_parameter_within(strain, 2, v, text, sizeof text));
+  assert_string_equal(text, "[0, 0.3]");
+  assert_true(law_parameter_within(law_with_options(c.law, &full, 1), 2, v, text, sizeof text));
+  assert_true(law_parameter_within(law_on_lattice(c.law, SETTING_PLANE_STRESS, true, 0), 2, v, text,
+                                   sizeof text));
   release(&c);
 }
 
@@ -706,6 +730,7 @@ int main(void) {
       cmocka_unit_test(shear_force_stands_beside_the_volume),
       cmocka_unit_test(options_are_chosen),
       cmocka_unit_test(bounds_are_kept),
+      cmocka_unit_test(bounds_may_differ),
       cmocka_unit_test(defaults_are_computed),
       cmocka_unit_test(defaults_may_call_functions),
       cmocka_unit_test(state_law_is_understood),
