@@ -235,6 +235,17 @@ static void rotation_leaves_no_force(void **state) {
   }
 }
 
+/* The first output toward all neighbours, summed with weights that tell them apart. */
+static double sum_of_output(turning_body *b) {
+  double sum = 0;
+  patch_observe(b->p);
+  for (int k = 0; k < 2 * b->lattice->directions; k++)
+    for (long n = 0; n < b->p->inside_count; n++)
+      sum += (1 + k + sqrt((double)n)) * b->p->observed[1][k * b->p->size + b->p->inside[n]];
+  return sum;
+}
+
+/* Neither forces nor the law's `twist`. */
 static void whole_turns_change_nothing(void **state) {
   (void)state;
   static const char *const kinds[] = {"square", "fcc"};
@@ -246,9 +257,12 @@ static void whole_turns_change_nothing(void **state) {
     double *before = must_calloc((size_t)(b->law->dof * n), sizeof *before);
     for (long k = 0; k < b->law->dof * n; k++)
       before[k] = b->p->force[k / n][b->p->inside[k % n]];
+    const double output = sum_of_output(b);
     take_whole_turns(b);
     patch_step(b->p);
     const double most = largest_force(b);
+    assert_true(fabs(sum_of_output(b) - output) <= 1e-12 * fabs(output));
+    assert_true((output != 0) == (b->law->dof == 6));
     for (long k = 0; k < b->law->dof * n; k++)
       assert_true(fabs(b->p->force[k / n][b->p->inside[k % n]] - before[k]) < 1e-12 * most);
     free(before);
