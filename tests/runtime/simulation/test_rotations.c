@@ -109,8 +109,8 @@ static void a_particle_swings_about_each_axis(void **state) {
   }
 }
 
-/* Turned far about z, with a moment about y, held about x: the components of the rotation vector are
-   what is prescribed, to the bit of the drive, though turns about one axis move the others. */
+/* Turned far about z, with a moment about y, held about x: the components of the rotation vector
+   are what is prescribed, though turns about one axis move the others. */
 static void prescribed_rotations_are_kept(void **state) {
   (void)state;
   const pl_law law = beams_in(SPACE, PL_ROWS);
@@ -305,8 +305,8 @@ static void frames_hold_a_rotation_about_each_axis(void **state) {
 
 /* --- particles of unlike size ----------------------------------------------------------------- */
 
-/* Each turns as a ball of its own size: of volume V in the plane, where a mean one has V0 and half a
-   spacing r, with 2/5 m r^2 V/V0. */
+/* Each turns as a ball of its own size: of volume V in the plane, where a mean one has V0 and half
+   a spacing r, with 2/5 m r^2 V/V0. */
 static void particles_of_unlike_size_have_their_own_inertia(void **state) {
   (void)state;
   const pl_law law = beams_in(PLANE, PL_LIST);
