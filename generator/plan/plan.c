@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/plan_strips.h"
@@ -66,8 +67,9 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
                 "parameters of a law of families cannot differ from bond to bond yet");
     return NULL;
   }
-  kernel_plan *plan = plan_begin(l);
   bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  bool twists = micropolar && l->setting == SETTING_SPACE;
+  kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l);
   int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
   for (int k = 0; k < varying_count; k++)
     kept[k] = varying[k];
@@ -75,8 +77,8 @@ kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_c
   plan->varying_count = varying_count;
   plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
   plan->dimensions = 2;
-  plan->dof = micropolar ? 3 : 2;
-  plan->force_planes = micropolar ? 4 : 2;
+  plan->dof = (micropolar ? 3 : 2) + twists;
+  plan->force_planes = (micropolar ? 4 : 2) + twists;
   plan = finish(plan, plan_strips(plan, d), d);
   if (!plan) return NULL;
   ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
