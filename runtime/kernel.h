@@ -24,8 +24,8 @@
    A law that reads a particle's whole family comes as programs instead: passes over runs of
    particles, one after the other over the whole body. A pass reads what neighbours had at the
    beginning of the step, and what earlier passes of the program left in links. In the plane or in
-   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6 in
-   space (about x, y, z); of all others dof = dimensions. */
+   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6
+   in space (about x, y, z); of all others dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 

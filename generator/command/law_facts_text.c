@@ -127,8 +127,7 @@ static void print_setting(const char *name) {
 static void print_lattice(const law_facts *f) {
   const deck_lattice *d = &f->lattice;
   printf("On a%s %s lattice", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind);
-  if (!bravais_is_hexagon(d))
-    printf(" of %d neighbours", f->implied.neighbours);
+  if (!bravais_is_hexagon(d)) printf(" of %d neighbours", f->implied.neighbours);
   printf(", s = %.6g mm, ", 1e3 * d->spacing);
   if (d->thickness > 0) printf("t = %.6g mm, ", 1e3 * d->thickness);
   print_setting(d->setting);

@@ -33,16 +33,9 @@ typedef struct probe {
   double *force[3]; /* [size] by strain: N */
   double volume;    /* m^3 that stresses act in */
   double *left;     /* [particle_count * strains] */
-  double *moment,
-      *way; /* [rotations * size] N m left, and where to turn to; NULL without rotations */
+  double *moment;   /* [rotations * size] N m left; NULL without rotations */
+  double *way;      /* the same: where to turn to */
 } probe;
-
-static double volume_of(const rows *w, long site) {
-  const double V = w->site_volume ? w->site_volume[site] : w->volume;
-  return w->dimensions == 2 && w->site_area > 0
-             ? V / w->volume * w->site_area * w->stiffness_thickness
-             : V;
-}
 
 /* Engineering shear: both halves; nothing turned. */
 static void displace(probe *p, int strain, double size) {
@@ -100,18 +93,25 @@ static double largest_of(long count, const double *x) {
   return most;
 }
 
-/* Particles turn until no moments are left on them (conjugate gradients, Hestenes and Stiefel 1952):
-   moments are linear in rotations as small as these. Those that nothing holds stay. */
+/* What rounding leaves of moments, squared: of all forces at the arm of a spacing. */
+static double rounding(const probe *p) {
+  double square = 0;
+  for (int d = 0; d < p->dimensions; d++)
+    square += dot(p->lattice->size, p->body->force[d], p->body->force[d]);
+  return 1e-28 * square * p->lattice->spacing * p->lattice->spacing;
+}
+
+/* Particles turn until no moments are left on them (conjugate gradients, Hestenes and Stiefel
+   1952): moments are linear in rotations as small as these. Those that nothing holds stay. */
 static void balance_moments(const probe *p) {
   enum { MOST_STEPS = 200 };
-  const double enough = 1e-20; /* of the square of all moments */
   const long count = turning_count(p);
   sweep_find_forces(p->sweep);
   for (long k = 0; k < count; k++)
     p->way[k] = p->moment[k] = moment_at(p, k);
   double square = dot(count, p->moment, p->moment);
-  const double first = square;
-  for (int step = 0; step < MOST_STEPS && square > enough * first; step++) {
+  const double enough = pl_fmax(1e-20 * square, rounding(p));
+  for (int step = 0; step < MOST_STEPS && square > enough; step++) {
     const double size = strain_size / largest_of(count, p->way);
     const double against = resistance(p, size), before = square;
     if (!(against > 0)) {
@@ -172,7 +172,7 @@ static double momentum_of(const probe *p) {
 
 /* The face of a particle: of the square or cube that has its volume. */
 static double face_of(const rows *w, long site) {
-  const double V = volume_of(w, site), t = w->stiffness_thickness;
+  const double V = rows_stressed_volume(w, site), t = w->stiffness_thickness;
   return w->dimensions == 2 ? sqrt(V * t) : pl_cbrt(V * V);
 }
 
@@ -233,7 +233,7 @@ static probe probe_new(const pl_law *law, const double *parameters, const rows *
   for (int d = 0; d < p.dimensions; d++)
     p.force[d] = must_calloc((size_t)w->size, sizeof(double));
   for (long n = 0; n < w->particle_count; n++)
-    p.volume += volume_of(w, w->particle_site[n]);
+    p.volume += rows_stressed_volume(w, w->particle_site[n]);
   p.left = must_calloc((size_t)w->particle_count * (size_t)p.strains, sizeof *p.left);
   if (law->dof > law->dimensions) {
     p.moment = must_calloc((size_t)turning_count(&p), sizeof *p.moment);
@@ -296,7 +296,7 @@ static double section_stress(const probe *p, const window *v, int b) {
     const long q = p->lattice->particle_site[n];
     rows_place(p->lattice, q, at);
     force -= p->force[b][q] * integral_at(v, at[v->axis]);
-    area += volume_of(p->lattice, q) * weight_at(v, at[v->axis]);
+    area += rows_stressed_volume(p->lattice, q) * weight_at(v, at[v->axis]);
   }
   return force / area;
 }

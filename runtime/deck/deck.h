@@ -179,27 +179,44 @@ typedef struct deck_stop {
   double after; /* s: not before; default 0 */
 } deck_stop;
 
-typedef enum monitor_kind {
-  MONITOR_REACTION, /* N: force that a support or drive exerts on the body, on the support: `scale`
+typedef enum monitor_kind { /* in the order of the deck's word */
+                            MONITOR_REACTION, /* N: force that a support or drive exerts on the body, on the support: `scale`
                      * = -1
                      */
-  MONITOR_DISPLACEMENT, /* m: mean over the region */
-  MONITOR_VELOCITY,     /* m/s: mean over the region */
-  MONITOR_OPENING,      /* m: mean displacement of the second region less that of the first */
-  MONITOR_DAMAGED,      /* count of bonds with damage > `above` */
-  MONITOR_BROKEN,       /* count of bonds with damage >= `above` */
-  MONITOR_FIELD,        /* the law's: mean over the region of a field or an output on particles */
-  MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
+                            MONITOR_DISPLACEMENT, /* m: mean over the region */
+                            MONITOR_VELOCITY,     /* m/s: mean over the region */
+                            MONITOR_OPENING, /* m: mean displacement of the second region less that of the first */
+                            MONITOR_DAMAGED, /* count of bonds with damage > `above` */
+                            MONITOR_BROKEN,  /* count of bonds with damage >= `above` */
+                            MONITOR_FIELD, /* the law's: mean over the region of a field or an output on particles */
+                            MONITOR_ACCELERATION, /* m/s^2: mean over the region, or at a place */
+                            MONITOR_MOMENTUM, /* N s: of the region, as the next two, or of all particles */
+                            MONITOR_ANGULAR_MOMENTUM, /* N m s, about `about` */
+                            MONITOR_ENERGY,           /* J: kinetic or stored */
+                            MONITOR_FORCE,            /* N: through a section */
+                            MONITOR_TIP,              /* m: way of the furthest damaged bond */
+                            MONITOR_TIP_SPEED,        /* m/s: of that */
+                            MONITOR_STRESS,           /* Pa: mean over the region, or at a place */
+                            MONITOR_STRAIN,           /* 1: the same */
+                            MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
 } monitor_kind;
+
+enum { MONITOR_KINETIC, MONITOR_STORED }; /* components of MONITOR_ENERGY */
 
 typedef struct deck_monitor {
   deck_item item;
   const char *name;
   monitor_kind kind;
-  const char *region;
+  const char *region; /* NULL: `between`, `at` or all particles */
   const char *between[2];
   const char *field;
+  /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM the
+     axis x, y, z; of tensors as symmetric_tensor.h says */
   int component;
+  bool placed;                    /* `at` is given */
+  double at[3];                   /* m */
+  double normal[3], direction[3]; /* of any length */
+  double about[3];                /* m */
   double average; /* s: mean over this time before each sample; 0: value at the sample */
   double zero_at; /* s: the value then is subtracted; negative: never */
   double above;   /* DAMAGED: default 0; BROKEN: default 1 */

@@ -103,7 +103,8 @@ int deck_dimensions_of(const deck_reader *r, const char *lattice) {
 /* --- directions ------------------------------------------------------------------------------- */
 
 int deck_dimensions_of_region(const deck_reader *r, const char *name) {
-  const int k = name ? deck_find_region(r->k, name) : -1;
+  if (!name) return deck_dimensions_of(r, NULL);
+  const int k = deck_find_region(r->k, name);
   return k < 0 ? 0 : deck_dimensions_of(r, r->k->regions[k].lattice);
 }
 

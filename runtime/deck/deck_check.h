@@ -41,6 +41,7 @@ void deck_check_places(deck_reader *r, const namelist_group *from, const deck_gr
                        int dimensions);
 /* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
 int deck_dimensions_of(const deck_reader *r, const char *lattice);
+/* The same of the region's; NULL: of the only one. */
 int deck_dimensions_of_region(const deck_reader *r, const char *region);
 
 /* Directions as written; their positions are those of DECK_FIXED's bits, too. */

@@ -249,7 +249,8 @@ static void check_lattice(deck_reader *r, const namelist_group *from, void *into
   if (item->stiffness_thickness == 0) item->stiffness_thickness = item->thickness;
   if (item->mass_thickness == 0) item->mass_thickness = item->thickness;
   span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)))
+  if (deck_is_one_of(item->name, taken, (int)(sizeof taken / sizeof *taken)) ||
+      output_is_component(item->name, 3))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a lattice cannot be called `%s`: the result has a field of that name", item->name);
   else if (strchr(item->name, '/'))

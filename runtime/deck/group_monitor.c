@@ -3,10 +3,14 @@
 #include <ctype.h>
 #include <string.h>
 
+#include "runtime/base/symmetric_tensor.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_value.h"
 
 /* --- monitors --------------------------------------------------------------------------------- */
+
+#define COMPONENTS DECK_COMPONENTS "|xx|yy|zz|xy|yz|xz|kinetic|stored"
+enum { WRITTEN_KINETIC = DECK_WRITTEN_COUNT + 6 };
 
 static const deck_key_info monitor_keys[] = {
     {.name = "name",
@@ -16,15 +20,18 @@ static const deck_key_info monitor_keys[] = {
      .doc = "letters, digits and `_`; its name in the result"},
     {.name = "kind",
      .type = DECK_CHOICE,
-     .choices = "reaction|displacement|velocity|opening|damaged|broken|field",
+     .choices = "reaction|displacement|velocity|opening|damaged|broken|field|acceleration|"
+                "momentum|angular_momentum|energy|force|tip|tip_speed|stress|strain",
      .required = true,
      DECK_AT(monitor, kind),
-     .doc = "decides which of the next five keys are needed"},
+     .doc = "decides which of the next nine keys are needed"},
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
      .doc = "reaction: force that its supports and drives exert on the body; displacement, "
-            "velocity, field: mean"},
+            "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
+            "energy: of its particles, without it of all; force: only bonds between its particles; "
+            "tip, tip_speed: only bonds of its particles"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(monitor, between),
@@ -33,22 +40,49 @@ static const deck_key_info monitor_keys[] = {
             "first, what the two ends of a specimen carry in the mean"},
     {.name = "component",
      .type = DECK_CHOICE,
-     .choices = DECK_COMPONENTS,
+     .choices = COMPONENTS,
      DECK_AT(monitor, component),
-     .doc = "reaction, displacement, velocity, opening: direction"},
+     .doc = "reaction, displacement, velocity, opening, acceleration, momentum: direction; force: "
+            "direction, without it along the normal; angular_momentum: axis, in the plane `z`, "
+            "which need not be said; energy: `kinetic` or `stored`; stress, strain: `xx`, `yy`, "
+            "`xy`, in space `zz`, `yz`, `xz`, too"},
     {.name = "field",
      .type = DECK_NAME,
      DECK_AT(monitor, field),
      .doc = "field: name of a state, damage or output of the law that stands on particles"},
+    {.name = "at",
+     .type = DECK_PLACE,
+     .unit = "m",
+     DECK_AT(monitor, at),
+     .doc = "acceleration, stress, strain: in place of `region`, of the particle nearest to it; "
+            "force: a place of the section; tip, tip_speed: where the crack begins"},
+    {.name = "normal",
+     .type = DECK_PLACE,
+     .unit = "1",
+     DECK_AT(monitor, normal),
+     .doc = "force: normal of the section, to the side that acts on the other: tension along it is "
+            "positive"},
+    {.name = "direction",
+     .type = DECK_PLACE,
+     .unit = "1",
+     DECK_AT(monitor, direction),
+     .doc = "tip, tip_speed: where the crack goes"},
+    {.name = "about",
+     .type = DECK_PLACE,
+     .unit = "m",
+     .fallback = "= the origin",
+     DECK_AT(monitor, about),
+     .doc = "angular_momentum: a place of the axis"},
     {.name = "above",
      .type = DECK_REAL,
      .unit = "1",
      .bound = BOUND_NOT_NEGATIVE,
-     .fallback = "= 0; broken: 1",
+     .fallback = "= 0; broken: 1; required of a tip",
      DECK_AT(monitor, above),
      .doc = "damaged: bonds with more damage than this are counted (particles, where the law's "
             "damage stands on these alone); broken: those with at least this damage, e.g. 0.999 "
-            "for laws whose bonds never separate completely"},
+            "for laws whose bonds never separate completely; tip, tip_speed: bonds with more "
+            "damage than this belong to the crack"},
     {.name = "average",
      .type = DECK_REAL,
      .unit = "s",
@@ -56,7 +90,8 @@ static const deck_key_info monitor_keys[] = {
      .fallback = "0",
      DECK_AT(monitor, average),
      .doc = "mean of all states of this time before each sample, the present one included; of a "
-            "velocity way over time; 0: the value at the sample"},
+            "velocity way over time, of an acceleration velocity over time; tip_speed: the time "
+            "of the straight line that fits the tip's way best; 0: the value at the sample"},
     {.name = "zero_at",
      .type = DECK_REAL,
      .unit = "s",
@@ -76,18 +111,66 @@ enum {
   OF_MOTION = 1 << MONITOR_REACTION | 1 << MONITOR_DISPLACEMENT | 1 << MONITOR_VELOCITY,
   OF_FIELD = 1 << MONITOR_FIELD,
   OF_PAIR = 1 << MONITOR_OPENING | 1 << MONITOR_REACTIONS,
-  OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN
+  OF_DAMAGE = 1 << MONITOR_DAMAGED | 1 << MONITOR_BROKEN,
+  OF_TENSOR = 1 << MONITOR_STRESS | 1 << MONITOR_STRAIN,
+  OF_PLACE = OF_TENSOR | 1 << MONITOR_ACCELERATION, /* of a region or at a place */
+  OF_SECTION = 1 << MONITOR_FORCE,
+  OF_TIP = 1 << MONITOR_TIP | 1 << MONITOR_TIP_SPEED,
+  OF_TURNS = 1 << MONITOR_ANGULAR_MOMENTUM,
+  OF_ENERGY = 1 << MONITOR_ENERGY,
+  OF_PART = OF_TURNS | OF_ENERGY | 1 << MONITOR_MOMENTUM, /* of a region or of all */
+  ALONG_AXIS = OF_MOTION | OF_PAIR | 1 << MONITOR_ACCELERATION | 1 << MONITOR_MOMENTUM
 };
-static const char *const monitor_words[] = {
-    "a reaction monitor", "a displacement monitor",
-    "a velocity monitor", "an opening monitor",
-    "a damaged monitor",  "a broken monitor",
-    "a field monitor",    "a reaction monitor with `between`"};
-static const deck_key_use monitor_uses[] = {{"region", OF_MOTION | OF_FIELD, true},
-                                            {"between", OF_PAIR, true},
-                                            {"component", OF_MOTION | OF_PAIR, true},
-                                            {"field", OF_FIELD, true},
-                                            {"above", OF_DAMAGE, false}};
+static const char *const monitor_words[] = {"a reaction monitor",
+                                            "a displacement monitor",
+                                            "a velocity monitor",
+                                            "an opening monitor",
+                                            "a damaged monitor",
+                                            "a broken monitor",
+                                            "a field monitor",
+                                            "an acceleration monitor",
+                                            "a momentum monitor",
+                                            "an angular_momentum monitor",
+                                            "an energy monitor",
+                                            "a force monitor",
+                                            "a tip monitor",
+                                            "a tip_speed monitor",
+                                            "a stress monitor",
+                                            "a strain monitor",
+                                            "a reaction monitor with `between`"};
+static const deck_key_use monitor_uses[] = {
+    {"region", OF_MOTION | OF_FIELD | OF_PLACE | OF_PART | OF_SECTION | OF_TIP, false},
+    {"between", OF_PAIR, true},
+    {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR | OF_TURNS | OF_SECTION, false},
+    {"field", OF_FIELD, true},
+    {"at", OF_PLACE | OF_SECTION | OF_TIP, false},
+    {"normal", OF_SECTION, true},
+    {"direction", OF_TIP, true},
+    {"about", OF_TURNS, false},
+    {"above", OF_DAMAGE | OF_TIP, false}};
+/* The keys that some kinds need and others may have. */
+static const deck_key_use monitor_needs[] = {
+    {"region", OF_MOTION | OF_FIELD, true},
+    {"component", ALONG_AXIS | OF_ENERGY | OF_TENSOR, true},
+    {"at", OF_SECTION | OF_TIP, true},
+    {"above", OF_TIP, true},
+    {"average", 1 << MONITOR_TIP_SPEED, true}};
+
+static bool is_kind(const deck_monitor *item, unsigned kinds) {
+  return (kinds >> item->kind & 1u) != 0;
+}
+
+static bool has_needs(deck_reader *r, const namelist_group *from, const deck_monitor *item) {
+  const char *words = monitor_words[item->kind];
+  bool good = true;
+  for (size_t k = 0; k < sizeof monitor_needs / sizeof *monitor_needs; k++) {
+    const deck_key_use *need = &monitor_needs[k];
+    if (!is_kind(item, need->kinds) || namelist_find(from, need->key)) continue;
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `%s`", words, need->key);
+    good = false;
+  }
+  return good;
+}
 
 static bool is_identifier(const char *name) {
   bool good = isalpha((unsigned char)*name) || *name == '_';
@@ -135,12 +218,110 @@ static const char *watched_region(const deck_monitor *item) {
   return item->region ? item->region : item->between[0];
 }
 
+/* One of the two says of which particles. */
+static bool check_place(deck_reader *r, const namelist_group *from, const deck_monitor *item) {
+  if (!is_kind(item, OF_PLACE)) return true;
+  if (item->region && item->placed) deck_refuse_both(r, from, "region", "at");
+  if (!item->region && !item->placed)
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `region` or `at`",
+                monitor_words[item->kind]);
+  return !item->region != !item->placed;
+}
+
+static bool has_length(deck_reader *r, const deck_item *item, const char *key, const double v[3]) {
+  if (v[0] != 0 || v[1] != 0 || v[2] != 0) return true;
+  diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(item, key), "`%s` has no direction: it is 0",
+              key);
+  return false;
+}
+
+/* Damage that is never exceeded would never be seen. */
+static bool check_tip(deck_reader *r, const deck_monitor *item) {
+  if (!is_kind(item, OF_TIP)) return true;
+  if (item->above >= 1)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "above"),
+                "`above` of a tip must be less than 1: no damage is more");
+  if (item->kind == MONITOR_TIP_SPEED && item->average <= 0)
+    diag_report(r->d, DIAG_OUT_OF_BOUNDS, deck_where(&item->item, "average"),
+                "a speed needs an `average` greater than 0: the time that it is taken over");
+  return has_length(r, &item->item, "direction", item->direction) && item->above < 1;
+}
+
+/* --- components ------------------------------------------------------------------------------- */
+
+static bool refuse_component(deck_reader *r, const namelist_key *key, const deck_monitor *item,
+                             const char *those) {
+  diag_report(r->d, DIAG_BAD_VALUE, key->value_where, "%s has no component `%s`",
+              monitor_words[item->kind], deck_shown(r->memory, key->values[0].text));
+  diag_hint(r->d, "it has %s", those);
+  return false;
+}
+
+static bool take_energy(deck_reader *r, const namelist_key *key, deck_monitor *item) {
+  if (item->component < WRITTEN_KINETIC)
+    return refuse_component(r, key, item, "'kinetic' and 'stored'");
+  item->component = item->component == WRITTEN_KINETIC ? MONITOR_KINETIC : MONITOR_STORED;
+  return true;
+}
+
+static bool take_tensor(deck_reader *r, const namelist_key *key, deck_monitor *item,
+                        int dimensions) {
+  const int found = tensor_find(dimensions, key->values[0].text);
+  if (found < 0)
+    return refuse_component(r, key, item,
+                            dimensions == 2 ? "'xx', 'yy' and 'xy'"
+                                            : "'xx', 'yy', 'zz', 'xy', 'yz' and 'xz'");
+  item->component = found;
+  return true;
+}
+
+/* The axis of an angular momentum; in the plane there is one. */
+static bool take_axis(deck_reader *r, const namelist_group *from, const namelist_key *key,
+                      deck_monitor *item, int dimensions) {
+  if (key &&
+      (item->component > DECK_WRITTEN_Z || (dimensions == 2 && item->component < DECK_WRITTEN_Z)))
+    return refuse_component(r, key, item, dimensions == 2 ? "'z'" : "'x', 'y' and 'z'");
+  if (!key && dimensions == 3)
+    diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `component` in space",
+                monitor_words[item->kind]);
+  if (!key) item->component = DECK_WRITTEN_Z;
+  return key || dimensions == 2;
+}
+
+static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor *item) {
+  const bool turns = item->component >= DECK_WRITTEN_ROTATION,
+             in_sum = is_kind(item, OF_SECTION | 1 << MONITOR_MOMENTUM);
+  if (item->component >= DECK_WRITTEN_COUNT || (turns && in_sum))
+    return refuse_component(r, key, item,
+                            in_sum ? "'x', 'y' and, in space, 'z'"
+                                   : "'x', 'y', in space 'z', and of particles that turn "
+                                     "'rotation', in space 'rotation_x' and so on");
+  return deck_take_component(r, &item->item, watched_region(item), &item->component);
+}
+
+static bool take_component(deck_reader *r, const namelist_group *from, deck_monitor *item) {
+  const namelist_key *key = namelist_find(from, "component");
+  const int dimensions = deck_dimensions_of_region(r, watched_region(item));
+  if (is_kind(item, OF_TURNS)) return take_axis(r, from, key, item, dimensions);
+  if (!key) {
+    item->component = is_kind(item, OF_SECTION) ? -1 : 0;
+    return true;
+  }
+  if (is_kind(item, OF_ENERGY)) return take_energy(r, key, item);
+  if (is_kind(item, OF_TENSOR)) return take_tensor(r, key, item, dimensions);
+  return take_direction(r, key, item);
+}
+
 static void check_monitor(deck_reader *r, const namelist_group *from, void *into) {
+  enum { USES = sizeof monitor_uses / sizeof *monitor_uses };
   deck_monitor *item = into;
   const namelist_key *between = namelist_find(from, "between");
   check_monitor_name(r, item);
   if (item->kind == MONITOR_REACTION && between) item->kind = MONITOR_REACTIONS;
-  if (!deck_keys_fit(from, monitor_uses, 5, (int)item->kind, monitor_words[item->kind], r->d))
+  item->placed = namelist_find(from, "at") != NULL;
+  const bool whole = has_needs(r, from, item);
+  if (!deck_keys_fit(from, monitor_uses, USES, (int)item->kind, monitor_words[item->kind], r->d) ||
+      !whole || !check_place(r, from, item) || !check_tip(r, item))
     return;
   if (!namelist_find(from, "zero_at")) item->zero_at = -1;
   if (item->kind == MONITOR_BROKEN) check_broken(r, from, item);
@@ -148,12 +329,54 @@ static void check_monitor(deck_reader *r, const namelist_group *from, void *into
   if (item->region) deck_item_region_known(r, &item->item, item->region);
   for (int i = 0; between && i < 2; i++)
     deck_region_known(r, between->values[i].where, item->between[i]);
-  if (!deck_take_component(r, &item->item, watched_region(item), &item->component)) return;
+  const int dimensions = deck_dimensions_of_region(r, watched_region(item));
+  if (dimensions) deck_check_places(r, from, &deck_group_monitor, dimensions);
+  if (item->kind == MONITOR_FORCE && !has_length(r, &item->item, "normal", item->normal)) return;
+  if (!take_component(r, from, item)) return;
   if (item->kind == MONITOR_REACTION || item->kind == MONITOR_REACTIONS) check_reaction(r, item);
 }
 
 DECK_LIST(monitor, .identity = "name", .check = check_monitor,
           .doc = "A quantity recorded at every sample of the history.");
+
+/* --- units ------------------------------------------------------------------------------------ */
+
+const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
+  switch (m->kind) {
+  case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
+  case MONITOR_FORCE:
+    return rotates ? "N*m" : "N";
+  case MONITOR_DISPLACEMENT:
+  case MONITOR_OPENING:
+  case MONITOR_TIP:
+    return rotates ? "rad" : "m";
+  case MONITOR_VELOCITY:
+  case MONITOR_TIP_SPEED:
+    return rotates ? "rad/s" : "m/s";
+  case MONITOR_ACCELERATION:
+    return rotates ? "rad/s^2" : "m/s^2";
+  case MONITOR_MOMENTUM:
+    return "N*s";
+  case MONITOR_ANGULAR_MOMENTUM:
+    return "N*m*s";
+  case MONITOR_ENERGY:
+    return "J";
+  case MONITOR_STRESS:
+    return "Pa";
+  case MONITOR_STRAIN:
+  case MONITOR_DAMAGED:
+  case MONITOR_BROKEN:
+  case MONITOR_FIELD: /* the law says */
+    break;
+  }
+  return "1";
+}
+
+static const char *unit_of(const deck_reader *r, const deck_monitor *m) {
+  return deck_monitor_unit(m, is_kind(m, ALONG_AXIS) &&
+                                  deck_is_rotation(r, watched_region(m), m->component));
+}
 
 /* --- stops ------------------------------------------------------------------------------------ */
 
@@ -186,23 +409,6 @@ static const deck_key_info stop_keys[] = {
      DECK_AT(stop, after),
      .doc = "not before this time"},
 };
-
-/* Unit of a monitor's values. */
-static const char *monitor_unit(const deck_reader *r, const deck_monitor *m) {
-  const bool rotates = deck_is_rotation(r, watched_region(m), m->component);
-  switch (m->kind) {
-  case MONITOR_REACTION:
-  case MONITOR_REACTIONS:
-    return rotates ? "N*m" : "N";
-  case MONITOR_DISPLACEMENT:
-  case MONITOR_OPENING:
-    return rotates ? "1" : "m";
-  case MONITOR_VELOCITY:
-    return rotates ? "1/s" : "m/s";
-  default:
-    return "1";
-  }
-}
 
 static void check_level(deck_reader *r, const namelist_key *key, deck_stop *item,
                         const char *unit_text) {
@@ -240,7 +446,7 @@ static void check_stop(deck_reader *r, const namelist_group *from, void *into) {
     return;
   }
   const deck_monitor *m = &r->k->monitors[deck_find_monitor(r->k, item->monitor)];
-  if (!m->item.faulty) check_level(r, key, item, of ? "1" : monitor_unit(r, m));
+  if (!m->item.faulty) check_level(r, key, item, of ? "1" : unit_of(r, m));
 }
 
 DECK_LIST(stop, .identity = "monitor", .check = check_stop,

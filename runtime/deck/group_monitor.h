@@ -6,4 +6,7 @@
 
 extern const deck_group_info deck_group_monitor, deck_group_stop;
 
+/* Unit of its values; "1" where the law says. `rotates`: its component is a rotation. */
+const char *deck_monitor_unit(const deck_monitor *m, bool rotates);
+
 #endif

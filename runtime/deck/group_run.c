@@ -119,8 +119,9 @@ static const deck_key_info output_keys[] = {
      DECK_AT(output, fields),
      DECK_COUNT_AT(output, field_count),
      .doc = "stored in each frame: displacement, velocity, rotation, force, damage (all of the "
-            "law's, and their mean per particle), dissipated (energy lost, per particle), or a "
-            "state, damage, output or random parameter of the law"},
+            "law's, and their mean per particle), dissipated (energy lost, per particle), stress "
+            "and strain (all components) or one of these (stress_xx), or a state, damage, output "
+            "or random parameter of the law"},
     {.name = "energy",
      .type = DECK_LOGICAL,
      .fallback = ".true.",

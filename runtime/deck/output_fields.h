@@ -2,10 +2,12 @@
    values of field NAME are values_of_NAME in runtime/simulation/frames.c.
 
    X(name, unit, components, exists, kind, words), in the order of results. Components: VECTOR (one
-   for each direction of space), ROTATION (one for each axis) or SCALAR. Exists: in which runs. Kind as in results: "damage" of
-   the law, else "other". */
+   for each direction of space), ROTATION (one for each axis) or SCALAR. Exists: in which runs. Kind
+   as in results: "damage" of the law, else "other". */
 #ifndef PERILAT_RUNTIME_OUTPUT_FIELDS_H
 #define PERILAT_RUNTIME_OUTPUT_FIELDS_H
+
+#include <stdbool.h>
 
 #define OUTPUT_FIELDS(X)                                                                           \
   X(displacement, "m", VECTOR, always, "other", "displacement")                                    \
@@ -17,5 +19,16 @@
     "mean damage of the bonds that the particle began with")                                       \
   X(dissipated, "J", SCALAR, with_losses, "other",                                                 \
     "energy lost in the bonds to the right of the particle and above it")
+
+/* Symmetric tensors of any law, which frames hold component by component, stress_xx and so on; a
+   deck asks for all of one or for a component.
+
+   X(name, unit, words), as the functions that find them: frames.c. */
+#define OUTPUT_TENSORS(X)                                                                          \
+  X(stress, "Pa", "stress of the bonds")                                                           \
+  X(strain, "1", "strain of the bonds that the particle began with")
+
+/* Whether a name is that of a component, "stress_xx". */
+bool output_is_component(const char *name, int dimensions);
 
 #endif

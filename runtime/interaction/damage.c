@@ -23,22 +23,29 @@ bool damage_on_particles(const pl_law *law) {
   return has_damage(law, true);
 }
 
-double damage_of_bond(const sweep *w, const rows_bond *bond) {
+double damage_of_bond_in(const sweep *w, double *const *field, const rows_bond *bond) {
   double most = 0;
   for (int f = 0; f < w->law->field_count; f++) {
     if (!counts(&w->law->fields[f], false)) continue;
-    const double here = sweep_bond_value(w, w->new_field[f], bond);
+    const double here = sweep_bond_value(w, field[f], bond);
     if (here > most) most = here;
   }
   return most;
 }
 
-double damage_of_site(const sweep *w, long site) {
+double damage_of_bond(const sweep *w, const rows_bond *bond) {
+  return damage_of_bond_in(w, w->new_field, bond);
+}
+
+double damage_of_site_in(const sweep *w, double *const *field, long site) {
   double most = 0;
   for (int f = 0; f < w->law->field_count; f++)
-    if (counts(&w->law->fields[f], true) && w->new_field[f][site] > most)
-      most = w->new_field[f][site];
+    if (counts(&w->law->fields[f], true) && field[f][site] > most) most = field[f][site];
   return most;
+}
+
+double damage_of_site(const sweep *w, long site) {
+  return damage_of_site_in(w, w->new_field, site);
 }
 
 const double *damage_of_all_bonds(const sweep *w) {

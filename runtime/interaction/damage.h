@@ -11,13 +11,15 @@
 bool damage_on_bonds(const pl_law *law);
 bool damage_on_particles(const pl_law *law);
 
-/* 0 without. */
+/* 0 without. `field`: those of a state, [law's fields]. */
 double damage_of_bond(const sweep *w, const rows_bond *bond);
+double damage_of_bond_in(const sweep *w, double *const *field, const rows_bond *bond);
 /* [directions][size] that of every bond, at its owner, where one damage is all and the same from
    either end; NULL otherwise. */
 const double *damage_of_all_bonds(const sweep *w);
 /* Of those on particles; 0 without. */
 double damage_of_site(const sweep *w, long site);
+double damage_of_site_in(const sweep *w, double *const *field, long site);
 /* values[particle_count]; `bonds` are all bonds of the lattice. */
 void damage_of_particles(const sweep *w, const rows_bond *bonds, double *values);
 

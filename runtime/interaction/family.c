@@ -160,13 +160,15 @@ static void fields_set(sweep *w) {
 
 /* Values at absent sites mean nothing, and without bonds a particle stores nothing: a law may
    divide by what a family has. */
+static bool stores(const rows *g, long site) {
+  return g->present[site] && (g->bonds[site] || rows_degree(g, site) > 0);
+}
+
 static double stored_in_row(const sweep *w, int row) {
   const long start = body_start(w->body, row);
   double sum = 0;
   for (long q = start; q < start + w->body->count[row]; q++)
-    if (w->body->lattice->present[q] &&
-        (w->body->lattice->bonds[q] || rows_degree(w->body->lattice, q) > 0))
-      sum += family_of(w)->observed[0][q];
+    if (stores(w->body->lattice, q)) sum += family_of(w)->observed[0][q];
   return sum;
 }
 
@@ -197,6 +199,15 @@ static void output_values(sweep *w, int output, double *values) {
   const size_t count = (size_t)sweep_planes(w, w->law->outputs[output].place);
   memcpy(values, family_of(w)->observed[1 + output],
          count * (size_t)w->body->lattice->size * sizeof *values);
+}
+
+static void stored_values(sweep *w, double *values) {
+  const rows *g = w->body->lattice;
+  memset(values, 0, (size_t)g->size * sizeof *values);
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    if (stores(g, q)) values[q] = family_of(w)->observed[0][q];
+  }
 }
 
 /* --- set-up ----------------------------------------------------------------------------------- */
@@ -295,6 +306,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
                         .fields_set = fields_set,
                         .observe = observe,
                         .output = output_values,
+                        .stored = stored_values,
                         .free = free_own,
                         .keeps_links = f->windows == NULL,
                         .own = f};

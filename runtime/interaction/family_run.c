@@ -49,19 +49,23 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
                      .time_step = w->body->time_step};
 }
 
-void family_run_row(const sweep *w, int block, int row, pl_family *run) {
-  const long start = body_start(w->body, row);
+void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
+  const long start = body_start(w->body, at.row) + at.first;
   point_at_fields(w, &family_of(w)->blocks[block], start);
-  run->count = w->body->count[row];
+  run->count = at.end - at.first;
   run->rows = 1;
   run->new_plane = w->body->lattice->size;
   run->bonds = w->body->lattice->bonds + start;
   run->held = w->body->lattice->held + start;
-  point_at_neighbours(w->body->lattice, row, start, run);
+  point_at_neighbours(w->body->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {
     run->displacement[d] = w->body->displacement[d] + start;
     run->velocity[d] = w->body->velocity[d] + start;
   }
+}
+
+void family_run_row(const sweep *w, int block, int row, pl_family *run) {
+  family_run_part(w, block, whole_row(w->body, row), run);
 }
 
 static void point_at_links(const sweep *w, int block, int row) {

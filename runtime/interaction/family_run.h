@@ -4,6 +4,7 @@
 #ifndef PERILAT_RUNTIME_FAMILY_RUN_H
 #define PERILAT_RUNTIME_FAMILY_RUN_H
 
+#include "runtime/body/motion.h"
 #include "runtime/interaction/sweep.h"
 
 enum { SHAPE_PLANES = PL_SHAPE_PLANES(3) }; /* the most */
@@ -43,10 +44,11 @@ static inline family *family_of(const sweep *w) {
 }
 
 /* What a pass reads and writes, all but links: what is the same for all rows, once before some
-   runs, and from the first site of a row on. A short row takes little longer than a fresh pl_family
-   would. */
+   runs, and from the first site of a row, or of a part of it, on. A short row takes little longer
+   than a fresh pl_family would. */
 void family_run_begin(const sweep *w, const pl_program *program, int block, pl_family *run);
 void family_run_row(const sweep *w, int block, int row, pl_family *run);
+void family_run_part(const sweep *w, int block, row_part at, pl_family *run);
 
 /* The latter, and links of the whole body. */
 void family_run_row_with_links(const sweep *w, int block, int row, pl_family *run);

@@ -401,6 +401,22 @@ static void output_values(sweep *w, int output, double *values) {
     }
 }
 
+static void stored_values(sweep *w, double *values) {
+  const rows *g = w->body->lattice;
+  pairwise_block *b = &own(w)->blocks[0];
+  memset(values, 0, (size_t)g->size * sizeof *values);
+  for (int r = 0; r < g->row_count; r++)
+    for (int k = 0; k < g->directions && w->body->count[r] > 0; k++) {
+      const pl_strip s = observe_strip(w, b, r, k);
+      const long near = body_start(w->body, r), far = near + rows_offset(g, r, k);
+      for (long q = 0; q < s.count; q++) {
+        if (!(s.flags[q] & PL_PRESENT(k))) continue;
+        values[near + q] += 0.5 * b->observed[q];
+        values[far + q] += 0.5 * b->observed[q];
+      }
+    }
+}
+
 /* Since the start: all steps, and what the law takes in the present state. Rate terms, like other
    forces, count half a step until the state is reached; they are none of those that a step must be
    short enough for (body_row.free). */
@@ -547,6 +563,7 @@ sweep_engine pairwise_engine(sweep *w, const double *parameters) {
                         .turn = turn,
                         .observe = observe,
                         .output = output_values,
+                        .stored = stored_values,
                         .free = free_own,
                         .own = p};
 }

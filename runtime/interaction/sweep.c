@@ -91,6 +91,10 @@ void sweep_output(sweep *w, int output, double *values) {
   w->engine.output(w, output, values);
 }
 
+void sweep_stored(sweep *w, double *values) {
+  w->engine.stored(w, values);
+}
+
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond) {
   const rows *g = w->body->lattice;
   if (w->law->kind != PL_STATE) return values[bond->slot];

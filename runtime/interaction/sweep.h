@@ -23,6 +23,7 @@ typedef struct sweep_engine {
   void (*turn)(sweep *w); /* after the last stage of a good step, alone; NULL: nothing to do */
   void (*observe)(sweep *w, int stage, int block);
   void (*output)(sweep *w, int output, double *values);
+  void (*stored)(sweep *w, double *values);
   void (*free)(sweep *w);
   /* laws of families: what passes leave for each other is kept of the whole body */
   bool keeps_links;
@@ -77,5 +78,8 @@ double sweep_bond_value(const sweep *w, const double *values, const rows_bond *b
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or
    particles are. */
 void sweep_output(sweep *w, int output, double *values);
+/* J stored at each particle in the state observed last: of laws of bonds half of what its bonds
+   store. values[size]; 0 at absent sites. */
+void sweep_stored(sweep *w, double *values);
 
 #endif

@@ -113,6 +113,14 @@ static inline bool rows_has_bond(const rows *w, long site, int direction) {
   return w->bonds[site] >> direction & 1;
 }
 
+/* Volume of a site's particle that its stresses act in, m^3: in the plane as thick as laws see it. */
+static inline double rows_stressed_volume(const rows *w, long site) {
+  const double V = w->site_volume ? w->site_volume[site] : w->volume;
+  return w->dimensions == 2 && w->site_area > 0
+             ? V / w->volume * w->site_area * w->stiffness_thickness
+             : V;
+}
+
 /* Reference position of a site; at[2] is 0 in the plane. */
 static inline void rows_place(const rows *w, long site, double at[3]) {
   at[0] = w->x[site];

@@ -1,11 +1,13 @@
 #include "runtime/simulation/frames.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/analysis/particle_tensors.h"
 #include "runtime/deck/deck_value.h"
 #include "runtime/deck/output_fields.h"
 #include "runtime/interaction/damage.h"
@@ -21,14 +23,35 @@ typedef void values_of(const frames_of *of, const frame_source *from, double *va
 struct frame_source { /* where a body's values of a frame field come from */
   values_of *values;  /* NULL: the body has no such field */
   int components;
-  int index; /* of the law's fields, outputs, or parameters that differ from bond to bond */
+  /* of the law's fields, outputs, or parameters that differ from bond to bond; of a tensor's
+     components */
+  int index;
+  struct frame_tensor *tensor;
 };
+
+typedef void tensor_values(const frames_of *of, bond_forces *forces, double *const *values);
+
+/* All components of a tensor are found together. */
+typedef struct frame_tensor {
+  tensor_values *find;
+  bond_forces *forces;
+  double *values[TENSOR_MOST];
+  char names[TENSOR_MOST][16];
+  int first;          /* component that is stored first */
+  int64_t found_step; /* step that the values are of; -1: none */
+} frame_tensor;
+
+#define X(name, unit, words) TENSOR_##name,
+enum { OUTPUT_TENSORS(X) TENSORS };
+#undef X
 
 struct frame_set {
   const deck_output *asked;
   const run_body *bodies;
   int body_count;
   const run_clock *clock;
+  bond_forces **forces;  /* [body_count] NULL unless some field needs them */
+  frame_tensor *tensors; /* [TENSORS][body_count] */
   frame_field *fields;
   frame_source *sources; /* [count][body_count]; of bonds only that of their body */
   int count;
@@ -118,6 +141,46 @@ static void values_of_dissipated(const frames_of *of, const frame_source *from, 
   }
 }
 
+/* --- tensors ---------------------------------------------------------------------------------- */
+
+static void find_stress(const frames_of *of, bond_forces *forces, double *const *values) {
+  bond_forces_find(forces, -1);
+  particle_stress(forces, of->body->body, values);
+}
+
+static void find_strain(const frames_of *of, bond_forces *forces, double *const *values) {
+  const body *b = of->body->body;
+  (void)forces;
+  for (long p = 0; p < b->lattice->particle_count; p++) {
+    const long site = b->lattice->particle_site[p];
+    double here[TENSOR_MOST] = {0};
+    particle_strain(b, site, here);
+    for (int c = 0; c < TENSOR_MOST && values[c]; c++)
+      values[c][site] = here[c];
+  }
+}
+
+/* Fields of a frame come in their order. */
+static void values_of_tensor(const frames_of *of, const frame_source *from, double *values) {
+  frame_tensor *t = from->tensor;
+  if (from->index == t->first || t->found_step != of->step) t->find(of, t->forces, t->values);
+  t->found_step = of->step;
+  site_values(of, &t->values[from->index], 1, values);
+}
+
+typedef struct tensor_field {
+  const char *name, *unit, *words;
+  tensor_values *find;
+} tensor_field;
+
+static const tensor_field tensor_fields[] = {
+#define X(name, unit, words) {#name, unit, words, find_##name},
+    OUTPUT_TENSORS(X)
+#undef X
+};
+
+/* --- which runs have them --------------------------------------------------------------------- */
+
 /* In runs with this law and output. */
 typedef bool exists_in(const deck_output *asked, const pl_law *law);
 
@@ -180,7 +243,7 @@ static bool is_asked(const deck_output *o, const char *name) {
 }
 
 static size_t most_fields(const run_body *bodies, int count) {
-  size_t most = OWN_FIELDS;
+  size_t most = OWN_FIELDS + TENSORS * (1 + TENSOR_MOST);
   for (int b = 0; b < count; b++)
     most += (size_t)(bodies[b].law->field_count + bodies[b].law->output_count +
                      bodies[b].law->varying_count);
@@ -207,14 +270,16 @@ static int find_shared(const frame_set *f, const frame_field *field) {
 }
 
 /* `field` says whose it is. */
-static void add(frame_set *f, frame_field field, values_of *values, int index) {
+static frame_source *add(frame_set *f, frame_field field, values_of *values, int index) {
   const int shared = find_shared(f, &field), at = shared < 0 ? f->count++ : shared;
   if (shared < 0) {
     field.count = field.on_bonds ? f->bodies[field.body].lattice_rows->bond_count
                                  : particles_of(f->bodies, f->body_count);
     f->fields[at] = field;
   }
-  f->sources[at * f->body_count + field.body] = (frame_source){values, field.components, index};
+  frame_source *from = &f->sources[at * f->body_count + field.body];
+  *from = (frame_source){.values = values, .components = field.components, .index = index};
+  return from;
 }
 
 static const char *words_of(const char *doc, const char *otherwise) {
@@ -234,6 +299,59 @@ static void add_own(frame_set *f, const own_field *own, int b) {
                     .kind = own->kind,
                     .long_name = largest ? "the largest damage of the particle" : own->words},
       own->values, 0);
+}
+
+/* "stress_xx" */
+static void name_component(char name[16], const char *tensor, const char *component) {
+  snprintf(name, 16, "%s_%s", tensor, component);
+}
+
+/* What a law calls so goes before. */
+static bool is_of_law(const pl_law *law, const char *name) {
+  for (int k = 0; k < law->field_count; k++)
+    if (strcasecmp(law->fields[k].name, name) == 0) return true;
+  for (int k = 0; k < law->output_count; k++)
+    if (strcasecmp(law->outputs[k].name, name) == 0) return true;
+  return false;
+}
+
+/* A component of it, or all, is asked for. */
+static void begin_tensor(frame_set *f, int k, int b) {
+  const run_body *of = &f->bodies[b];
+  frame_tensor *t = &f->tensors[k * f->body_count + b];
+  const tensor_component *component;
+  const int count = tensor_components(of->body->dimensions, &component);
+  if (k == TENSOR_stress) f->forces[b] = bond_forces_new(of->state);
+  *t = (frame_tensor){.find = tensor_fields[k].find, .forces = f->forces[b], .found_step = -1};
+  for (int c = 0; c < count; c++) {
+    t->values[c] = must_calloc((size_t)of->lattice_rows->size, sizeof(double));
+    name_component(t->names[c], tensor_fields[k].name, component[c].name);
+  }
+}
+
+static void add_tensor(frame_set *f, int k, int b) {
+  const tensor_field *from = &tensor_fields[k];
+  const pl_law *law = f->bodies[b].law;
+  const tensor_component *component;
+  const int count = tensor_components(law->dimensions, &component);
+  for (int c = 0; c < count; c++) {
+    frame_tensor *t = &f->tensors[k * f->body_count + b];
+    char name[16];
+    name_component(name, from->name, component[c].name);
+    if (!is_asked(f->asked, from->name) && !is_asked(f->asked, name)) continue;
+    if (is_of_law(law, name)) continue;
+    if (!t->find) {
+      begin_tensor(f, k, b);
+      t->first = c;
+    }
+    const frame_field field = {.name = t->names[c],
+                               .unit = from->unit,
+                               .components = 1,
+                               .body = b,
+                               .kind = "other",
+                               .long_name = from->words};
+    add(f, field, values_of_tensor, c)->tensor = t;
+  }
 }
 
 static void add_of_law(frame_set *f, int b) {
@@ -289,9 +407,14 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
   *f = (frame_set){.asked = asked, .bodies = bodies, .body_count = count, .clock = clock};
   f->fields = must_calloc(most, sizeof *f->fields);
   f->sources = must_calloc(most * (size_t)count, sizeof *f->sources);
+  f->forces = must_calloc((size_t)count, sizeof *f->forces);
+  f->tensors = must_calloc(TENSORS * (size_t)count, sizeof *f->tensors);
   for (const own_field *own = own_fields; own < own_fields + OWN_FIELDS; own++)
     for (int b = 0; b < count; b++)
       add_own(f, own, b);
+  for (int k = 0; k < TENSORS; k++)
+    for (int b = 0; b < count; b++)
+      add_tensor(f, k, b);
   for (int b = 0; b < count; b++)
     add_of_law(f, b);
   return f;
@@ -299,6 +422,13 @@ frame_set *frames_new(const deck_output *asked, const run_body *bodies, int coun
 
 void frames_free(frame_set *f) {
   if (!f) return;
+  for (int b = 0; b < f->body_count; b++)
+    bond_forces_free(f->forces[b]);
+  for (int k = 0; k < TENSORS * f->body_count; k++)
+    for (int c = 0; c < TENSOR_MOST; c++)
+      free(f->tensors[k].values[c]);
+  free(f->forces);
+  free(f->tensors);
   free(f->fields);
   free(f->sources);
   free(f);
@@ -358,6 +488,8 @@ static const char **field_names(const deck_output *o, const run_body *bodies, in
   for (int k = 0; k < OWN_FIELDS; k++)
     if (all || exists_in_run(&own_fields[k], o, bodies, bodies_count))
       names[(*count)++] = own_fields[k].name;
+  for (int k = 0; k < TENSORS; k++)
+    names[(*count)++] = tensor_fields[k].name;
   for (int b = 0; b < bodies_count; b++)
     *count = add_law_names(bodies[b].law, names, *count);
   return names;
@@ -395,7 +527,7 @@ bool frames_check(const deck_output *o, const run_body *bodies, int bodies_count
   bool good = true;
   for (int k = 0; o->field_where && k < o->field_count; k++) {
     const own_field *own = find_own(o->fields[k]);
-    bool known = false;
+    bool known = output_is_component(o->fields[k], bodies[0].law->dimensions);
     for (int n = 0; n < count; n++)
       known |= strcasecmp(names[n], o->fields[k]) == 0;
     good &= known;

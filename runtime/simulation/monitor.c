@@ -8,6 +8,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/deck/deck_value.h"
+#include "runtime/deck/group_monitor.h"
 #include "runtime/interaction/damage.h"
 #include "runtime/simulation/load_steps.h"
 
@@ -17,27 +18,16 @@ static bool counts_damage(const deck_monitor *m) {
   return m->kind == MONITOR_DAMAGED || m->kind == MONITOR_BROKEN;
 }
 
+/* A component of the motion of particles, or of the forces on them. */
 static bool has_component(const deck_monitor *m) {
-  return !counts_damage(m) && m->kind != MONITOR_FIELD;
+  return m->kind == MONITOR_REACTION || m->kind == MONITOR_REACTIONS ||
+         m->kind == MONITOR_DISPLACEMENT || m->kind == MONITOR_VELOCITY ||
+         m->kind == MONITOR_OPENING || m->kind == MONITOR_ACCELERATION ||
+         m->kind == MONITOR_MOMENTUM;
 }
 
-static const char *unit_of(const deck_monitor *m, int dimensions) {
-  const bool turns = m->component >= dimensions;
-  switch (m->kind) {
-  case MONITOR_REACTION:
-  case MONITOR_REACTIONS:
-    return turns ? "N*m" : "N";
-  case MONITOR_VELOCITY:
-    return turns ? "rad/s" : "m/s";
-  case MONITOR_DISPLACEMENT:
-  case MONITOR_OPENING:
-    return turns ? "rad" : "m";
-  case MONITOR_DAMAGED:
-  case MONITOR_BROKEN:
-  case MONITOR_FIELD: /* the law says */
-    break;
-  }
-  return "1";
+static bool follows_tip(const deck_monitor *m) {
+  return m->kind == MONITOR_TIP || m->kind == MONITOR_TIP_SPEED;
 }
 
 /* The body that a region's particles are of; NULL without a region. */
@@ -77,14 +67,17 @@ static bool can_be_damaged(const run_body *b) {
 }
 
 static bool check_damage(const deck_monitor *m, const run_body *bodies, int count, diagnostics *d) {
-  bool some = !counts_damage(m);
+  bool some = !counts_damage(m) && !follows_tip(m);
   for (int b = 0; b < count; b++)
     some = some || can_be_damaged(&bodies[b]);
   if (some) return true;
-  diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
-              count > 1 ? "none of the laws has damage to count"
-                        : "the law `%s` has no damage to count",
-              bodies[0].law->name);
+  const char *task = follows_tip(m) ? "follow" : "count";
+  if (count > 1)
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"),
+                "none of the laws has damage to %s", task);
+  else
+    diag_report(d, DIAG_BAD_VALUE, deck_where(&m->item, "kind"), "the law `%s` has no damage to %s",
+                bodies[0].law->name, task);
   return false;
 }
 
@@ -145,11 +138,49 @@ static bool find_steps(monitor *m, const monitors *all, diagnostics *d) {
 }
 
 static monitor_time when_known(const monitor *m, const monitors *all) {
-  const bool field = m->deck->kind == MONITOR_FIELD;
-  if (all->deck->relaxation.increments > 0 || (field && m->field >= m->of[0]->law->field_count))
+  if (all->deck->relaxation.increments > 0) return KNOWN_WHEN_OBSERVED;
+  switch (m->deck->kind) {
+  case MONITOR_FIELD:
+    return m->field < m->of[0]->law->field_count ? KNOWN_ONE_LATE : KNOWN_WHEN_OBSERVED;
+  case MONITOR_REACTION:
+  case MONITOR_REACTIONS:
+  case MONITOR_TIP:
+  case MONITOR_TIP_SPEED:
+    return KNOWN_ONE_LATE;
+  case MONITOR_MOMENTUM:
+  case MONITOR_ANGULAR_MOMENTUM:
+  case MONITOR_ENERGY:
+  case MONITOR_FORCE:
+  case MONITOR_STRESS:
     return KNOWN_WHEN_OBSERVED;
-  const bool reaction = m->deck->kind == MONITOR_REACTION || m->deck->kind == MONITOR_REACTIONS;
-  return field || reaction ? KNOWN_ONE_LATE : KNOWN_AFTER_STEP;
+  default:
+    return KNOWN_AFTER_STEP;
+  }
+}
+
+/* What watched.h watches, of a region or of all particles. */
+static void watch(monitor *m, monitors *all, diagnostics *d) {
+  const run_body *of = m->of[0];
+  if (!of) {
+    diag_report(d, DIAG_MISSING_KEY, m->deck->item.where,
+                "`&monitor` of this kind needs `region` here");
+    diag_hint(d, "the deck has %d lattices", all->body_count);
+    return;
+  }
+  const rows *g = of->lattice_rows;
+  if (m->deck->region) take_sites(m, 0, all, m->deck->region);
+  const bool whole = !m->deck->region;
+  m->own = watched_new(m->deck, whole ? g->particle_site : m->indices[0],
+                       whole ? g->particle_count : m->index_count[0], of->state, of->bonds, d);
+  bond_forces **forces = &all->forces[of - all->bodies];
+  if (watched_needs_forces(m->deck) && !*forces) *forces = bond_forces_new(of->state);
+}
+
+/* A line through one value has no slope. */
+static void check_speed(const monitor *m, const monitors *all, diagnostics *d) {
+  if (m->deck->kind != MONITOR_TIP_SPEED || m->window > 1) return;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&m->deck->item, "average"),
+              "a speed is taken over two states at least: %.6g s and more", 2 * all->interval);
 }
 
 static void find_bodies(monitor *m, const monitors *all) {
@@ -157,15 +188,18 @@ static void find_bodies(monitor *m, const monitors *all) {
   const char *const regions[] = {two ? m->deck->between[0] : m->deck->region, m->deck->between[1]};
   for (int r = 0; r < 2; r++)
     m->of[r] = body_of(all->deck, all->bodies, all->body_count, regions[r]);
+  if (!regions[0] && all->body_count == 1) m->of[0] = &all->bodies[0];
 }
 
 static void new_monitor(monitors *all, int index, diagnostics *d) {
   monitor *m = &all->items[index];
   m->deck = &all->deck->monitors[index];
-  m->unit = unit_of(m->deck, all->bodies[0].body->dimensions);
+  m->unit = deck_monitor_unit(m->deck, has_component(m->deck) &&
+                                           m->deck->component >= all->bodies[0].body->dimensions);
   m->window = 1;
   if (!find_steps(m, all, d)) return;
   find_bodies(m, all);
+  check_speed(m, all, d);
   switch (m->deck->kind) {
   case MONITOR_REACTION:
     take_reactions(m, 0, all, m->deck->region);
@@ -190,6 +224,8 @@ static void new_monitor(monitors *all, int index, diagnostics *d) {
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
     break;
+  default:
+    watch(m, all, d);
   }
   m->known = when_known(m, all);
 }
@@ -211,6 +247,7 @@ monitors *monitors_new(const deck *k, const run_body *bodies, int count, double 
                   .bodies = bodies,
                   .body_count = count};
   m->items = must_calloc((size_t)m->count + 1, sizeof *m->items);
+  m->forces = must_calloc((size_t)count, sizeof *m->forces);
   for (int i = 0; i < m->count; i++) {
     new_monitor(m, i, d);
     m->ring_size += m->items[i].window;
@@ -232,7 +269,11 @@ void monitors_free(monitors *m) {
   for (int i = 0; i < m->count; i++) {
     free(m->items[i].indices[0]);
     free(m->items[i].indices[1]);
+    watched_free(m->items[i].own);
   }
+  for (int b = 0; m->forces && b < m->body_count; b++)
+    bond_forces_free(m->forces[b]);
+  free(m->forces);
   free(m->items);
   free(m->values);
   free(m->ring_memory);
@@ -295,9 +336,10 @@ static char *quantity_words(const monitors *all, const monitor *m, arena *a) {
     return field_words(m, a);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
-    break;
+    return count_words(all, m, a);
+  default:
+    return watched_words(m->own, a);
   }
-  return count_words(all, m, a);
 }
 
 char *monitor_words(const monitors *all, int index, arena *a) {
@@ -385,6 +427,29 @@ static double displacement_mean(const monitor *m, int list) {
                  m->index_count[list]);
 }
 
+typedef struct instant_velocities { /* what a velocity at an instant is known by */
+  const run_body *of;
+  long step;
+} instant_velocities;
+
+static double velocity_at(const void *from, int component, long site) {
+  const instant_velocities *v = from;
+  return load_steps_velocity(v->of->loads, v->of->body, component, site, v->step);
+}
+
+/* What watched.h has; `field`: the law's fields in the state that is meant. */
+static double watched_now(const monitors *all, const monitor *m, long step, double *const *field) {
+  const instant_velocities v = {m->of[0], step};
+  bond_forces *forces = all->forces[m->of[0] - all->bodies];
+  const watch_instant at = {.velocity = velocity_at,
+                            .velocities = &v,
+                            .forces = forces,
+                            .field = field,
+                            .scratch = all->values};
+  if (watched_needs_forces(m->deck)) bond_forces_find(forces, step);
+  return watched_value(m->own, &at);
+}
+
 /* A value at the instant of the state observed. */
 static double value_now(const monitors *all, const monitor *m, long step) {
   switch (m->deck->kind) {
@@ -402,9 +467,10 @@ static double value_now(const monitors *all, const monitor *m, long step) {
     return field_mean(all, m, m->of[0]->state->new_field);
   case MONITOR_DAMAGED:
   case MONITOR_BROKEN:
-    break;
+    return count_all_damaged(all, m);
+  default:
+    return watched_now(all, m, step, m->of[0]->state->new_field);
   }
-  return count_all_damaged(all, m);
 }
 
 /* What a step has made known for a window: the velocity in it, the field of the state that it left;
@@ -413,6 +479,8 @@ static double value_of_step(const monitors *all, const monitor *m, long step) {
   if (m->deck->kind == MONITOR_VELOCITY)
     return mean_at(m->of[0]->body->velocity[m->deck->component], m->indices[0], m->index_count[0]);
   if (m->deck->kind == MONITOR_FIELD) return field_mean(all, m, m->of[0]->state->field);
+  if (m->deck->kind == MONITOR_ACCELERATION) return watched_velocity(m->own);
+  if (m->own) return watched_now(all, m, step, m->of[0]->state->field);
   return value_now(all, m, step);
 }
 
@@ -432,18 +500,53 @@ static double mean_of_ring(const monitor *m, long most, const double *more) {
   return more ? (sum + *more) / (double)(count + 1) : sum / (double)count;
 }
 
+/* Slope over time of the straight line that fits the same values best. */
+static double slope_of_ring(const monitors *all, const monitor *m, long most, const double *more) {
+  const int64_t count = m->state.filled < most ? m->state.filled : most,
+                values = count + (more != NULL);
+  const double n = (double)values, middle = 0.5 * (n - 1);
+  double sum = more ? (n - 1 - middle) * *more : 0;
+  for (int64_t k = 0; k < count; k++)
+    sum += ((double)k - middle) * m->ring[(m->state.filled - count + k) % m->window];
+  return values > 1 ? sum / (n * (n * n - 1) / 12 * all->interval) : 0;
+}
+
+/* Velocity over the time of the states in the window: from half a step before the first of them to
+   half a step after the present one. */
+static double acceleration_of_ring(const monitors *all, const monitor *m, double now) {
+  const int64_t count = m->state.filled < m->window ? m->state.filled : m->window;
+  const double first = m->ring[(m->state.filled - count) % m->window],
+               last = m->ring[(m->state.filled - 1) % m->window];
+  return (last - first + now * all->interval) / ((double)count * all->interval);
+}
+
+static double reduced(const monitors *all, const monitor *m, long most, const double *more) {
+  return m->deck->kind == MONITOR_TIP_SPEED ? slope_of_ring(all, m, most, more)
+                                            : mean_of_ring(m, most, more);
+}
+
+/* Its window holds what steps made of velocities, not states. */
+static bool is_over_steps(const monitor *m) {
+  return m->known == KNOWN_AFTER_STEP &&
+         (m->deck->kind == MONITOR_VELOCITY || m->deck->kind == MONITOR_ACCELERATION);
+}
+
 static double averaged(const monitors *all, const monitor *m, long step) {
   const bool late = m->known == KNOWN_ONE_LATE;
-  if (m->window > 1 && !late && m->state.filled > 0) return mean_of_ring(m, m->window, NULL);
+  if (m->window > 1 && !late && m->state.filled > 0) {
+    if (m->deck->kind == MONITOR_ACCELERATION && is_over_steps(m))
+      return acceleration_of_ring(all, m, value_now(all, m, step));
+    return reduced(all, m, m->window, NULL);
+  }
   const double now = value_now(all, m, step);
-  return m->window > 1 && late ? mean_of_ring(m, m->window - 1, &now) : now;
+  return m->window > 1 && late ? reduced(all, m, m->window - 1, &now) : now;
 }
 
 void monitors_step(monitors *all, long step) {
   for (int i = 0; i < all->count; i++) {
     monitor *m = &all->items[i];
-    const bool of_state = m->known == KNOWN_AFTER_STEP && m->deck->kind != MONITOR_VELOCITY;
-    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED && (step > 0 || of_state))
+    if (m->window > 1 && m->known != KNOWN_WHEN_OBSERVED &&
+        (step > 0 || (m->known == KNOWN_AFTER_STEP && !is_over_steps(m))))
       push(m, value_of_step(all, m, step));
   }
 }

@@ -1,15 +1,17 @@
 /* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on
-   particles; their running means, zeros and peaks, and the &stop conditions on them. All values at
+   particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions on them. All values at
    a sample are of one instant: the state observed (sweep.h).
 
    A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
    the states of the last `average` seconds, the present one included, or all there were so far; of
-   velocities the steps that led there, so that their mean is way over time. Counts are taken as
-   they are. */
+   velocities the steps that led there, so that their mean is way over time, and that of
+   accelerations velocity over time. Counts are taken as they are. Of the way of a crack's tip in the
+   window its speed is the slope of the straight line that fits it best. */
 #ifndef PERILAT_RUNTIME_MONITOR_H
 #define PERILAT_RUNTIME_MONITOR_H
 
 #include "dsl/base/diagnostics.h"
+#include "runtime/analysis/watched.h"
 #include "runtime/deck/deck.h"
 #include "runtime/simulation/run_body.h"
 
@@ -22,8 +24,8 @@ typedef struct monitor_state { /* what a later step depends on */
 /* When a value for the window is known. */
 typedef enum monitor_time {
   KNOWN_AFTER_STEP,   /* places, and velocities over the step */
-  KNOWN_ONE_LATE,     /* of the state that a step has left: reactions, fields */
-  KNOWN_WHEN_OBSERVED /* outputs; in quasi-static runs all */
+  KNOWN_ONE_LATE,     /* of the state that a step has left: reactions, fields, tips */
+  KNOWN_WHEN_OBSERVED /* outputs, sums over motions and forces; in quasi-static runs all */
 } monitor_time;
 
 typedef struct monitor {
@@ -34,9 +36,10 @@ typedef struct monitor {
   monitor_state state;
   int32_t *indices[2]; /* sites, or constraints of a reaction (second list: of the second region) */
   long index_count[2];
-  int field;    /* of a field monitor: the law's field, or field_count + output */
-  double *ring; /* [window] the last values, value of push k at k % window */
-  long window;  /* steps; 1: no averaging */
+  int field;         /* of a field monitor: the law's field, or field_count + output */
+  watched_part *own; /* NULL of kinds that are not watched.h's */
+  double *ring;      /* [window] the last values, value of push k at k % window */
+  long window;       /* steps; 1: no averaging */
   monitor_time known;
   long zero_step; /* -1: never */
 } monitor;
@@ -48,8 +51,9 @@ typedef struct monitors {
   const deck *deck;
   const run_body *bodies; /* [body_count] */
   int body_count;
-  double *values;      /* of the largest body: an output while it is looked at */
-  double *ring_memory; /* all rings in one */
+  double *values;       /* of the largest body: an output while it is looked at */
+  bond_forces **forces; /* [body_count] NULL unless some monitor asks for them */
+  double *ring_memory;  /* all rings in one */
   long ring_size;
 } monitors;
 

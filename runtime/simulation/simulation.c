@@ -119,8 +119,8 @@ simulation *simulation_new(const deck *k, const simulation_law *laws, diagnostic
 void simulation_free(simulation *s) {
   if (!s) return;
   monitors_free(s->monitors);
-  relaxation_free(s->relaxation);
   frames_free(s->frames);
+  relaxation_free(s->relaxation);
   history_free(&s->history);
   bad_search_free(s->bad);
   for (int b = 0; b < s->body_count; b++)

@@ -162,7 +162,7 @@ static void dimensions_are_those_of_the_lattice(void **state) {
     assert_int_equal(deck_dimensions_of(&r.reader, "b"), 0);
     assert_int_equal(deck_dimensions_of_region(&r.reader, "bottom"), 2 + k);
     assert_int_equal(deck_dimensions_of_region(&r.reader, "top"), 0);
-    assert_int_equal(deck_dimensions_of_region(&r.reader, NULL), 0);
+    assert_int_equal(deck_dimensions_of_region(&r.reader, NULL), 2 + k);
     r.deck.lattice_count = 2;
     assert_int_equal(deck_dimensions_of(&r.reader, NULL), 0);
     built_end(&r.of);

@@ -97,6 +97,12 @@ static const struct {
     {"to", "&notch lattice = 'a' shape = 'segment' from = 2*0 to = 3*1 /",
      "&body lattice = 'a' shape = 'cylinder' from = 3*0 to = 2*1 radius = 1 /"},
     {"acceleration", "&gravity acceleration = 3*1 /", "&gravity acceleration = 2*1 /"},
+    {"normal", "&monitor name = 'm' kind = 'force' at = 2*0 normal = 3*1 /",
+     "&monitor name = 'm' kind = 'force' at = 3*0 normal = 2*1 /"},
+    {"direction", "&monitor name = 'm' kind = 'tip' at = 2*0 direction = 3*1 above = 0.5 /",
+     "&monitor name = 'm' kind = 'tip' at = 3*0 direction = 2*1 above = 0.5 /"},
+    {"about", "&monitor name = 'm' kind = 'angular_momentum' about = 3*0 /",
+     "&monitor name = 'm' kind = 'angular_momentum' about = 2*0 component = 'z' /"},
     {"origin", NULL, NULL}, /* of the lattice itself */
 };
 

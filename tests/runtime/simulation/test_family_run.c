@@ -11,11 +11,12 @@
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/simulation/same_runs.h"
+#include "tests/runtime/simulation/watch_all.h"
 
 /* Everything that moves and takes energy; the format takes threads, the law's values and more
    groups. */
 static void open_busy(small_run *r, int threads, const char *values, const char *more) {
-  char text[2048];
+  char text[4096];
   snprintf(
       text, sizeof text,
       "&simulation end_time = 2e-4 step_safety = 0.5 threads = %d /\n"
@@ -34,7 +35,7 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
       "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' average = 3e-5 /\n"
       "&monitor name = 'worst' kind = 'field' field = 'omega' region = 'mid' /\n"
       "&monitor name = 'strain' kind = 'field' field = 'xx' region = 'mid' /\n"
-      "&monitor name = 'cracks' kind = 'damaged' /\n"
+      "&monitor name = 'cracks' kind = 'damaged' /\n" WATCH_ALL("0")
       "&output frames = 7 sample = 1e-6 %s\n",
       threads, values, more);
   small_open(r, &family_hexagon, text);

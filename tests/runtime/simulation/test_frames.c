@@ -128,6 +128,9 @@ static void the_reference_names_every_field(void **state) {
 #define X(name, unit, components, exists, kind, words) assert_non_null(strstr(doc, #name));
   OUTPUT_FIELDS(X)
 #undef X
+#define X(name, unit, words) assert_non_null(strstr(doc, #name));
+  OUTPUT_TENSORS(X)
+#undef X
 }
 
 /* All that the table of fields holds, of a law that has it all, in the table's order and with its

@@ -11,6 +11,7 @@
 #include "tests/runtime/family_law.h"
 #include "tests/runtime/hand_over.h"
 #include "tests/runtime/simulation/same_runs.h"
+#include "tests/runtime/simulation/watch_all.h"
 
 static const char broken[] = "S_t = 1e-4 tau = 1e-8";
 
@@ -18,7 +19,7 @@ static const char broken[] = "S_t = 1e-4 tau = 1e-8";
    groups. */
 static void open_busy(small_run *r, int threads, const char *values, const char *more) {
   static pl_law law;
-  char text[2048];
+  char text[4096];
   law = family_for_lists(&family_hexagon);
   snprintf(
       text, sizeof text,
@@ -39,7 +40,7 @@ static void open_busy(small_run *r, int threads, const char *values, const char 
       "&protect region = 'left' radius = 2 /\n"
       "&monitor name = 'load' kind = 'reaction' region = 'left' component = 'x' average = 1e-5 /\n"
       "&monitor name = 'strain' kind = 'field' field = 'xx' region = 'mid' /\n"
-      "&monitor name = 'cracks' kind = 'damaged' /\n"
+      "&monitor name = 'cracks' kind = 'damaged' /\n" WATCH_ALL("0")
       "&output frames = 3 sample = 1e-6 /\n%s",
       threads, values, more);
   small_open(r, &law, text);

@@ -47,6 +47,27 @@ static const misfit misfits[] = {
      "greater than 0 and at most 1"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'broken' above = 0 /\n", DIAG_OUT_OF_BOUNDS,
      "greater than 0 and at most 1"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'stress' at = 0.12, 0 component = 'xx' /\n",
+     DIAG_EMPTY_REGION, "no particle stands within a spacing of `at`"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'force' at = 0.12, 0 normal = 1, 0 /\n",
+     DIAG_EMPTY_REGION, "no bond crosses this section"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'force' at = 0.05, 0 normal = 1, 0 "
+                       "region = 'corner' /\n",
+     DIAG_EMPTY_REGION, "no bond crosses this section"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'tip' at = 0.1, 0 direction = 1, 0 "
+                       "above = 0.5 /\n",
+     DIAG_EMPTY_REGION, "the way of the crack would always be 0"},
+    {"&simulation end_time = 1e-4 step = 1e-7 /\n" LAW BLOCK USE
+     "&monitor name = 'n' kind = 'tip_speed' at = 0, 0 direction = 1, 0 above = 0.5 "
+     "average = 1e-7 /\n",
+     DIAG_OUT_OF_BOUNDS, "a speed is taken over two states at least: 2e-07 s and more"},
+    {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'acceleration' region = 'edge' "
+                       "component = 'rotation' /\n",
+     DIAG_BAD_VALUE, "do not rotate"},
+    {RUN LAW BLOCK USE "&output fields = 'stress_zz' /\n", DIAG_BAD_VALUE,
+     "there is no field `stress_zz` to store"},
+    {RUN "&lattice name = 'stress_xx' kind = 'square' spacing = 1 thickness = 1 /\n",
+     DIAG_RESERVED_NAME, "a lattice cannot be called `stress_xx`"},
     {RUN LAW BLOCK USE "&output fields = 'rotation' /\n", DIAG_DECK_WARNING,
      "no `rotation` to store"},
     {"&simulation end_time = 1e-4 step = 1e-5 /\n" LAW BLOCK USE, DIAG_UNSTABLE_STEP,
@@ -88,12 +109,12 @@ static void misfits_are_told_at_their_line(void **state) {
 /* The caret stands under the word that is wrong; the hint lists what this law can store. */
 static void an_unknown_field_is_answered_with_the_known_ones(void **state) {
   (void)state;
-  static const char text[] = RUN LAW BLOCK USE "&output fields = 'damage', 'stress', 'energy' /\n";
+  static const char text[] = RUN LAW BLOCK USE "&output fields = 'damage', 'toughness', 'energy' /\n";
   small_run r;
   small_open(&r, &elastic_bar, text);
   assert_null(r.simulation);
   assert_int_equal(r.said.count, 2);
-  static const char *const words[] = {"'stress'", "'energy'"};
+  static const char *const words[] = {"'toughness'", "'energy'"};
   for (int k = 0; k < 2; k++) {
     const span where = r.said.items[k].where;
     assert_int_equal(where.end - where.begin, strlen(words[k]));
@@ -101,7 +122,7 @@ static void an_unknown_field_is_answered_with_the_known_ones(void **state) {
   }
   assert_string_equal(r.said.items[0].hint,
                       "this run can store `displacement`, `velocity`, `force`, `damage`, "
-                      "`dissipated`, `omega`, `axial`");
+                      "`dissipated`, `stress`, `strain`, `omega`, `axial`");
   assert_non_null(strstr(r.said.items[1].hint, "is `dissipated`"));
   small_close(&r);
 }

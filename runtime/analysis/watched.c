@@ -1,0 +1,262 @@
+#include "runtime/analysis/watched.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "runtime/analysis/crack_tip.h"
+#include "runtime/analysis/particle_tensors.h"
+#include "runtime/analysis/section.h"
+
+struct watched_part {
+  const deck_monitor *deck;
+  sweep *state;
+  const body *of;
+  int32_t *sites; /* [count] of the region, of the particle at the place, or all */
+  long count;
+  /* of the kind that they are for */
+  section section;
+  tensor_region region;
+  crack_tip tip;
+};
+
+bool watched_needs_forces(const deck_monitor *m) {
+  return m->kind == MONITOR_FORCE || m->kind == MONITOR_STRESS;
+}
+
+/* --- set-up ----------------------------------------------------------------------------------- */
+
+static double distance_to(const rows *g, long site, const double at[3]) {
+  double here[3];
+  rows_place(g, site, here);
+  return bravais_distance(here, at);
+}
+
+static void report_far(const watched_part *w, long nearest, diagnostics *d) {
+  const rows *g = w->of->lattice;
+  double here[3];
+  char text[ROWS_PLACE_TEXT];
+  rows_place(g, nearest, here);
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "at"),
+              "no particle stands within a spacing of `at`");
+  diag_hint(d, "the nearest particle stands %.4g mm away at %s",
+            1e3 * distance_to(g, nearest, w->deck->at), rows_place_text(g->dimensions, here, text));
+}
+
+/* The particle nearest to `at`, the first of several. */
+static bool take_nearest(watched_part *w, diagnostics *d) {
+  const rows *g = w->of->lattice;
+  long best = g->particle_site[0];
+  for (long p = 1; p < g->particle_count; p++) {
+    const double gain =
+        distance_to(g, best, w->deck->at) - distance_to(g, g->particle_site[p], w->deck->at);
+    if (gain > 1e-6 * g->spacing) best = g->particle_site[p];
+  }
+  w->sites[0] = (int32_t)best;
+  w->count = 1;
+  if (distance_to(g, best, w->deck->at) <= g->spacing) return true;
+  report_far(w, best, d);
+  return false;
+}
+
+/* NULL where all particles are meant. */
+static unsigned char *inside_of(const watched_part *w) {
+  if (!w->deck->region) return NULL;
+  unsigned char *inside = must_calloc((size_t)w->of->lattice->size, sizeof *inside);
+  for (long p = 0; p < w->count; p++)
+    inside[w->sites[p]] = 1;
+  return inside;
+}
+
+static bool open_section(watched_part *w, diagnostics *d) {
+  unsigned char *inside = inside_of(w);
+  w->section = section_new(w->of, w->deck->at, w->deck->normal, inside);
+  free(inside);
+  if (w->section.count > 0) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "at"),
+              "no bond crosses this section");
+  diag_hint(d, "`at` is a place of the section, `normal` stands across it%s",
+            w->deck->region ? "; both ends of a bond must belong to the region" : "");
+  return false;
+}
+
+static bool open_tip(watched_part *w, const rows_bond *bonds, diagnostics *d) {
+  unsigned char *inside = inside_of(w);
+  w->tip = crack_tip_new(w->state, bonds, w->deck->at, w->deck->direction, w->deck->above, inside);
+  free(inside);
+  if (w->tip.count > 0) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, "direction"),
+              "no bond lies in this direction from `at`: the way of the crack would always be 0");
+  return false;
+}
+
+static bool open_kind(watched_part *w, const rows_bond *bonds, diagnostics *d) {
+  switch (w->deck->kind) {
+  case MONITOR_FORCE:
+    return open_section(w, d);
+  case MONITOR_TIP:
+  case MONITOR_TIP_SPEED:
+    return open_tip(w, bonds, d);
+  case MONITOR_STRESS:
+  case MONITOR_STRAIN:
+    if (w->deck->placed && !take_nearest(w, d)) return false;
+    w->region = tensor_region_new(w->of, w->sites, w->count);
+    return true;
+  case MONITOR_ACCELERATION:
+    return !w->deck->placed || take_nearest(w, d);
+  case MONITOR_MOMENTUM:
+  case MONITOR_ANGULAR_MOMENTUM:
+  case MONITOR_ENERGY:
+    return true;
+  default:
+    return false;
+  }
+}
+
+watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long count, sweep *state,
+                          const rows_bond *bonds, diagnostics *d) {
+  watched_part *w = must_calloc(1, sizeof *w);
+  *w = (watched_part){.deck = m, .state = state, .of = state->body, .count = count};
+  w->sites = must_calloc((size_t)count + 1, sizeof *w->sites);
+  memcpy(w->sites, sites, (size_t)count * sizeof *sites);
+  if (open_kind(w, bonds, d)) return w;
+  watched_free(w);
+  return NULL;
+}
+
+void watched_free(watched_part *w) {
+  if (!w) return;
+  section_free(&w->section);
+  tensor_region_free(&w->region);
+  crack_tip_free(&w->tip);
+  free(w->sites);
+  free(w);
+}
+
+/* --- values ----------------------------------------------------------------------------------- */
+
+static moving_particles moving(const watched_part *w, const watch_instant *at) {
+  return (moving_particles){w->of, w->sites, w->count, at->velocity, at->velocities};
+}
+
+double watched_velocity(const watched_part *w) {
+  double sum = 0;
+  for (long p = 0; p < w->count; p++)
+    sum += w->of->velocity[w->deck->component][w->sites[p]];
+  return sum / (double)w->count;
+}
+
+/* From the velocity half a step before to that at the instant. */
+static double acceleration(const watched_part *w, const watch_instant *at) {
+  double sum = 0;
+  for (long p = 0; p < w->count; p++)
+    sum += at->velocity(at->velocities, w->deck->component, w->sites[p]);
+  return (sum / (double)w->count - watched_velocity(w)) / (0.5 * w->of->time_step);
+}
+
+static double energy(const watched_part *w, const watch_instant *at) {
+  double sum = 0;
+  const moving_particles m = moving(w, at);
+  if (w->deck->component == MONITOR_KINETIC) return momentum_kinetic(&m);
+  sweep_stored(w->state, at->scratch);
+  for (long p = 0; p < w->count; p++)
+    sum += at->scratch[w->sites[p]];
+  return sum;
+}
+
+static double force(const watched_part *w, bond_forces *forces) {
+  double f[3], along = 0;
+  section_force(&w->section, forces, f);
+  for (int d = 0; d < 3; d++)
+    along += f[d] * w->section.normal[d];
+  return w->deck->component < 0 ? along : f[w->deck->component];
+}
+
+static double tensor(const watched_part *w, const watch_instant *at) {
+  double t[TENSOR_MOST];
+  if (w->deck->kind == MONITOR_STRESS)
+    tensor_region_stress(&w->region, at->forces, t);
+  else
+    tensor_region_strain(&w->region, t);
+  return t[w->deck->component];
+}
+
+double watched_value(const watched_part *w, const watch_instant *at) {
+  const moving_particles m = moving(w, at);
+  switch (w->deck->kind) {
+  case MONITOR_ACCELERATION:
+    return acceleration(w, at);
+  case MONITOR_MOMENTUM:
+    return momentum_of(&m, w->deck->component);
+  case MONITOR_ANGULAR_MOMENTUM:
+    return momentum_angular(&m, w->deck->about, w->deck->component);
+  case MONITOR_ENERGY:
+    return energy(w, at);
+  case MONITOR_FORCE:
+    return force(w, at->forces);
+  case MONITOR_TIP:
+  case MONITOR_TIP_SPEED:
+    return crack_tip_way(&w->tip, at->field);
+  default:
+    return tensor(w, at);
+  }
+}
+
+/* --- in words --------------------------------------------------------------------------------- */
+
+static const char *place_words(const watched_part *w, const double at[3], arena *a) {
+  char text[ROWS_PLACE_TEXT];
+  return arena_printf(a, "%s", rows_place_text(w->of->dimensions, at, text));
+}
+
+static const char *part_words(const watched_part *w, arena *a) {
+  if (w->deck->region) return arena_printf(a, "of `%s`", w->deck->region);
+  if (!w->deck->placed) return "of all particles";
+  double here[3];
+  rows_place(w->of->lattice, w->sites[0], here);
+  return arena_printf(a, "of the particle at %s", place_words(w, here, a));
+}
+
+static const char *along_words(const watched_part *w, arena *a) {
+  const int c = w->deck->component, dimensions = w->of->dimensions;
+  return arena_printf(a, "%s %s", c < dimensions ? "along" : "in",
+                      deck_component_name(dimensions, c));
+}
+
+static const char *tensor_words(const watched_part *w) {
+  const tensor_component *t;
+  tensor_components(w->of->dimensions, &t);
+  return t[w->deck->component].name;
+}
+
+static char *tip_words(const watched_part *w, arena *a) {
+  const bool speed = w->deck->kind == MONITOR_TIP_SPEED;
+  return arena_printf(a, "%s of the furthest %s with more damage than %.6g from %s on",
+                      speed ? "speed" : "way", w->tip.on_bonds ? "bond" : "particle",
+                      w->deck->above, place_words(w, w->deck->at, a));
+}
+
+char *watched_words(const watched_part *w, arena *a) {
+  const char *of = part_words(w, a);
+  switch (w->deck->kind) {
+  case MONITOR_ACCELERATION:
+    return arena_printf(a, "mean acceleration %s %s", along_words(w, a), of);
+  case MONITOR_MOMENTUM:
+    return arena_printf(a, "momentum %s %s", along_words(w, a), of);
+  case MONITOR_ANGULAR_MOMENTUM:
+    return arena_printf(a, "angular momentum about %c through %s %s", "xyz"[w->deck->component],
+                        place_words(w, w->deck->about, a), of);
+  case MONITOR_ENERGY:
+    return arena_printf(a, "%s energy %s",
+                        w->deck->component == MONITOR_KINETIC ? "kinetic" : "stored", of);
+  case MONITOR_FORCE:
+    return arena_printf(a, "force %s through the section at %s",
+                        w->deck->component < 0 ? "along the normal" : along_words(w, a),
+                        place_words(w, w->deck->at, a));
+  case MONITOR_TIP:
+  case MONITOR_TIP_SPEED:
+    return tip_words(w, a);
+  default:
+    return arena_printf(a, "mean %s %s %s", w->deck->kind == MONITOR_STRESS ? "stress" : "strain",
+                        tensor_words(w), of);
+  }
+}

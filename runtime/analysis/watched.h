@@ -1,0 +1,35 @@
+/* What a monitor watches of a part of a body: accelerations, momenta, energies, stresses, strains,
+   the force through a section, the tip of a crack. */
+#ifndef PERILAT_RUNTIME_WATCHED_H
+#define PERILAT_RUNTIME_WATCHED_H
+
+#include "dsl/base/arena.h"
+#include "dsl/base/diagnostics.h"
+#include "runtime/body/momentum.h"
+#include "runtime/deck/deck.h"
+#include "runtime/interaction/bond_forces.h"
+
+typedef struct watched_part watched_part;
+
+typedef struct watch_instant { /* the state looked at, which was observed */
+  velocity_now *velocity;
+  const void *velocities;
+  bond_forces *forces;  /* found; NULL unless asked for */
+  double *const *field; /* [law's fields] */
+  double *scratch;      /* [size] */
+} watch_instant;
+
+/* Whether the bonds' forces are asked for. */
+bool watched_needs_forces(const deck_monitor *m);
+/* Sites of the region, or of all particles. NULL with a diagnostic where nothing is there to watch,
+   and for what monitors watch by themselves. */
+watched_part *watched_new(const deck_monitor *m, const int32_t *sites, long count, sweep *state,
+                          const rows_bond *bonds, diagnostics *d);
+void watched_free(watched_part *w);
+double watched_value(const watched_part *w, const watch_instant *at);
+/* Of an acceleration: the mean velocity half a step before, m/s. */
+double watched_velocity(const watched_part *w);
+/* "stress xx of `middle`" */
+char *watched_words(const watched_part *w, arena *a);
+
+#endif

@@ -1,0 +1,193 @@
+/* Forces of single bonds, asked of laws that add them up at once: they sum to the forces of the
+   state observed, act on both ends alike, and are not changed by which are asked for. */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include <cmocka.h>
+
+#include "runtime/interaction/bond_forces.h"
+#include "tests/verification/case.h"
+
+#define HEAD "&simulation end_time = 1e-4 /\n&output sample = 1e-5 /\n"
+#define PLATE                                                                                      \
+  "&body lattice = 'l' shape = 'disc' centre = 0, 0 radius = 0.09 /\n"                             \
+  "&notch lattice = 'l' shape = 'segment' from = -0.1, 0.003 to = -0.02, 0.003 /\n"
+#define BALL                                                                                       \
+  "&body lattice = 'l' shape = 'sphere' centre = 3*0 radius = 0.055 /\n"                           \
+  "&notch lattice = 'l' shape = 'face' points = -0.1, -0.1, 0.003, 0, -0.1, 0.003, 0, 0.1, 0.003," \
+  " -0.1, 0.1, 0.003 /\n"
+#define PLANE(kind)                                                                                \
+  HEAD "&lattice name = 'l' spacing = 0.01 thickness = 0.02 kind = " kind " /\n" PLATE
+#define SPACE(kind) HEAD "&lattice name = 'l' spacing = 0.01 kind = " kind " /\n" BALL
+#define OF(model)   "&material lattice = 'l' model = '" model "' /\n"
+
+static const char *const decks[] = {
+    PLANE("'hexagonal' rotation = 7") OF("elastic_central"),
+    PLANE("'hexagonal' rotation = 7") OF("elastic_micropolar"),
+    PLANE("'hexagonal'") OF("mplm_bilinear"),
+    PLANE("'hexagonal'") OF("splm_elastic"),
+    PLANE("'hexagonal'") OF("splm_concrete"),
+    PLANE("'hexagonal' shells = 3") OF("lps"),
+    PLANE("'square' horizon = 3.015") OF("lps"),
+    PLANE("'square' horizon = 3.015") OF("pmb"),
+    PLANE("'square' horizon = 1.5") OF("pmb"),
+    PLANE("'blue_noise' seed = 3") OF("pmb"),
+    PLANE("'blue_noise' seed = 3") OF("splm_elastic"),
+    SPACE("'cubic' shells = 2") OF("pmb"),
+    SPACE("'fcc' shells = 2") OF("splm_elastic"),
+    SPACE("'fcc'") OF("pmb"),
+    SPACE("'fcc' shells = 2") OF("eps"),
+    SPACE("'fcc'") OF("lps"),
+};
+
+/* Strains of some 1e-4, not alike anywhere, and what a few steps make of them. */
+static void shake(sweep *w) {
+  const rows *g = w->body->lattice;
+  for (long q = 0; q < g->size; q++)
+    for (int d = 0; d < w->body->dof; d++) {
+      const double phase = 190 * g->x[q] + 130 * g->y[q] + (g->z ? 160 * g->z[q] : 0) + d;
+      if (g->present[q])
+        w->body->displacement[d][q] = (d < g->dimensions ? 2e-6 : 1e-4) * sin(phase);
+    }
+  for (int k = 0; k < 5; k++)
+    assert_true(sweep_step(w));
+}
+
+static uint64_t bits_of_fields(const sweep *w) {
+  uint64_t bits = 0;
+  for (int f = 0; f < w->law->field_count; f++)
+    for (long k = 0; k < sweep_planes(w, w->law->fields[f].place) * w->body->lattice->size; k++) {
+      uint64_t one;
+      memcpy(&one, &w->new_field[f][k], sizeof one);
+      bits = (bits ^ one) * UINT64_C(0x100000001b3);
+    }
+  return bits;
+}
+
+typedef struct sums {
+  const rows *lattice;
+  int dof;
+  double *force[PL_MAX_DOF], largest, unequal;
+  long bonds;
+} sums;
+
+static void add(void *to, const bond_force *b) {
+  sums *s = to;
+  s->bonds++;
+  assert_true(rows_has_bond(s->lattice, b->owner, b->direction));
+  assert_int_equal(b->partner, rows_partner(s->lattice, b->owner, b->direction));
+  for (int d = 0; d < s->dof; d++) {
+    s->force[d][b->owner] += b->on_owner[d];
+    s->force[d][b->partner] += b->on_partner[d];
+    s->largest = fmax(s->largest, fabs(b->on_owner[d]));
+    if (d < s->lattice->dimensions)
+      s->unequal = fmax(s->unequal, fabs(b->on_owner[d] + b->on_partner[d]));
+  }
+}
+
+static sums sums_new(const sweep *w) {
+  sums s = {.lattice = w->body->lattice, .dof = w->body->dof};
+  for (int d = 0; d < s.dof; d++)
+    s.force[d] = calloc((size_t)s.lattice->size, sizeof(double));
+  return s;
+}
+
+static void sums_free(sums *s) {
+  for (int d = 0; d < s->dof; d++)
+    free(s->force[d]);
+}
+
+static void assert_sums_are_those_observed(const sweep *w, bond_forces *f) {
+  sums s = sums_new(w);
+  double off = 0;
+  bond_forces_find(f, -1);
+  bond_forces_each(f, NULL, add, &s);
+  for (int d = 0; d < s.dof; d++)
+    for (long q = 0; q < s.lattice->size; q++)
+      if (s.lattice->present[q]) off = fmax(off, fabs(s.force[d][q] - w->body->force[d][q]));
+  assert_int_equal(s.bonds, s.lattice->bond_count);
+  assert_true(s.largest > 1);
+  assert_true(off < 1e-14 * s.largest);
+  assert_true(s.unequal < 1e-14 * s.largest);
+  sums_free(&s);
+}
+
+/* In any form that laws of models/ take on rows and on lists. What was observed stays. */
+static void they_add_up_to_the_forces_on_particles(void **state) {
+  (void)state;
+  for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
+    deck_case c;
+    assert_true(deck_case_text(&c, decks[n]));
+    sweep *w = simulation_state(c.simulation, 0);
+    shake(w);
+    bond_forces *f = bond_forces_new(w);
+    sweep_observe(w);
+    assert_sums_are_those_observed(w, f);
+    uint64_t before = bits_of_fields(w);
+    assert_true(sweep_step(w));
+    sweep_observe(w);
+    before = bits_of_fields(w);
+    assert_sums_are_those_observed(w, f);
+    assert_int_equal(bits_of_fields(w), before);
+    bond_forces_free(f);
+    deck_case_close(&c);
+  }
+}
+
+typedef struct chosen {
+  double *force[PL_MAX_DOF]; /* [directions * size] on owners */
+  const rows *lattice;
+  const uint64_t *wanted;
+} chosen;
+
+static void keep(void *to, const bond_force *b) {
+  const chosen *all = to;
+  for (int d = 0; d < all->lattice->dimensions; d++)
+    all->force[d][b->direction * all->lattice->size + b->owner] = b->on_owner[d];
+}
+
+static void compare(void *to, const bond_force *b) {
+  chosen *all = to;
+  assert_true(all->wanted[b->owner] >> b->direction & 1);
+  for (int d = 0; d < all->lattice->dimensions; d++) {
+    double *force = &all->force[d][b->direction * all->lattice->size + b->owner];
+    assert_memory_equal(force, &b->on_owner[d], sizeof(double));
+    *force = NAN; /* comes once */
+  }
+}
+
+static void those_asked_for_are_as_among_all(void **state) {
+  (void)state;
+  for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
+    deck_case c;
+    assert_true(deck_case_text(&c, decks[n]));
+    sweep *w = simulation_state(c.simulation, 0);
+    const rows *g = w->body->lattice;
+    shake(w);
+    bond_forces *f = bond_forces_new(w);
+    uint64_t *wanted = calloc((size_t)g->size, sizeof *wanted);
+    chosen all = {.lattice = g, .wanted = wanted};
+    for (int d = 0; d < g->dimensions; d++)
+      all.force[d] = calloc((size_t)(g->directions * g->size), sizeof(double));
+    for (long q = 0; q < g->size; q++)
+      if (fabs(g->x[q] - 0.02) < 0.012) wanted[q] = UINT64_C(0x5b) * (uint64_t)(q % 5);
+    bond_forces_find(f, -1);
+    bond_forces_each(f, NULL, keep, &all);
+    bond_forces_each(f, wanted, compare, &all);
+    for (int d = 0; d < g->dimensions; d++)
+      free(all.force[d]);
+    free(wanted);
+    bond_forces_free(f);
+    deck_case_close(&c);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(they_add_up_to_the_forces_on_particles),
+      cmocka_unit_test(those_asked_for_are_as_among_all),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
