@@ -18,13 +18,14 @@
 
    and count = 8: five absent bonds fill the vector. Arrays hold, per degree of freedom,
    displacement (m) and velocity (m/s) components first, then rotations (rad, rad/s). Strips are of
-   the plane; dof = 2 (central) or 3 (micropolar).
+   the plane; dof = 2 (central) or 3 (micropolar). Those of a micropolar law in space are for probes
+   of single bonds, which bend in the plane and twist: dof = 4, the last rotation is about the bond.
 
    A law that reads a particle's whole family comes as programs instead: passes over runs of
    particles, one after the other over the whole body. A pass reads what neighbours had at the
    beginning of the step, and what earlier passes of the program left in links. In the plane or in
-   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6 in
-   space (about x, y, z); of all others dof = dimensions. */
+   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6
+   in space (about x, y, z); of all others dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 
@@ -236,14 +237,15 @@ typedef struct pl_program {
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
-   moments M_i, M_j of the bond (on the particles the opposite). */
+   moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on end
+   j. */
 typedef struct pl_law {
   int abi;          /* PL_KERNEL_ABI; checked at load */
   int kind;         /* pl_law_kind */
   int topology;     /* pl_topology; laws of bonds: PL_ROWS */
   int dimensions;   /* 2, or 3 */
   int dof;          /* per particle */
-  int force_planes; /* 2 central, 4 micropolar */
+  int force_planes; /* 2 central, 4 micropolar, 5 where bonds twist */
   const char *name; /* "mplm_bilinear" */
   const char *key;  /* hash of law, options, compiler and flags */
   int parameter_count;

@@ -78,8 +78,10 @@ typedef struct law {
   law_setting setting; /* first that the law names; may be changed before it is lowered */
   bool irregular;      /* lowered for particles that stand on no lattice */
   int neighbours;      /* of a full family, where they are known; else 0 */
-  /* Lowered for bonds that bend across two axes and twist: bending quantities are vectors across
-     the bond, in the axes of the lattice. Else they are numbers, and no bond twists. */
+  /* Lowered for bonds that twist: in space. Else `twist` is 0 and `moment T` nothing. */
+  bool twists;
+  /* and that bend about all axes: bending quantities are vectors across the bond, in the axes of the
+     lattice. Else they are numbers. */
   bool bends_in_space;
   arena *memory; /* not owned */
   const source_set *sources;

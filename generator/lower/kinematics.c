@@ -197,7 +197,7 @@ static void find_length(ir *g, bond_kinematics *k, const chord_motion *m, bool n
 }
 
 /* Divisions are what such loops spend their time on: here there is none. */
-bond_kinematics kinematics_bond(ir *g, bool rotations) {
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   bond_kinematics k = {0};
   k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   const chord_motion m = motion_of_chord(g, k.s);
@@ -212,9 +212,16 @@ bond_kinematics kinematics_bond(ir *g, bool rotations) {
   const ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
   k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), per_s), "stretch_rate");
   k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
+  k.twist = k.twist_rate = IR_NONE;
   if (rotations) {
     find_end_rotations(g, k.s, k.per_length, &m, &k.theta_i, &k.theta_j);
     rotation_rates(g, &k, e, dv);
+  }
+  if (twists) {
+    ir_node i = kinematics_input(g, ENDS_PHI_IX), j = kinematics_input(g, ENDS_PHI_JX);
+    k.twist = named(g, ir_sub(g, j, i), "twist");
+    i = kinematics_input(g, ENDS_OMEGA_IX), j = kinematics_input(g, ENDS_OMEGA_JX);
+    k.twist_rate = ir_sub(g, j, i);
   }
   return k;
 }
@@ -328,7 +335,7 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool 
 
 bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i,
                               ir_node M_j) {
-  bond_forces f = {ir_mul(g, N, k->e_x), ir_mul(g, N, k->e_y), IR_NONE, IR_NONE};
+  bond_forces f = {ir_mul(g, N, k->e_x), ir_mul(g, N, k->e_y), IR_NONE, IR_NONE, IR_NONE};
   if (M_i != IR_NONE) {
     /* n = (-e_y, e_x) */
     ir_node shear = named(g, ir_mul(g, ir_add(g, M_i, M_j), k->per_length), "V");

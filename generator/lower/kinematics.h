@@ -13,7 +13,8 @@
    1 where the damage of the bond stays as it is, else 0 (a number; the graph asks 0 < protected).
    HELD: the same for particle i or j, in families; what belongs to particle i is ON_PARTICLE there.
    The rotation in a plane and the third direction share component 2; in space the rotations PHI_X,
-   PHI_Y, PHI_Z follow. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know it. */
+   PHI_Y, PHI_Z follow. Of a bond in a plane that twists PHI_X and OMEGA_X are about the bond.
+   TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
   X(U_IX, "u_ix", FROM_DISPLACEMENT, OF_I, 0)                                                      \
@@ -54,7 +55,9 @@
   X(PHI_IZ, "phi_iz", FROM_DISPLACEMENT, OF_I, 5)                                                  \
   X(PHI_JX, "phi_jx", FROM_DISPLACEMENT, OF_J, 3)                                                  \
   X(PHI_JY, "phi_jy", FROM_DISPLACEMENT, OF_J, 4)                                                  \
-  X(PHI_JZ, "phi_jz", FROM_DISPLACEMENT, OF_J, 5)
+  X(PHI_JZ, "phi_jz", FROM_DISPLACEMENT, OF_J, 5)                                                  \
+  X(OMEGA_IX, "omega_ix", FROM_VELOCITY, OF_I, 3)                                                  \
+  X(OMEGA_JX, "omega_jx", FROM_VELOCITY, OF_J, 3)
 
 typedef enum ends_input {
 #define X(code, name, array, owner, component) ENDS_##code,
@@ -100,14 +103,16 @@ typedef struct bond_kinematics {
   ir_node e_x, e_y;                   /* present direction, i to j */
   ir_node per_length;                 /* 1/length, 1/m */
   ir_node theta_rate_i, theta_rate_j; /* rad/s */
+  ir_node twist, twist_rate;          /* rad, rad/s; of bonds that do not twist IR_NONE */
 } bond_kinematics;
 
 /* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without
    rotations the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for
    small displacements. The end rotations are those of the particles less the chord's, phi = atan2(C
    x c, C . c), wrapped to (-pi, pi]; with rotations it is expected (ir_expect) that chords move by
-   less than a sixteenth of their length, and that angles stay below half a turn. */
-bond_kinematics kinematics_bond(ir *g, bool rotations);
+   less than a sixteenth of their length, and that angles stay below half a turn. The twist is the
+   difference of the rotations about the bond. */
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row.
    Rotations are of the plane (end_rotations.h has those in space).
@@ -131,6 +136,7 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool 
 typedef struct bond_forces {
   ir_node f_x, f_y;           /* what particle i receives, and j the opposite */
   ir_node moment_i, moment_j; /* end moments: particles receive the opposite */
+  ir_node twisting; /* the moment on end j about the bond; on i the opposite; or IR_NONE */
 } bond_forces;
 bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i, ir_node M_j);
 

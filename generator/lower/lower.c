@@ -247,7 +247,7 @@ static void lower_moments(lowering *c, lowered_law *out) {
     out->M_i[k] = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I, k);
     out->M_j[k] = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J, k);
   }
-  if (c->law->bends_in_space) out->T = twisting_moment(c, out->W);
+  if (c->law->twists) out->T = twisting_moment(c, out->W);
 }
 
 static void lower_bond_results(lowering *c, lowered_law *out) {

@@ -126,11 +126,11 @@ ir_node lower_stored_energy(ir *g, const law *l, const lowered_law *frozen) {
 }
 
 ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
-                         ir_node theta_rate_j) {
+                         ir_node theta_rate_j, ir_node twist_rate) {
   energy_parts p = parts_at_zero_rate(g, l, frozen);
-  ir_node whole[] = {frozen->N, frozen->M_i[0], frozen->M_j[0]};
+  ir_node whole[] = {frozen->N, frozen->M_i[0], frozen->M_j[0], frozen->T};
   ir_node length_rate = ir_mul(g, lower_quantity(g, QUANTITY_STRETCH_RATE), p.s);
-  ir_node rate[] = {length_rate, theta_rate_i, theta_rate_j};
+  ir_node rate[] = {length_rate, theta_rate_i, theta_rate_j, twist_rate};
   ir_node power = IR_NONE, stretch_rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   for (int k = 0; k < p.count; k++) {
     if (!rewrite_depends(g, &whole[k], 1, &stretch_rate, 1)) continue;

@@ -22,7 +22,7 @@ static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
   if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
-  if (q == QUANTITY_TWIST && !c->law->bends_in_space) return scalar(ir_constant(c->graph, 0));
+  if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
   if (q == QUANTITY_DIRECTION) return lower_direction(c->graph, c->law);
   return scalar(lower_quantity(c->graph, q));

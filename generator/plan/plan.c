@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/plan_strips.h"
@@ -71,13 +72,14 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
 
 kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
   if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
-  kernel_plan *plan = plan_begin(l);
   bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
+  bool twists = micropolar && l->setting == SETTING_SPACE;
+  kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l);
   keep_variation(plan, v);
   plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
   plan->dimensions = 2;
-  plan->dof = micropolar ? 3 : 2;
-  plan->force_planes = micropolar ? 4 : 2;
+  plan->dof = (micropolar ? 3 : 2) + twists;
+  plan->force_planes = (micropolar ? 4 : 2) + twists;
   plan = finish(plan, plan_strips(plan, d), d);
   if (!plan) return NULL;
   ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);

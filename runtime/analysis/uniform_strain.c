@@ -33,8 +33,8 @@ typedef struct probe {
   double *force[3]; /* [size] by strain: N */
   double volume;    /* m^3 that stresses act in */
   double *left;     /* [particle_count * strains] */
-  double *moment,
-      *way; /* [rotations * size] N m left, and where to turn to; NULL without rotations */
+  double *moment;   /* [rotations * size] N m left; NULL without rotations */
+  double *way;      /* the same: where to turn to */
 } probe;
 
 /* Engineering shear: both halves; nothing turned. */
@@ -93,18 +93,25 @@ static double largest_of(long count, const double *x) {
   return most;
 }
 
-/* Particles turn until no moments are left on them (conjugate gradients, Hestenes and Stiefel 1952):
-   moments are linear in rotations as small as these. Those that nothing holds stay. */
+/* What rounding leaves of moments, squared: of all forces at the arm of a spacing. */
+static double rounding(const probe *p) {
+  double square = 0;
+  for (int d = 0; d < p->dimensions; d++)
+    square += dot(p->lattice->size, p->body->force[d], p->body->force[d]);
+  return 1e-28 * square * p->lattice->spacing * p->lattice->spacing;
+}
+
+/* Particles turn until no moments are left on them (conjugate gradients, Hestenes and Stiefel
+   1952): moments are linear in rotations as small as these. Those that nothing holds stay. */
 static void balance_moments(const probe *p) {
   enum { MOST_STEPS = 200 };
-  const double enough = 1e-20; /* of the square of all moments */
   const long count = turning_count(p);
   sweep_find_forces(p->sweep);
   for (long k = 0; k < count; k++)
     p->way[k] = p->moment[k] = moment_at(p, k);
   double square = dot(count, p->moment, p->moment);
-  const double first = square;
-  for (int step = 0; step < MOST_STEPS && square > enough * first; step++) {
+  const double enough = pl_fmax(1e-20 * square, rounding(p));
+  for (int step = 0; step < MOST_STEPS && square > enough; step++) {
     const double size = strain_size / largest_of(count, p->way);
     const double against = resistance(p, size), before = square;
     if (!(against > 0)) {

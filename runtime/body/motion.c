@@ -39,8 +39,8 @@ static inline __attribute__((always_inline)) void drift(const body *w, int dof, 
     }
 }
 
-/* Half the angle's cosine, and its sine over the length of the vector: a unit quaternion is (*cosine,
-   sine r). */
+/* Of a rotation vector r half the angle's cosine, and its sine over the angle: the unit quaternion
+   is (*cosine, sine r). */
 static inline __attribute__((always_inline)) double half_sine(const double r[3], double *cosine) {
   const double length = sqrt(r[0] * r[0] + r[1] * r[1] + r[2] * r[2]);
   const double angle = pl_fmax(length, 1e-150), sine = pl_sin(0.5 * angle);

@@ -2,8 +2,8 @@
    values of field NAME are values_of_NAME in runtime/simulation/frames.c.
 
    X(name, unit, components, exists, kind, words), in the order of results. Components: VECTOR (one
-   for each direction of space), ROTATION (one for each axis) or SCALAR. Exists: in which runs. Kind as in results: "damage" of
-   the law, else "other". */
+   for each direction of space), ROTATION (one for each axis) or SCALAR. Exists: in which runs. Kind
+   as in results: "damage" of the law, else "other". */
 #ifndef PERILAT_RUNTIME_OUTPUT_FIELDS_H
 #define PERILAT_RUNTIME_OUTPUT_FIELDS_H
 

@@ -1,7 +1,7 @@
 /* How fast laws of families are: state-based lattices on the hexagon and on the face-centred cubic
    lattice with 18 neighbours, beams between these, the linear peridynamic solid with 122, each on
-   about 100 000 particles, moved by a naive program, by a hand-written loop and by the generated kernel, in one
-   process on one core.
+   about 100 000 particles, moved by a naive program, by a hand-written loop and by the generated
+   kernel, in one process on one core.
 
    All must reach the same motion from the same start before anything is timed. Each is then timed
    in turn, round after round, by the thread's processor time.

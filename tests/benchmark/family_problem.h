@@ -28,8 +28,8 @@ motions motions_new(const rows *lattice, int dof);
 void motions_free(motions *m);
 
 /* Each particle is moved at random by up to `stretch` spacings in each direction and turned by as
-   many rad, and flies at a random velocity that takes it as far within some steps. The same numbers whenever and wherever it
-   is called. */
+   many rad, and flies at a random velocity that takes it as far within some steps. The same numbers
+   whenever and wherever it is called. */
 void motions_start(motions *m, const family_problem *p, double stretch);
 
 /* To and from displacements in spacings and velocities in spacings a step; rotations are left out.
@@ -39,9 +39,9 @@ void motions_scale(double *const *u, double *const *v, const motions *from,
 void motions_unscale(motions *to, double *const *u, double *const *v, const family_problem *p);
 
 /* Largest difference of two displacements, relative to the largest displacement of `a`; of
-   velocities likewise, and of rotations; the largest of these. Of particles that are further than `margin` spacings
-   from the outline of a body that is a rectangle or box. NaN counts as infinite; without particles
-   0. */
+   velocities likewise, and of rotations; the largest of these. Of particles that are further than
+   `margin` spacings from the outline of a body that is a rectangle or box. NaN counts as infinite;
+   without particles 0. */
 double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin);
 
 /* A program that moves such a body: memory is its own; `set` starts with virgin fields. */

@@ -3,12 +3,12 @@
 
    A bond of length s has stiffnesses k_n along it and k_s across it (N/m; of the second and farther
    shells k_n2, k_s2) and k_t of its twist (N m). With the chord's direction e now and the end's
-   turned reference direction R e0 the end's bending is b = e x R e0 and the twist w the axial vector
-   of the skew part of R_j R_i^T along e:
+   turned reference direction R e0 the end's bending is b = e x R e0 and the twist w the axial
+   vector of the skew part of R_j R_i^T along e:
      N = k_n s stretch,  M_i = k_s s^2/6 (2 b_i + b_j),  M_j likewise,  T = k_t w
    force on i: N e - S, on j the opposite, S = (M_i + M_j) x e/l; moments on i: T e - M_i, on j:
-   -T e - M_j: in balance exactly. R is the rotation of the vector theta (Rodrigues), so that a rigid
-   motion leaves no force. */
+   -T e - M_j: in balance exactly. R is the rotation of the vector theta (Rodrigues), so that a
+   rigid motion leaves no force. */
 #ifndef PERILAT_TESTS_BEAM_LAW_H
 #define PERILAT_TESTS_BEAM_LAW_H
 

@@ -197,12 +197,27 @@ static double largest_force(const turning_body *b) {
   return most;
 }
 
+/* Every other particle has turned by a whole turn less: it stands the same. */
+static void take_whole_turns(turning_body *b) {
+  for (long k = 0; k < b->p->inside_count; k += 2) {
+    const long site = b->p->inside[k];
+    double square = 0;
+    for (int d = dimensions_of(b); d < b->law->dof; d++)
+      square += b->p->displacement[d][site] * b->p->displacement[d][site];
+    for (int d = dimensions_of(b); d < b->law->dof; d++)
+      b->p->displacement[d][site] *= 1 - 2 * acos(-1) / sqrt(square);
+  }
+}
+
 static void assert_rotation_is_free(const char *kind, int shells, const double r[3]) {
   turning_body *b = open_free("tests/generator/laws/frame", kind, shells, INTERPRETED);
   turn_body(b, r);
-  patch_step(b->p);
-  const double left = largest_force(b) / parameter(b, "EA");
-  if (!(left < 1e-12)) fail_msg("%s turned by %g, %g, %g: %.3g EA", kind, r[0], r[1], r[2], left);
+  for (int apart = 0; apart < 2; apart++) {
+    patch_step(b->p);
+    const double left = largest_force(b) / parameter(b, "EA");
+    if (!(left < 1e-12)) fail_msg("%s turned by %g, %g, %g: %.3g EA", kind, r[0], r[1], r[2], left);
+    take_whole_turns(b);
+  }
   close_body(b);
 }
 
@@ -217,6 +232,41 @@ static void rotation_leaves_no_force(void **state) {
         assert_rotation_is_free(plane[q], shells, about[k]);
     assert_rotation_is_free("cubic", 1, about[k]);
     assert_rotation_is_free("fcc", 2, about[k]);
+  }
+}
+
+/* The first output toward all neighbours, summed with weights that tell them apart. */
+static double sum_of_output(turning_body *b) {
+  double sum = 0;
+  patch_observe(b->p);
+  for (int k = 0; k < 2 * b->lattice->directions; k++)
+    for (long n = 0; n < b->p->inside_count; n++)
+      sum += (1 + k + sqrt((double)n)) * b->p->observed[1][k * b->p->size + b->p->inside[n]];
+  return sum;
+}
+
+/* Neither forces nor the law's `twist`. */
+static void whole_turns_change_nothing(void **state) {
+  (void)state;
+  static const char *const kinds[] = {"square", "fcc"};
+  for (int q = 0; q < 2; q++) {
+    turning_body *b = open_free("tests/generator/laws/frame", kinds[q], 1, INTERPRETED);
+    shake(b, 0.05, 0.4);
+    patch_step(b->p);
+    const long n = b->p->inside_count;
+    double *before = must_calloc((size_t)(b->law->dof * n), sizeof *before);
+    for (long k = 0; k < b->law->dof * n; k++)
+      before[k] = b->p->force[k / n][b->p->inside[k % n]];
+    const double output = sum_of_output(b);
+    take_whole_turns(b);
+    patch_step(b->p);
+    const double most = largest_force(b);
+    assert_true(fabs(sum_of_output(b) - output) <= 1e-12 * fabs(output));
+    assert_true((output != 0) == (b->law->dof == 6));
+    for (long k = 0; k < b->law->dof * n; k++)
+      assert_true(fabs(b->p->force[k / n][b->p->inside[k % n]] - before[k]) < 1e-12 * most);
+    free(before);
+    close_body(b);
   }
 }
 
@@ -594,6 +644,7 @@ static void lattice_in_space_is_isotropic(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(rotation_leaves_no_force),
+                                     cmocka_unit_test(whole_turns_change_nothing),
                                      cmocka_unit_test(forces_and_moments_are_in_balance),
                                      cmocka_unit_test(families_give_what_strips_give),
                                      cmocka_unit_test(work_is_the_energys),

@@ -109,6 +109,27 @@ static void a_particle_swings_about_each_axis(void **state) {
   }
 }
 
+/* Turned far about z, with a moment about y, held about x: the components of the rotation vector
+   are what is prescribed, though turns about one axis move the others. */
+static void prescribed_rotations_are_kept(void **state) {
+  (void)state;
+  const pl_law law = beams_in(SPACE, PL_ROWS);
+  small_run r = run_of(
+      &law, "&simulation end_time = 1e-2 step = 2e-6 /\n"
+            "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n" PAIR_IN_SPACE
+            "&support region = 'right' fix = 'xyz', 'rotation_x' /\n"
+            "&drive region = 'right' component = 'rotation_z' displacement = 0.5 rise = 1e-2 /\n"
+            "&force region = 'right' component = 'rotation_y' moment = 10 rise = 1e-3 /\n"
+            "&damping rate = 1000 /\n" WATCH("x", "displacement", "right", "rotation_x")
+                WATCH("y", "displacement", "right", "rotation_y")
+                    WATCH("z", "displacement", "right", "rotation_z"));
+  assert_int_equal(small_go(&r), STEP_END);
+  assert_true(fabs(small_last(&r, "z") - 0.5) < 1e-12);
+  assert_true(small_last(&r, "y") > 0.1);
+  assert_true(small_largest(&r, "x") == 0);
+  small_close(&r);
+}
+
 /* --- a body ----------------------------------------------------------------------------------- */
 
 static const char *const bodies[] = {
@@ -284,8 +305,8 @@ static void frames_hold_a_rotation_about_each_axis(void **state) {
 
 /* --- particles of unlike size ----------------------------------------------------------------- */
 
-/* Each turns as a ball of its own size: of volume V in the plane, where a mean one has V0 and half a
-   spacing r, with 2/5 m r^2 V/V0. */
+/* Each turns as a ball of its own size: of volume V in the plane, where a mean one has V0 and half
+   a spacing r, with 2/5 m r^2 V/V0. */
 static void particles_of_unlike_size_have_their_own_inertia(void **state) {
   (void)state;
   const pl_law law = beams_in(PLANE, PL_LIST);
@@ -358,6 +379,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_moment_bends_and_twists_a_beam),
       cmocka_unit_test(a_particle_swings_about_each_axis),
+      cmocka_unit_test(prescribed_rotations_are_kept),
       cmocka_unit_test(a_rigid_motion_leaves_no_force),
       cmocka_unit_test(a_spinning_body_keeps_its_momenta),
       cmocka_unit_test(neither_threads_nor_a_stop_change_bits),
