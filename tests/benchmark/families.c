@@ -15,6 +15,7 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "generator/kernel/model.h"
+#include "generator/lower/lowered.h"
 #include "runtime/base/subnormals.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
