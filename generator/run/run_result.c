@@ -90,6 +90,13 @@ static bool result_spares(run *r, const char *input) {
   return false;
 }
 
+/* Results that the motion at the start is taken from. */
+static bool result_spares_starts(run *r, const deck_initial *items, int count) {
+  for (int k = 0; k < count; k++)
+    if (items[k].value.path && !result_spares(r, items[k].value.path)) return false;
+  return true;
+}
+
 bool result_spares_inputs(run *r) {
   bool good = r->options->deck_text || result_spares(r, r->options->deck_path);
   for (int k = 0; k < r->open_models; k++)
@@ -103,7 +110,10 @@ bool result_spares_inputs(run *r) {
     good = result_spares(r, particles);
     free(particles);
   }
-  return good;
+  return good &&
+         result_spares_starts(r, r->deck->initial_velocitys, r->deck->initial_velocity_count) &&
+         result_spares_starts(r, r->deck->initial_displacements,
+                              r->deck->initial_displacement_count);
 }
 
 /* That of the compiled kernel, also where the law is interpreted. */
