@@ -5,6 +5,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/base/elementary.h"
 #include "dsl/semantics/formula.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_groups.h"
@@ -350,8 +351,8 @@ static void find_middle(const deck *k, const deck_material *m, double middle[3])
     if (region < 0 && !deck_same_name(k->bodys[b].lattice, m->lattice)) continue;
     shape_box(region < 0 ? &k->bodys[b].shape : &k->regions[region].shape, low, high);
     for (int c = 0; c < 3; c++) {
-      lower[c] = fmin(lower[c], low[c]);
-      upper[c] = fmax(upper[c], high[c]);
+      lower[c] = pl_fmin(lower[c], low[c]);
+      upper[c] = pl_fmax(upper[c], high[c]);
     }
   }
   for (int c = 0; c < 3; c++)

@@ -153,7 +153,7 @@ int main(int argc, char **argv) {
     const char *note;
     double values[16];
     const pl_law *law = model_kernel(&m, true, &note, error, sizeof error);
-    simulation_law laws = {law, values};
+    simulation_law laws = {law, values, NULL, 0};
     simulation *s = law && material_parameters(&m.values, law, values, &said) ? simulation_new(k, &laws, &said) : nullptr;
     while (s && simulation_advance(s, 100, nullptr) == STEP_OK)
       ;
