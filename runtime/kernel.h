@@ -159,6 +159,14 @@ typedef struct pl_family {
   const double *length;        /* [neighbours][plane] m */
   const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
   const double *volume, *mass; /* [count] of the particles: m^3, kg */
+  /* [varying_count] SI: the parameters that are not the same everywhere. On particles one plane, a
+     particle's own; on bonds one for each neighbour, `plane` doubles apart, the same from both
+     ends. Finite everywhere. */
+  const double *const *parameter;
+  /* [count] of laws that read it: 1 where the particle is of this law, 0 where of another. What a
+     bond bears and stores is half of each of its particles; this law's part of a half is the
+     particle's share. */
+  const double *share;
   /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T)
      on rows, on lists sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2,
      z^2, x y, y z, x z) of the bond's reference direction: upper triangle, row by row; shear counts
@@ -243,9 +251,11 @@ typedef struct pl_law {
   int parameter_count;
   const pl_parameter *parameters; /* [parameter_count] */
   int density; /* place in `parameters` of the mass density (kg/m^3) of particles, or -1 */
-  /* Parameters that strips read bond by bond; all else takes them as given to `prepare`. */
+  /* Parameters that strips and passes read bond by bond, or particle by particle; all else takes
+     them as given to `prepare`. */
   int varying_count;
   const int *varying; /* [varying_count] their places in `parameters` */
+  int varying_place;  /* pl_place: of laws of bonds on bonds, else on particles */
   int field_count;
   const pl_field *fields; /* [field_count] */
   int output_count;
@@ -286,6 +296,7 @@ typedef struct pl_law {
   int sum_count;
   int constant_sum_count; /* sums that the passes may keep from step to step; 0: none */
   int reads_shape;        /* the passes read `shape` */
+  int reads_share;        /* and `share` */
   /* a law of bonds in this form: its force depends on the bond's ends alone */
   int pairwise;
   pl_program step; /* new fields and the forces */

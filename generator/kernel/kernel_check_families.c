@@ -21,9 +21,11 @@ enum { OLD_FILLED, NEW_FILLED, SETTLED, MARKS };
 typedef struct body {
   const pl_law *law;
   int neighbours;
-  double **motion; /* [2 * dof][SIZE] displacements and rotations, their rates */
-  double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
-  double **before; /* [fields] */
+  double **motion;    /* [2 * dof][SIZE] displacements and rotations, their rates */
+  double **shape;     /* [PL_SHAPE_PLANES][SIZE] */
+  double **parameter; /* [varying][SIZE], on bonds as many for each neighbour */
+  double *share;      /* [SIZE] */
+  double **before;    /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
   uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
@@ -39,6 +41,11 @@ static bool is_list(const body *b) {
 
 static long planes_of(const body *b, const pl_field *f) {
   return f->place == PL_ON_PARTICLE ? 1 : b->neighbours;
+}
+
+/* Of a varying parameter. */
+static long parameter_planes(const body *b) {
+  return b->law->varying_place == PL_ON_PARTICLE ? 1 : b->neighbours;
 }
 
 static double **values_new(const body *b, const pl_field *fields, int count) {
@@ -74,6 +81,8 @@ static body body_new(const pl_law *law, int neighbours) {
   body b = {.law = law, .neighbours = neighbours};
   b.motion = planes_new(2 * law->dof, SIZE);
   b.shape = planes_new(PL_SHAPE_PLANES(law->dimensions), SIZE);
+  b.parameter = planes_new(law->varying_count, parameter_planes(&b) * SIZE);
+  b.share = must_calloc(SIZE, sizeof *b.share);
   b.before = values_new(&b, law->fields, law->field_count);
   for (int side = 0; side < 2; side++) {
     b.after[side] = values_new(&b, law->fields, law->field_count);
@@ -99,6 +108,8 @@ static body body_new(const pl_law *law, int neighbours) {
 static void body_free(body *b) {
   planes_free(b->motion, 2 * b->law->dof);
   planes_free(b->shape, PL_SHAPE_PLANES(b->law->dimensions));
+  planes_free(b->parameter, b->law->varying_count);
+  free(b->share);
   planes_free(b->before, b->law->field_count);
   for (int side = 0; side < 2; side++) {
     planes_free(b->after[side], b->law->field_count);
@@ -251,7 +262,19 @@ static void clear_shared(const body *b) {
       }
 }
 
-static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
+/* Near the uniform values. */
+static void draw_parameters(body *b, const double *parameters, uint64_t *seed) {
+  for (int k = 0; k < b->law->varying_count; k++) {
+    for (long q = 0; q < parameter_planes(b) * SIZE; q++)
+      b->parameter[k][q] = parameters[b->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
+    if (b->law->varying_place == PL_ON_BOND) match_ends(b, b->parameter[k]);
+  }
+  for (int q = 0; q < SIZE && b->law->reads_share; q++)
+    b->share[q] = (double)(draw_bits(seed) & 1);
+}
+
+static void draw_body(body *b, const pl_bond_class *bonds, const double *parameters,
+                      uint64_t *seed) {
   const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
   draw_motion(b, bonds->s, seed);
   draw_bonds(b, seed);
@@ -267,6 +290,7 @@ static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
       b->before[f][q] = draw_field(seed, &b->law->fields[f]);
   for (int f = 0; f < b->law->field_count; f++)
     if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
+  draw_parameters(b, parameters, seed);
   clear_pieces(b, seed);
   for (int k = 0; k < b->law->link_count; k++)
     for (int q = 0; q < SIZE; q++)
@@ -379,9 +403,11 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .ahead_only = ahead_only,
                  .held_near = any_held(b),
                  .unusual = b->unusual + site / PL_LANES,
+                 .share = b->share + site,
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
+  f.parameter = (const double *const *)from_site(&s, b->parameter, law->varying_count, site);
   f.old_filled = (const uint64_t *const *)marks_from_site(&s, b, b->marks[OLD_FILLED], site);
   f.new_filled = marks_from_site(&s, b, b->marks[NEW_FILLED], site);
   f.settled = marks_from_site(&s, b, b->marks[SETTLED], site);
@@ -519,7 +545,7 @@ long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, co
   body b = body_new(l->law[0], l->classes);
   long done = 0;
   for (; done < wanted; done += (long)SITES * l->classes) {
-    draw_body(&b, l->bonds, seed);
+    draw_body(&b, l->bonds, l->parameters, seed);
     for (int side = 0; side < 2; side++)
       run_program(l, &b, side, false);
     compare_step(c, &b);

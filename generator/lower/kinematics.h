@@ -9,7 +9,7 @@
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
    rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists
    of families); CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS:
-   of the particles (lists of families). PROTECTED: 1 where the damage of the bond stays as it is,
+   of the particles (lists of families). SHARE: of the particle's law in it (pl_family). PROTECTED: 1 where the damage of the bond stays as it is,
    else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families;
    what belongs to particle i is ON_PARTICLE there. The rotation in a plane and the third direction
    share component 2; in space the rotations PHI_X, PHI_Y, PHI_Z follow. Of a bond
@@ -46,6 +46,8 @@
   X(CLASS_CHORD_Z, "class_chord_z", FROM_CLASS, OF_STRIP, 2)                                       \
   X(HELD_I, "held_i", FROM_HELD, OF_I, 0)                                                          \
   X(HELD_J, "held_j", FROM_HELD, OF_J, 0)                                                          \
+  X(SHARE_I, "share_i", FROM_SHARE, OF_I, 0)                                                       \
+  X(SHARE_J, "share_j", FROM_SHARE, OF_J, 0)                                                       \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
   X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)                                                \
   X(PHI_IX, "phi_ix", FROM_DISPLACEMENT, OF_I, 3)                                                  \
@@ -72,6 +74,7 @@ typedef enum ends_array {
   FROM_LENGTH,
   FROM_VOLUME,
   FROM_MASS,
+  FROM_SHARE,
   FROM_CLASS,
   FROM_FLAGS,
   FROM_HELD, /* families: a particle's damage stays as it is */
@@ -87,8 +90,8 @@ typedef struct ends_origin {
 } ends_origin;
 extern const ends_origin ends_origins[ENDS_COUNT];
 
-/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I
-   and MASS_I on the particle; all others on the bond. */
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I,
+   MASS_I and SHARE_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
 
 /* asin(x)/x of the square of x, for |x| < 1/16. */

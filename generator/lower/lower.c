@@ -135,6 +135,30 @@ static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node inc
   return rule->when ? ir_select(c->graph, when, flown, old) : flown;
 }
 
+/* A field on bonds has one value, which both ends must find: of a parameter that differs from
+   particle to particle its rule reads the mean of both. What goes over a family, or is the
+   neighbour's, stays. */
+static ir_node of_both_ends(lowering *c, ir_node value) {
+  const law_variation *v = c->variation;
+  ir *g = c->graph;
+  const int nodes = ir_count(g);
+  if (v->varying_count == 0) return value;
+  ir_substitution *s = ir_substitution_new(g);
+  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
+  ir_mark(g, &value, 1, marks);
+  for (ir_node n = 0; n < nodes; n++)
+    if (marks[n] && (ir_operation(g, n) == IR_NEIGHBOUR || ir_is_reduction(ir_operation(g, n))))
+      ir_substitution_add(s, n, n);
+  for (int k = 0; k < v->varying_count; k++) {
+    const ir_node mine = lower_own_parameter(c, v->varying[k]);
+    ir_substitution_add(s, mine, half(g, ir_add(g, mine, ir_unary(g, IR_NEIGHBOUR, mine))));
+  }
+  value = ir_substitution_apply(s, value);
+  ir_substitution_free(s);
+  free(marks);
+  return value;
+}
+
 static void lower_field_rule(lowering *c, const stmt *rule) {
   const symbol *s = rule->symbol;
   if (c->mode == LOWER_FROZEN) return;
@@ -151,6 +175,7 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
   ir_node old = lower_field(c->graph, c->law, s->index);
   ir_node value = lower_expr(c, rule->value);
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
+  if (s->place == ON_BOND && lower_is_state_law(c)) value = of_both_ends(c, value);
   if (c->mode == LOWER_STEP) c->text.rules[s->index] = value;
   if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
   lower_name_node(c->graph, value, s->name, rule->where);
@@ -244,6 +269,14 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
   lower_name_node(c->graph, out->T, "T", nowhere);
 }
 
+/* What the law gives is the particle's, and where that is of another law, nothing. What the law
+   itself reads of its force state, a stress say, stays whole. */
+static void take_share(ir *g, lowered_law *out) {
+  const ir_node share = kinematics_input(g, ENDS_SHARE_I);
+  out->F = ir_mul(g, share, out->F);
+  if (out->W != IR_NONE) out->W = ir_mul(g, share, out->W);
+}
+
 static void lower_force_state(lowering *c, lowered_law *out) {
   const stmt *given = law_force_state(c->law);
   out->F = given ? value_of(c, given->symbol) : IR_NONE;
@@ -254,6 +287,7 @@ static void lower_force_state(lowering *c, lowered_law *out) {
     out->F = lower_force_state_of_energy(c, out->W);
   else if (lower_is_per_volumes(given->symbol->dim))
     out->F = lower_force_of_density(c->graph, c->law, out->F);
+  if (c->variation->shares) take_share(c->graph, out);
   lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
 }
 
@@ -349,9 +383,14 @@ static ir_node opaque_field(ir *g, const law *l, int k) {
 
 bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
                diagnostics *d) {
+  return lower_law_varying(l, g, mode, &(law_variation){.varying_count = 0}, memory, out, d);
+}
+
+bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation *v, arena *memory,
+                       lowered_law *out, diagnostics *d) {
   int fields = l->fields.count;
   size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
-  lowering c = {.law = l, .graph = g, .mode = mode, .memory = memory, .said = d};
+  lowering c = {.law = l, .graph = g, .mode = mode, .variation = v, .memory = memory, .said = d};
   *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE};
   for (int k = 0; k < BENDING_AXES; k++)
     out->M_i[k] = out->M_j[k] = IR_NONE;
@@ -384,7 +423,9 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
 ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d) {
   if (!bound) return ir_constant(g, infinite);
   arena *memory = arena_new();
-  lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = d};
+  const law_variation none = {.varying_count = 0};
+  lowering c = {
+      .law = l, .graph = g, .mode = LOWER_STEP, .variation = &none, .memory = memory, .said = d};
   ir_node n = lower_expr(&c, bound);
   free(c.bound);
   arena_free(memory);

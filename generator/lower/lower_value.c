@@ -17,15 +17,13 @@ static components lower_bending_quantity(const lowering *c, builtin_quantity q) 
   return v;
 }
 
-static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
+static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
   if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
   if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
-  if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c->graph, c->law);
-  if (builtin_quantities[q].shape == SHAPE_VECTOR)
-    return lower_failed_value(c, e->where, "vectors cannot be compiled in laws of bonds yet");
+  if (q == QUANTITY_DIRECTION) return lower_direction(c->graph, c->law);
   return scalar(lower_quantity(c->graph, q));
 }
 
@@ -65,9 +63,9 @@ static ir_node lower_choice_name(lowering *c, const expr *e) {
 static components lower_own_name(lowering *c, const expr *e) {
   switch (e->symbol->kind) {
   case SYMBOL_QUANTITY:
-    return lower_quantity_name(c, e, (builtin_quantity)e->symbol->index);
+    return lower_quantity_name(c, (builtin_quantity)e->symbol->index);
   case SYMBOL_PARAMETER:
-    return scalar(lower_parameter(c->graph, c->law, e->symbol->index));
+    return scalar(lower_own_parameter(c, e->symbol->index));
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
     return scalar(lower_field_name(c, e));
@@ -287,7 +285,8 @@ static ir_node lower_slope(lowering *c, const expr *e, ir_node f, ir_node x) {
                       "nothing can be differentiated by this in a plane");
   if (lower_is_state_law(c) && !ir_is_uniform(c->graph, f) && !ir_is_uniform(c->graph, x))
     return lower_fail(c, e->where,
-                      "in a law of families only a parameter can be differentiated by yet");
+                      "in a law of families only a parameter that is the same everywhere can be "
+                      "differentiated by yet");
   if (ir_count(c->graph) > MOST_NODES) /* derivatives of derivatives grow without another visit */
     return lower_fail(c, e->where,
                       "with its derivatives written out the law is too large to compile");

@@ -334,20 +334,35 @@ static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
   motion->to = to;
 }
 
-typedef struct shape_search {
+typedef struct input_search {
   const kernel_plan *plan;
-  bool reads_shape;
-} shape_search;
+  bool (*wanted)(const ir *g, ir_node input);
+  bool found;
+} input_search;
 
-static void look_for_shape(void *context, const ir_node *roots, int root_count) {
-  shape_search *c = context;
+static void look_for_input(void *context, const ir_node *roots, int root_count) {
+  input_search *c = context;
   const ir *g = c->plan->graph;
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   ir_mark(g, roots, root_count, needed);
-  for (ir_node n = 0; n < ir_count(g) && !c->reads_shape; n++)
-    c->reads_shape =
-        needed[n] && ir_operation(g, n) == IR_INPUT && ir_input_source(g, n) == IR_FROM_SHAPE;
+  for (ir_node n = 0; n < ir_count(g) && !c->found; n++)
+    c->found = needed[n] && ir_operation(g, n) == IR_INPUT && c->wanted(g, n);
   free(needed);
+}
+
+static bool reads(const kernel_plan *plan, bool (*wanted)(const ir *g, ir_node input)) {
+  input_search c = {.plan = plan, .wanted = wanted};
+  plan_visit(plan, look_for_input, &c);
+  return c.found;
+}
+
+static bool is_shape(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_SHAPE;
+}
+
+static bool is_share(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(g, input)].array == FROM_SHARE;
 }
 
 /* Operations of all segments of a step that are done for each neighbour; what is done once for both
@@ -407,8 +422,9 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   family_planner p = {.plan = plan, .g = plan->graph};
   plan_axes(plan);
   const law *l = plan->law;
-  if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
-      !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))
+  const law_variation *v = &plan->variation;
+  if (!lower_law_varying(l, p.g, LOWER_HELD, v, plan->memory, &p.step, d) ||
+      !lower_law_varying(l, p.g, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   if (plan->dimensions == 3 && reads_thickness(&p)) {
     diag_report(d, DIAG_CONFLICT, l->tree->name_where,
@@ -439,9 +455,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
                 PLAN_MOST_PASSES);
     return false;
   }
-  shape_search found = {.plan = plan};
-  plan_visit(plan, look_for_shape, &found);
-  plan->reads_shape = found.reads_shape;
+  plan->reads_shape = reads(plan, is_shape);
+  plan->reads_share = reads(plan, is_share);
   count_cost(plan);
   return true;
 }

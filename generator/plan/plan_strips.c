@@ -88,12 +88,13 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
 
 /* Parameters that differ from bond to bond, and the values that a strip brings. */
 static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
-  for (int k = 0; k < p->varying_count; k++) {
-    from[k] = lower_parameter(p->graph, p->law, p->varying[k]);
+  const law_variation *v = &p->variation;
+  for (int k = 0; k < v->varying_count; k++) {
+    from[k] = lower_parameter(p->graph, p->law, v->varying[k]);
     to[k] = ir_input(p->graph, IR_FROM_BOND_PARAMETER, k,
-                     p->law->parameters.items[p->varying[k]]->name, ON_BOND);
+                     p->law->parameters.items[v->varying[k]]->name, ON_BOND);
   }
-  return p->varying_count;
+  return v->varying_count;
 }
 
 /* Law-level inputs and the kinematics that take their place. */
@@ -144,7 +145,7 @@ static seen_law see_law(planner *p) {
   arena *memory = p->plan->memory;
   const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, l->twists);
   seen_law t = {.step = p->step};
-  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->varying_count);
+  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->variation.varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
   int pairs = kinematic_pairs(g, &k, from, to);

@@ -26,6 +26,8 @@ typedef struct patch {
   uint64_t *bonds, *held; /* [size] as in pl_family */
   double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF], *force[PL_MAX_DOF];
   double *shape[PL_SHAPE_PLANES(3)];
+  double **parameter;          /* [varying] the same everywhere */
+  double *share;               /* 1 everywhere */
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **sum;       /* of laws whose bonds add to both ends (pl_family) */

@@ -65,7 +65,7 @@ static void bond_part(const pl_bond_class *bonds, bond_form d, int dof, wave_par
 
 /* `definite`: no body of such bonds is faster. */
 static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
-                                const random_fields *fields, const rows *w, bool *definite) {
+                                const parameter_planes *fields, const rows *w, bool *definite) {
   crystal c = crystal_new(w, law->dof, w->directions);
   *definite = true;
   for (int k = 0; k < w->directions; k++) {
@@ -117,8 +117,8 @@ static bool blocks_are_definite(const crystal *c, double spacing) {
   return true;
 }
 
-static crystal crystal_of(const pl_law *law, const double *parameters, const random_fields *fields,
-                          const rows *w, bool *definite) {
+static crystal crystal_of(const pl_law *law, const double *parameters,
+                          const parameter_planes *fields, const rows *w, bool *definite) {
   if (law->kind != PL_STATE) return crystal_of_bonds(law, parameters, fields, w, definite);
   const crystal c = stencil_crystal(law, parameters, w);
   *definite = law->pairwise && blocks_are_definite(&c, w->spacing);
@@ -136,7 +136,7 @@ double stability_rounded(double x) {
   return strtod(digits, NULL);
 }
 
-static void take_body(const pl_law *law, const double *parameters, const random_fields *fields,
+static void take_body(const pl_law *law, const double *parameters, const parameter_planes *fields,
                       const rows *w, step_limit *out) {
   step_limit body = *out;
   body_limit(law, parameters, fields ? fields->value : NULL, w, &body);
@@ -145,14 +145,14 @@ static void take_body(const pl_law *law, const double *parameters, const random_
   out->least = body.least;
 }
 
-static void find_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+static void find_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                        const rows *w, step_limit *out) {
   bool definite;
   out->at_surface = false;
   out->least = 0;
-  if (w->list) {
+  if (w->list || (fields && law->kind == PL_STATE)) {
     out->limit = 0;
-    body_limit(law, parameters, NULL, w, out);
+    body_limit(law, parameters, fields ? fields->value : NULL, w, out);
     return;
   }
   crystal c = crystal_of(law, parameters, fields, w, &definite);
@@ -161,7 +161,7 @@ static void find_limit(const pl_law *law, const double *parameters, const random
   if (!definite && out->limit > 0) take_body(law, parameters, fields, w, out);
 }
 
-void stability_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+void stability_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                      const rows *w, step_limit *out) {
   find_limit(law, parameters, fields, w, out);
   out->limit = stability_rounded(out->limit);

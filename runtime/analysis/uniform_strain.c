@@ -343,10 +343,11 @@ bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *
   return finite;
 }
 
-bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
-                             bool plane_strain, uniform_response *out) {
+bool uniform_strain_response(const pl_law *law, const double *parameters, double *const *varying,
+                             const rows *w, bool plane_strain, uniform_response *out) {
   double C[MOST_STRAINS][MOST_STRAINS] = {{0}}, stress[MOST_STRAINS];
   probe p = probe_new(law, parameters, w);
+  p.sweep->parameter = varying;
   *out = (uniform_response){.unresolved = shape_unresolved(w, NULL)};
   for (int c = 0; c < p.strains; c++) {
     find_slopes(&p, c);

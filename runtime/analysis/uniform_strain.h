@@ -19,15 +19,16 @@ typedef struct uniform_response {
   long unresolved; /* particles whose bonds do not resolve all strains */
 } uniform_response;
 
-/* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart.
-   False where the law gives no finite forces or no stiffness. */
-bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
-                             bool plane_strain, uniform_response *out);
+/* Of a law of families on a body whose masses are set; `varying` as in sweep.h (NULL: none);
+   plane_strain tells the two planes apart. False where the law gives no finite forces or no
+   stiffness. */
+bool uniform_strain_response(const pl_law *law, const double *parameters, double *const *varying,
+                             const rows *w, bool plane_strain, uniform_response *out);
 
 /* Young's moduli (Pa) along x, y and z of a body as it stands on a lattice: of its middle part,
    away from the ends that each is loaded at, stress over the volume of the particles, sides free in
    the mean. A perfect body whose bonds along the load are all there has the lattice's; what its
-   other edges lack makes it softer. `varying` as in sweep.h (NULL: none). NaN in a direction in
+   other edges lack makes it softer. `varying` as above. NaN in a direction in
    which the body is too short to have a middle. False where the law gives no finite forces or no
    stiffness. */
 bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *const *varying,

@@ -228,6 +228,13 @@ static void find_shapes(sweep *w, family *f) {
   shape_matrices(w->body->lattice, f->shape);
 }
 
+static void new_shares(sweep *w, family *f) {
+  const long size = w->body->lattice->size;
+  f->whole = body_doubles(w->body, size);
+  for (long q = 0; q < size; q++)
+    f->whole[q] = 1;
+}
+
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->body->lattice->size;
@@ -254,6 +261,7 @@ static void new_blocks(sweep *w, family *f) {
   f->blocks = must_calloc((size_t)w->body->block_count, sizeof *f->blocks);
   for (int k = 0; k < w->body->block_count; k++) {
     family_block *b = &f->blocks[k];
+    b->parameter = body_apart(w->body, (size_t)law->varying_count * one);
     b->old_field = body_apart(w->body, fields);
     b->new_field = body_apart(w->body, fields);
     b->link = body_apart(w->body, (size_t)law->link_count * one);
@@ -293,6 +301,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
+  if (law->reads_share) new_shares(w, f);
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);
   if (!f->windows) new_links(w, f);

@@ -99,7 +99,11 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
 }
 
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  bond_values(of, of->body->state->parameter[from->index], values);
+  double *array = of->body->state->parameter[from->index];
+  if (of->body->law->varying_place == PL_ON_PARTICLE)
+    site_values(of, &array, 1, values);
+  else
+    bond_values(of, array, values);
 }
 
 /* --- fields of any law ------------------------------------------------------------------------ */
@@ -391,7 +395,7 @@ static void add_of_law(frame_set *f, int b) {
     add(f,
         (frame_field){.name = p->name,
                       .unit = p->unit,
-                      .on_bonds = true,
+                      .on_bonds = law->varying_place != PL_ON_PARTICLE,
                       .components = 1,
                       .body = b,
                       .kind = "other",

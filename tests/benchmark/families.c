@@ -15,6 +15,7 @@
 
 #include "dsl/semantics/law_variant.h"
 #include "generator/kernel/model.h"
+#include "generator/lower/lowered.h"
 #include "runtime/base/subnormals.h"
 #include "runtime/deck/deck_read.h"
 #include "runtime/interaction/interaction.h"
@@ -170,7 +171,9 @@ static const pl_law *compile(contest *c, model *m, bool irregular) {
   bool good = model_open(m, path, NULL, 0);
   if (good)
     m->law = law_on_lattice(m->law, c->setting, irregular, irregular ? 0 : 2 * c->rows->directions);
-  good = good && (m->law->tree->law == LAW_STATE ? model_plan(m) : model_plan_of_families(m));
+  good = good && (m->law->tree->law == LAW_STATE
+                      ? model_plan(m)
+                      : model_plan_of_families(m, &(law_variation){.varying_count = 0}));
   diag_print(&m->said, stderr);
   const pl_law *kernel = good ? model_kernel(m, false, &note, error, sizeof error) : NULL;
   if (!kernel) give_up("%s: %s", c->model, good ? error : "the law cannot be compiled");

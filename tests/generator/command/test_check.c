@@ -199,17 +199,20 @@ static void commands_agree(void **state) {
   expect(w, "check beam.nml --set lattice.horizon=1.2", 0, "no errors");
   expect(w, "info mplm_bilinear --horizon 1.8", 0, "stable step");
   expect(w, "check beam.nml --set lattice.horizon=1.8", 0, "no errors");
-  /* random fields need bonds */
+  /* random fields are for all laws */
   write_central(w, "plain", "  force N = E*s*t*stretch\n");
   snprintf(text, sizeof text,
            DECK_WITH("kind = 'square' spacing = '10 mm' thickness = '10 mm'",
                      "%s&field  parameter = 'E'  distribution = 'normal'  cv = 0.1  /\n", "plain"),
            plate);
   write_text(w, "field.nml", text);
-  expect(w, "check field.nml", 1,
-         "on this lattice the central law `plain` runs as one of families");
-  assert_non_null(strstr(w->said, "random fields need the hexagonal lattice"));
-  assert_null(strstr(w->said, "law of bonds: it runs"));
+  expect(w, "check field.nml", 0, "E differs from bond to bond");
+  expect(w, "check field.nml --set material.model=splm_elastic", 0,
+         "E differs from particle to particle");
+  expect(w, "check field.nml --set material.model=splm_elastic --set field.on=bond", 1,
+         "its parameters have values on particles");
+  expect(w, "check field.nml --set material.model=splm_elastic --set lattice.kind=blue_noise", 0,
+         "E differs from particle to particle");
   /* upper and lower case differ in laws */
   expect(w, "info plain.plm", 0, "stable step           2");
   shell(w, "sed 's/rho/Rho/' plain.plm > other.plm");

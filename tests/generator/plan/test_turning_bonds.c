@@ -78,7 +78,7 @@ static turning_body *open_body(const char *name, const char *kind, int shells, i
   const law_setting setting = b->lattice->dimensions == 3 ? SETTING_SPACE : SETTING_PLANE_STRESS;
   assert_true(model_open(&b->m, path, NULL, 0));
   b->m.law = law_on_lattice(b->m.law, setting, false, 2 * b->lattice->directions);
-  assert_true(model_plan_of_families(&b->m));
+  assert_true(model_plan_of_families(&b->m, &(law_variation){.varying_count = 0}));
   b->law = kernel_of(&b->m, how);
   assert_int_equal(b->law->kind, PL_STATE);
   assert_true(b->law->pairwise);
