@@ -2,6 +2,7 @@
 
 #include <math.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/deck/deck_check.h"
 #include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
@@ -90,7 +91,7 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
 
 /* A load without a history grows with the increments of a quasi-static run, up to its end. */
 static void spread(const deck_reader *r, const namelist_group *from, time_function *f) {
-  const double rest = fmin(r->k->simulation.end_time, time_function_end(f)) - f->start;
+  const double rest = pl_fmin(r->k->simulation.end_time, time_function_end(f)) - f->start;
   if (r->k->relaxation.increments < 1 || f->shape != TIME_CONSTANT || !(rest > 0)) return;
   if (namelist_find(from, "history")) return;
   f->shape = TIME_RAMP_HOLD;
