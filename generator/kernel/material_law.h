@@ -25,8 +25,8 @@ bool material_law_take_options(const deck_material *m, model *out, diagnostics *
    without them. */
 bool material_law_regional(const deck_material *m, const model *of, arena *memory,
                            deck_material *values, diagnostics *said);
-/* Plans the kernel that this lattice needs, and what differs in space: the material's random fields,
-   the values of its regions. */
+/* Plans the kernel that this lattice needs, and what differs in space: the material's random
+   fields, the values of its regions. */
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said);
 

@@ -9,11 +9,11 @@
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
    rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists
    of families); CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS:
-   of the particles (lists of families). SHARE: of the particle's law in it (pl_family). PROTECTED: 1 where the damage of the bond stays as it is,
-   else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families;
-   what belongs to particle i is ON_PARTICLE there. Rotations and third directions share component
-   2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
-   it. */
+   of the particles (lists of families). SHARE: of the particle's law in it (pl_family). PROTECTED:
+   1 where the damage of the bond stays as it is, else 0 (a number; the graph asks 0 < protected).
+   HELD: the same for particle i or j, in families; what belongs to particle i is ON_PARTICLE there.
+   Rotations and third directions share component 2: no topology has both. TIME_STEP: s, of the
+   strip; ON_BOND because `prepare` does not know it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
   X(U_IX, "u_ix", FROM_DISPLACEMENT, OF_I, 0)                                                      \

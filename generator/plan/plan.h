@@ -45,8 +45,8 @@ typedef enum pass_target {
    stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, the first
    planes of `in`. IR_FROM_FIELD k: field[k], or in[PL_STATE_INPUTS + k]. IR_FROM_ENDS: all strips.
    IR_FROM_BOND_PARAMETER k: in strips and families parameter[k], the value of parameter varying[k]
-   in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other passes take that parameter
-   as IR_FROM_PARAMETER. */
+   in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other passes take that
+   parameter as IR_FROM_PARAMETER. */
 typedef struct pass_root {
   ir_node node;
   pass_target target;

@@ -5,8 +5,8 @@
 #include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parity.h"
 
-/* Whether a value follows from motion, fields and parameters alone, without what goes over a family or was left
-   by a pass. */
+/* Whether a value follows from motion, fields and parameters alone, without what goes over a family
+   or was left by a pass. */
 static bool is_plain(builder *b, ir_node n) {
   int known = map_get(&b->plain, n);
   if (known >= 0) return known != 0;

@@ -13,8 +13,8 @@ void free_parameters(simulation_law *l);
 /* Only says what is wrong with the law's file and its options: of a material whose lattice is not
    known. */
 bool check_law_alone(run *r, const deck_material *m);
-/* The physics checks with the deck's parameters, also those of regions, on its lattice, which must have been built where
-   particles stand on none. */
+/* The physics checks with the deck's parameters, also those of regions, on its lattice, which must
+   have been built where particles stand on none. */
 bool obeys_mechanics(run *r, int lattice);
 
 #endif

@@ -39,8 +39,8 @@ static double triad(int threads) {
 
 /* What a step must move for a particle: displacements, velocities and fields are read and
    written once, and so is what one pass leaves to another, unless it stays in windows of rows;
-   marks of bonds, parameters that differ and what is known of the reference are read. Rows of bonds share marks; where
-   bonds add to both ends, their fields are hardly touched. */
+   marks of bonds, parameters that differ and what is known of the reference are read. Rows of bonds
+   share marks; where bonds add to both ends, their fields are hardly touched. */
 static double bytes_in(const run *r, int number) {
   const pl_law *kernel = r->laws[number].law;
   const sweep *w = simulation_state(r->simulation, number);

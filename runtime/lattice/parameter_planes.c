@@ -21,8 +21,8 @@ typedef struct value_places {
   long count;       /* particles or bonds */
 } value_places;
 
-/* A particle (partner < 0), or a bond from its owner to the partner, whose value stands at the owner
-   and in laws of families at the other end, too (`back`; else < 0). */
+/* A particle (partner < 0), or a bond from its owner to the partner, whose value stands at the
+   owner and in laws of families at the other end, too (`back`; else < 0). */
 typedef struct value_place {
   int64_t site, partner, at, back;
   int direction;

@@ -469,13 +469,13 @@ static void correlated_fields_are_smooth(void **state) {
 
 #define SQUARE                                                                                     \
   "&lattice name = 'c' kind = 'square' spacing = 0.01 thickness = 0.1 horizon = 1.5 /\n"           \
-  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n"
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.6, 0.6 /\n"
 #define FCC                                                                                        \
   "&lattice name = 'c' kind = 'fcc' spacing = 0.01 shells = 2 /\n"                                 \
   "&body lattice = 'c' shape = 'box' corner = 3*0 size = 3*0.2 /\n"
 #define NOISE                                                                                      \
   "&lattice name = 'c' kind = 'blue_noise' spacing = 0.01 thickness = 0.1 /\n"                     \
-  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n"
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.6, 0.6 /\n"
 
 static void write_table(const char *path, const char *text) {
   FILE *out = fopen(path, "w");
