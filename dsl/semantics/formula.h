@@ -1,5 +1,5 @@
-/* A formula: one expression by itself, of variables that its reader names. It is written and checked
-   as in a law, and has the values that it has there, to the bit. */
+/* A formula: one expression by itself, of variables that its reader names. It is written and
+   checked as in a law, and has the values that it has there, to the bit. */
 #ifndef PERILAT_DSL_FORMULA_H
 #define PERILAT_DSL_FORMULA_H
 

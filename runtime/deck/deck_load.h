@@ -70,8 +70,8 @@ typedef struct deck_load_kind {
    has. -1 after messages. */
 int deck_load_kind_of(arena *a, const namelist_group *g, const deck_load_kind *kinds, int count,
                       diagnostics *d);
-/* Reads the full value and the group's history, start, end, rise, times, values, file and formula. False after
-   messages. */
+/* Reads the full value and the group's history, start, end, rise, times, values, file and formula.
+   False after messages. */
 bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,
                     diagnostics *d);
 

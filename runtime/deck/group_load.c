@@ -140,8 +140,7 @@ static void check_drive(deck_reader *r, const namelist_group *from, void *into) 
 
 DECK_LIST(drive, .identity = "region", .check = check_drive,
           .doc = "Prescribed motion of a region from `start` to `end`; free before and after. Give "
-                 "`velocity` or "
-                 "`displacement`.");
+                 "`velocity` or `displacement`.");
 
 /* --- force ------------------------------------------------------------------------------------ */
 

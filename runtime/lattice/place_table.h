@@ -1,5 +1,5 @@
-/* Places and a value at each, of a table or of a result's last frame; the value of the place that is
-   nearest to another. */
+/* Places and a value at each, of a table or of a result's last frame; the value of the place
+   that is nearest to another. */
 #ifndef PERILAT_RUNTIME_PLACE_TABLE_H
 #define PERILAT_RUNTIME_PLACE_TABLE_H
 

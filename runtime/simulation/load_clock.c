@@ -42,8 +42,8 @@ double load_clock_part_after(const body *w, double start, double t) {
   return start <= 0 ? 1 : pl_fmin(pl_fmax((t - start) / w->time_step + 0.5, 0), 1);
 }
 
-/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. At the
-   end the last value falls away. */
+/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. At
+   the end the last value falls away. */
 double load_clock_acting(const load_clock *c, const body *w, const time_function *f, long step) {
   if (c->ramp > 0) return load_clock_value(c, w, f, time_function_at, step);
   const double t = load_clock_time(c, w, step), end = time_function_end(f),

@@ -33,8 +33,8 @@ double load_clock_value(const load_clock *c, const body *w, const time_function 
 /* Part of the time within half a step of t that comes after `start`: of a jump there, the part that
    counts. */
 double load_clock_part_after(const body *w, double start, double t);
-/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. At the
-   end the last value falls away. */
+/* What acts in the step: the value at its instant, of a jump nearby the part that is covered. At
+   the end the last value falls away. */
 double load_clock_acting(const load_clock *c, const body *w, const time_function *f, long step);
 
 #endif

@@ -70,8 +70,8 @@ static bool is_summed(const loads *l, const constraint *c) {
   return c->drive >= 0 && !drive_of(l, c)->is_displacement && drive_of(l, c)->motion.formula;
 }
 
-/* Slope of a displacement just after t, or just before. Of a formula through five places within half
-   a step, of the fourth order: reactions are by two orders less exact. */
+/* Slope of a displacement just after t, or just before. Of a formula through five places within
+   half a step, of the fourth order: reactions are by two orders less exact. */
 static double slope_at(const body *w, const time_function *f, double t, bool before) {
   if (!f->formula) return time_function_slope(f, before ? t - hardly(w) : t);
   static const double weight[] = {-25, 48, -36, 16, -3};
@@ -108,8 +108,8 @@ static double motion_in_increment(const loads *l, const body *w, const constrain
          time_function_way(&f, pl_fmax(l->clock.from, f.start), l->clock.to, PIECES);
 }
 
-/* Motion prescribed after `step` steps: m, rad. Since the drive's start, or what is summed up. After
-   its end it goes on straight. */
+/* Motion prescribed after `step` steps: m, rad. Since the drive's start, or what is summed up.
+   After its end it goes on straight. */
 static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return 0;
   if (l->clock.ramp > 0) return motion_in_increment(l, w, c, step);

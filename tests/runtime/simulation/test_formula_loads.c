@@ -1,5 +1,5 @@
-/* Loads by formulas of place and time: against closed forms, against the same loads given otherwise,
-   and that what lets the formula read the place reads that of each particle. */
+/* Loads by formulas of place and time: against closed forms, against the same loads given
+   otherwise, and that what lets the formula read the place reads that of each particle. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>

@@ -31,8 +31,8 @@ static void open_chain(small_run *r, const pl_law *law, const char *groups) {
 }
 
 /* Mode n of a free chain of N particles, cos(pi n (j + 1/2)/N): steps of leapfrog take it to
-   cos(omega' t), sin(omega' dt/2) = omega dt/2, and one that begins with a velocity to sin(omega' t)
-   over sin(omega' dt)/dt. */
+   cos(omega' t), sin(omega' dt/2) = omega dt/2, and one that begins with a velocity to
+   sin(omega' t) over sin(omega' dt)/dt. */
 static void expect_mode(const char *groups, double amplitude, bool thrown) {
   enum { MODE = 3, SITES = LINKS + 1 };
   small_run r;
