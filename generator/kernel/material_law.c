@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
 #include "generator/lower/lowered.h"
@@ -178,6 +179,30 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   return false;
 }
 
+/* A chain has the cross-section of a bar in place of a thickness, and families on one line resolve
+   no strain but that along it. */
+static bool suits_chain(const deck_material *m, const law *of, diagnostics *said) {
+  const bool families = of->tree->law == LAW_STATE;
+  if (!families && !law_reads(of, QUANTITY_T)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"), "the law `%s` %s", of->tree->name,
+              families ? "reads whole families, but a chain has bonds along one line alone"
+                       : "reads the thickness `t`, which a chain does not have");
+  diag_hint(said, "take a law of bonds that reads `area`, such as `bar`");
+  return false;
+}
+
+static bool suits_section(const deck_material *m, const deck_lattice *l, const law *of,
+                          diagnostics *said) {
+  if (!l) return true;
+  if (deck_lattice_is_chain(l)) return suits_chain(m, of, said);
+  if (!law_reads(of, QUANTITY_AREA)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` reads `area`, the cross-section of a bar, which chains alone have",
+              of->tree->name);
+  diag_hint(said, "give the lattice `kind = 'chain'` and an `area`, or take another law");
+  return false;
+}
+
 /* --- the plan --------------------------------------------------------------------------------- */
 
 /* The parameter of a &field in the law, or -1 after a message. */
@@ -280,7 +305,8 @@ static bool needs_families(const deck_lattice *l, const law *of) {
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said) {
   law_variation v;
-  if (!take_setting(m, l, out, said) || !find_variation(m, out, &v, said)) return false;
+  if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
+  if (!find_variation(m, out, &v, said)) return false;
   return l && needs_families(l, out->law) ? model_plan_of_families(out, &v)
                                           : model_plan_varying(out, &v);
 }
