@@ -8,6 +8,7 @@
 #include <cmocka.h>
 
 #include "runtime/interaction/bond_forces.h"
+#include "runtime/interaction/interaction.h"
 #include "tests/verification/case.h"
 
 #define HEAD "&simulation end_time = 1e-4 /\n&output sample = 1e-5 /\n"
@@ -149,6 +150,18 @@ typedef struct chosen {
   const uint64_t *wanted;
 } chosen;
 
+static chosen chosen_new(const rows *g, const uint64_t *wanted) {
+  chosen all = {.lattice = g, .wanted = wanted};
+  for (int d = 0; d < g->dimensions; d++)
+    all.force[d] = calloc((size_t)(g->directions * g->size), sizeof(double));
+  return all;
+}
+
+static void chosen_free(chosen *all) {
+  for (int d = 0; d < all->lattice->dimensions; d++)
+    free(all->force[d]);
+}
+
 static void keep(void *to, const bond_force *b) {
   const chosen *all = to;
   for (int d = 0; d < all->lattice->dimensions; d++)
@@ -175,18 +188,45 @@ static void those_asked_for_are_as_among_all(void **state) {
     shake(w);
     bond_forces *f = bond_forces_new(w);
     uint64_t *wanted = calloc((size_t)g->size, sizeof *wanted);
-    chosen all = {.lattice = g, .wanted = wanted};
-    for (int d = 0; d < g->dimensions; d++)
-      all.force[d] = calloc((size_t)(g->directions * g->size), sizeof(double));
+    chosen all = chosen_new(g, wanted);
     for (long q = 0; q < g->size; q++)
       if (fabs(g->x[q] - 0.02) < 0.012) wanted[q] = UINT64_C(0x5b) * (uint64_t)(q % 5);
     bond_forces_find(f, -1);
     bond_forces_each(f, NULL, keep, &all);
     bond_forces_each(f, wanted, compare, &all);
-    for (int d = 0; d < g->dimensions; d++)
-      free(all.force[d]);
+    chosen_free(&all);
     free(wanted);
     bond_forces_free(f);
+    deck_case_close(&c);
+  }
+}
+
+/* The same shaken body by the graph of the law, read node by node. */
+static void the_interpreter_finds_the_same_bits(void **state) {
+  (void)state;
+  for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
+    deck_case c;
+    assert_true(deck_case_text(&c, decks[n]));
+    sweep *w = simulation_state(c.simulation, 0);
+    const rows *g = w->body->lattice;
+    pl_law *read = plan_interpreted(c.model.plan);
+    sweep *other = interaction_new(g, read, c.law.parameters, w->body->time_step, 1, false, true);
+    uint64_t *all_bonds = calloc((size_t)g->size, sizeof *all_bonds);
+    chosen all = chosen_new(g, all_bonds);
+    memset(all_bonds, 0xff, (size_t)g->size * sizeof *all_bonds);
+    shake(w);
+    shake(other);
+    bond_forces *f = bond_forces_new(w), *others = bond_forces_new(other);
+    bond_forces_find(f, -1);
+    bond_forces_find(others, -1);
+    bond_forces_each(f, NULL, keep, &all);
+    bond_forces_each(others, NULL, compare, &all);
+    chosen_free(&all);
+    free(all_bonds);
+    bond_forces_free(f);
+    bond_forces_free(others);
+    sweep_free(other);
+    plan_interpreted_free(read);
     deck_case_close(&c);
   }
 }
@@ -195,6 +235,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(they_add_up_to_the_forces_on_particles),
       cmocka_unit_test(those_asked_for_are_as_among_all),
+      cmocka_unit_test(the_interpreter_finds_the_same_bits),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
