@@ -22,6 +22,7 @@
 #define PLANE(kind)                                                                                \
   HEAD "&lattice name = 'l' spacing = 0.01 thickness = 0.02 kind = " kind " /\n" PLATE
 #define SPACE(kind) HEAD "&lattice name = 'l' spacing = 0.01 kind = " kind " /\n" BALL
+#define FIELD       "&field parameter = 'E' distribution = 'normal' cv = 0.1 seed = 3 on = 'particle' /\n"
 #define OF(model)   "&material lattice = 'l' model = '" model "' /\n"
 
 static const char *const decks[] = {
@@ -41,6 +42,12 @@ static const char *const decks[] = {
     SPACE("'fcc'") OF("pmb"),
     SPACE("'fcc' shells = 2") OF("eps"),
     SPACE("'fcc'") OF("lps"),
+    SPACE("'fcc' shells = 2") OF("mplm_space"),
+    SPACE("'fcc'") OF("cohesive"),
+    PLANE("'square' horizon = 1.5") OF("cohesive"),
+    PLANE("'square' horizon = 3.015") OF("pmb") FIELD,
+    PLANE("'hexagonal'") OF("mplm_bilinear") FIELD,
+    SPACE("'fcc' shells = 2") OF("mplm_space") FIELD,
 };
 
 /* Strains of some 1e-4, not alike anywhere, and what a few steps make of them. */

@@ -37,6 +37,7 @@ static const elastic_case cases[] = {
     {SPACE("'fcc' rotation = 30 axis = 1, 2, 0") OF("pmb"), NAN},
     {SPACE("'fcc' shells = 2") OF("splm_elastic"), NAN},
     {SPACE("'fcc' shells = 2") OF("eps"), NAN},
+    {SPACE("'fcc' shells = 2 rotation = 30 axis = 1, 2, 0") OF("mplm_space"), NAN},
 };
 
 typedef struct tensor_case {
