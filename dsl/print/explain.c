@@ -5,6 +5,7 @@
 
 #include "dsl/base/characters.h"
 #include "dsl/print/explain_math.h"
+#include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/resolve.h"
 
 typedef struct page {
@@ -246,26 +247,12 @@ static void put_fields(const page *p) {
 
 /* --- quantities that the law reads ------------------------------------------------------------ */
 
-static void find_quantities(const expr *e, bool *read) {
-  if (!e) return;
-  if (e->symbol && e->kind == EXPR_NAME && e->symbol->kind == SYMBOL_QUANTITY)
-    read[e->symbol->index] = true;
-  find_quantities(e->left, read);
-  find_quantities(e->right, read);
-  for (int i = 0; i < e->argument_count; i++)
-    find_quantities(e->arguments[i].value, read);
-  for (int i = 0; i < e->case_count; i++) {
-    find_quantities(e->cases[i].value, read);
-    find_quantities(e->cases[i].guard, read);
-  }
-}
-
 static void put_quantities(const page *p) {
   static const char *const titles[] = {"symbol", "name", "unit", "meaning"};
   bool read[QUANTITY_COUNT] = {false}, any = false;
   for (const stmt *s = p->law->tree->first; s; s = s->next) {
-    find_quantities(resolved(p, s->value), read);
-    find_quantities(resolved(p, s->when), read);
+    quantities_read(resolved(p, s->value), read);
+    quantities_read(resolved(p, s->when), read);
   }
   for (int q = 0; q < QUANTITY_COUNT; q++)
     any |= read[q];

@@ -104,7 +104,7 @@ static void open_probes(bench *b) {
 static bool open_lattices(bench *b) {
   deck_lattice usual = physics_usual_lattice(b->law);
   const deck_lattice *given = b->options->lattice;
-  const double spacing = usual.spacing, thickness = usual.thickness;
+  const double spacing = usual.spacing, thickness = usual.thickness, area = usual.area;
   const int count = given ? 1 : BENCH_LATTICES;
   for (int k = 0; k < count; k++) {
     b->lattices[k] = implied_lattice_like(given ? given : &usual, 1);
@@ -113,6 +113,7 @@ static bool open_lattices(bench *b) {
     usual.spacing = spacing * pl_pow(2, draw_uniform(&b->seed, -2, 2));
     usual.thickness = thickness * pl_pow(2, draw_uniform(&b->seed, -2, 2));
     usual.stiffness_thickness = usual.mass_thickness = usual.thickness;
+    usual.area = area * pl_pow(usual.spacing / spacing, 2);
   }
   return true;
 }
@@ -212,15 +213,13 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
       bench_quantity(b, states, (builtin_quantity)q)[lane] = values[q];
 }
 
-/* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ, and it
-   may be a bar. */
+/* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ. */
 static pl_bond_class draw_class(bench *b, int lane, double density) {
   rows *w = b->lattices[lane ? draw_bits(&b->seed) % (uint64_t)b->lattice_count : 0];
   const int direction = lane ? (int)(draw_bits(&b->seed) % (uint64_t)(2 * w->directions)) : 0;
   rows_set_density(w, density);
   pl_bond_class c = rows_bond_class(w, direction);
   if (b->options->lattice) return c;
-  c.area = c.V / c.s;
   if (lane) c.mass_j *= pl_pow(2, draw_uniform(&b->seed, -1, 1));
   return c;
 }

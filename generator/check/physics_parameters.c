@@ -7,6 +7,7 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "dsl/semantics/law_limits.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/ir/random_values.h"
 #include "runtime/deck/lattice_kind.h"
 
@@ -74,5 +75,6 @@ void physics_draw_parameters(const law *l, uint64_t *seed, double *values) {
 }
 
 deck_lattice physics_usual_lattice(const law *l) {
+  if (law_reads(l, QUANTITY_AREA)) return lattice_default_chain(0.01, 1e-4);
   return lattice_default(law_setting_name(l->setting), 0.01, 0.1);
 }

@@ -8,6 +8,7 @@
 #include <strings.h>
 
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/law_reads.h"
 #include "generator/command/commands.h"
 #include "generator/drive/drive_bond.h"
 #include "generator/drive/drive_draw.h"
@@ -149,6 +150,20 @@ static bool is_of_families(const driving *r) {
   return r->law->kind == PL_STATE;
 }
 
+/* A bond of a chain has an area, another one a thickness. */
+static bool has_section(driving *r) {
+  const bool given = r->in->bond.area > 0;
+  if (is_of_families(r) || law_reads(r->model.law, QUANTITY_AREA) == given) return true;
+  if (given)
+    diag_report(&r->said, DIAG_CONFLICT, deck_where(&r->in->bond.item, "area"),
+                "the law `%s` does not read `area`", r->law->name);
+  else
+    diag_report(&r->said, DIAG_MISSING_KEY, r->in->bond.item.where,
+                "the law `%s` reads `area`: `&bond` must give it", r->law->name);
+  if (!given) diag_hint(&r->said, "such as &bond area = '100 mm^2' /");
+  return false;
+}
+
 /* Bonds stretch and turn, particles are strained; beyond the plane in space only. */
 static bool suits_law(driving *r) {
   for (int k = 0; k < r->in->piece_count; k++) {
@@ -269,6 +284,9 @@ static void describe(const driving *r) {
   if (t->of_families)
     printf("%s on one particle of a lattice (%s, %s), s = %.6g mm", r->law->name, like.kind,
            like.setting, 1e3 * like.spacing);
+  else if (b->area > 0)
+    printf("%s on one bond, s = %.6g mm, A = %.6g mm^2", r->law->name, 1e3 * b->spacing,
+           1e6 * b->area);
   else
     printf("%s on one bond, s = %.6g mm, t = %.6g mm", r->law->name, 1e3 * b->spacing,
            1e3 * b->thickness);
@@ -376,7 +394,7 @@ static int prepare(driving *r) {
   if (!r->in->material.model) return 0;
   int status = open_law(r);
   if (status) return status;
-  if (!suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
+  if (!has_section(r) || !suits_law(r) || !set_values(r) || !spares_inputs(r)) return INPUT_WRONG;
   if (is_of_families(r))
     drive_family_columns(r->in, r->model.law, r->law, &r->columns);
   else

@@ -234,7 +234,8 @@ typedef struct info_options {
 
 static bool asks_about_law(const info_options *o) {
   const info_law_options *l = &o->law;
-  return l->spacing || l->thickness || l->lattice || l->horizon || l->shells || l->setting_count;
+  return l->spacing || l->thickness || l->area || l->lattice || l->horizon || l->shells ||
+         l->setting_count;
 }
 
 static bool read_options(int argc, char **argv, const char **settings, info_options *o) {
@@ -249,6 +250,8 @@ static bool read_options(int argc, char **argv, const char **settings, info_opti
       o->law.spacing = value;
     else if ((value = option_value(argc, argv, &at, "--thickness", &bad)))
       o->law.thickness = value;
+    else if ((value = option_value(argc, argv, &at, "--area", &bad)))
+      o->law.area = value;
     else if ((value = option_value(argc, argv, &at, "--lattice", &bad)))
       o->law.lattice = value;
     else if ((value = option_value(argc, argv, &at, "--horizon", &bad)))

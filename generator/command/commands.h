@@ -125,6 +125,7 @@
   X(export, "--json", "", "as one JSON document on the standard output")                           \
   X(info, "--spacing", "L", "of the lattice that the law is put on, e.g. '10 mm'")                 \
   X(info, "--thickness", "T", "of the plate, e.g. '0.1 m'")                                        \
+  X(info, "--area", "A", "of the bar that a chain stands for, e.g. '100 mm^2'")                    \
   X(info, "--lattice", LATTICE_KINDS_OF_SITES, "kind of lattice; by the law if not given")         \
   X(info, "--horizon", "H",                                                                        \
     "neighbours up to so many spacings away; the nearest ones if not given")                       \

@@ -7,6 +7,7 @@
 #include <strings.h>
 #include <unistd.h>
 
+#include "dsl/semantics/law_reads.h"
 #include "generator/check/physics.h"
 #include "generator/command/law_facts.h"
 #include "generator/command/law_facts_json.h"
@@ -27,7 +28,8 @@ static void tell(const law_facts *f, const diagnostics *d) {
   diag_print(d, stderr);
 }
 
-static bool read_length(law_facts *f, const char *option, const char *text, double *value) {
+static bool read_size(law_facts *f, const char *option, const char *text, const char *in,
+                      double *value) {
   double number;
   int file = source_add(&f->sources, option, text, strlen(text));
   const span where = {0, (uint32_t)strlen(text), (uint16_t)file};
@@ -36,7 +38,7 @@ static bool read_length(law_facts *f, const char *option, const char *text, doub
     v.kind = NAMELIST_NUMBER;
     v.number = number;
   }
-  return deck_real_read(&v, option + 2, "m", BOUND_POSITIVE, value, &f->said);
+  return deck_real_read(&v, option + 2, in, BOUND_POSITIVE, value, &f->said);
 }
 
 /* --- the lattice ------------------------------------------------------------------------------ */
@@ -83,21 +85,28 @@ static law_setting meant_setting(const model *m, int dimensions) {
 static bool choose_lattice(law_facts *f, const info_law_options *o) {
   const model *m = &f->model;
   deck_lattice *d = &f->lattice;
-  double thickness = 100e-3;
-  *d = lattice_default(law_setting_name(m->law->setting), 10e-3, thickness);
+  double thickness = 100e-3, area = 100e-6;
+  *d = law_reads(m->law, QUANTITY_AREA)
+           ? lattice_default_chain(10e-3, area)
+           : lattice_default(law_setting_name(m->law->setting), 10e-3, thickness);
   if (o->lattice) {
     d->kind = o->lattice;
     d->shells = 0;
   }
   const int dimensions = bravais_dimensions(d->kind);
+  const bool chain = deck_lattice_is_chain(d);
   if (!dimensions) {
     say_error("there is no lattice `%s`\n  --lattice takes %s", d->kind, LATTICE_KINDS_OF_SITES);
     return false;
   }
-  if (!read_family(d, o) || (o->spacing && !read_length(f, "--spacing", o->spacing, &d->spacing)) ||
-      (o->thickness && !read_length(f, "--thickness", o->thickness, &thickness)))
+  if (!read_family(d, o) ||
+      (o->spacing && !read_size(f, "--spacing", o->spacing, "m", &d->spacing)) ||
+      (o->thickness && !read_size(f, "--thickness", o->thickness, "m", &thickness)) ||
+      (o->area && !read_size(f, "--area", o->area, "m^2", &area)))
     return false;
-  d->thickness = d->stiffness_thickness = d->mass_thickness = dimensions == 2 ? thickness : 0;
+  if (dimensions == 3 || chain) thickness = 0;
+  d->thickness = d->stiffness_thickness = d->mass_thickness = thickness;
+  d->area = chain ? area : 0;
   d->setting = law_setting_name(meant_setting(m, dimensions));
   return true;
 }

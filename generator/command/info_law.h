@@ -9,6 +9,7 @@
 typedef struct info_law_options {
   const char *law;                 /* name or path */
   const char *spacing, *thickness; /* e.g. "6.35 mm"; NULL: 10 mm, 100 mm */
+  const char *area;                /* of a chain; NULL: 100 mm^2 */
   /* kind; NULL: hexagonal, for laws of families in space fcc with second neighbours */
   const char *lattice;
   const char *horizon, *shells; /* numbers; NULL: the nearest neighbours */

@@ -105,6 +105,7 @@ static void put_implied(json *j, const law_facts *f) {
   json_put_text(j, "setting", f->lattice.setting);
   json_put_number(j, "spacing", f->lattice.spacing);
   json_put_number(j, "thickness", f->lattice.thickness > 0 ? f->lattice.thickness : NAN);
+  json_put_number(j, "area", f->lattice.area > 0 ? f->lattice.area : NAN);
   if (i->stiff) {
     put_pair(j, "E", i->elastic.E);
     put_pair(j, "nu", i->elastic.nu);

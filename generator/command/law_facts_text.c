@@ -96,7 +96,7 @@ static void print_waves(const implied *i, bool rotations) {
   printf("  wave speeds           longitudinal %.6g m/s", i->waves.longitudinal[0]);
   if (fabs(i->waves.longitudinal[1] - i->waves.longitudinal[0]) > 1e-6 * i->waves.longitudinal[0])
     printf(" along x, %.6g m/s along y", i->waves.longitudinal[1]);
-  printf(", transverse %.6g m/s", i->waves.transverse);
+  if (isfinite(i->waves.transverse)) printf(", transverse %.6g m/s", i->waves.transverse);
   if (rotations) printf("; rotation waves above %.6g rad/s", i->waves.rotation_cutoff);
   putchar('\n');
 }
@@ -126,25 +126,36 @@ static void print_setting(const char *name) {
 
 static void print_lattice(const law_facts *f) {
   const deck_lattice *d = &f->lattice;
-  printf("On a%s %s lattice", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind);
-  if (!bravais_is_hexagon(d))
-    printf(" of %d neighbours", f->implied.neighbours);
+  printf("On a%s %s%s", strcmp(d->kind, "fcc") == 0 ? "n" : "", d->kind,
+         deck_lattice_is_chain(d) ? "" : " lattice");
+  if (!bravais_is_hexagon(d)) printf(" of %d neighbours", f->implied.neighbours);
   printf(", s = %.6g mm, ", 1e3 * d->spacing);
+  if (deck_lattice_is_chain(d)) {
+    printf("A = %.6g mm^2:\n", 1e6 * d->area);
+    return;
+  }
   if (d->thickness > 0) printf("t = %.6g mm, ", 1e3 * d->thickness);
   print_setting(d->setting);
   puts(":");
 }
 
+static void print_elastic(const law_facts *f) {
+  const implied_elasticity *e = &f->implied.elastic;
+  fputs("  elastic constants     ", stdout);
+  if (!f->implied.stiff)
+    puts("none: the virgin lattice has no stiffness");
+  else if (deck_lattice_is_chain(&f->lattice))
+    printf("E = %.6g GPa along it, EA = %.6g MN\n", 1e-9 * e->E[0],
+           1e-6 * e->E[0] * f->lattice.area);
+  else
+    printf("E = %.6g GPa along x, %.6g GPa along y; nu = %.6g, %.6g; G = %.6g GPa\n",
+           1e-9 * e->E[0], 1e-9 * e->E[1], e->nu[0], e->nu[1], 1e-9 * e->G);
+}
+
 static void print_implied(const law_facts *f) {
   const implied *i = &f->implied;
   print_lattice(f);
-  if (i->stiff)
-    printf("  elastic constants     E = %.6g GPa along x, %.6g GPa along y; nu = %.6g, %.6g; G = "
-           "%.6g GPa\n",
-           1e-9 * i->elastic.E[0], 1e-9 * i->elastic.E[1], i->elastic.nu[0], i->elastic.nu[1],
-           1e-9 * i->elastic.G);
-  else
-    printf("  elastic constants     none: the virgin lattice has no stiffness\n");
+  print_elastic(f);
   if (!law_facts_of_families(f)) {
     print_strength(i);
     print_bond(i);

@@ -283,7 +283,10 @@ static bool stays_a_bond(const drive_input *in, double stretch, double time, dia
 }
 
 bool drive_bond_class(const drive_input *in, double rho, pl_bond_class *out) {
-  rows *w = implied_lattice(in->bond.spacing, in->bond.thickness, rho);
+  const drive_bond *b = &in->bond;
+  const deck_lattice like = b->area > 0 ? lattice_default_chain(b->spacing, b->area)
+                                        : lattice_default("plane_stress", b->spacing, b->thickness);
+  rows *w = implied_lattice_like(&like, rho);
   if (!w) return false;
   *out = rows_bond_class(w, 0);
   rows_free(w);

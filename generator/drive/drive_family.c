@@ -113,7 +113,7 @@ static bool particle_open(driven_particle *r, const drive_input *in, const law *
   static const long one[3] = {1, 1, 1}, origin[3] = {0, 0, 0};
   const deck_lattice like = drive_lattice(in, l);
   *r = (driven_particle){.kernel = kernel, .dimensions = kernel->dimensions};
-  if (bravais_dimensions(like.kind) != kernel->dimensions)
+  if (bravais_dimensions(like.kind) != kernel->dimensions || deck_lattice_is_chain(&like))
     return refuse(in, d, "this lattice does not suit the setting of the law");
   r->lattice = implied_lattice_like(&like, material_density(kernel, parameters));
   if (!r->lattice)

@@ -61,6 +61,7 @@ typedef struct drive_simulation {
 typedef struct drive_bond {
   deck_item item;
   double spacing, thickness; /* m */
+  double area;               /* m^2; 0: none, the bond is no bar */
   double mass_i, mass_j;     /* kg; negative: from rho */
 } drive_bond;
 

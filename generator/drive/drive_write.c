@@ -230,7 +230,9 @@ static bool write_particles(const drive_input *in, const drive_table *t, hid_t f
   const bool bond = !t->of_families;
   const double s = bond ? in->bond.spacing : in->particle.spacing, reference[4] = {0, 0, s, 0};
   const double thickness = bond ? in->bond.thickness : in->particle.thickness;
-  const double one = sqrt(3) / 2 * s * s * thickness, volume[2] = {one, one};
+  const double one =
+      bond && in->bond.area > 0 ? in->bond.area * s : sqrt(3) / 2 * s * s * thickness;
+  const double volume[2] = {one, one};
   const int32_t body[2] = {0, 0};
   const hsize_t extent[2] = {2, 2};
   return h5_make_group(file, "/particles") &&

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <strings.h>
 
+#include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
 #include "runtime/deck/bravais.h"
@@ -150,6 +151,30 @@ static bool take_setting(const deck_material *m, const deck_lattice *l, model *o
   return false;
 }
 
+/* A chain has the cross-section of a bar in place of a thickness, and families on one line resolve
+   no strain but that along it. */
+static bool suits_chain(const deck_material *m, const law *of, diagnostics *said) {
+  const bool families = of->tree->law == LAW_STATE;
+  if (!families && !law_reads(of, QUANTITY_T)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"), "the law `%s` %s", of->tree->name,
+              families ? "reads whole families, but a chain has bonds along one line alone"
+                       : "reads the thickness `t`, which a chain does not have");
+  diag_hint(said, "take a law of bonds that reads `area`, such as `bar`");
+  return false;
+}
+
+static bool suits_section(const deck_material *m, const deck_lattice *l, const law *of,
+                          diagnostics *said) {
+  if (!l) return true;
+  if (deck_lattice_is_chain(l)) return suits_chain(m, of, said);
+  if (!law_reads(of, QUANTITY_AREA)) return true;
+  diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"),
+              "the law `%s` reads `area`, the cross-section of a bar, which chains alone have",
+              of->tree->name);
+  diag_hint(said, "give the lattice `kind = 'chain'` and an `area`, or take another law");
+  return false;
+}
+
 /* --- the plan --------------------------------------------------------------------------------- */
 
 /* The parameter of a &field in the law, or -1 after a message. */
@@ -217,7 +242,7 @@ static bool can_vary(const deck_material *m, const law *of, bool families, diagn
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said) {
-  if (!take_setting(m, l, out, said)) return false;
+  if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   const bool families = l && needs_families(l, out->law);
   if (!can_vary(m, out->law, families, said)) return false;
   return families ? model_plan_of_families(out) : plan_material(m, out, said);

@@ -58,8 +58,9 @@ static void announce_law(const run *r, int lattice) {
     return;
   }
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
-    print_quantity(": on this lattice E = ", e.E[0], "Pa");
-    printf(", nu = %.4f", e.nu[0]);
+    print_quantity(rows_are_chain(w) ? ": along this chain E = " : ": on this lattice E = ", e.E[0],
+                   "Pa");
+    if (!rows_are_chain(w)) printf(", nu = %.4f", e.nu[0]);
     double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
     if (isfinite(strength))
       print_quantity(", largest stress ", strength, "Pa under uniform strain along x, sides held");

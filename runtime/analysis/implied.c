@@ -16,12 +16,6 @@ void dpotrf_(const char *triangle, const int *n, double *a, const int *lda, int 
 void dpotri_(const char *triangle, const int *n, double *a, const int *lda, int *info,
              size_t triangle_length);
 
-/* Volume of lattice that stress is counted on: in the plane a site's area times the stiffness
-   thickness. */
-static double site_volume(const rows *w) {
-  return w->dimensions == 3 ? w->volume : w->site_area * w->stiffness_thickness;
-}
-
 /* One bond of a direction of the lattice, uncoupled to others. */
 typedef struct lattice_bond {
   bond_probe *probe;
@@ -123,11 +117,24 @@ static void pairwise_stiffness(const pl_law *law, const double *parameters, cons
     double e[3] = {c == 0, c == 1, c == 2}, stress[4];
     linear_stress(bonds, tangents, w->directions, e, stress);
     for (int r = 0; r < 3; r++)
-      out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / site_volume(w);
-    out->asymmetry = pl_fmax(out->asymmetry, fabs(stress[2] - stress[3]) / site_volume(w));
+      out->D[r][c] = (r < 2 ? stress[r] : 0.5 * (stress[2] + stress[3])) / rows_stressed_mean(w);
+    out->asymmetry = pl_fmax(out->asymmetry, fabs(stress[2] - stress[3]) / rows_stressed_mean(w));
   }
   for (int k = 0; k < w->directions; k++)
     bond_probe_free(bonds[k].probe);
+}
+
+/* The stress along a chain under a strain along it. */
+static bool chain_elastic(const rows *w, implied_elasticity *out) {
+  const double n[2] = {w->chord[0][0] / w->length[0], w->chord[0][1] / w->length[0]};
+  const double e[3] = {n[0] * n[0], n[1] * n[1], 2 * n[0] * n[1]}; /* along n; D e : e */
+  double along = 0;
+  for (int r = 0; r < 3; r++)
+    for (int c = 0; c < 3; c++)
+      along += e[r] * out->D[r][c] * e[c];
+  out->E[0] = along;
+  out->E[1] = out->nu[0] = out->nu[1] = out->G = NAN;
+  return along > 0;
 }
 
 /* In space the compliance knows all six strains, D only those of the plane x, y. */
@@ -138,11 +145,13 @@ static bool families_elastic(const pl_law *law, const double *parameters, const 
   double D[36], S[36];
   stencil s = stencil_new(law, parameters, w);
   stencil_elastic(&s, w, D);
-  const bool stiff = s.finite && invert_stiffness(order, D, S);
+  const bool finite = s.finite;
   stencil_free(&s);
   for (int r = 0; r < 3; r++)
     for (int c = 0; c < 3; c++)
       out->D[r][c] = D[plane[r] * order + plane[c]];
+  if (rows_are_chain(w)) return finite && chain_elastic(w, out);
+  const bool stiff = finite && invert_stiffness(order, D, S);
   for (int c = 0; c < 2; c++) {
     out->E[c] = 1 / S[c * order + c];
     out->nu[c] = -S[c * order + 1 - c] / S[c * order + c];
@@ -192,7 +201,7 @@ static double scan_strength(const pl_law *law, const double *parameters, const r
   }
   for (int k = 0; k < w->directions; k++)
     bond_probe_free(bonds[k].probe);
-  return largest / site_volume(w);
+  return largest / rows_stressed_mean(w);
 }
 
 double implied_strength(const pl_law *law, const double *parameters, const rows *w, int component,
@@ -325,7 +334,7 @@ void implied_bond_curve(const pl_law *law, const double *parameters, const rows 
   out->separates = c.separates;
   if (out->separates) {
     out->energy = c.work;
-    out->row_energy = c.work * b.s / site_volume(w);
+    out->row_energy = c.work * b.s / rows_stressed_mean(w);
   }
   bond_probe_free(b.probe);
 }
@@ -341,7 +350,7 @@ double implied_crack_energy(const pl_law *law, const double *parameters, const r
                          component == 1 ? copysign(1, reach) : 0};
     lattice_bond b = bond_of(law, parameters, w, k);
     curve c = trace_curve(&b, e);
-    energy += c.separates ? c.work * fabs(reach) / site_volume(w) : INFINITY;
+    energy += c.separates ? c.work * fabs(reach) / rows_stressed_mean(w) : INFINITY;
     bond_probe_free(b.probe);
   }
   return energy;
@@ -349,9 +358,9 @@ double implied_crack_energy(const pl_law *law, const double *parameters, const r
 
 void implied_wave_speeds(const pl_law *law, const double *parameters, const rows *w,
                          const implied_elasticity *e, implied_waves *out) {
-  double density = w->mass / site_volume(w); /* of the volume that stress is counted on */
+  double density = w->mass / rows_stressed_mean(w); /* of the volume that stress is counted on */
   *out = (implied_waves){.transverse = sqrt(e->G / density)};
   for (int c = 0; c < 2; c++)
-    out->longitudinal[c] = sqrt(e->D[c][c] / density);
+    out->longitudinal[c] = sqrt((rows_are_chain(w) ? e->E[c] : e->D[c][c]) / density);
   if (law->kind == PL_MICROPOLAR) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
 }

@@ -14,7 +14,7 @@ typedef struct implied_elasticity {
   double D[3][3];     /* Pa: (s_xx, s_yy, s_xy) = D (e_xx, e_yy, 2 e_xy), all other strains 0 */
   double asymmetry;   /* Pa: |s_xy - s_yx| left over; rounding */
   double E[2], nu[2]; /* Pa, 1: loaded along x, along y; the other direction free */
-  double G;           /* Pa */
+  double G;           /* Pa; of a chain all but E[0], which is along it, is NAN */
 } implied_elasticity;
 
 /* False when the lattice has no stiffness (singular D). */
@@ -56,7 +56,7 @@ double implied_crack_energy(const pl_law *law, const double *parameters, const r
                             int component);
 
 /* Long waves in the virgin lattice, m/s: along x, along y (sqrt(D_xx/rho) and sqrt(D_yy/rho),
-   transverse sqrt(G/rho)); frequency below which no rotation wave runs, rad/s (0 for central laws).
+   transverse sqrt(G/rho); of a chain along it, and NAN); frequency below which no rotation wave runs, rad/s (0 for central laws).
    w->mass must be set. */
 typedef struct implied_waves {
   double longitudinal[2], transverse, rotation_cutoff;

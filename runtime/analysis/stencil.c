@@ -222,7 +222,7 @@ void stencil_elastic(const stencil *s, const rows *w, double *D) {
   static const int space[][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   const int(*pair)[2] = s->dimensions == 2 ? plane : space;
   const int order = s->dimensions == 2 ? 3 : 6;
-  const double V = s->dimensions == 2 ? w->site_area * w->stiffness_thickness : w->volume;
+  const double V = rows_stressed_mean(w);
   for (int i = 0; i < order; i++)
     for (int j = 0; j < order; j++) {
       const int p = pair[i][0], q = pair[i][1], r = pair[j][0], t = pair[j][1];

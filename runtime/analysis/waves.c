@@ -49,9 +49,22 @@ static double volume_of(const double *a, const double *b, const double *c) {
 
 static const double out_of_plane[3] = {0, 0, 1};
 
+/* Of a chain the shortest chord, and unit vectors across it: nothing repeats itself there. */
+static void chain_primitive(const rows *w, double primitive[3][3]) {
+  memcpy(primitive[0], w->chord[0], sizeof primitive[0]);
+  memcpy(primitive[2], out_of_plane, sizeof primitive[2]);
+  cross(primitive[2], primitive[0], primitive[1]);
+  for (int c = 0; c < 3; c++)
+    primitive[1][c] /= w->length[0];
+}
+
 /* The chords that span the smallest cell; the first of those equally small. */
 void lattice_primitive(const rows *w, double primitive[3][3]) {
   double smallest = INFINITY;
+  if (rows_are_chain(w)) {
+    chain_primitive(w, primitive);
+    return;
+  }
   for (int i = 0; i < w->directions; i++)
     for (int j = i + 1; j < w->directions; j++)
       for (int k = w->dimensions == 2 ? j : j + 1; k < w->directions; k++) {

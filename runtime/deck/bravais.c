@@ -29,12 +29,15 @@ static void turn_axes(double angle, const double about[3], double axis[3][3]) {
 bool bravais_of(const deck_lattice *l, bravais *b) {
   const lattice_kind *k = lattice_kind_find(l->kind);
   if (!k || k->dimensions == 0) return false;
-  *b = (bravais){.dimensions = k->dimensions, .spacing = l->spacing, .site_measure = 1};
+  *b = (bravais){.dimensions = k->dimensions,
+                 .axes = lattice_kind_axes(k),
+                 .spacing = l->spacing,
+                 .site_measure = 1};
   memcpy(b->origin, l->origin, sizeof b->origin);
   memcpy(b->square, k->square, sizeof b->square);
   memcpy(b->shift_by, k->shift_by, sizeof b->shift_by);
   turn_axes(l->rotation, l->axis, b->axis);
-  for (int c = 0; c < k->dimensions; c++) {
+  for (int c = 0; c < b->axes; c++) {
     b->step[c] = l->spacing * sqrt(k->square[c]);
     b->site_measure *= b->step[c];
   }
@@ -62,7 +65,7 @@ void bravais_coordinates(const bravais *b, const double at[3], double out[3]) {
     out[a] = 0;
     for (int c = 0; c < b->dimensions; c++)
       out[a] += b->axis[a][c] * (at[c] - b->origin[c]);
-    out[a] = a < b->dimensions ? out[a] / b->step[a] : 0;
+    out[a] = a < b->axes ? out[a] / b->step[a] : 0;
   }
 }
 
@@ -86,7 +89,7 @@ static bool is_owned(int halves, int row, int layer) {
 /* The owned neighbours within `reach` spacings, in order; malloc'ed. */
 static bravais_neighbour *collect(const bravais *b, double reach, int *count) {
   int most[3] = {0, 0, 0};
-  for (int c = 0; c < b->dimensions; c++)
+  for (int c = 0; c < b->axes; c++)
     most[c] = (int)floor(reach / sqrt(b->square[c]));
   const size_t room = (size_t)(2 * most[0] + 2) * (size_t)(2 * most[1] + 1) * (size_t)(most[2] + 1);
   bravais_neighbour *all = must_calloc(room, sizeof *all);

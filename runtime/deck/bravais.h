@@ -1,4 +1,4 @@
-/* Infinite Bravais lattices as layers of rows of sites. Site (column, row, layer) stands at
+/* Infinite Bravais lattices as layers of rows of sites; a chain is a single row. Site (column, row, layer) stands at
      origin + (column + shift) step[0] axis[0] + row step[1] axis[1] + layer step[2] axis[2],
    where the shift of a row is 0 or a half. In the plane there is layer 0 alone. Lengths in m. */
 #ifndef PERILAT_RUNTIME_BRAVAIS_H
@@ -19,14 +19,15 @@ C_LINKAGE_BEGIN
 enum { BRAVAIS_COLUMN, BRAVAIS_ROW, BRAVAIS_LAYER };
 
 typedef struct bravais {
-  int dimensions;      /* 2 or 3 */
+  int dimensions;      /* of the space that its particles move in: 2 or 3 */
+  int axes;            /* of the lattice that have sites: 1 to `dimensions` */
   double spacing;      /* of nearest neighbours */
   double origin[3];    /* of site (0, 0, 0) */
   double axis[3][3];   /* unit vectors along rows, across rows, across layers */
   double step[3];      /* from site to site, row to row, layer to layer */
   double square[3];    /* of the steps, in spacings: exact */
   int shift_by[2];     /* half steps by which a row, a layer is shifted against the one before */
-  double site_measure; /* m^2 of the plane, or m^3 of space, that one site stands for */
+  double site_measure; /* m of a chain, m^2 of the plane, m^3 of space that a site stands for */
 } bravais;
 
 typedef struct bravais_neighbour {

@@ -46,8 +46,9 @@ typedef struct deck_lattice {
   double rotation;                            /* rad; deck: degrees as a plain number or '17 deg' */
   double axis[3];                             /* of the rotation, in space; 0, 0, 0: z */
   double origin[3];                           /* m: a point that is a lattice site; default 0, 0 */
-  double thickness;                           /* m; these three are 0 in space */
+  double thickness;                           /* m; these three are 0 in space and of chains */
   double stiffness_thickness, mass_thickness; /* m; default: thickness */
+  double area;                                /* m^2, of a chain; else 0 */
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
 

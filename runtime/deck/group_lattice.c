@@ -24,7 +24,8 @@ static const deck_key_info lattice_keys[] = {
      DECK_AT(lattice, kind),
      .doc = "arrangement of the sites: `hexagonal` and `square` in the plane, `cubic` and `fcc` "
             "(edges of the cubes "
-            "along x, y, z) in space; without a lattice, in the plane or in space as `setting` "
+            "along x, y, z) in space; `chain`, one row in the plane, for laws of bars and beams; "
+            "without a lattice, in the plane or in space as `setting` "
             "says: `blue_noise`, even "
             "but at random, and `particles`, read from a `file`"},
     {.name = "spacing",
@@ -100,7 +101,14 @@ static const deck_key_info lattice_keys[] = {
      .bound = BOUND_POSITIVE,
      .fallback = "= none; required in the plane",
      DECK_AT(lattice, thickness),
-     .doc = "out of the plane; the thicknesses are not for lattices in space"},
+     .doc = "out of the plane; the thicknesses are not for chains and lattices in space"},
+    {.name = "area",
+     .type = DECK_REAL,
+     .unit = "m^2",
+     .bound = BOUND_POSITIVE,
+     .fallback = "= none; required with kind `chain`",
+     DECK_AT(lattice, area),
+     .doc = "`chain`: cross-section of the bar that the particles stand for, `area` of the law"},
     {.name = "stiffness_thickness",
      .type = DECK_REAL,
      .unit = "m",
@@ -127,19 +135,23 @@ enum {
   PLANE = 2, /* by dimensions, and particles that stand on no lattice in space */
   SPACE,
   IRREGULAR_SPACE,
+  CHAIN,
   IN_PLANE = 1 << PLANE,
   IN_SPACE = 1 << SPACE,
-  IN_IRREGULAR_SPACE = 1 << IRREGULAR_SPACE
+  IN_IRREGULAR_SPACE = 1 << IRREGULAR_SPACE,
+  IN_CHAIN = 1 << CHAIN
 };
 static const char *const dimension_words[] = {[PLANE] = "a lattice in the plane",
                                               [SPACE] = "a lattice in space",
-                                              [IRREGULAR_SPACE] =
-                                                  "a lattice of particles in space"};
+                                              [IRREGULAR_SPACE] = "a lattice of particles in space",
+                                              [CHAIN] = "a chain"};
 static const deck_key_use dimension_uses[] = {{"axis", IN_SPACE, false},
                                               {"thickness", IN_PLANE, true},
                                               {"stiffness_thickness", IN_PLANE, false},
                                               {"mass_thickness", IN_PLANE, false},
+                                              {"area", IN_CHAIN, true},
                                               {"setting", IN_PLANE | IN_IRREGULAR_SPACE, false}};
+enum { DIMENSION_USES = sizeof dimension_uses / sizeof *dimension_uses };
 
 enum {
   REGULAR,
@@ -224,12 +236,14 @@ static bool setting_suits(deck_reader *r, const deck_lattice *item, int dimensio
 /* Which keys a lattice has depends on its dimensions and on whether there are sites at all. */
 static void check_kind(deck_reader *r, const namelist_group *from, deck_lattice *item) {
   const int dimensions = deck_lattice_dimensions(item), arrangement = arrangement_of(item);
-  const int kind = arrangement != REGULAR && dimensions == 3 ? IRREGULAR_SPACE : dimensions;
+  const int kind = deck_lattice_is_chain(item)                 ? CHAIN
+                   : arrangement != REGULAR && dimensions == 3 ? IRREGULAR_SPACE
+                                                               : dimensions;
   if (arrangement != REGULAR && !refuse_keys_of_sites(r, from)) return;
   if (!has_spacing(r, from, arrangement) || !setting_suits(r, item, dimensions) ||
       !deck_keys_fit(from, arrangement_uses, 3, arrangement, arrangement_words[arrangement],
                      r->d) ||
-      !deck_keys_fit(from, dimension_uses, 5, kind, dimension_words[kind], r->d))
+      !deck_keys_fit(from, dimension_uses, DIMENSION_USES, kind, dimension_words[kind], r->d))
     return;
   deck_check_places(r, from, &deck_group_lattice, dimensions);
   if (!item->setting) item->setting = dimensions == 2 ? "plane_stress" : "space";

@@ -13,6 +13,18 @@ const lattice_kind *lattice_kind_find(const char *name) {
   return NULL;
 }
 
+int lattice_kind_axes(const lattice_kind *kind) {
+  int axes = 0;
+  while (axes < 3 && kind->square[axes] > 0)
+    axes++;
+  return axes;
+}
+
+bool deck_lattice_is_chain(const deck_lattice *l) {
+  const lattice_kind *kind = lattice_kind_find(l->kind);
+  return kind && lattice_kind_axes(kind) == 1;
+}
+
 bool deck_lattice_is_irregular(const deck_lattice *l) {
   const lattice_kind *kind = lattice_kind_find(l->kind);
   return kind && kind->dimensions == 0;
@@ -39,4 +51,12 @@ deck_lattice lattice_default(const char *setting, double spacing, double thickne
                         .stiffness_thickness = t,
                         .mass_thickness = t,
                         .setting = setting};
+}
+
+deck_lattice lattice_default_chain(double spacing, double area) {
+  return (deck_lattice){.name = "lattice",
+                        .kind = lattice_kinds[LATTICE_KIND_chain].name,
+                        .spacing = spacing,
+                        .area = area,
+                        .setting = "plane_stress"};
 }

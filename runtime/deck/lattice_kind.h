@@ -13,7 +13,7 @@ C_LINKAGE_BEGIN
 /* X(name, dimensions, squares of the steps along a row, across rows, across layers in spacings,
    half steps by which a row and a layer are shifted against the one before). Particles that stand
    on no lattice have no steps: 0 dimensions, the setting says whether they are in the plane or in
-   space.
+   space. Without a step across rows there is but one row.
 
        o   o   o   o         hexagonal: rows are sqrt(3)/2 = sqrt(0.75) apart,
          o   o   o   o       each shifted by one half step
@@ -21,6 +21,9 @@ C_LINKAGE_BEGIN
  */
 #define LATTICE_KINDS(X) KINDS_OF_SITES(X) KINDS_WITHOUT_SITES(X)
 #define KINDS_OF_SITES(X)                                                                          \
+  KINDS_OF_FAMILIES(X)                                                                             \
+  X(chain, 2, (1, 0, 0), (0, 0)) /* the axis of a bar or a beam */
+#define KINDS_OF_FAMILIES(X)                                                                       \
   X(hexagonal, 2, (1, 0.75, 0), (1, 0))                                                            \
   X(square, 2, (1, 1, 0), (0, 0))                                                                  \
   X(cubic, 3, (1, 1, 1), (0, 0))                                                                   \
@@ -43,7 +46,8 @@ typedef struct lattice_kind {
 #define LATTICE_KIND_QUOTED(name, dimensions, square, shift_by) ", `'" #name "'`"
 /* Those that have sites, and so in sentences: "`'hexagonal'`, `'square'`, ..." */
 #define LATTICE_KINDS_OF_SITES        (&(KINDS_OF_SITES(LATTICE_KIND_CHOICE))[1])
-#define LATTICE_KINDS_OF_SITES_QUOTED (&(KINDS_OF_SITES(LATTICE_KIND_QUOTED))[2])
+/* Those whose families resolve all strains. */
+#define LATTICE_KINDS_OF_FAMILIES_QUOTED (&(KINDS_OF_FAMILIES(LATTICE_KIND_QUOTED))[2])
 /* clang-format on */
 
 enum {
@@ -56,6 +60,11 @@ extern const lattice_kind lattice_kinds[LATTICE_KIND_COUNT];
 /* NULL for an unknown name. */
 const lattice_kind *lattice_kind_find(const char *name);
 
+/* Directions in which sites follow each other: 1, a chain, to 3; 0 for particles on no lattice. */
+int lattice_kind_axes(const lattice_kind *kind);
+
+/* True for one row of particles, which has an area in place of a thickness. */
+bool deck_lattice_is_chain(const deck_lattice *l);
 /* True for particles that stand on no lattice. */
 bool deck_lattice_is_irregular(const deck_lattice *l);
 /* 2 or 3: by the kind, where particles stand on no lattice by the setting; 0 for an unknown
@@ -65,6 +74,8 @@ int deck_lattice_dimensions(const deck_lattice *l);
 /* The lattice that is meant where none is named: hexagonal in the plane, fcc with two shells in
    space. The thickness is that of both stiffness and mass, and 0 in space. */
 deck_lattice lattice_default(const char *setting, double spacing, double thickness);
+/* The one that is meant for laws of bars. */
+deck_lattice lattice_default_chain(double spacing, double area);
 
 C_LINKAGE_END
 

@@ -132,6 +132,7 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
       .s = w->length[k],
       .spacing = w->spacing,
       .t = w->stiffness_thickness,
+      .area = w->area,
       .V = w->volume,
       .mass_i = w->mass,
       .mass_j = w->mass,

@@ -56,13 +56,13 @@ enum { ROWS_CLASSES = 2, ROWS_MAX_NEIGHBOURS = 2 * PL_MAX_DIRECTIONS };
 typedef struct rows {
   bravais infinite; /* the lattice without ends */
   int dimensions;   /* 2 or 3 */
-  int row_count; /* from the first with sites to the last, empty ones between layers included */
-  int layer_rows; /* rows from the first of a layer to the first of the next */
-  int margin;     /* empty rows before the first, and as many behind the last */
-  long pitch;     /* doubles between the starts of rows; multiple of PL_LANES */
-  long first;     /* site at which row 0 starts */
-  long size;      /* length of every site array */
-  int directions; /* owned bonds of a site of the infinite lattice: half the neighbours */
+  int row_count;    /* from the first with sites to the last, empty ones between layers included */
+  int layer_rows;   /* rows from the first of a layer to the first of the next */
+  int margin;       /* empty rows before the first, and as many behind the last */
+  long pitch;       /* doubles between the starts of rows; multiple of PL_LANES */
+  long first;       /* site at which row 0 starts */
+  long size;        /* length of every site array */
+  int directions;   /* owned bonds of a site of the infinite lattice: half the neighbours */
   long offset[ROWS_CLASSES][ROWS_MAX_NEIGHBOURS];
   unsigned char *row_class;           /* [margin + row_count + margin] */
   double chord[PL_MAX_DIRECTIONS][3]; /* reference chord from owner to partner, m (rotated) */
@@ -71,8 +71,9 @@ typedef struct rows {
   int shell[PL_MAX_DIRECTIONS];       /* 1: of the nearest neighbours */
   double horizon;                     /* m */
   double spacing, volume;     /* m, m^3 (stiffness thickness does not enter: mass thickness does) */
-  double site_area;           /* m^2 of the plane that one site stands for; 0 in space */
-  double stiffness_thickness; /* m: `t` of the laws; 0 in space */
+  double site_area;           /* m^2 of the plane that one site stands for; 0 in space, of chains */
+  double stiffness_thickness; /* m: `t` of the laws; 0 in space and of chains */
+  double area;                /* m^2: `area` of the laws; 0 but of chains */
   double mass, inertia;       /* kg, kg m^2: see rows_set_density; on lists their mean */
   neighbour_list *list;       /* NULL on lattices */
   double *site_volume, *site_mass; /* [size] m^3, kg; NULL where all particles are alike */
@@ -86,6 +87,11 @@ typedef struct rows {
   int32_t *site_particle;      /* [size] particle of each site, or -1 */
   double width, height, depth; /* extent of the present sites along x, y and z, m */
 } rows;
+
+/* A single row, of neighbours along it. */
+static inline bool rows_are_chain(const rows *w) {
+  return w->infinite.axes == 1;
+}
 
 /* First site of row r (0 .. row_count-1; in the margins, too). */
 static inline long rows_start(const rows *w, int r) {
@@ -113,12 +119,16 @@ static inline bool rows_has_bond(const rows *w, long site, int direction) {
   return w->bonds[site] >> direction & 1;
 }
 
-/* Volume of a site's particle that its stresses act in, m^3: in the plane as thick as laws see it. */
+/* Volume of a particle that its stresses act in, m^3: in the plane as thick as laws see it. On lists
+   the mean. */
+static inline double rows_stressed_mean(const rows *w) {
+  return w->site_area > 0 ? w->site_area * w->stiffness_thickness : w->volume;
+}
+
+/* The same of a site's particle. */
 static inline double rows_stressed_volume(const rows *w, long site) {
   const double V = w->site_volume ? w->site_volume[site] : w->volume;
-  return w->dimensions == 2 && w->site_area > 0
-             ? V / w->volume * w->site_area * w->stiffness_thickness
-             : V;
+  return w->site_area > 0 ? V / w->volume * w->site_area * w->stiffness_thickness : V;
 }
 
 /* Reference position of a site; at[2] is 0 in the plane. */
@@ -160,7 +170,7 @@ int rows_degree(const rows *w, long site);
 void rows_set_density(rows *w, double rho);
 
 /* What a law is told about the bonds of one direction, 0 .. 2 directions - 1, wherever it is asked:
-   in runs, in checks, by `drive` and `info`. Masses as `mass` says. `area` is 0: no bars here. On
+   in runs, in checks, by `drive` and `info`. Masses as `mass` says. On
    lists all are told the same, a bond of a spacing along x between particles of mean size, with the
    mean number of bonds, rounded. */
 pl_bond_class rows_bond_class(const rows *w, int direction);

@@ -162,6 +162,13 @@ static long before_columns(const builder *b) {
   return pitch_with(b, lanes) > pitch_with(b, reach) ? reach : lanes;
 }
 
+/* What a site's share of the lattice is multiplied by to be a volume. */
+static double section_of(const builder *b) {
+  return b->infinite.axes == 1   ? b->lattice->area
+         : b->infinite.axes == 2 ? b->lattice->mass_thickness
+                                 : 1;
+}
+
 static rows *rows_new(const builder *b) {
   const deck_lattice *l = b->lattice;
   const long *first = b->marks.left.first, *last = b->marks.left.last;
@@ -182,9 +189,10 @@ static rows *rows_new(const builder *b) {
               .first = margin * pitch + ends,
               .size = (long)size,
               .spacing = l->spacing,
-              .stiffness_thickness = l->stiffness_thickness};
-  w->site_area = w->dimensions == 2 ? b->infinite.site_measure : 0;
-  w->volume = b->infinite.site_measure * (w->dimensions == 2 ? l->mass_thickness : 1);
+              .stiffness_thickness = l->stiffness_thickness,
+              .area = l->area};
+  w->site_area = b->infinite.axes == 2 ? b->infinite.site_measure : 0;
+  w->volume = b->infinite.site_measure * section_of(b);
   set_directions(w, b);
   return allocate(w, b);
 }

@@ -74,8 +74,8 @@ static double nearest_site(const bravais *b, const double p[3], site_range *site
   double at[3], best = INFINITY;
   bravais_coordinates(b, p, at);
   const long below = (long)floor(at[LAYER]), before = (long)floor(at[ROW]);
-  for (long layer = below; layer <= below + (b->dimensions > 2); layer++)
-    for (long row = before; row <= before + 1; row++) {
+  for (long layer = below; layer <= below + (b->axes > 2); layer++)
+    for (long row = before; row <= before + (b->axes > 1); row++) {
       const long column = lround(at[COLUMN] - 0.5 * bravais_shift(b, row, layer));
       double q[3];
       bravais_place(b, column, row, layer, q);
@@ -121,12 +121,14 @@ bool site_of_lattice(const deck_lattice *l, const char *name) {
 bool site_too_many(const deck_lattice *l, double sites, diagnostics *d) {
   if (sites <= SITE_MOST) return false;
   const double part = sites / SITE_MOST;
+  const double wider = deck_lattice_is_chain(l)          ? part
+                       : deck_lattice_dimensions(l) == 2 ? sqrt(part)
+                                                         : pl_cbrt(part);
   diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&l->item, "spacing"),
               "the bodies of lattice '%s' span %.3g sites; the most that can be stored are %.0e",
               l->name, sites, SITE_MOST);
   diag_hint(d, "a spacing of %.3g mm would do, if the bodies lie close together",
-            1e3 * l->spacing * (deck_lattice_dimensions(l) == 2 ? sqrt(part) : pl_cbrt(part)) *
-                1.01);
+            1e3 * l->spacing * wider * 1.01);
   return true;
 }
 
@@ -220,8 +222,11 @@ static void report_empty_body(const marking *k, const deck_body *body) {
   }
   diag_report(k->d, DIAG_EMPTY_REGION, body->item.where,
               "the body contains no site of lattice '%s'", k->lattice->name);
-  diag_hint(k->d, "its extent is less than the spacing of %.6g mm, or a length has a wrong unit",
-            1e3 * k->bravais->spacing);
+  if (k->bravais->axes == 1)
+    diag_hint(k->d, "the row of a chain goes through the lattice's `origin`, `rotation` from x");
+  else
+    diag_hint(k->d, "its extent is less than the spacing of %.6g mm, or a length has a wrong unit",
+              1e3 * k->bravais->spacing);
 }
 
 /* An extra point that is there already is meant to be conditional: no message. */

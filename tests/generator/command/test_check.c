@@ -250,6 +250,36 @@ static void bonds_of_plane_strain_are_asked_for(void **state) {
   assert_null(strstr(w->said, "warning"));
 }
 
+/* A chain has an area and no thickness, other lattices the other way round; families on a line
+   resolve no strain. */
+static void laws_have_the_section_that_they_read(void **state) {
+  workplace *w = *state;
+  static const char chain[] =
+      "&simulation end_time = '1 ms' /\n"
+      "&lattice name = 'l' kind = 'chain' spacing = '10 mm' area = '100 mm^2' /\n"
+      "&material lattice = 'l' model = 'bar' /\n"
+      "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.01 /\n";
+  write_text(w, "chain.nml", chain);
+  expect(w, "check chain.nml", 0, "along this chain E = 200 GPa");
+  expect(w, "check chain.nml --set body.corner=0,0.001", 1, "the row of a chain goes through");
+  expect(w, "check chain.nml --set material.model=mplm_bilinear", 1,
+         "reads the thickness `t`, which a chain does not have");
+  expect(w, "check chain.nml --set material.model=lps", 1,
+         "reads whole families, but a chain has bonds along one line alone");
+  expect(w, "check beam.nml --set material.model=bar", 1,
+         "reads `area`, the cross-section of a bar, which chains alone have");
+  expect(w, "info bar", 0, "On a chain of 2 neighbours, s = 10 mm, A = 100 mm^2:");
+  expect(w, "info bar --area '2 cm^2'", 0, "E = 200 GPa along it, EA = 40 MN");
+  expect(w, "info bar --lattice square", 1, "which chains alone have");
+  write_text(w, "path.nml",
+             "&material model = 'bar' /\n&path quantity = 'stretch' value = 1e-4 rise "
+             "= '1 s' /\n");
+  expect(w, "drive path.nml", 1, "the law `bar` reads `area`: `&bond` must give it");
+  expect(w, "drive path.nml --set bond.area=1e-4", 0, "A = 100 mm^2");
+  expect(w, "drive elastic_central path.nml --set bond.area=1e-4", 1,
+         "the law `elastic_central` does not read `area`");
+}
+
 /* --- everything at once ----------------------------------------------------------------------- */
 
 static const char many_faults[] =
@@ -333,6 +363,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(verdicts_that_depend_on_values_say_so, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(commands_agree, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(laws_have_the_section_that_they_read, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(bonds_of_plane_strain_are_asked_for, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(all_that_is_wrong_is_said_at_once, set_up_workplace,

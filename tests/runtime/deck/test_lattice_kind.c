@@ -28,6 +28,7 @@ static void every_kind_is_one_of_sites_or_of_none(void **state) {
     double measure; /* of a site, in spacings */
   } known[] = {{"hexagonal", 2, 6, 0.86602540378443865},
                {"square", 2, 4, 1},
+               {"chain", 2, 2, 1},
                {"cubic", 3, 6, 1},
                {"fcc", 3, 12, 0.70710678118654752}};
   int sites = 0;
@@ -44,6 +45,7 @@ static void every_kind_is_one_of_sites_or_of_none(void **state) {
     const deck_lattice l = {.kind = known[k].name, .spacing = 1};
     bravais b;
     assert_true(bravais_of(&l, &b));
+    assert_true(deck_lattice_is_chain(&l) == (known[k].neighbours == 2));
     assert_int_equal(deck_lattice_dimensions(&l), known[k].dimensions);
     assert_int_equal(2 * half_family(&l), known[k].neighbours);
     assert_true(fabs(b.site_measure - known[k].measure) < 1e-15);

@@ -25,6 +25,7 @@ static void begin(filled_lattice *b, const char *kind, double horizon, int shell
                                .spacing = 1,
                                .horizon = horizon,
                                .shells = shells,
+                               .area = 0.3,
                                .mass_thickness = 0.3,
                                .stiffness_thickness = 0.3});
 }
@@ -43,7 +44,7 @@ typedef struct family {
   double horizon;
   int shells;
   int neighbours, last_shell;
-  double volume; /* of a particle, thickness 0.3 in the plane */
+  double volume; /* of a particle, thickness 0.3 in the plane, area 0.3 of a chain */
   double last;   /* length of the last */
 } family;
 
@@ -62,6 +63,8 @@ static const family families[] = {
     {"fcc", 0, 2, 18, 2, 0.70710678118654757, 1.4142135623730951},
     {"fcc", 1.5, 0, 18, 2, 0.70710678118654757, 1.4142135623730951},
     {"fcc", 2, 0, 54, 4, 0.70710678118654757, 2},
+    {"chain", 0, 0, 2, 1, 0.3, 1},
+    {"chain", 3.015, 0, 6, 3, 0.3, 3},
 };
 enum { FAMILIES = sizeof families / sizeof *families };
 
@@ -189,9 +192,10 @@ static deck_shape random_notch(int dimensions, int number) {
 static void random_lattice(filled_lattice *b, const family *is, int number) {
   begin(b, is->kind, is->horizon, is->shells);
   const int dimensions = bravais_dimensions(is->kind);
+  const double far = deck_lattice_is_chain(&b->lattice) ? 1 : 9;
   b->lattice.rotation = number % 4 == 0 ? 0 : uniform(-3, 3);
   for (int c = 0; c < dimensions; c++) {
-    b->lattice.origin[c] = uniform(-9, 9);
+    b->lattice.origin[c] = uniform(-far, far);
     if (dimensions == 3 && number % 2) b->lattice.axis[c] = uniform(-1, 1);
   }
   for (int k = 0; k < 2; k++)
@@ -220,10 +224,15 @@ static const double basis_of[][3][3] = {
     {{0.70710678118654757, 0.70710678118654757, 0},
      {0.70710678118654757, 0, 0.70710678118654757},
      {0, 0.70710678118654757, 0.70710678118654757}},
+    {{1, 0, 0}, {0, 0, 0}, {0, 0, 0}},
 };
 
 static int basis_index(const char *kind) {
-  return !strcmp(kind, "hexagonal") ? 0 : !strcmp(kind, "square") ? 1 : strcmp(kind, "fcc") ? 2 : 3;
+  static const char *const kinds[] = {"hexagonal", "square", "cubic", "fcc", "chain"};
+  int k = 0;
+  while (strcmp(kind, kinds[k]) != 0)
+    k++;
+  return k;
 }
 
 static bool wanted(const filled_lattice *b, const double p[3]) {
@@ -239,12 +248,12 @@ static bool wanted(const filled_lattice *b, const double p[3]) {
 static void check_sites(const filled_lattice *b, const rows *w) {
   enum { REACH = 32 };
   double basis[3][3], sum[3] = {0}, stored[3] = {0};
-  const int last = w->dimensions == 3 ? REACH : 0;
+  const int last = w->dimensions == 3 ? REACH : 0, across = rows_are_chain(w) ? 0 : REACH;
   long count = 0;
   for (int k = 0; k < 3; k++)
     turned(b, basis_of[basis_index(b->lattice.kind)][k], basis[k]);
   for (int i = -REACH; i <= REACH; i++)
-    for (int j = -REACH; j <= REACH; j++)
+    for (int j = -across; j <= across; j++)
       for (int l = -last; l <= last; l++) {
         double p[3];
         for (int c = 0; c < 3; c++)
@@ -326,7 +335,7 @@ static void check_bonds(const filled_lattice *b, const rows *w) {
 
 static void random_bodies_agree_with_all_pairs(void **unused) {
   (void)unused;
-  long particles = 0, bonds = 0;
+  long particles = 0, bonds = 0, in_chains = 0;
   state = 2026;
   for (int f = 0; f < FAMILIES; f++)
     for (int n = 0; n < 12; n++) {
@@ -342,10 +351,11 @@ static void random_bodies_agree_with_all_pairs(void **unused) {
       check_bonds(&b, w);
       particles += w->particle_count;
       bonds += w->bond_count;
+      in_chains += rows_are_chain(w) ? w->particle_count : 0;
       fill_end(&b, w);
     }
   print_message("%ld particles, %ld bonds compared\n", particles, bonds);
-  assert_true(particles > 5000 && bonds > 50000);
+  assert_true(particles > 5000 && bonds > 50000 && in_chains > 30);
 }
 
 /* --- bodies ----------------------------------------------------------------------------------- */
@@ -385,9 +395,9 @@ static void volumes_converge(void **unused) {
 
 static void points_find_their_site(void **unused) {
   (void)unused;
-  static const char *const kinds[] = {"hexagonal", "square", "cubic", "fcc"};
+  static const char *const kinds[] = {"hexagonal", "square", "cubic", "fcc", "chain"};
   state = 5;
-  for (int k = 0; k < 4; k++)
+  for (int k = 0; k < 5; k++)
     for (int n = 0; n < 200; n++) {
       filled_lattice b;
       double best = INFINITY, p[3];
@@ -395,8 +405,9 @@ static void points_find_their_site(void **unused) {
       begin(&b, kinds[k], 0, 0);
       b.lattice.rotation = uniform(-3, 3);
       add_body(&b, middle_of(kinds[k]));
-      deck_shape point = {.kind = SHAPE_POINT, .at = {uniform(-1.4, 1.4), uniform(-1.4, 1.4)}};
-      if (k > 1) point.at[2] = uniform(-1.4, 1.4);
+      const double away = k < 4 ? 1.4 : 0.6; /* from a chain no more than `within` */
+      deck_shape point = {.kind = SHAPE_POINT, .at = {uniform(-away, away), uniform(-away, away)}};
+      if (k == 2 || k == 3) point.at[2] = uniform(-1.4, 1.4);
       point.within = 1;
       add_body(&b, point); /* is there already */
       rows *w = fill_rows(&b);

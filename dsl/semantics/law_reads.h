@@ -1,0 +1,18 @@
+/* Which quantities of bonds and lattices a law reads. */
+#ifndef PERILAT_DSL_LAW_READS_H
+#define PERILAT_DSL_LAW_READS_H
+
+#include "dsl/semantics/builtins.h"
+#include "dsl/semantics/law.h"
+
+C_LINKAGE_BEGIN
+
+/* Marks those that stand in the expression (NULL: none). */
+void quantities_read(const expr *e, bool read[QUANTITY_COUNT]);
+
+/* Does some rule read it, with the choices in force and the lattice at hand? */
+bool law_reads(const law *l, builtin_quantity q);
+
+C_LINKAGE_END
+
+#endif
