@@ -18,18 +18,20 @@
 
    and count = 8: five absent bonds fill the vector. Arrays hold, per degree of freedom,
    displacement (m) and velocity (m/s) components first, then rotations (rad, rad/s). Strips are of
-   the plane; dof = 2 (central) or 3 (micropolar).
+   the plane; dof = 2 (central) or 3 (micropolar). Those of a micropolar law in space are for probes
+   of single bonds, which bend in the plane and twist: dof = 4, the last rotation is about the bond.
 
    A law that reads a particle's whole family comes as programs instead: passes over runs of
    particles, one after the other over the whole body. A pass reads what neighbours had at the
    beginning of the step, and what earlier passes of the program left in links. In the plane or in
-   space; dof = dimensions. */
+   space. Of a law of bonds that is micropolar particles rotate: dof = 3 in the plane (about z), 6
+   in space (about x, y, z); of all others dof = dimensions. */
 #ifndef PERILAT_RUNTIME_KERNEL_H
 #define PERILAT_RUNTIME_KERNEL_H
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 13
+#define PL_KERNEL_ABI 14
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
@@ -146,7 +148,10 @@ typedef struct pl_family {
   const uint64_t *bonds;
   /* [count] not 0: the damage of this particle, and of its bonds, stays as it is. */
   const uint64_t *held;
-  const double *displacement[3], *velocity[3]; /* [dimensions][count] m, m/s */
+  /* [dof][count]: displacements, then rotations (m, rad); velocities, then rates of rotation (m/s,
+     rad/s). In space a rotation vector, and how quickly the particle turns about x, y and z: in a
+     step of h it turns by h w, after what it has turned. */
+  const double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
      is some vector that is not 0. */
   const int32_t *neighbour;    /* [neighbours][plane] sites from here to the neighbour */
@@ -154,6 +159,14 @@ typedef struct pl_family {
   const double *length;        /* [neighbours][plane] m */
   const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
   const double *volume, *mass; /* [count] of the particles: m^3, kg */
+  /* [varying_count] SI: the parameters that are not the same everywhere. On particles one plane, a
+     particle's own; on bonds one for each neighbour, `plane` doubles apart, the same from both
+     ends. Finite everywhere. */
+  const double *const *parameter;
+  /* [count] of laws that read it: 1 where the particle is of this law, 0 where of another. What a
+     bond bears and stores is half of each of its particles; this law's part of a half is the
+     particle's share. */
+  const double *share;
   /* Inverse (or pseudo-inverse) of the shape matrix over the reference bonds that exist: sum(n n^T)
      on rows, on lists sum(s n n^T) with the bonds' lengths s; n = (x^2, y^2, x y) or (x^2, y^2,
      z^2, x y, y z, x z) of the bond's reference direction: upper triangle, row by row; shear counts
@@ -167,7 +180,8 @@ typedef struct pl_family {
   double *const *link;
   /* [bond_link_count] the same of values toward each neighbour, in planes like a field's */
   double *const *bond_link;
-  /* [dimensions][count] N: sum over the bonds, written by the last pass of the step */
+  /* [dof][count]: sums over the bonds, written by the last pass of the step: forces (N), then
+     moments (N m) on the particle */
   double *const *force;
   /* [1 + output_count]: stored energy (J), then each output; on particles one plane, else planes */
   double *const *observed;
@@ -223,22 +237,25 @@ typedef struct pl_program {
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
-   moments M_i, M_j of the bond (on the particles the opposite). */
+   moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on end
+   j. */
 typedef struct pl_law {
   int abi;          /* PL_KERNEL_ABI; checked at load */
   int kind;         /* pl_law_kind */
   int topology;     /* pl_topology; laws of bonds: PL_ROWS */
   int dimensions;   /* 2, or 3 */
   int dof;          /* per particle */
-  int force_planes; /* 2 central, 4 micropolar */
+  int force_planes; /* 2 central, 4 micropolar, 5 where bonds twist */
   const char *name; /* "mplm_bilinear" */
   const char *key;  /* hash of law, options, compiler and flags */
   int parameter_count;
   const pl_parameter *parameters; /* [parameter_count] */
   int density; /* place in `parameters` of the mass density (kg/m^3) of particles, or -1 */
-  /* Parameters that strips read bond by bond; all else takes them as given to `prepare`. */
+  /* Parameters that strips and passes read bond by bond, or particle by particle; all else takes
+     them as given to `prepare`. */
   int varying_count;
   const int *varying; /* [varying_count] their places in `parameters` */
+  int varying_place;  /* pl_place: of laws of bonds on bonds, else on particles */
   int field_count;
   const pl_field *fields; /* [field_count] */
   int output_count;
@@ -279,6 +296,7 @@ typedef struct pl_law {
   int sum_count;
   int constant_sum_count; /* sums that the passes may keep from step to step; 0: none */
   int reads_shape;        /* the passes read `shape` */
+  int reads_share;        /* and `share` */
   /* a law of bonds in this form: its force depends on the bond's ends alone */
   int pairwise;
   pl_program step; /* new fields and the forces */

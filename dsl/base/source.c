@@ -46,6 +46,10 @@ int source_add(source_set *set, const char *name, const char *text, size_t lengt
   return set->count++;
 }
 
+span source_whole(const source_set *set, int file) {
+  return (span){0, (uint32_t)set->items[file].length, (uint16_t)file};
+}
+
 void source_clear(source_set *set) {
   for (int i = 0; i < set->count; i++) {
     free(set->items[i].name);

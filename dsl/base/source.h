@@ -38,6 +38,8 @@ typedef struct place {
 /* Adds a copy of the text; returns its index for span.file. */
 int source_add(source_set *set, const char *name, const char *text, size_t length);
 void source_clear(source_set *set);
+/* All of a text. */
+span source_whole(const source_set *set, int file);
 
 place source_place(const source_set *set, int file, uint32_t offset);
 int source_line_number(const source_set *set, int file, uint32_t offset); /* from 1 */

@@ -138,7 +138,7 @@ static void read_layout(layout *f, arena *memory, source_set *sources, int file)
   diag_begin(&unsaid, sources);
   parsing *p = must_calloc(1, sizeof *p);
   *p = (parsing){.memory = memory, .sources = sources, .file = (uint16_t)file, .messages = &unsaid};
-  lexer_open(p, f->text, f->length);
+  lexer_open(p, f->text, 0, f->length);
   reading r = {0};
   for (uint32_t at = p->lex.offset;;) {
     MODEL_STYPE value;

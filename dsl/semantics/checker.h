@@ -69,6 +69,7 @@ typedef struct checker {
   int now; /* position of the statement being checked */
   context context;
 
+  const char *alone;  /* of a formula: what it may read, in words; NULL in a law */
   entry *function;    /* whose body is being checked, or NULL */
   int call_depth;     /* 0 while the body is checked where it is declared */
   bool reads_poisson; /* stress or strain of a family: its third direction follows from `nu` */

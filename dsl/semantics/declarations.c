@@ -207,15 +207,15 @@ static void declare_definition(checker *ck, stmt *s) {
   }
 }
 
-static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "W"};
-static const stmt_kind result_kinds[RESULT_COUNT] = {STMT_FORCE, STMT_FORCE, STMT_MOMENT,
-                                                     STMT_MOMENT, STMT_ENERGY};
+static const char *const result_names[RESULT_COUNT] = {"N", "V", "M_i", "M_j", "T", "W"};
+static const stmt_kind result_kinds[RESULT_COUNT] = {STMT_FORCE,  STMT_FORCE,  STMT_MOMENT,
+                                                     STMT_MOMENT, STMT_MOMENT, STMT_ENERGY};
 
 static void report_result_name(checker *ck, const stmt *s) {
   const char *kind = stmt_kind_name(s->kind);
   bool micropolar = ck->tree->law == LAW_MICROPOLAR_BOND;
   const char *names = s->kind == STMT_ENERGY   ? "`W`"
-                      : s->kind == STMT_MOMENT ? "`M_i` or `M_j`"
+                      : s->kind == STMT_MOMENT ? "`M_i` or `M_j` (bending), or `T` (twisting)"
                       : micropolar             ? "`N` (along the bond) or `V` (across it)"
                                                : "`N`";
   complain(ck, DIAG_LAW_KIND, s->name_where, "the %s of a bond law is called %s", kind, names);

@@ -18,7 +18,7 @@ typedef enum symbol_kind {
   SYMBOL_DEFINED,  /* plain definition, yield, stress, strain */
   SYMBOL_STATE,
   SYMBOL_DAMAGE,
-  SYMBOL_RESULT, /* force N, moment M_i, M_j, force V, energy W, force state F */
+  SYMBOL_RESULT, /* force N, V, moment M_i, M_j, T, energy W, force state F */
   SYMBOL_OUTPUT,
   SYMBOL_FUNCTION,
   SYMBOL_OPTION,  /* option onset */
@@ -56,6 +56,7 @@ typedef enum law_result {
   RESULT_V,
   RESULT_M_I,
   RESULT_M_J,
+  RESULT_T,
   RESULT_W,
   RESULT_COUNT
 } law_result;
@@ -75,9 +76,14 @@ typedef enum law_setting {
 typedef struct law {
   struct tree *tree;
   law_setting setting; /* first that the law names; may be changed before it is lowered */
-  bool irregular; /* lowered for particles that stand on no lattice */
-  int neighbours; /* of a full family, where they are known; else 0 */
-  arena *memory;  /* not owned */
+  bool irregular;      /* lowered for particles that stand on no lattice */
+  int neighbours;      /* of a full family, where they are known; else 0 */
+  /* Lowered for bonds that twist: in space. Else `twist` is 0 and `moment T` nothing. */
+  bool twists;
+  /* and that bend about all axes: bending quantities are vectors across the bond, in the axes of the
+     lattice. Else they are numbers. */
+  bool bends_in_space;
+  arena *memory; /* not owned */
   const source_set *sources;
   symbol_list parameters;
   symbol_list fields; /* states and damages, in the order declared */

@@ -152,11 +152,10 @@ static void check_function(checker *ck, stmt *s) {
 static const struct {
   const char *unit;
   shape shape;
-} results[RESULT_COUNT] = {[RESULT_N] = {"N", SHAPE_SCALAR},
-                           [RESULT_V] = {"N", SHAPE_BENDING},
-                           [RESULT_M_I] = {"N*m", SHAPE_BENDING},
-                           [RESULT_M_J] = {"N*m", SHAPE_BENDING},
-                           [RESULT_W] = {"J", SHAPE_SCALAR}};
+} results[RESULT_COUNT] = {
+    [RESULT_N] = {"N", SHAPE_SCALAR},      [RESULT_V] = {"N", SHAPE_BENDING},
+    [RESULT_M_I] = {"N*m", SHAPE_BENDING}, [RESULT_M_J] = {"N*m", SHAPE_BENDING},
+    [RESULT_T] = {"N*m", SHAPE_SCALAR},    [RESULT_W] = {"J", SHAPE_SCALAR}};
 
 static void check_result(checker *ck, stmt *s) {
   value v = check_number(ck, s->value);

@@ -32,3 +32,16 @@ const law *law_on_lattice(const law *l, law_setting setting, bool irregular, int
   copy->neighbours = neighbours;
   return copy;
 }
+
+const law *law_twisting(const law *l) {
+  law *copy = copy_of(l);
+  copy->twists = true;
+  return copy;
+}
+
+const law *law_bending_in_space(const law *l) {
+  law *copy = copy_of(l);
+  copy->twists = true;
+  copy->bends_in_space = true;
+  return copy;
+}

@@ -8,11 +8,15 @@
 
 C_LINKAGE_BEGIN
 
-/* Both live in l->memory. Choices that name no option of the law, or none of its words, say
+/* All live in l->memory. Choices that name no option of the law, or none of its words, say
    nothing. */
 const law *law_with_options(const law *l, const law_choice *choices, int count);
 /* `neighbours` of a full family, or 0 where they are not known. */
 const law *law_on_lattice(const law *l, law_setting setting, bool irregular, int neighbours);
+/* Of a micropolar law in space: for bonds that bend in a plane and twist. */
+const law *law_twisting(const law *l);
+/* The same for bonds that bend about all axes. */
+const law *law_bending_in_space(const law *l);
 
 C_LINKAGE_END
 

@@ -81,11 +81,15 @@ static void add_builtins(checker *ck) {
   }
 }
 
-void names_begin(checker *ck) {
+void names_open(checker *ck) {
   ck->bucket_count = 101;
   for (int i = 0; i < ck->statement_count; i++)
     ck->bucket_count += 2 + ck->statements[i]->word_count;
   ck->buckets = must_calloc((size_t)ck->bucket_count, sizeof(entry *));
+}
+
+void names_begin(checker *ck) {
+  names_open(ck);
   add_builtins(ck);
 }
 
@@ -130,6 +134,8 @@ static void report_unknown(checker *ck, const expr *e) {
     diag_hint(ck->d, "write its arguments: `%s(...)`", name);
   else if (strcmp(name, "pi") == 0)
     diag_hint(ck->d, "write 3.141592653589793, or give angles in degrees: `30 [deg]`");
+  else if (ck->alone)
+    diag_hint(ck->d, "a formula knows %s", ck->alone);
   else
     names_suggest(ck, SPACE_QUANTITIES, name);
 }

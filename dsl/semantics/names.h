@@ -5,6 +5,8 @@
 
 #include "dsl/semantics/checker.h"
 
+/* Empty; or with all that a law can read without declaring it. */
+void names_open(checker *ck);
 void names_begin(checker *ck);
 void names_end(checker *ck);
 entry *names_add(checker *ck, name_space space, const char *key, symbol what);

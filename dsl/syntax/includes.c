@@ -56,6 +56,7 @@ static parsing *parsing_within(parsing *p, const char *name, span where, int fil
   inner->memory = p->memory;
   inner->sources = p->sources;
   inner->file = (uint16_t)file;
+  inner->part = source_whole(p->sources, file);
   inner->messages = p->messages;
   inner->options = p->options;
   inner->chain = (include_chain){&p->chain, name, where, p->chain.depth + 1};

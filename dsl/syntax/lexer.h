@@ -4,8 +4,8 @@
 
 #include "dsl/syntax/parser.h"
 
-/* Begins with a text, which must live until lexer_close. */
-void lexer_open(parsing *p, const char *text, size_t length);
+/* Begins with bytes `begin` .. length of a text, which must live until lexer_close. */
+void lexer_open(parsing *p, const char *text, size_t begin, size_t length);
 void lexer_close(parsing *p);
 /* The next token, its value and where it stands. */
 int model_lex(MODEL_STYPE *value, span *where, parsing *p);

@@ -31,14 +31,20 @@ static void check_whole(parsing *p) {
   }
 }
 
-static tree *parse_checked(arena *a, source_set *sources, int file, const parse_options *options,
-                           diagnostics *d) {
-  include_list *included = must_calloc(1, sizeof *included);
+static parsing *parsing_new(arena *a, source_set *sources, span part, diagnostics *d) {
   parsing *p = must_calloc(1, sizeof *p);
   p->memory = a;
   p->sources = sources;
-  p->file = (uint16_t)file;
+  p->file = part.file;
+  p->part = part;
   p->messages = d;
+  return p;
+}
+
+static tree *parse_checked(arena *a, source_set *sources, int file, const parse_options *options,
+                           diagnostics *d) {
+  include_list *included = must_calloc(1, sizeof *included);
+  parsing *p = parsing_new(a, sources, source_whole(sources, file), d);
   p->options = options;
   p->chain = (include_chain){
       NULL, arena_printf(a, "%s", sources->items[file].name), {0, 0, (uint16_t)file}, 0};
@@ -60,13 +66,39 @@ bool parse_begins_law(const char *text) {
   return first_word_is(text, first, 1);
 }
 
+/* A number reads the same whatever the host program's language. */
+typedef struct plain_locale {
+  locale_t plain, before;
+} plain_locale;
+
+static plain_locale locale_begin(void) {
+  plain_locale l = {.plain = newlocale(LC_ALL_MASK, "C", (locale_t)0)};
+  l.before = uselocale(l.plain);
+  return l;
+}
+
+static void locale_end(plain_locale l) {
+  uselocale(l.before);
+  if (l.plain) freelocale(l.plain);
+}
+
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d) {
   if (!text_acceptable(sources, file, d)) return NULL;
-  /* A number reads the same whatever the host program's language. */
-  locale_t plain = newlocale(LC_ALL_MASK, "C", (locale_t)0), before = uselocale(plain);
+  const plain_locale l = locale_begin();
   tree *result = parse_checked(a, sources, file, options, d);
-  uselocale(before);
-  if (plain) freelocale(plain);
+  locale_end(l);
+  return result;
+}
+
+expr *parse_expression(arena *a, source_set *sources, span where, diagnostics *d) {
+  const int errors = d->errors;
+  const plain_locale l = locale_begin();
+  parsing *p = parsing_new(a, sources, where, d);
+  p->alone = true;
+  parser_read(p);
+  expr *result = d->errors == errors ? p->expression : NULL;
+  locale_end(l);
+  free(p);
   return result;
 }

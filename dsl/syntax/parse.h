@@ -24,6 +24,9 @@ typedef struct parse_options {
 tree *parse_model(arena *a, source_set *sources, int file, const parse_options *options,
                   diagnostics *d);
 
+/* An expression by itself, or cases: the part `where` of a source. NULL after messages. */
+expr *parse_expression(arena *a, source_set *sources, span where, diagnostics *d);
+
 /* Is a text a law, by its first word behind comments? What a person has not named himself is not
    quoted unless it is one. */
 bool parse_begins_law(const char *text);

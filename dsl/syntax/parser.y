@@ -54,6 +54,7 @@ static const word no_word;
 %token NEWLINE
 %token MODEL END LAW FOR PARAMETER CONSTANT OPTION STATE DAMAGE FUNCTION FORCE MOMENT ENERGY STRESS
 %token STRAIN YIELD FLOW OUTPUT NONCONSERVATIVE INCLUDE
+%token EXPRESSION /* begins one that stands by itself: no text has it */
 %token WHEN OTHERWISE JUMP IN AND OR NOT BY ALONG RETURNED ON
 %token EQ NE LE GE POW
 %token <number> NUMBER
@@ -87,6 +88,7 @@ line:
 | declaration text NEWLINE          { line_statement(p, $1, $2, span_join(@1, @2)); }
 | only_text STRING NEWLINE          { if (line_statement(p, $1, $2, span_join(@1, @2)))
                                         read_included(p, $1); }
+| EXPRESSION body NEWLINE           { p->expression = $2; }
 | error NEWLINE                     { line_broken(p); yyerrok; }
 ;
 
@@ -330,7 +332,7 @@ static int yyreport_syntax_error(const yypcontext_t *context, parsing *p) {
 
 void parser_read(parsing *p) {
   const source *s = &p->sources->items[p->file];
-  lexer_open(p, s->text, s->length);
+  lexer_open(p, s->text, p->part.begin, p->part.end);
   model_parse(p);
   lexer_close(p);
 }

@@ -69,6 +69,9 @@ typedef struct parsing {
   const parse_options *options;
   include_chain chain;
   include_list *included; /* all texts included so far: each is read once */
+  bool alone;             /* an expression by itself is read, no model */
+  span part;              /* of the source that is read */
+  expr *expression;
   tree *model;
   stmt **tail; /* where the next statement is linked */
   bool model_seen, law_seen, setting_seen, ended, out_of_model;

@@ -62,7 +62,7 @@ static const char *quoted(parsing *p, span where) {
 }
 
 static const char *found_text(parsing *p, const trouble *t) {
-  if (t->token == T_NEWLINE) return "the end of the line";
+  if (t->token == T_NEWLINE) return p->alone ? "the end" : "the end of the line";
   if (t->token == T_STRING) return "a quoted text";
   return quoted(p, t->where);
 }
@@ -195,7 +195,7 @@ static bool bracket_not_closed(parsing *p, const trouble *t) {
     return false;
   span open = l->open[l->open_count - 1];
   diag_report(p->messages, DIAG_UNTERMINATED, open, "this `%.*s` is not closed", TEXT(p, open));
-  if (t->token == T_NEWLINE) hint(p, "a line that goes on ends with `&`");
+  if (t->token == T_NEWLINE && !p->alone) hint(p, "a line that goes on ends with `&`");
   return true;
 }
 
@@ -321,7 +321,9 @@ static bool value_missing(parsing *p, const trouble *t) {
   }
   diag_report(p->messages, DIAG_SYNTAX, l->before_where, "the value after %s is missing",
               quoted(p, l->before_where));
-  if (t->token == T_NEWLINE && !is_word_of_language(l->before_last) && l->before_last != '=')
+  if (t->token == T_NEWLINE && p->alone)
+    return true;
+  else if (t->token == T_NEWLINE && !is_word_of_language(l->before_last) && l->before_last != '=')
     hint(p, "a line that goes on ends with `&`");
   else if (t->token == '|' && l->before_last != '|')
     hint(p, begins_line(p, t->where)

@@ -62,6 +62,7 @@ typedef struct physics_row {
   diag_code says[6];
   void (*of_bonds)(physics *p);         /* NULL: not for laws of bonds */
   void (*of_families)(family_bench *b); /* NULL: not for laws of families */
+  void (*of_bodies)(family_bench *b);   /* NULL: not for micropolar laws in space, on bodies */
   double share; /* of the time that laws of bonds have; 0: what the one before has left */
   diag_code hushed_by[9];
 } physics_row;
@@ -71,10 +72,12 @@ static const physics_row checks[] = {
     {.says = {DIAG_REST_FORCE},
      .of_bonds = physics_check_rest,
      .of_families = family_check_rest,
+     .of_bodies = family_check_rest,
      .share = 0.05},
     {.says = {DIAG_STIFFNESS},
      .of_bonds = physics_check_stiffness,
      .of_families = family_check_stiffness,
+     .of_bodies = family_check_twist,
      .hushed_by = {DIAG_REST_FORCE}},
     {.says = {DIAG_PATCH}, .of_families = family_check_elasticity, .hushed_by = {DIAG_STIFFNESS}},
     {.says = {DIAG_CONTINUITY, DIAG_FLOW}, .of_bonds = scan_from_rest, .share = 0.15},
@@ -98,12 +101,14 @@ static const physics_row checks[] = {
      .hushed_by = {DIAG_STIFFNESS}},
     {.says = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH},
      .of_families = family_whole,
+     .of_bodies = family_whole,
      .hushed_by = {DIAG_STIFFNESS}},
     {.says = {DIAG_DAMAGE_FORCE},
      .of_bonds = physics_check_damage_force,
      .hushed_by = {DIAG_STIFFNESS, DIAG_STORED_ENERGY}},
     {.says = {DIAG_STORED_ENERGY, DIAG_CLOSED_PATH_DAMAGED, DIAG_DAMAGE_FORCE},
      .of_families = family_damaged,
+     .of_bodies = family_damaged,
      .hushed_by = {DIAG_STIFFNESS, DIAG_CLOSED_PATH}},
     {.says = {DIAG_FLOW}, .of_bonds = physics_check_hold, .share = 0.1, .hushed_by = {DIAG_FLOW}},
     {.says = {DIAG_HEALING},
@@ -155,11 +160,13 @@ static void check_bonds(physics *p) {
 }
 
 static void check_families(family_bench *b) {
+  const bool of_families = b->law->tree->law == LAW_STATE;
   bool before[DIAG_COUNT];
   for (const physics_row *c = checks; c < checks + CHECK_COUNT; c++) {
-    if (!c->of_families || is_hushed(c, b->failed)) continue;
+    void (*check)(family_bench *) = of_families ? c->of_families : c->of_bodies;
+    if (!check || is_hushed(c, b->failed)) continue;
     memcpy(before, b->failed, sizeof before);
-    c->of_families(b);
+    check(b);
     assert(keeps_to_its_row(c, before, b->failed));
   }
 }
@@ -203,6 +210,18 @@ static void count_guards(const bench *b, physics_report *report) {
 
 /* --- a law ------------------------------------------------------------------------------------ */
 
+/* What single bonds have said already is not said again. */
+static void check_twisting_bonds(const physics *p, physics_report *report) {
+  const law *l = p->b.law;
+  if (l->tree->law != LAW_MICROPOLAR_BOND || l->setting != SETTING_SPACE) return;
+  family_bench *b = family_bench_new(l, p->b.options, p->said);
+  if (!b) return;
+  memcpy(b->failed, p->failed, sizeof b->failed);
+  check_families(b);
+  report->states += b->evaluated;
+  family_bench_free(b);
+}
+
 static void check_law_of_bonds(const law *l, const physics_options *o, diagnostics *d,
                                physics_report *report) {
   physics *p = must_calloc(1, sizeof *p);
@@ -212,6 +231,7 @@ static void check_law_of_bonds(const law *l, const physics_options *o, diagnosti
     check_bonds(p);
     count_guards(&p->b, report);
     report->states = p->b.evaluated;
+    check_twisting_bonds(p, report);
     free(p->pool);
     bench_close(&p->b);
   }

@@ -33,16 +33,24 @@ void probe_free(probe *p) {
   p->count = 0;
 }
 
+static double *bench_chord(const bench *b, double *const *states, int component) {
+  return states[b->width - LAW_CHORD + component];
+}
+
 void probe_run(bench *b, probe *p, double *const *states, int count) {
   if (!p->count || !count) return;
-  const double *const *planes = (const double *const *)states;
+  const double *const *planes = (const double *const *)states, *ends[ENDS_COUNT] = {NULL};
+  for (int k = 0; k < LAW_CHORD; k++)
+    ends[law_chord[k]] = bench_chord(b, states, k);
   interpreter_inputs in = {
       .values = {[IR_FROM_PARAMETER] = planes,
                  [IR_FROM_QUANTITY] = planes + b->parameter_count,
-                 [IR_FROM_FIELD] = planes + b->parameter_count + QUANTITY_COUNT},
+                 [IR_FROM_FIELD] = planes + b->parameter_count + QUANTITY_COUNT,
+                 [IR_FROM_ENDS] = ends},
       .stride = {[IR_FROM_PARAMETER] = b->strides,
                  [IR_FROM_QUANTITY] = b->strides,
-                 [IR_FROM_FIELD] = b->strides}};
+                 [IR_FROM_FIELD] = b->strides,
+                 [IR_FROM_ENDS] = b->strides}};
   interpreter_run(p->program, &in, count, p->out);
   b->evaluated += count;
 }
@@ -82,7 +90,8 @@ static void open_probes(bench *b) {
   const lowered_law *s = &b->law_step, *f = &b->law_frozen;
   int n = b->field_count;
   ir_node *roots = must_alloc((size_t)(FORCE_COUNT + 2 * n + 1) * sizeof *roots);
-  ir_node results[FORCE_COUNT] = {s->N, s->M_i, s->M_j}, held[FORCE_COUNT] = {f->N, f->M_i, f->M_j};
+  ir_node results[FORCE_COUNT] = {s->N, s->M_i[0], s->M_j[0]},
+          held[FORCE_COUNT] = {f->N, f->M_i[0], f->M_j[0]};
   memcpy(roots, results, sizeof results);
   for (int k = 0; k < n; k++) {
     roots[FORCE_COUNT + k] = s->fields[k];
@@ -126,10 +135,11 @@ bool bench_open(bench *b, const law *l, const physics_options *o, diagnostics *d
                .seed = o->seed ? o->seed : 20260101};
   b->parameter_count = l->parameters.count;
   b->field_count = l->fields.count;
-  b->width = b->parameter_count + QUANTITY_COUNT + b->field_count;
+  b->width = b->parameter_count + QUANTITY_COUNT + b->field_count + LAW_CHORD;
   b->micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
-  b->strides = arena_alloc(b->memory, (size_t)b->width); /* as long as any of the three parts */
-  memset(b->strides, 1, (size_t)b->width);
+  const size_t longest = (size_t)b->width + ENDS_COUNT; /* as long as any of the parts */
+  b->strides = arena_alloc(b->memory, longest);
+  memset(b->strides, 1, longest);
   if (!open_lattices(b) || !lower_law(l, b->graph, LOWER_STEP, b->memory, &b->law_step, d) ||
       !lower_law(l, b->graph, LOWER_FROZEN, b->memory, &b->law_frozen, d)) {
     bench_close(b);
@@ -185,6 +195,11 @@ void bench_move(const bench *b, double *const *states, int lane, motion m) {
   bench_quantity(b, states, QUANTITY_LENGTH)[lane] = s * (1 + m.at[AXIS_STRETCH]);
 }
 
+void bench_turn(const bench *b, double *const *states, int lane) {
+  for (int k = 0; k < LAW_CHORD; k++)
+    bench_chord(b, states, k)[lane] *= -1;
+}
+
 motion bench_motion(const bench *b, double *const *states, int lane) {
   motion m;
   for (int k = 0; k < AXIS_COUNT; k++)
@@ -211,6 +226,8 @@ static void put_class(const bench *b, double *const *states, int lane, const pl_
   for (int q = 0; q < QUANTITY_COUNT; q++)
     if (law_motion_place((builtin_quantity)q) < 0)
       bench_quantity(b, states, (builtin_quantity)q)[lane] = values[q];
+  for (int k = 0; k < LAW_CHORD; k++)
+    bench_chord(b, states, k)[lane] = c->chord[k];
 }
 
 /* Of a deck's lattice as a run is told. Without a deck the particles of a bond may differ. */

@@ -1,6 +1,6 @@
 /* A test bench for one law: the law alone on the interpreter, 64 bond states at a time, each with
    its own parameters. A state is a column over the planes [parameters][built-in
-   quantities][fields]. */
+   quantities][fields][reference chord]. */
 #ifndef PERILAT_GENERATOR_PHYSICS_BENCH_H
 #define PERILAT_GENERATOR_PHYSICS_BENCH_H
 
@@ -76,6 +76,8 @@ void bench_get(const bench *b, double *const *states, int lane, double *column);
 void bench_put(const bench *b, double *const *states, int lane, const double *column);
 
 void bench_move(const bench *b, double *const *states, int lane, motion m);
+/* The reference chord from the other end. */
+void bench_turn(const bench *b, double *const *states, int lane);
 motion bench_motion(const bench *b, double *const *states, int lane);
 void bench_virgin(const bench *b, double *const *states, int lane);
 /* Parameters and bond class of one lane: those of the options; without them a log-uniform factor of

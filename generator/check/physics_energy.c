@@ -353,7 +353,7 @@ void physics_check_energy_and_force(physics *p) {
   static const law_result given[WAYS] = {RESULT_N, RESULT_M_I, RESULT_M_J};
   bench *b = &p->b;
   if (b->law_frozen.W == IR_NONE) return;
-  ir_node nodes[2 * WAYS] = {b->law_frozen.N, b->law_frozen.M_i, b->law_frozen.M_j};
+  ir_node nodes[2 * WAYS] = {b->law_frozen.N, b->law_frozen.M_i[0], b->law_frozen.M_j[0]};
   implied_forces(b, nodes + WAYS);
   probe both = probe_new(b, nodes, 2 * WAYS);
   double **states = bench_states(b), *column = must_alloc((size_t)b->width * sizeof *column);

@@ -57,7 +57,7 @@ static watched *watches(family_bench *b, int count) {
 static kernel_plan *begin(const law *l) {
   kernel_plan *p = plan_begin(l);
   p->kind = PL_STATE;
-  p->dimensions = p->dof = l->setting == SETTING_SPACE ? 3 : 2;
+  plan_axes(p);
   p->reads_shape = true; /* a body keeps them */
   return p;
 }
@@ -72,7 +72,7 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
   const law *l = b->law;
   kernel_plan *p = b->plan[0] = begin(l);
   const int fields = l->fields.count;
-  if (!lower_law(l, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
+  if (!lower_law(p->law, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
   const lowered_text *t = &b->step.text;
   b->rule = watches(b, fields);
   b->guard = watches(b, t->line_count + t->flow_count);
@@ -84,13 +84,13 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
   for (int k = 0; k < t->flow_count; k++)
     b->varies[t->line_count + k] =
         t->flows[k].when != IR_NONE && !ir_is_uniform(p->graph, t->flows[k].when);
-  roots step = roots_new(p, fields + 3),
+  roots step = roots_new(p, fields + PL_MAX_DOF),
         text = roots_new(p, fields + t->line_count + 2 * t->flow_count);
   for (int k = 0; k < fields; k++)
     want(&step, b->step.fields[k],
          l->fields.items[k]->place <= ON_PARTICLE ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
   plan_forces(p, &b->step, step.items + step.count);
-  step.count += p->dimensions;
+  step.count += p->dof;
   text.observed = 1 + l->outputs.count;
   watch_all(b, p->graph, &text, false);
   *narrow = text.observed - 1 - l->outputs.count;
@@ -105,11 +105,11 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
 static bool plan_frozen(family_bench *b) {
   kernel_plan *p = b->plan[1] = begin(b->law);
   lowered_law frozen;
-  if (!lower_law(b->law, p->graph, LOWER_FROZEN, p->memory, &frozen, b->said)) return false;
-  b->has_energy = frozen.W != IR_NONE;
-  roots step = roots_new(p, 3), energy = roots_new(p, 1);
+  if (!lower_law(p->law, p->graph, LOWER_FROZEN, p->memory, &frozen, b->said)) return false;
+  b->has_energy = frozen.W != IR_NONE && b->law->tree->law == LAW_STATE;
+  roots step = roots_new(p, PL_MAX_DOF), energy = roots_new(p, 1);
   plan_forces(p, &frozen, step.items);
-  step.count = p->dimensions;
+  step.count = p->dof;
   want(&energy, b->has_energy ? frozen.W : ir_constant(p->graph, 0), TO_PARTICLE_OBSERVED, 0);
   build(p, &p->step, &step, frozen.along_reference);
   build(p, &p->observe, &energy, frozen.along_reference);
@@ -165,7 +165,7 @@ family_bench *family_bench_new(const law *l, const physics_options *o, diagnosti
     b->kernel[k] = plan_interpreted(b->plan[k]);
   b->whole = body_of(b, b->kernel[0], narrow, all - narrow);
   b->frozen = body_of(b, b->kernel[1], 0, 0);
-  b->values = b->whole->law->dimensions * b->whole->inside_count;
+  b->values = b->whole->law->dof * b->whole->inside_count;
   return b;
 }
 
@@ -211,12 +211,19 @@ void family_bench_deform(family_bench *b, double size, double *values) {
       for (int c = 0; c < dimensions; c++)
         *u += gradient[d][c] * at[c];
     }
+  for (long k = dimensions * p->inside_count; k < b->values; k++)
+    values[k] = size * p->lattice->spacing * draw_uniform(&b->seed, -1, 1);
+}
+
+/* What a rotation of 1 is among the values. */
+static double lever(const patch *p, int component) {
+  return component < p->law->dimensions ? 1 : p->lattice->spacing;
 }
 
 static void put(patch *p, const double *values, double *const *into) {
-  for (int d = 0; d < p->law->dimensions; d++)
+  for (int d = 0; d < p->law->dof; d++)
     for (long q = 0; q < p->inside_count; q++)
-      into[d][p->inside[q]] = values ? values[d * p->inside_count + q] : 0;
+      into[d][p->inside[q]] = values ? values[d * p->inside_count + q] / lever(p, d) : 0;
 }
 
 /* Without surroundings nothing reads the margins. */
@@ -244,13 +251,46 @@ void family_bench_observe(family_bench *b) {
   count_work(b, b->whole);
 }
 
+static void cross(const double a[3], const double b[3], double out[3]) {
+  for (int k = 0; k < 3; k++)
+    out[k] = a[(k + 1) % 3] * b[(k + 2) % 3] - a[(k + 2) % 3] * b[(k + 1) % 3];
+}
+
+/* A moment does its work on turns of the particle; the same on changes of the rotation vector r:
+     m + (1 - cos r)/r^2 m x r + (r - sin r)/r^3 r x (r x m). */
+static void on_rotation_vector(const double r[3], double m[3]) {
+  double once[3], again[3];
+  const double square = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+  const double angle = pl_fmax(sqrt(square), 1e-100), sine = pl_sin(angle / 2);
+  const double first = 2 * (sine / angle) * (sine / angle);
+  const double second = angle < 0.1 ? 1.0 / 6 - square / 120 + square * square / 5040
+                                    : (1 - pl_sin(angle) / angle) / square;
+  cross(r, m, once);
+  cross(r, once, again);
+  for (int k = 0; k < 3; k++)
+    m[k] += second * again[k] - first * once[k];
+}
+
+static void turn_moments(const patch *p, long site, double f[PL_MAX_DOF]) {
+  double r[3];
+  for (int k = 0; k < 3; k++)
+    r[k] = p->displacement[3 + k][site];
+  on_rotation_vector(r, f + 3);
+}
+
 void family_bench_forces(family_bench *b, patch *of, double *force) {
+  const int dof = of->law->dof;
+  double f[PL_MAX_DOF];
   patch_step(of);
   b->evaluated += (double)of->inside_count;
   count_work(b, of);
-  for (int d = 0; d < of->law->dimensions; d++)
-    for (long q = 0; q < of->inside_count; q++)
-      force[d * of->inside_count + q] = of->force[d][of->inside[q]];
+  for (long q = 0; q < of->inside_count; q++) {
+    for (int d = 0; d < dof; d++)
+      f[d] = of->force[d][of->inside[q]];
+    if (dof == 6) turn_moments(of, of->inside[q], f);
+    for (int d = 0; d < dof; d++)
+      force[d * of->inside_count + q] = f[d] / lever(of, d);
+  }
 }
 
 void family_bench_share_fields(family_bench *b) {
@@ -355,6 +395,7 @@ span family_bench_force(const family_bench *b) {
   const law *l = b->law;
   const stmt *given = law_force_state(l);
   if (given) return given->where;
+  if (l->results[RESULT_T]) return l->results[RESULT_T]->rule->where;
   return l->results[RESULT_W] ? l->results[RESULT_W]->rule->where : l->tree->name_where;
 }
 

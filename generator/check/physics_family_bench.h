@@ -1,7 +1,7 @@
 /* A law of families on a free body of a few particles, driven on the interpreter: parameters,
-   deformations, forces, what is observed, and how its checks say what they find. What holds by
-   construction is not checked: bond forces are means of both sides, opposite to the bit, and
-   stretches know no rotation. */
+   deformations, forces, what is observed, and how its checks say what they find; and a micropolar
+   law in space, whose bonds twist. What holds by construction is not checked: bond forces are means
+   of both sides, opposite to the bit, and stretches know no rotation. */
 #ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 
@@ -39,7 +39,7 @@ typedef struct family_bench {
   watched *overstress;   /* [flows]; at -1 where there is none */
   unsigned char *varies; /* [lines + flows] the guard depends on the state */
   unsigned char *seen;   /* [lines + flows] 1: false, 2: true */
-  long values;           /* of a displacement: dimensions * particles */
+  long values;           /* of a displacement: dof * particles */
   double evaluated;      /* particles so far */
   double bonds;          /* of all passes over them */
 } family_bench;
@@ -51,11 +51,13 @@ void family_bench_free(family_bench *b);
 /* New parameters (the defaults at first), a virgin body at rest. */
 void family_bench_draw(family_bench *b, bool defaults);
 /* One displacement, or velocity, of all particles (m, m/s): [values], component by component. An
-   affine deformation of random kind and random differences, at most `size` as strain. */
+   affine deformation of random kind and random differences, at most `size` as strain. Rotations are
+   counted as what they move at a distance of one spacing (m), and random. */
 void family_bench_deform(family_bench *b, double size, double *values);
 /* Puts both bodies at u, at the velocity v (NULL: at rest). */
 void family_bench_move(family_bench *b, const double *u, const double *v);
-/* Forces of a body after its step: [values]. */
+/* Forces of a body after its step: [values]; their product with a change of the displacements is
+   work. */
 void family_bench_forces(family_bench *b, patch *of, double *force);
 /* New fields of the whole law, for both bodies. */
 void family_bench_accept(family_bench *b);

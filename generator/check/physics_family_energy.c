@@ -53,6 +53,8 @@ static void turn(family_bench *b, double angle, double *u) {
     for (int d = 0; d < p->law->dimensions; d++)
       u[d * p->inside_count + q] =
           (pl_cos(angle) - 1) * (at[d] - along * n[d]) + pl_sin(angle) * across[d];
+    for (int d = p->law->dimensions; d < p->law->dof; d++)
+      u[d * p->inside_count + q] = angle * n[d % 3] * p->lattice->spacing;
   }
 }
 
@@ -97,6 +99,44 @@ void family_check_stiffness(family_bench *b) {
   }
   free(u);
   free(force);
+}
+
+/* The moment about bond k on its particle, when the other one alone turns about the bond: of all the
+   particle's bonds none else moves. Over the turn, N m; *size: of the largest force in the body,
+   times the spacing. */
+static double twisting_stiffness(family_bench *b, long particle, int k, double *size) {
+  enum { FIRST = 3 };
+  const double turn = 1e-7;
+  const patch *p = b->whole;
+  const pl_bond_class bond = rows_bond_class(p->lattice, k);
+  const long site = p->inside[particle], other = patch_neighbour(p, site, k);
+  double *u = family_bench_values(b), *force = family_bench_values(b), moment = 0;
+  for (long q = 0; q < p->inside_count; q++)
+    for (int d = 0; d < 3 && p->inside[q] == other; d++)
+      u[(FIRST + d) * p->inside_count + q] = turn * p->lattice->spacing * bond.chord[d] / bond.s;
+  family_bench_move(b, u, NULL);
+  family_bench_forces(b, b->whole, force);
+  for (int d = 0; d < 3; d++)
+    moment += force[(FIRST + d) * p->inside_count + particle] * bond.chord[d] / bond.s;
+  *size = largest(force, b->values) * p->lattice->spacing / turn;
+  free(u);
+  free(force);
+  return moment * p->lattice->spacing / turn;
+}
+
+void family_check_twist(family_bench *b) {
+  double size;
+  family_bench_draw(b, true);
+  for (long q = 0; q < b->whole->inside_count; q++)
+    for (int k = 0; k < b->lattice->directions; k++) {
+      if (!patch_has_bond(b->whole, b->whole->inside[q], k)) continue;
+      const double stiffness = twisting_stiffness(b, q, k, &size);
+      if (stiffness >= -1e-9 * size) continue;
+      family_bench_say(b, DIAG_STIFFNESS, family_bench_force(b), 0,
+                       "a virgin bond that is twisted twists on: T over the twist is %.4g N m",
+                       stiffness);
+      return;
+    }
 }
 
 /* --- elasticity ------------------------------------------------------------------------------- */
@@ -197,9 +237,9 @@ static void say_closed_path(family_bench *b, const triangle *t, bool damaged) {
       "a closed way %sgives %.3g %% of its peak energy back or takes it, by the "
       "direction it is gone: the forces have no stored energy",
       damaged ? "at a damage that stays the same " : "", 100 * fabs(gain_of(t)) / t->peak);
-  diag_hint(b->said, damaged ? "derive the force state from an `energy W`, or say "
-                               "`nonconservative \"why\"`"
-                             : "derive the force state from an `energy W`");
+  diag_hint(b->said, "derive %s from an `energy W`%s",
+            b->law->tree->law == LAW_STATE ? "the force state" : "forces and moments",
+            damaged ? ", or say `nonconservative \"why\"`" : "");
 }
 
 /* Kinks make the work converge slowly: ever finer panels, until it vanishes or settles. */

@@ -19,7 +19,7 @@ static unsigned char *inputs_read(const bench *b, ir_source from, int count) {
   int nodes = ir_count(b->graph), fields = b->field_count;
   unsigned char *marks = must_calloc((size_t)nodes + 1, 1),
                 *read = must_calloc((size_t)count + 1, 1);
-  ir_node results[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i, b->law_step.M_j};
+  ir_node results[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i[0], b->law_step.M_j[0]};
   ir_mark(b->graph, results, FORCE_COUNT, marks);
   ir_mark(b->graph, b->law_step.fields, fields, marks);
   for (ir_node n = 0; n < nodes; n++)

@@ -412,6 +412,7 @@ static void begin_histories(physics *p, histories *h) {
       bench_put(b, h->states[v], lane, h->column);
     swap(&bench_quantity(b, h->states[EXCHANGED], QUANTITY_M_END_I)[lane],
          &bench_quantity(b, h->states[EXCHANGED], QUANTITY_M_END_J)[lane]);
+    bench_turn(b, h->states[EXCHANGED], lane);
   }
 }
 

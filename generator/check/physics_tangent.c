@@ -153,7 +153,7 @@ static probe kinks_of(bench *b) {
   int nodes = ir_count(g), count = 0;
   unsigned char *marks = must_calloc((size_t)nodes, 1);
   ir_node *sides = must_alloc((size_t)nodes * sizeof *sides);
-  ir_node forces[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i, b->law_step.M_j};
+  ir_node forces[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i[0], b->law_step.M_j[0]};
   ir_mark(g, forces, FORCE_COUNT, marks);
   for (ir_node n = 0; n < nodes; n++) {
     ir_node side = marks[n] ? side_of(g, n) : IR_NONE;
@@ -285,7 +285,7 @@ void physics_check_tangent(physics *p, double wrong) {
   bench *b = &p->b;
   tangent_test *t = must_calloc(1, sizeof *t);
   ir_node nodes[RESULTS_AND_AXES],
-      forces[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i, b->law_step.M_j};
+      forces[FORCE_COUNT] = {b->law_step.N, b->law_step.M_i[0], b->law_step.M_j[0]};
   for (int k = 0; k < RESULTS_AND_AXES; k++)
     nodes[k] = slope(b, forces[k / AXIS_COUNT], (bench_axis)(k % AXIS_COUNT));
   t->tangent = probe_new(b, nodes, RESULTS_AND_AXES);

@@ -75,7 +75,7 @@ static void list_choices(const law *l, c_text *out) {
 static bool open_deck_law(const deck *k, int lattice, const char *deck_path, deck_law *l,
                           diagnostics *said) {
   l->lattice = &k->lattices[lattice];
-  l->material = &k->materials[deck_find_material(k, l->lattice->name)];
+  l->material = deck_material_of(k, lattice);
   const bool good = material_law_open(l->material, l->lattice, deck_path, &l->model, said);
   l->opened = l->model.memory != NULL;
   if (good) list_choices(l->model.law, &l->choices);

@@ -177,7 +177,7 @@ static bool suits_law(driving *r) {
                 is_of_families(r) ? "families" : "bonds");
     diag_hint(&r->said, is_of_families(r)
                             ? "a particle is driven by strain_xx, strain_yy, strain_xy"
-                            : "a bond is driven by stretch, theta_i, theta_j");
+                            : "a bond is driven by stretch, theta_i, theta_j, twist");
     return false;
   }
   return true;

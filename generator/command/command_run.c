@@ -151,7 +151,7 @@ static int check_path(const run_options *o) {
 static int dump_lattice(const deck *k, int lattice, const char *deck_path, const char *stage,
                         diagnostics *said) {
   const char *name = k->lattices[lattice].name;
-  const deck_material *m = &k->materials[deck_find_material(k, name)];
+  const deck_material *m = deck_material_of(k, lattice);
   model opened = {.memory = NULL};
   const bool good = material_law_open(m, &k->lattices[lattice], deck_path, &opened, said);
   if (opened.memory) diag_print(&opened.said, stderr);

@@ -170,10 +170,6 @@ static void imply_bonds(law_facts *f, const rows *w) {
 
 static bool imply(law_facts *f) {
   implied *i = &f->implied;
-  if (f->law->kind == PL_MICROPOLAR && !bravais_is_hexagon(&f->lattice)) {
-    say_error("a micropolar law runs on the hexagonal lattice of nearest neighbours only");
-    return false;
-  }
   rows *w = implied_lattice_like(&f->lattice, material_density(f->law, f->values));
   if (!w) {
     say_error("a particle of this lattice has no neighbours, or more than %d", ROWS_MAX_NEIGHBOURS);

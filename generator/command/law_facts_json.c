@@ -116,7 +116,7 @@ static void put_implied(json *j, const law_facts *f) {
     put_pair(j, "longitudinal_speed", i->waves.longitudinal);
     json_put_number(j, "transverse_speed", i->waves.transverse);
     json_put_number(j, "rotation_cutoff",
-                    f->law->kind == PL_MICROPOLAR ? i->waves.rotation_cutoff : NAN);
+                    f->law->dof > f->law->dimensions ? i->waves.rotation_cutoff : NAN);
     json_put_number(j, "stable_step", i->step.least < STABILITY_LEAST ? NAN : i->step.limit);
     json_put_bool(j, "at_surface", i->step.at_surface);
     json_put_text(j, "ruling_mode", i->step.mode);

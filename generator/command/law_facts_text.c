@@ -160,7 +160,7 @@ static void print_implied(const law_facts *f) {
     print_strength(i);
     print_bond(i);
   }
-  print_dynamics(i, f->law->kind == PL_MICROPOLAR);
+  print_dynamics(i, f->law->dof > f->law->dimensions);
 }
 
 void law_facts_print(const law_facts *f) {

@@ -15,11 +15,11 @@ enum { LANES = PL_LANES };
 /* --- one bond under the passes of a lattice --------------------------------------------------- */
 
 typedef struct motion {
-  double stretch, rate, theta[2], theta_rate[2];
+  double stretch, rate, theta[2], theta_rate[2], twist, twist_rate;
 } motion;
 
 /* Particle i at the origin, j on the x axis; the chord does not turn, so that the particles'
-   rotations are those of the ends. The passes work on PL_LANES bonds at once, of which only the
+   rotations are those of the ends. The twist is that of particle j. The passes work on PL_LANES bonds at once, of which only the
    first is present. */
 typedef struct driven_bond {
   const pl_law *kernel;
@@ -31,7 +31,7 @@ typedef struct driven_bond {
 } driven_bond;
 
 typedef struct answer {
-  double N, M[2], lost_state, power; /* J; W: of the rate terms */
+  double N, M[2], T, lost_state, power; /* J; W: of the rate terms */
 } answer;
 
 static double **lanes(double **next, int count) {
@@ -99,6 +99,9 @@ static void bond_move(driven_bond *r, const motion *m) {
     r->displacement[end][2 * LANES] = m->theta[end];
     r->velocity[end][2 * LANES] = m->theta_rate[end];
   }
+  if (r->kernel->dof < 4) return;
+  r->displacement[1][3 * LANES] = m->twist;
+  r->velocity[1][3 * LANES] = m->twist_rate;
 }
 
 /* Forces in a motion; state and damage go on. */
@@ -109,6 +112,7 @@ static answer bond_step(driven_bond *r, const motion *m) {
   answer a = {.N = r->force[0][0] + 0.0, .lost_state = r->lost_state[0], .power = r->lost_rate[0]};
   for (int end = 0; end < 2 && r->kernel->dof > 2; end++)
     a.M[end] = r->force[2 + end][0] + 0.0;
+  if (r->kernel->dof > 3) a.T = r->force[4][0] + 0.0;
   return a;
 }
 
@@ -136,11 +140,13 @@ static answer bond_probe(driven_bond *r, const motion *m) {
 /* Slopes are taken just beside the time, inside of the step meant, where the path has no corner. */
 static motion motion_at(const drive_input *in, double time, double inside, bool moving) {
   motion m = {.stretch = drive_at(in, DRIVE_STRETCH, time),
-              .theta = {drive_at(in, DRIVE_THETA_I, time), drive_at(in, DRIVE_THETA_J, time)}};
+              .theta = {drive_at(in, DRIVE_THETA_I, time), drive_at(in, DRIVE_THETA_J, time)},
+              .twist = drive_at(in, DRIVE_TWIST, time)};
   if (moving) {
     m.rate = drive_slope(in, DRIVE_STRETCH, inside);
     m.theta_rate[0] = drive_slope(in, DRIVE_THETA_I, inside);
     m.theta_rate[1] = drive_slope(in, DRIVE_THETA_J, inside);
+    m.twist_rate = drive_slope(in, DRIVE_TWIST, inside);
   }
   if (drive_prescribes(in, DRIVE_STRETCH_RATE)) m.rate = drive_at(in, DRIVE_STRETCH_RATE, time);
   return m;
@@ -159,7 +165,7 @@ static motion motion_beginning(const drive_input *in, const double *t, long k) {
 
 static bool same_rates(const motion *a, const motion *b) {
   return a->rate == b->rate && a->theta_rate[0] == b->theta_rate[0] &&
-         a->theta_rate[1] == b->theta_rate[1];
+         a->theta_rate[1] == b->theta_rate[1] && a->twist_rate == b->twist_rate;
 }
 
 /* --- the table -------------------------------------------------------------------------------- */
@@ -218,9 +224,9 @@ static void put_row(marching *m, double time) {
   drive_table *t = m->table;
   const long row = t->rows++;
   const pl_law *kernel = m->driven_bond.kernel;
-  const double first[DRIVE_COLUMN_LAW] = {time,           m->at.stretch,  m->at.rate,
-                                          m->at.theta[0], m->at.theta[1], m->forces.N,
-                                          m->forces.M[0], m->forces.M[1]};
+  const double first[DRIVE_COLUMN_LAW] = {
+      time,        m->at.stretch, m->at.rate,     m->at.theta[0], m->at.theta[1],
+      m->at.twist, m->forces.N,   m->forces.M[0], m->forces.M[1], m->forces.T};
   int c = 0;
   for (; c < DRIVE_COLUMN_LAW; c++)
     t->columns[c].values[row] = first[c];
@@ -265,6 +271,7 @@ static void next_row(marching *m, const motion *from, const motion *to, double t
   for (int end = 0; end < 2; end++)
     e[DRIVE_ENERGY_EXTERNAL] +=
         0.5 * (before.M[end] + after.M[end]) * (to->theta[end] - from->theta[end]);
+  e[DRIVE_ENERGY_EXTERNAL] += 0.5 * (before.T + after.T) * (to->twist - from->twist);
   e[DRIVE_ENERGY_STORED] = stored_energy(&m->driven_bond, to);
   m->at = *to;
   m->forces = after;
@@ -338,7 +345,8 @@ void drive_observe(const drive_input *in, const pl_law *kernel, const double *pa
   motion m = {.stretch = t->columns[DRIVE_COLUMN_STRETCH].values[row],
               .rate = t->columns[DRIVE_COLUMN_STRETCH_RATE].values[row],
               .theta = {t->columns[DRIVE_COLUMN_THETA_I].values[row],
-                        t->columns[DRIVE_COLUMN_THETA_J].values[row]}};
+                        t->columns[DRIVE_COLUMN_THETA_J].values[row]},
+              .twist = t->columns[DRIVE_COLUMN_TWIST].values[row]};
   stored_energy(&r, &m);
   for (int k = 0; k < kernel->output_count; k++)
     outputs[k] = r.observed[1 + k][0];

@@ -134,8 +134,9 @@ static const deck_key_info initial_keys[] = {
 static const deck_key_info path_keys[] = {
     {.name = "quantity",
      .type = DECK_CHOICE,
-     .choices = "stretch|theta_i|theta_j|stretch_rate|strain_xx|strain_yy|strain_zz|strain_xy|"
-                "strain_yz|strain_xz",
+     .choices =
+         "stretch|theta_i|theta_j|twist|stretch_rate|strain_xx|strain_yy|strain_zz|strain_xy|"
+         "strain_yz|strain_xz",
      .required = true,
      NOT_KEPT,
      .doc = "what is prescribed; several `&path` of one quantity add up; the rate is that of the "

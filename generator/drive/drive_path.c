@@ -118,7 +118,7 @@ static bool read_cycles(const reader *r, const namelist_group *g, const char *un
 /* As a deck's load; a table without `value` holds the values themselves. */
 static bool read_load(const reader *r, const namelist_group *g, const char *unit_text,
                       time_function *f) {
-  const deck_load_kind kind = {"value", unit_text, true};
+  const deck_load_kind kind = {.key = "value", .unit = unit_text, .implied = true};
   if (!deck_keys_fit(g, other_uses, 3, 0, "a path without cycles", r->d)) return false;
   if (!namelist_find(g, "value") && !namelist_find(g, "values") && !namelist_find(g, "file")) {
     diag_report(r->d, DIAG_MISSING_KEY, g->where,

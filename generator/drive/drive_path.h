@@ -12,6 +12,7 @@
   X(STRETCH, "stretch", "1")                                                                       \
   X(THETA_I, "theta_i", "1")                                                                       \
   X(THETA_J, "theta_j", "1")                                                                       \
+  X(TWIST, "twist", "1")                                                                           \
   X(STRETCH_RATE, "stretch_rate", "1/s")                                                           \
   X(STRAIN_XX, "strain_xx", "1")                                                                   \
   X(STRAIN_YY, "strain_yy", "1")                                                                   \

@@ -13,7 +13,9 @@
   X(STRETCH, "stretch", "1")                                                                       \
   X(STRETCH_RATE, "stretch_rate", "1/s")                                                           \
   X(THETA_I, "theta_i", "1")                                                                       \
-  X(THETA_J, "theta_j", "1") X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m")
+  X(THETA_J, "theta_j", "1")                                                                       \
+  X(TWIST, "twist", "1")                                                                           \
+  X(N, "N", "N") X(M_I, "M_i", "N*m") X(M_J, "M_j", "N*m") X(T, "T", "N*m")
 /* Energies in J. `dissipated` is the sum of its two parts; `external` counts from what the first
    row holds; `imbalance` is external less stored less dissipated. */
 #define DRIVE_LAST_COLUMNS(X)                                                                      \

@@ -27,10 +27,11 @@ static void write_parameters(c_text *out, const kernel_plan *p) {
 }
 
 static void write_varying(c_text *out, const kernel_plan *p) {
-  if (!p->varying_count) return;
+  const law_variation *v = &p->variation;
+  if (!v->varying_count) return;
   c_text_add(out, "static const int law_varying[] = {");
-  for (int k = 0; k < p->varying_count; k++)
-    c_text_add(out, "%s%d", k ? ", " : "", p->varying[k]);
+  for (int k = 0; k < v->varying_count; k++)
+    c_text_add(out, "%s%d", k ? ", " : "", v->varying[k]);
   c_text_add(out, "};\n\n");
 }
 
@@ -72,8 +73,9 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_add(out, "," KEY_LINE(""));
   write_table(out, "parameter", "law_parameters", p->law->parameters.count);
   c_text_add(out, "    .density = %d,\n", p->law->rho ? p->law->rho->index : -1);
-  if (p->varying_count)
-    c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n", p->varying_count);
+  if (p->variation.varying_count)
+    c_text_add(out, "    .varying_count = %d,\n    .varying = law_varying,\n",
+               p->variation.varying_count);
   write_table(out, "field", "law_fields", p->law->fields.count);
   write_table(out, "output", "law_outputs", p->law->outputs.count);
   c_text_add(out,
@@ -101,7 +103,10 @@ static void write_programs(c_text *out, const kernel_plan *p) {
              p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
              p->links.of_bonds, program_sum_count(&p->step),
              program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
-             p->law->tree->law == LAW_CENTRAL_BOND);
+             p->law->tree->law != LAW_STATE);
+  if (p->variation.varying_count && p->law->tree->law == LAW_STATE)
+    c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
+  if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");
   write_program(out, p, &p->step);
   write_program(out, p, &p->observe);
 }

@@ -15,6 +15,7 @@ bool family_is_protection(const emitter *e, ir_node n) {
 bool family_is_of_neighbour(const emitter *e, ir_node n) {
   switch (ir_input_source(e->graph, n)) {
   case IR_FROM_NEIGHBOUR_FIELD:
+  case IR_FROM_NEIGHBOUR_PARAMETER:
   case IR_FROM_NEIGHBOUR_LINK:
   case IR_FROM_NEIGHBOUR_BOND_LINK:
     return true;
@@ -37,7 +38,7 @@ static const char *shared(const emitter *e, int index, const family_index *at, c
                at->first, owner, number);
 }
 
-/* Of a particle's position, velocity, protection, volume or mass, or of bonds' chords. */
+/* Of a particle's position, velocity, protection, volume, mass or share, or of bonds' chords. */
 static word ends_word(ends_array from) {
   static const word words[] = {[FROM_DISPLACEMENT] = SAY_DISPLACEMENT,
                                [FROM_VELOCITY] = SAY_VELOCITY,
@@ -45,6 +46,7 @@ static word ends_word(ends_array from) {
                                [FROM_LENGTH] = SAY_LENGTH,
                                [FROM_VOLUME] = SAY_VOLUME,
                                [FROM_MASS] = SAY_MASS,
+                               [FROM_SHARE] = SAY_SHARE,
                                [FROM_HELD] = SAY_PROTECTED_PARTICLES};
   return words[from];
 }
@@ -61,6 +63,11 @@ static const char *own_array(const emitter *e, ir_node n, const family_index *at
   case IR_FROM_NEIGHBOUR_FIELD: /* of the neighbour, or toward me */
     return spell(e, ir_place(e->graph, n) != ON_BOND ? SAY_OLD_FIELD_TOWARD : SAY_OLD_FIELD, number,
                  at->first, at->back);
+  case IR_FROM_BOND_PARAMETER:
+    return spell(e, SAY_FAMILY_PARAMETER_TOWARD, number, at->first, at->k);
+  case IR_FROM_PARTICLE_PARAMETER:
+  case IR_FROM_NEIGHBOUR_PARAMETER:
+    return spell(e, SAY_FAMILY_PARAMETER, number, at->first);
   case IR_FROM_LINK:
   case IR_FROM_NEIGHBOUR_LINK:
     return spell(e, SAY_LINK, number, at->first);

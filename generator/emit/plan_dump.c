@@ -11,7 +11,8 @@
 /* --- passes --------------------------------------------------------------------------------- */
 
 static const char *target_name(const kernel_plan *p, const pass_root *r, char *text, size_t size) {
-  static const char *const planes[] = {"force x", "force y", "end moment i", "end moment j"};
+  static const char *const planes[] = {"force x", "force y", "end moment i", "end moment j",
+                                       "twisting moment"};
   const law *l = p->law;
   switch (r->target) {
   case TO_FORCE:

@@ -84,6 +84,7 @@ enum { READ_KINDS = sizeof read_names / sizeof *read_names };
 static read_kind kind_of_input(const ir *g, ir_node n) {
   switch (ir_input_source(g, n)) {
   case IR_FROM_NEIGHBOUR_FIELD:
+  case IR_FROM_NEIGHBOUR_PARAMETER:
   case IR_FROM_NEIGHBOUR_LINK:
   case IR_FROM_NEIGHBOUR_BOND_LINK:
     return READ_NEIGHBOUR;

@@ -76,7 +76,7 @@ static void set_up_worker(interpreted *p, worker *w) {
   w->fields = arena_alloc(p->memory, (fields + 1) * sizeof *w->fields);
   w->field_stride = arena_alloc(p->memory, fields + 1);
   memset(w->field_stride, 1, fields + 1);
-  size_t varying = (size_t)plan->varying_count;
+  size_t varying = (size_t)plan->variation.varying_count;
   w->bond_parameters = arena_alloc(p->memory, (varying + 1) * sizeof *w->bond_parameters);
   w->bond_parameter_stride = arena_alloc(p->memory, varying + 1);
   memset(w->bond_parameter_stride, 1, varying + 1);
@@ -181,7 +181,7 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
     point_at_ends(w, s, first, count);
     for (int k = 0; k < p->plan->law->fields.count; k++)
       w->fields[k] = s->field[k] + first;
-    for (int k = 0; k < p->plan->varying_count; k++)
+    for (int k = 0; k < p->plan->variation.varying_count; k++)
       w->bond_parameters[k] = s->parameter[k] + first;
     interpreter_inputs in = inputs_of(w);
     interpreter_run(w->run[kind], &in, count, w->result);
@@ -363,8 +363,8 @@ static void describe(interpreted *p) {
       .parameter_count = l->parameters.count,
       .parameters = describe_parameters(p->memory, &l->parameters),
       .density = l->rho ? l->rho->index : -1,
-      .varying_count = plan->varying_count,
-      .varying = plan->varying,
+      .varying_count = plan->variation.varying_count,
+      .varying = plan->variation.varying,
       .field_count = l->fields.count,
       .fields = describe_fields(p->memory, &l->fields),
       .output_count = l->outputs.count,
@@ -391,7 +391,9 @@ static void describe(interpreted *p) {
   p->law.bond_link_count = plan->links.of_bonds;
   p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
-  p->law.pairwise = l->tree->law == LAW_CENTRAL_BOND;
+  p->law.reads_share = plan->reads_share;
+  p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
+  p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
   p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
   p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);

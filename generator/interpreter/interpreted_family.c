@@ -16,9 +16,10 @@ struct family_runner {
   const kernel_plan *plan;
   arena *memory;
   interpreter ***run[2]; /* [program][pass][segment] */
-  const double **parameters, **fields, **new_fields, **neighbour_fields, **links, **neighbour_links,
-      **bond_links, **neighbour_bond_links, **shared, **shared_odd, **slots, **planes,
-      *shape[PL_SHAPE_PLANES(3)], *ends[ENDS_COUNT];
+  const double **parameters, **bond_parameters, **particle_parameters, **neighbour_parameters,
+      **fields, **new_fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
+      **neighbour_bond_links, **shared, **shared_odd, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
+      *ends[ENDS_COUNT];
   double *slot;  /* [slots][LANES] */
   double *plane; /* [planes][MOST_NEIGHBOURS][LANES] */
   double held[2][LANES];
@@ -80,6 +81,9 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->memory = arena_new();
   make_interpreters(r, inputs, &slots, &planes, &roots);
   r->parameters = pointers(r, p->law->parameters.count + p->uniform_count);
+  r->bond_parameters = pointers(r, p->variation.varying_count);
+  r->particle_parameters = pointers(r, p->variation.varying_count);
+  r->neighbour_parameters = pointers(r, p->variation.varying_count);
   r->fields = pointers(r, fields);
   r->new_fields = pointers(r, fields);
   r->neighbour_fields = pointers(r, fields);
@@ -94,16 +98,18 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
   r->planes = pointers(r, planes);
   r->slot = must_calloc((size_t)slots * LANES + 1, sizeof(double));
   r->plane = must_calloc((size_t)planes * MOST_NEIGHBOURS * LANES + 1, sizeof(double));
-  r->gathered = must_calloc(
-      (size_t)(p->links.of_particles + 3 * p->links.of_bonds + fields + ENDS_COUNT) * LANES,
-      sizeof(double));
+  r->gathered = must_calloc((size_t)(p->links.of_particles + 3 * p->links.of_bonds + fields +
+                                     p->variation.varying_count + ENDS_COUNT) *
+                                LANES,
+                            sizeof(double));
   r->results = must_calloc((size_t)roots * LANES + 1, sizeof(double));
   r->result = arena_alloc(r->memory, ((size_t)roots + 1) * sizeof(double *));
   for (int k = 0; k < roots; k++)
     r->result[k] = r->results + (size_t)k * LANES;
   for (int k = 0; k < slots; k++)
     r->slots[k] = r->slot + (size_t)k * LANES;
-  const int most = larger(larger(fields, larger(p->links.of_particles, 2 * p->links.of_bonds)),
+  const int most = larger(larger(larger(fields, p->variation.varying_count),
+                                 larger(p->links.of_particles, 2 * p->links.of_bonds)),
                           larger(slots, larger(planes, PL_SHAPE_PLANES(3))));
   r->ones = arena_alloc(r->memory, (size_t)most + 1);
   memset(r->ones, 1, (size_t)most + 1);
@@ -141,17 +147,20 @@ static void point_at_particles(family_runner *r, const pl_family *f, long first)
     r->links[k] = f->link[k] + first;
   for (int k = 0; k < r->plan->law->fields.count; k++)
     r->fields[k] = f->old_field[k] + first;
+  for (int k = 0; k < r->plan->variation.varying_count; k++)
+    r->particle_parameters[k] = f->parameter[k] + first;
   for (int k = 0; r->plan->reads_shape && k < PL_SHAPE_PLANES(r->plan->dimensions); k++)
     r->shape[k] = f->shape[k] + first;
   for (int k = 0; k < ENDS_COUNT; k++) {
     const ends_origin *o = &ends_origins[k];
-    if (o->owner != OF_I || o->component >= r->plan->dimensions) continue;
+    if (o->owner != OF_I || o->component >= r->plan->dof) continue;
     if (o->array == FROM_DISPLACEMENT) r->ends[k] = f->displacement[o->component] + first;
     if (o->array == FROM_VELOCITY) r->ends[k] = f->velocity[o->component] + first;
   }
   for (long q = 0; q < LANES && first + q < f->count; q++)
     r->held[0][q] = f->held[first + q] ? 1 : 0;
   r->ends[ENDS_HELD_I] = r->held[0];
+  if (r->plan->reads_share) r->ends[ENDS_SHARE_I] = f->share + first;
   if (f->neighbour) {
     r->ends[ENDS_VOLUME_I] = f->volume + first;
     r->ends[ENDS_MASS_I] = f->mass + first;
@@ -185,7 +194,7 @@ static const double *at_links(family_runner *r, const pl_family *f, const double
 static void point_at_motion(family_runner *r, const pl_family *f, long first, long k) {
   for (int e = 0; e < ENDS_COUNT; e++) {
     const ends_origin *o = &ends_origins[e];
-    if (o->owner != OF_J || o->component >= r->plan->dimensions) continue;
+    if (o->owner != OF_J || o->component >= r->plan->dof) continue;
     if (o->array == FROM_DISPLACEMENT)
       r->ends[e] = at_neighbours(r, f, f->displacement[o->component], first, k);
     if (o->array == FROM_VELOCITY)
@@ -226,6 +235,17 @@ static void point_at_list(family_runner *r, const pl_family *f, long first, long
   r->ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
 }
 
+/* On bonds each neighbour has a plane. */
+static void point_at_parameters(family_runner *r, const pl_family *f, long first, long k) {
+  const bool on_bonds = r->plan->law->tree->law != LAW_STATE;
+  for (int n = 0; n < r->plan->variation.varying_count; n++)
+    if (on_bonds)
+      r->bond_parameters[n] = f->parameter[n] + k * f->plane + first;
+    else
+      r->neighbour_parameters[n] = at_neighbours(r, f, f->parameter[n], first, k);
+  if (r->plan->reads_share) r->ends[ENDS_SHARE_J] = at_neighbours(r, f, f->share, first, k);
+}
+
 static void point_at_neighbour(family_runner *r, const pl_family *f, long first, long k,
                                const double *uniforms) {
   const long half = f->neighbours / 2, back = k < half ? k + half : k - half;
@@ -247,6 +267,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
       r->new_fields[n] = f->new_field[n] + first + (is_of_particle(r, n) ? 0 : k * f->new_plane);
     r->neighbour_fields[n] = at_neighbours(r, f, f->old_field[n] + back * plane, first, k);
   }
+  point_at_parameters(r, f, first, k);
   point_at_shared(r, f, first, k);
   point_at_motion(r, f, first, k);
   if (f->neighbour) point_at_list(r, f, first, k);
@@ -259,6 +280,9 @@ static void point_at_planes(family_runner *r, const family_pass *now, long k) {
 
 static interpreter_inputs inputs_of(const family_runner *r) {
   return (interpreter_inputs){.values = {[IR_FROM_PARAMETER] = r->parameters,
+                                         [IR_FROM_BOND_PARAMETER] = r->bond_parameters,
+                                         [IR_FROM_PARTICLE_PARAMETER] = r->particle_parameters,
+                                         [IR_FROM_NEIGHBOUR_PARAMETER] = r->neighbour_parameters,
                                          [IR_FROM_FIELD] = r->fields,
                                          [IR_FROM_ENDS] = r->ends,
                                          [IR_FROM_SHAPE] = r->shape,
@@ -272,7 +296,10 @@ static interpreter_inputs inputs_of(const family_runner *r) {
                                          [IR_FROM_NEW_FIELD] = r->new_fields,
                                          [IR_FROM_SLOT] = r->slots,
                                          [IR_FROM_PLANE] = r->planes},
-                              .stride = {[IR_FROM_FIELD] = r->ones,
+                              .stride = {[IR_FROM_BOND_PARAMETER] = r->ones,
+                                         [IR_FROM_PARTICLE_PARAMETER] = r->ones,
+                                         [IR_FROM_NEIGHBOUR_PARAMETER] = r->ones,
+                                         [IR_FROM_FIELD] = r->ones,
                                          [IR_FROM_ENDS] = r->ends_stride,
                                          [IR_FROM_SHAPE] = r->ones,
                                          [IR_FROM_NEIGHBOUR_FIELD] = r->ones,

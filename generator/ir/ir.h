@@ -24,6 +24,8 @@ typedef enum ir_source {
   IR_FROM_QUANTITY,       /* index: builtin_quantity */
   IR_FROM_FIELD,          /* index: law->fields; the value at hand: old one when a step begins */
   IR_FROM_BOND_PARAMETER, /* index: of the parameters that differ from bond to bond (kernel_plan) */
+  IR_FROM_PARTICLE_PARAMETER,  /* index: of those that differ from particle to particle */
+  IR_FROM_NEIGHBOUR_PARAMETER, /* the same of the neighbour */
   IR_FROM_ENDS, /* index: enum ends_input of kinematics.h: particle arrays at the bond's ends */
   /* in programs of families (program.h) */
   IR_FROM_SHAPE, /* index: entry of the particle's inverse shape matrix */
@@ -40,6 +42,11 @@ typedef enum ir_source {
   IR_FROM_PLANE,     /* index: value toward each neighbour within a pass */
   IR_SOURCE_COUNT
 } ir_source;
+
+/* Of a parameter that is not the same everywhere. */
+static inline bool ir_is_parameter(ir_source from) {
+  return from >= IR_FROM_BOND_PARAMETER && from <= IR_FROM_NEIGHBOUR_PARAMETER;
+}
 
 typedef struct ir ir;
 

@@ -21,9 +21,11 @@ enum { OLD_FILLED, NEW_FILLED, SETTLED, MARKS };
 typedef struct body {
   const pl_law *law;
   int neighbours;
-  double **motion; /* [2 * dimensions][SIZE] displacements, velocities */
-  double **shape;  /* [PL_SHAPE_PLANES][SIZE] */
-  double **before; /* [fields] */
+  double **motion;    /* [2 * dof][SIZE] displacements and rotations, their rates */
+  double **shape;     /* [PL_SHAPE_PLANES][SIZE] */
+  double **parameter; /* [varying][SIZE], on bonds as many for each neighbour */
+  double *share;      /* [SIZE] */
+  double **before;    /* [fields] */
   double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
   uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
@@ -39,6 +41,11 @@ static bool is_list(const body *b) {
 
 static long planes_of(const body *b, const pl_field *f) {
   return f->place == PL_ON_PARTICLE ? 1 : b->neighbours;
+}
+
+/* Of a varying parameter. */
+static long parameter_planes(const body *b) {
+  return b->law->varying_place == PL_ON_PARTICLE ? 1 : b->neighbours;
 }
 
 static double **values_new(const body *b, const pl_field *fields, int count) {
@@ -72,14 +79,16 @@ static uint64_t **marks_new(const pl_law *law) {
 
 static body body_new(const pl_law *law, int neighbours) {
   body b = {.law = law, .neighbours = neighbours};
-  b.motion = planes_new(2 * law->dimensions, SIZE);
+  b.motion = planes_new(2 * law->dof, SIZE);
   b.shape = planes_new(PL_SHAPE_PLANES(law->dimensions), SIZE);
+  b.parameter = planes_new(law->varying_count, parameter_planes(&b) * SIZE);
+  b.share = must_calloc(SIZE, sizeof *b.share);
   b.before = values_new(&b, law->fields, law->field_count);
   for (int side = 0; side < 2; side++) {
     b.after[side] = values_new(&b, law->fields, law->field_count);
     b.link[side] = planes_new(law->link_count, SIZE);
     b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
-    b.force[side] = planes_new(law->dimensions, SIZE);
+    b.force[side] = planes_new(law->dof, SIZE);
     b.observed[side] = observed_new(&b);
     b.sum[side] = planes_new(law->sum_count, SIZE);
   }
@@ -97,14 +106,16 @@ static body body_new(const pl_law *law, int neighbours) {
 }
 
 static void body_free(body *b) {
-  planes_free(b->motion, 2 * b->law->dimensions);
+  planes_free(b->motion, 2 * b->law->dof);
   planes_free(b->shape, PL_SHAPE_PLANES(b->law->dimensions));
+  planes_free(b->parameter, b->law->varying_count);
+  free(b->share);
   planes_free(b->before, b->law->field_count);
   for (int side = 0; side < 2; side++) {
     planes_free(b->after[side], b->law->field_count);
     planes_free(b->link[side], b->law->link_count);
     planes_free(b->bond_link[side], b->law->bond_link_count);
-    planes_free(b->force[side], b->law->dimensions);
+    planes_free(b->force[side], b->law->dof);
     planes_free(b->observed[side], 1 + b->law->output_count);
     planes_free(b->sum[side], b->law->sum_count);
   }
@@ -126,13 +137,14 @@ static void body_free(body *b) {
 /* --- a random body ---------------------------------------------------------------------------- */
 
 /* Displacements are of one order in a body, so that a family is nearly at rest or torn as a
-   whole. */
+   whole. The largest rotations are beyond half a turn. */
 static void draw_motion(body *b, double s, uint64_t *seed) {
-  const double order = draw_uniform(seed, -9, 0);
-  for (int d = 0; d < b->law->dimensions; d++)
+  const double order = draw_uniform(seed, -9, 0), largest_rotation = 4;
+  for (int d = 0; d < b->law->dof; d++)
     for (int q = 0; q < SIZE; q++) {
-      b->motion[d][q] = s * draw_size(seed, order - 1, order);
-      b->motion[b->law->dimensions + d][q] = draw_size(seed, -6, 3);
+      const double unit = d < b->law->dimensions ? s : largest_rotation;
+      b->motion[d][q] = unit * draw_size(seed, order - 1, order);
+      b->motion[b->law->dof + d][q] = draw_size(seed, -6, 3);
     }
 }
 
@@ -250,7 +262,19 @@ static void clear_shared(const body *b) {
       }
 }
 
-static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
+/* Near the uniform values. */
+static void draw_parameters(body *b, const double *parameters, uint64_t *seed) {
+  for (int k = 0; k < b->law->varying_count; k++) {
+    for (long q = 0; q < parameter_planes(b) * SIZE; q++)
+      b->parameter[k][q] = parameters[b->law->varying[k]] * draw_uniform(seed, 0.95, 1.05);
+    if (b->law->varying_place == PL_ON_BOND) match_ends(b, b->parameter[k]);
+  }
+  for (int q = 0; q < SIZE && b->law->reads_share; q++)
+    b->share[q] = (double)(draw_bits(seed) & 1);
+}
+
+static void draw_body(body *b, const pl_bond_class *bonds, const double *parameters,
+                      uint64_t *seed) {
   const int resolved = PL_SHAPE_VALUES(b->law->dimensions);
   draw_motion(b, bonds->s, seed);
   draw_bonds(b, seed);
@@ -266,6 +290,7 @@ static void draw_body(body *b, const pl_bond_class *bonds, uint64_t *seed) {
       b->before[f][q] = draw_field(seed, &b->law->fields[f]);
   for (int f = 0; f < b->law->field_count; f++)
     if (b->law->fields[f].place == PL_ON_BOND) match_ends(b, b->before[f]);
+  draw_parameters(b, parameters, seed);
   clear_pieces(b, seed);
   for (int k = 0; k < b->law->link_count; k++)
     for (int q = 0; q < SIZE; q++)
@@ -305,7 +330,7 @@ static void settle_pieces(const body *b, int side) {
 static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
   settle_pieces(b, side);
-  planes_poison(b->force[side], b->law->dimensions, SIZE);
+  planes_poison(b->force[side], b->law->dof, SIZE);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
@@ -372,22 +397,24 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .new_field = from_site(&s, b->after[side], law->field_count, site),
                  .link = from_site(&s, b->link[side], law->link_count, site),
                  .bond_link = from_site(&s, b->bond_link[side], law->bond_link_count, site),
-                 .force = from_site(&s, b->force[side], law->dimensions, site),
+                 .force = from_site(&s, b->force[side], law->dof, site),
                  .observed = from_site(&s, b->observed[side], 1 + law->output_count, site),
                  .sum = from_site(&s, b->sum[side], law->sum_count, site),
                  .ahead_only = ahead_only,
                  .held_near = any_held(b),
                  .unusual = b->unusual + site / PL_LANES,
+                 .share = b->share + site,
                  .time_step = 1.7e-7};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
+  f.parameter = (const double *const *)from_site(&s, b->parameter, law->varying_count, site);
   f.old_filled = (const uint64_t *const *)marks_from_site(&s, b, b->marks[OLD_FILLED], site);
   f.new_filled = marks_from_site(&s, b, b->marks[NEW_FILLED], site);
   f.settled = marks_from_site(&s, b, b->marks[SETTLED], site);
   if (is_list(b)) point_at_list(b, site, &f);
-  for (int d = 0; d < law->dimensions; d++) {
+  for (int d = 0; d < law->dof; d++) {
     f.displacement[d] = b->motion[d] + site;
-    f.velocity[d] = b->motion[law->dimensions + d] + site;
+    f.velocity[d] = b->motion[law->dof + d] + site;
   }
   pass(l->law[side], l->uniforms[side], &f);
   for (int k = 0; k < s.count; k++)
@@ -444,7 +471,7 @@ static void compare_step(comparison *c, const body *b) {
   compare_links(c, b, "step");
   for (int f = 0; f < law->field_count; f++)
     compare_values(c, b, "step", &law->fields[f], b->after[0][f], b->after[1][f]);
-  for (int d = 0; d < law->dimensions; d++)
+  for (int d = 0; d < law->dof; d++)
     comparison_add(c, "step", "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
 }
 
@@ -496,7 +523,7 @@ static long loaded_without_bonds(const body *b) {
     bool any = false;
     for (int k = 0; k < b->neighbours && !any; k++)
       any = has_bond(b, k, q);
-    for (int d = 0; d < b->law->dimensions; d++)
+    for (int d = 0; d < b->law->dof; d++)
       count += !any && b->force[0][d][q] != 0;
   }
   return count;
@@ -518,7 +545,7 @@ long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, co
   body b = body_new(l->law[0], l->classes);
   long done = 0;
   for (; done < wanted; done += (long)SITES * l->classes) {
-    draw_body(&b, l->bonds, seed);
+    draw_body(&b, l->bonds, l->parameters, seed);
     for (int side = 0; side < 2; side++)
       run_program(l, &b, side, false);
     compare_step(c, &b);

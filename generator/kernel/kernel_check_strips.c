@@ -13,7 +13,8 @@
 
 enum {
   SITES = 1024,
-  MOTIONS = 12, /* planes: displacement of i, of j, velocity of i, of j; 3 each */
+  EACH = 4,           /* components of a motion; the last one of bonds that twist */
+  MOTIONS = 4 * EACH, /* planes: displacement of i, of j, velocity of i, of j */
   DIRECTION = 5,
   RUN = 256, /* bonds of one kind: a part of a strip (stages.h) */
   SPINNING_EACH = 64
@@ -85,11 +86,11 @@ static void fill_motion(strip_arrays *a, const pl_bond_class *b, uint64_t *seed)
     double far[3] = {x + across, y + along, turn + draw_size(seed, -9, 0)};
     if (kind == SOME_SPIN && q % SPINNING_EACH == 0)
       *(q & SPINNING_EACH ? &near[2] : &far[2]) += draw_uniform(seed, -14, 14);
-    for (int k = 0; k < 3; k++) {
-      a->motion[k][q] = near[k];
-      a->motion[3 + k][q + 1] = far[k];
-      a->motion[6 + k][q] = draw_size(seed, -6, 3);
-      a->motion[9 + k][q + 1] = draw_size(seed, -6, 3);
+    for (int k = 0; k < 3 || k < a->law->dof; k++) {
+      a->motion[k][q] = k < 3 ? near[k] : draw_size(seed, -9, 0);
+      a->motion[EACH + k][q + 1] = k < 3 ? far[k] : draw_size(seed, -9, 0);
+      a->motion[2 * EACH + k][q] = draw_size(seed, -6, 3);
+      a->motion[3 * EACH + k][q + 1] = draw_size(seed, -6, 3);
     }
   }
 }
@@ -145,11 +146,11 @@ static pl_strip strip_of(const strip_arrays *a, int side) {
                 .observed = a->observed[side],
                 .dissipated_state = a->kept[side][fields],
                 .dissipated_rate = a->kept[side][fields + 1]};
-  for (int k = 0; k < 3; k++) {
+  for (int k = 0; k < EACH; k++) {
     s.displacement_i[k] = a->motion[k];
-    s.displacement_j[k] = a->motion[3 + k] + 1;
-    s.velocity_i[k] = a->motion[6 + k];
-    s.velocity_j[k] = a->motion[9 + k] + 1;
+    s.displacement_j[k] = a->motion[EACH + k] + 1;
+    s.velocity_i[k] = a->motion[2 * EACH + k];
+    s.velocity_j[k] = a->motion[3 * EACH + k] + 1;
   }
   return s;
 }

@@ -7,6 +7,7 @@
 #include "dsl/semantics/law_reads.h"
 #include "dsl/semantics/law_variant.h"
 #include "dsl/syntax/parse.h"
+#include "generator/lower/lowered.h"
 #include "runtime/deck/bravais.h"
 
 enum { ERROR_LENGTH = 4096 };
@@ -61,6 +62,33 @@ bool material_law_take_options(const deck_material *m, model *out, diagnostics *
   return good;
 }
 
+static bool repeats_choice(const deck_assignment *a, const law *l, const symbol *option,
+                           diagnostics *said) {
+  const char *chosen = l->chosen[option->index];
+  if (a->word && strcmp(a->word, chosen) == 0) return true;
+  diag_report(said, DIAG_OPTION, a->value_where,
+              "a region has the options of its lattice: there `%s` is '%s'", option->name, chosen);
+  return false;
+}
+
+bool material_law_regional(const deck_material *m, const model *of, arena *memory,
+                           deck_material *values, diagnostics *said) {
+  bool good = true;
+  *values = *m;
+  values->assignments =
+      arena_alloc(memory, ((size_t)m->assignment_count + 1) * sizeof *values->assignments);
+  values->assignment_count = 0;
+  for (int k = 0; k < m->assignment_count; k++) {
+    const deck_assignment *a = &m->assignments[k];
+    const symbol *option = find_option(of->law, a->name);
+    if (option)
+      good = repeats_choice(a, of->law, option, said) && good;
+    else
+      values->assignments[values->assignment_count++] = *a;
+  }
+  return good;
+}
+
 /* --- reading ---------------------------------------------------------------------------------- */
 
 /* A deck may come from somebody else, and name a file whose lines are nobody's business: only those
@@ -92,7 +120,7 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 /* --- the lattice ------------------------------------------------------------------------------ */
 
 static law_setting setting_of(const deck_lattice *l) {
-  for (int k = SETTING_PLANE_STRESS; l && k <= SETTING_SPACE; k++)
+  for (int k = SETTING_PLANE_STRESS; k <= SETTING_SPACE; k++)
     if (strcmp(l->setting, law_setting_name((law_setting)k)) == 0) return (law_setting)k;
   return SETTING_PLANE_STRESS;
 }
@@ -101,13 +129,13 @@ static law_setting setting_of(const deck_lattice *l) {
 static int neighbours_of(const deck_lattice *l) {
   bravais_neighbour list[PL_MAX_DIRECTIONS];
   bravais b;
-  if (!l || deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
+  if (deck_lattice_is_irregular(l) || !bravais_of(l, &b)) return 0;
   return 2 * bravais_family(&b, l->horizon, l->shells, list);
 }
 
 /* What a bond knows of the third direction its law must say; `for` is the word that it has. */
 static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnostics *said) {
-  if (!l || m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
+  if (m->law->setting != SETTING_PLANE_STRAIN || m->law->tree->law == LAW_STATE ||
       m->tree->setting_count > 0)
     return;
   diag_report(
@@ -120,12 +148,12 @@ static void warn_of_plane_strain(const deck_lattice *l, const model *m, diagnost
             "else take another one, such as `splm_elastic`");
 }
 
-/* The law takes the setting of its lattice; without one a bond is of a lattice in plane stress. */
+/* The law takes the setting of its lattice; without one it keeps the first that it names. */
 static bool take_setting(const deck_material *m, const deck_lattice *l, model *out,
                          diagnostics *said) {
   char meant[96];
-  if (!l && out->law->tree->law == LAW_STATE) return true;
-  const bool irregular = l && deck_lattice_is_irregular(l);
+  if (!l) return true;
+  const bool irregular = deck_lattice_is_irregular(l);
   out->law = law_on_lattice(out->law, setting_of(l), irregular, neighbours_of(l));
   const char *name = law_setting_name(out->law->setting);
   if (out->law->irregular && !model_suits_irregular(out)) {
@@ -200,52 +228,69 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
   return found;
 }
 
-/* Plans the kernel that the deck's random fields need. Their order decides nothing: the law's
-   does. */
-static bool plan_material(const deck_material *m, model *out, diagnostics *said) {
-  int *varying = must_calloc((size_t)m->varying_count + 1, sizeof *varying), count = 0;
-  bool good = true;
-  for (int k = 0; k < m->varying_count; k++) {
-    int found = find_varying(m, k, out->law, said);
-    good = good && found >= 0;
-    int at = count++;
-    for (; at > 0 && varying[at - 1] > found; at--)
-      varying[at] = varying[at - 1];
-    varying[at] = found;
+/* Value of a parameter in a material, SI; what is wrong with it, others say. */
+static double value_in(const deck_material *m, const symbol *parameter) {
+  for (int k = 0; k < m->assignment_count; k++)
+    if (strcasecmp(m->assignments[k].name, parameter->name) == 0) return m->assignments[k].value;
+  return parameter->has_default ? parameter->initial : 0;
+}
+
+/* Some region has another value than the lattice. */
+static bool differs_by_region(const deck_material *m, const symbol *parameter) {
+  for (int k = 0; k < m->regional_count; k++)
+    if (value_in(m->regional[k], parameter) != value_in(m, parameter)) return true;
+  return false;
+}
+
+/* A &field names it. */
+static bool has_field(const deck_material *m, const symbol *parameter) {
+  for (int k = 0; k < m->varying_count; k++)
+    if (strcasecmp(m->varying[k], parameter->name) == 0) return true;
+  return false;
+}
+
+static bool density_is_one(const deck_material *m, const law *l, diagnostics *said) {
+  for (int k = 0; l->rho && k < m->regional_count; k++) {
+    const deck_material *of = m->regional[k];
+    if (value_in(of, l->rho) == value_in(m, l->rho)) continue;
+    diag_report(said, DIAG_NOT_SUPPORTED, of->item.where,
+                "`rho` cannot differ from region to region: the particles of a lattice have one "
+                "mass");
+    diag_hint(said, "give the region the `rho` of its lattice, too");
+    return false;
   }
-  good = good && model_plan_varying(out, varying, count);
-  free(varying);
+  return true;
+}
+
+/* The parameters that random fields or regions make differ, as the law orders them. */
+static bool find_variation(const deck_material *m, model *out, law_variation *v,
+                           diagnostics *said) {
+  const symbol_list *all = &out->law->parameters;
+  int *varying = arena_alloc(out->memory, ((size_t)all->count + 1) * sizeof *varying);
+  bool good = density_is_one(m, out->law, said);
+  *v = (law_variation){.varying = varying};
+  for (int k = 0; k < m->varying_count; k++)
+    good = find_varying(m, k, out->law, said) >= 0 && good;
+  for (int p = 0; p < all->count && good; p++)
+    if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]))
+      varying[v->varying_count++] = p;
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices a
-   central law runs as one of families. */
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices as laws
+   of families. */
 static bool needs_families(const deck_lattice *l, const law *of) {
-  return of->tree->law == LAW_CENTRAL_BOND && !bravais_is_hexagon(l);
-}
-
-/* Families have one value of each parameter. */
-static bool can_vary(const deck_material *m, const law *of, bool families, diagnostics *said) {
-  if (m->varying_count == 0 || !(families || of->tree->law == LAW_STATE)) return true;
-  if (families) {
-    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "on this lattice the central law `%s` runs as one of families, whose parameters "
-                "cannot differ from bond to bond",
-                of->tree->name);
-    diag_hint(said, "random fields need the hexagonal lattice of nearest neighbours");
-  } else
-    diag_report(said, DIAG_NOT_SUPPORTED, m->varying_where[0],
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                of->tree->name);
-  return false;
+  return of->tree->law != LAW_STATE && !bravais_is_hexagon(l);
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said) {
-  if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
-  const bool families = l && needs_families(l, out->law);
-  if (!can_vary(m, out->law, families, said)) return false;
-  return families ? model_plan_of_families(out) : plan_material(m, out, said);
+  law_variation v;
+  if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said) ||
+      !find_variation(m, out, &v, said))
+    return false;
+  return l && needs_families(l, out->law) ? model_plan_of_families(out, &v)
+                                           : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

@@ -21,7 +21,12 @@ bool material_law_read(const deck_material *m, const char *path, model *out, dia
 /* The options of an opened law that the material sets; out->values has what it sets beside them,
    the values for material_parameters. */
 bool material_law_take_options(const deck_material *m, model *out, diagnostics *said);
-/* Plans the kernel that this lattice and the material's random fields need. */
+/* The same of a material of a region, which has the options of its lattice's: `values` is it
+   without them. */
+bool material_law_regional(const deck_material *m, const model *of, arena *memory,
+                           deck_material *values, diagnostics *said);
+/* Plans the kernel that this lattice needs, and what differs in space: the material's random fields,
+   the values of its regions. */
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
                        diagnostics *said);
 

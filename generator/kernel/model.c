@@ -273,7 +273,7 @@ bool model_suits_irregular(const model *m) {
 }
 
 bool model_plan(model *m) {
-  return model_plan_varying(m, NULL, 0);
+  return model_plan_varying(m, &(law_variation){.varying_count = 0});
 }
 
 static bool keep_plan(model *m, kernel_plan *plan, double begun) {
@@ -282,14 +282,14 @@ static bool keep_plan(model *m, kernel_plan *plan, double begun) {
   return plan != NULL;
 }
 
-bool model_plan_varying(model *m, const int *varying, int varying_count) {
+bool model_plan_varying(model *m, const law_variation *v) {
   const double begun = monotonic_seconds();
-  return keep_plan(m, plan_kernel_varying(m->law, varying, varying_count, &m->said), begun);
+  return keep_plan(m, plan_kernel_varying(m->law, v, &m->said), begun);
 }
 
-bool model_plan_of_families(model *m) {
+bool model_plan_of_families(model *m, const law_variation *v) {
   const double begun = monotonic_seconds();
-  return keep_plan(m, plan_kernel_of_families(m->law, &m->said), begun);
+  return keep_plan(m, plan_kernel_of_families(m->law, v, &m->said), begun);
 }
 
 static void emit_once(model *m) {

@@ -12,6 +12,7 @@
 C_LINKAGE_BEGIN
 
 typedef struct kernel_plan kernel_plan;
+typedef struct law_variation law_variation;
 
 typedef struct model {
   arena *memory;
@@ -22,9 +23,9 @@ typedef struct model {
   const struct law *law;
   deck_material values; /* of a material's law: what it sets beside options (material_law.h) */
   kernel_plan *plan;
-  char *c_text, *key;                   /* of model_c_text, model_key, once they were asked for */
-  pl_law *interpreted;                  /* the plan on the interpreter */
-  loaded_kernel loaded;                 /* the compiled kernel, when there is one */
+  char *c_text, *key;   /* of model_c_text, model_key, once they were asked for */
+  pl_law *interpreted;  /* the plan on the interpreter */
+  loaded_kernel loaded; /* the compiled kernel, when there is one */
   double seconds_front; /* text to plan */
 } model;
 
@@ -70,11 +71,10 @@ bool model_suits(const model *m, const char *setting, char *meant, size_t size);
 bool model_suits_irregular(const model *m);
 /* Plans the kernel (m->said on errors). */
 bool model_plan(model *m);
-/* The same for a kernel in which these parameters (indices into law->parameters) differ from
-   bond to bond. */
-bool model_plan_varying(model *m, const int *varying, int varying_count);
+/* The same for a kernel of what differs in space. */
+bool model_plan_varying(model *m, const law_variation *v);
 /* The same for a central law of bonds as a law of families. */
-bool model_plan_of_families(model *m);
+bool model_plan_of_families(model *m, const law_variation *v);
 /* Kernel for the runtime: compiled; without a C compiler interpreted. *note is NULL, or says so, or
    that the cache is another one than was to be. NULL with `error`. */
 const pl_law *model_kernel(model *m, bool interpret, const char **note, char *error, size_t size);

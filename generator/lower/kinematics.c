@@ -12,8 +12,8 @@ const ends_origin ends_origins[ENDS_COUNT] = {
 
 ir_node kinematics_input(ir *g, ends_input which) {
   const ends_origin *o = &ends_origins[which];
-  const bool of_particle =
-      o->array == FROM_HELD || o->array == FROM_VOLUME || o->array == FROM_MASS;
+  const bool of_particle = o->array == FROM_HELD || o->array == FROM_VOLUME ||
+                           o->array == FROM_MASS || o->array == FROM_SHARE;
   placement on = o->array == FROM_CLASS            ? ON_BODY
                  : of_particle && o->owner == OF_I ? ON_PARTICLE
                                                    : ON_BOND;
@@ -60,32 +60,43 @@ static ir_node cross(ir *g, vector a, vector b) {
   return ir_sub(g, xy, yx);
 }
 
-/* asin(x) for |x| < 1/16: (asin(x)/x - 1)/x^2 in x^2 through Chebyshev's points, to 2^-52. */
-static ir_node arc_sine_near_zero(ir *g, ir_node x) {
-  ir_node z = ir_mul(g, x, x);
+/* (asin(x)/x - 1)/x^2 of z = x^2 for |x| < 1/16, through Chebyshev's points, to 2^-52. */
+static ir_node arc_sine_series(ir *g, ir_node z) {
   ir_node linear = ir_mul(g, z, ir_constant(g, 0x1.3333334a3f0fap-4));
   ir_node low = ir_add(g, ir_constant(g, 0x1.5555555554f92p-3), linear);
   linear = ir_mul(g, z, ir_constant(g, 0x1.f4a7447a72cffp-6));
   ir_node high = ir_add(g, ir_constant(g, 0x1.6db5f5154638dp-5), linear);
-  ir_node series = ir_add(g, low, ir_mul(g, ir_mul(g, z, z), high));
+  return ir_add(g, low, ir_mul(g, ir_mul(g, z, z), high));
+}
+
+static ir_node arc_sine_near_zero(ir *g, ir_node x) {
+  ir_node z = ir_mul(g, x, x);
+  ir_node series = arc_sine_series(g, z);
   return ir_add(g, x, ir_mul(g, ir_mul(g, x, z), series));
+}
+
+ir_node kinematics_arc_sine_ratio(ir *g, ir_node square) {
+  return ir_add(g, ir_constant(g, 1), ir_mul(g, square, arc_sine_series(g, square)));
 }
 
 /* How a bond's chord moves. */
 typedef struct chord_motion {
   vector chord, d, now; /* reference chord, relative displacement, their sum */
-  /* Expected: |d| < s/16, so that |L/s - 1| and the sine of the chord's rotation are below 1/16. */
+  /* Expected: |d| < s/16, so that |L/s - 1| and the sine of the chord's rotation are below 1/16.
+     IR_NONE: nothing is expected. */
   ir_node near;
   ir_node growth; /* L^2 - s^2 */
 } chord_motion;
 
 /* The angle of which C x d/(s L) is the sine; d: relative displacement. C x d equals C x c, but
    does not cancel when d is small. */
-static ir_node chord_rotation(ir *g, const bond_kinematics *k, const chord_motion *m) {
-  const ir_node per_s = ir_div(g, ir_constant(g, 1), k->s);
+static ir_node chord_rotation(ir *g, ir_node s, ir_node per_length, const chord_motion *m) {
+  const ir_node per_s = ir_div(g, ir_constant(g, 1), s);
   const vector reference = {ir_mul(g, m->chord.x, per_s), ir_mul(g, m->chord.y, per_s)};
   ir_node across = cross(g, reference, m->d), along = dot(g, reference, m->now);
-  ir_node sine = named(g, ir_mul(g, across, k->per_length), "sine");
+  if (m->near == IR_NONE)
+    return named(g, ir_make(g, IR_ATAN2, across, along, IR_NONE), "chord_rotation");
+  ir_node sine = named(g, ir_mul(g, across, per_length), "sine");
   ir_node near = arc_sine_near_zero(g, sine), far = ir_make(g, IR_ATAN2, across, along, IR_NONE);
   return named(g, ir_select(g, m->near, near, far), "chord_rotation");
 }
@@ -95,6 +106,7 @@ static ir_node end_rotation(ir *g, const chord_motion *m, ir_node small, ir_node
                             ir_node of_chord, const char *name) {
   const ir_node turned = ir_sub(g, end, of_chord);
   const ir_node wrapped = ir_make(g, IR_WRAP_ANGLE, turned, IR_NONE, IR_NONE);
+  if (m->near == IR_NONE) return named(g, wrapped, name);
   const ir_node near = ir_select(g, small, turned, wrapped);
   return named(g, ir_select(g, m->near, near, wrapped), name);
 }
@@ -102,15 +114,16 @@ static ir_node end_rotation(ir *g, const chord_motion *m, ir_node small, ir_node
 /* Up to half a turn wrapping changes nothing. The chord of a bond that is near turns by little, so
    that one question about both ends is left; loops over strips ask for sizes of 2 or more of many
    bonds at once. */
-static void end_rotations(ir *g, bond_kinematics *k, const chord_motion *m) {
-  const ir_node of_chord = chord_rotation(g, k, m);
+static void find_end_rotations(ir *g, ir_node s, ir_node per_length, const chord_motion *m,
+                               ir_node *theta_i, ir_node *theta_j) {
+  const ir_node of_chord = chord_rotation(g, s, per_length, m);
   const ir_node i = kinematics_input(g, ENDS_PHI_I), j = kinematics_input(g, ENDS_PHI_J);
   const ir_node size_i = ir_make(g, IR_ABS, i, IR_NONE, IR_NONE);
   const ir_node size_j = ir_make(g, IR_ABS, j, IR_NONE, IR_NONE);
   const ir_node larger = ir_make(g, IR_MAX, size_i, size_j, IR_NONE);
   const ir_node small = ir_expect(g, ir_make(g, IR_LT, larger, ir_constant(g, 2), IR_NONE));
-  k->theta_i = end_rotation(g, m, small, i, of_chord, "theta_i");
-  k->theta_j = end_rotation(g, m, small, j, of_chord, "theta_j");
+  *theta_i = end_rotation(g, m, small, i, of_chord, "theta_i");
+  *theta_j = end_rotation(g, m, small, j, of_chord, "theta_j");
 }
 
 static void rotation_rates(ir *g, bond_kinematics *k, vector e, vector dv) {
@@ -129,6 +142,12 @@ static ir_node stretch_of(ir *g, ir_node s, ir_node length, ir_node growth) {
   return ir_mul(g, ir_sub(g, growth, square), half_per_square);
 }
 
+/* Expected of a chord that has moved by the root of `square`. */
+static ir_node is_near(ir *g, ir_node s, ir_node square) {
+  const ir_node limit = ir_mul(g, ir_mul(g, s, s), ir_constant(g, 1.0 / 256));
+  return ir_expect(g, ir_make(g, IR_LT, square, limit, IR_NONE));
+}
+
 static chord_motion motion_of_chord(ir *g, ir_node s) {
   const ir_node two = ir_constant(g, 2);
   chord_motion m = {.chord = inputs(g, ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y)};
@@ -138,8 +157,7 @@ static chord_motion motion_of_chord(ir *g, ir_node s) {
   named(g, m.now.x, "c_x");
   named(g, m.now.y, "c_y");
   const ir_node square = dot(g, m.d, m.d);
-  const ir_node limit = ir_mul(g, ir_mul(g, s, s), ir_constant(g, 1.0 / 256));
-  m.near = ir_expect(g, ir_make(g, IR_LT, square, limit, IR_NONE));
+  m.near = is_near(g, s, square);
   const vector twice = {ir_mul(g, two, m.chord.x), ir_mul(g, two, m.chord.y)};
   m.growth = named(g, ir_add(g, dot(g, twice, m.d), square), "growth");
   return m;
@@ -179,7 +197,7 @@ static void find_length(ir *g, bond_kinematics *k, const chord_motion *m, bool n
 }
 
 /* Divisions are what such loops spend their time on: here there is none. */
-bond_kinematics kinematics_bond(ir *g, bool rotations) {
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists) {
   bond_kinematics k = {0};
   k.s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   const chord_motion m = motion_of_chord(g, k.s);
@@ -194,9 +212,16 @@ bond_kinematics kinematics_bond(ir *g, bool rotations) {
   const ir_node per_s = ir_div(g, ir_constant(g, 1), k.s);
   k.stretch_rate = named(g, ir_mul(g, dot(g, e, dv), per_s), "stretch_rate");
   k.theta_i = k.theta_j = k.theta_rate_i = k.theta_rate_j = IR_NONE;
+  k.twist = k.twist_rate = IR_NONE;
   if (rotations) {
-    end_rotations(g, &k, &m);
+    find_end_rotations(g, k.s, k.per_length, &m, &k.theta_i, &k.theta_j);
     rotation_rates(g, &k, e, dv);
+  }
+  if (twists) {
+    ir_node i = kinematics_input(g, ENDS_PHI_IX), j = kinematics_input(g, ENDS_PHI_JX);
+    k.twist = named(g, ir_sub(g, j, i), "twist");
+    i = kinematics_input(g, ENDS_OMEGA_IX), j = kinematics_input(g, ENDS_OMEGA_JX);
+    k.twist_rate = ir_sub(g, j, i);
   }
   return k;
 }
@@ -266,8 +291,18 @@ static void find_stretch_near(ir *g, family_kinematics *k, int dimensions, ir_no
   k->length = named(g, ir_select(g, near, near_length, ir_mul(g, s, ratio)), "length");
 }
 
+/* With `near` as of strips. */
+static void rotations_in_plane(ir *g, family_kinematics *k, ir_node s, bool near) {
+  chord_motion m = {.chord = {k->reference_chord[0], k->reference_chord[1]},
+                    .d = {k->d[0], k->d[1]},
+                    .now = {k->chord[0], k->chord[1]},
+                    .near = IR_NONE};
+  if (near) m.near = is_near(g, s, dot(g, m.d, m.d));
+  find_end_rotations(g, s, k->per_length, &m, &k->theta_i, &k->theta_j);
+}
+
 /* Both ends compute the same bits: exchanging them changes signs only. */
-family_kinematics kinematics_family(ir *g, int dimensions, bool near) {
+family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near) {
   static const ends_input u_i[] = {ENDS_U_IX, ENDS_U_IY, ENDS_U_IZ},
                           u_j[] = {ENDS_U_JX, ENDS_U_JY, ENDS_U_JZ},
                           v_i[] = {ENDS_V_IX, ENDS_V_IY, ENDS_V_IZ},
@@ -275,31 +310,32 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool near) {
                           chord_of[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
   static const char *const d_names[] = {"d_x", "d_y", "d_z"}, *const e_names[] = {"e_x", "e_y",
                                                                                   "e_z"};
-  family_kinematics k = {0};
-  ir_node d[3] = {IR_NONE, IR_NONE, IR_NONE}, dv[3] = {IR_NONE, IR_NONE, IR_NONE};
+  family_kinematics k = {.theta_i = IR_NONE, .theta_j = IR_NONE};
+  ir_node dv[3] = {IR_NONE, IR_NONE, IR_NONE};
   ir_node s = ir_input(g, IR_FROM_QUANTITY, QUANTITY_S, "s", ON_BODY);
   ir_mark_class(g, s);
   ir_node per_s = ir_div(g, ir_constant(g, 1), s);
   for (int c = 0; c < dimensions; c++) {
     k.reference_chord[c] = kinematics_input(g, chord_of[c]);
     ir_node from = kinematics_input(g, u_i[c]), to = kinematics_input(g, u_j[c]);
-    d[c] = named(g, ir_sub(g, to, from), d_names[c]);
-    k.chord[c] = ir_add(g, k.reference_chord[c], d[c]);
+    k.d[c] = named(g, ir_sub(g, to, from), d_names[c]);
+    k.chord[c] = ir_add(g, k.reference_chord[c], k.d[c]);
     from = kinematics_input(g, v_i[c]), to = kinematics_input(g, v_j[c]);
     dv[c] = ir_sub(g, to, from);
     k.reference[c] = ir_div(g, k.reference_chord[c], s);
   }
-  (near ? find_stretch_near : find_stretch)(g, &k, dimensions, s, d);
+  (near ? find_stretch_near : find_stretch)(g, &k, dimensions, s, k.d);
   for (int c = 0; c < dimensions; c++)
     k.now[c] = named(g, ir_mul(g, k.chord[c], k.per_length), e_names[c]);
   ir_node rate = dot_of(g, dimensions, k.now, dv);
   k.stretch_rate = named(g, ir_mul(g, rate, per_s), "stretch_rate");
+  if (rotations) rotations_in_plane(g, &k, s, near);
   return k;
 }
 
 bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i,
                               ir_node M_j) {
-  bond_forces f = {ir_mul(g, N, k->e_x), ir_mul(g, N, k->e_y), IR_NONE, IR_NONE};
+  bond_forces f = {ir_mul(g, N, k->e_x), ir_mul(g, N, k->e_y), IR_NONE, IR_NONE, IR_NONE};
   if (M_i != IR_NONE) {
     /* n = (-e_y, e_x) */
     ir_node shear = named(g, ir_mul(g, ir_add(g, M_i, M_j), k->per_length), "V");

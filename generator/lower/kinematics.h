@@ -9,10 +9,11 @@
 /* Inputs with source IR_FROM_ENDS. U, V, PHI, OMEGA: displacement, velocity, rotation and rotation
    rate of end i or j. CHORD, REFERENCE_LENGTH: reference chord of this bond and its length (lists
    of families); CLASS_CHORD: the same chord for a whole strip (rows; pl_bond_class). VOLUME, MASS:
-   of the particles (lists of families). PROTECTED: 1 where the damage of the bond stays as it is,
+   of the particles (lists of families). SHARE: of the particle's law in it (pl_family). PROTECTED: 1 where the damage of the bond stays as it is,
    else 0 (a number; the graph asks 0 < protected). HELD: the same for particle i or j, in families;
-   what belongs to particle i is ON_PARTICLE there. Rotations and third directions share component
-   2: no topology has both. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
+   what belongs to particle i is ON_PARTICLE there. The rotation in a plane and the third direction
+   share component 2; in space the rotations PHI_X, PHI_Y, PHI_Z follow. Of a bond
+   in a plane that twists PHI_X and OMEGA_X are about the bond. TIME_STEP: s, of the strip; ON_BOND because `prepare` does not know
    it. */
 /* X(code, name, where a strip keeps it, what it differs by, component) */
 #define ENDS_INPUTS(X)                                                                             \
@@ -45,8 +46,18 @@
   X(CLASS_CHORD_Z, "class_chord_z", FROM_CLASS, OF_STRIP, 2)                                       \
   X(HELD_I, "held_i", FROM_HELD, OF_I, 0)                                                          \
   X(HELD_J, "held_j", FROM_HELD, OF_J, 0)                                                          \
+  X(SHARE_I, "share_i", FROM_SHARE, OF_I, 0)                                                       \
+  X(SHARE_J, "share_j", FROM_SHARE, OF_J, 0)                                                       \
   X(PROTECTED, "protected", FROM_FLAGS, OF_BOND, 0)                                                \
-  X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)
+  X(TIME_STEP, "time_step", FROM_TIME, OF_STRIP, 0)                                                \
+  X(PHI_IX, "phi_ix", FROM_DISPLACEMENT, OF_I, 3)                                                  \
+  X(PHI_IY, "phi_iy", FROM_DISPLACEMENT, OF_I, 4)                                                  \
+  X(PHI_IZ, "phi_iz", FROM_DISPLACEMENT, OF_I, 5)                                                  \
+  X(PHI_JX, "phi_jx", FROM_DISPLACEMENT, OF_J, 3)                                                  \
+  X(PHI_JY, "phi_jy", FROM_DISPLACEMENT, OF_J, 4)                                                  \
+  X(PHI_JZ, "phi_jz", FROM_DISPLACEMENT, OF_J, 5)                                                  \
+  X(OMEGA_IX, "omega_ix", FROM_VELOCITY, OF_I, 3)                                                  \
+  X(OMEGA_JX, "omega_jx", FROM_VELOCITY, OF_J, 3)
 
 typedef enum ends_input {
 #define X(code, name, array, owner, component) ENDS_##code,
@@ -63,6 +74,7 @@ typedef enum ends_array {
   FROM_LENGTH,
   FROM_VOLUME,
   FROM_MASS,
+  FROM_SHARE,
   FROM_CLASS,
   FROM_FLAGS,
   FROM_HELD, /* families: a particle's damage stays as it is */
@@ -78,9 +90,12 @@ typedef struct ends_origin {
 } ends_origin;
 extern const ends_origin ends_origins[ENDS_COUNT];
 
-/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I
-   and MASS_I on the particle; all others on the bond. */
+/* The input node. Its placement follows from what it is: CLASS_CHORD on the body; HELD_I, VOLUME_I,
+   MASS_I and SHARE_I on the particle; all others on the bond. */
 ir_node kinematics_input(ir *g, ends_input which);
+
+/* asin(x)/x of the square of x, for |x| < 1/16. */
+ir_node kinematics_arc_sine_ratio(ir *g, ir_node square);
 
 typedef struct bond_kinematics {
   ir_node stretch, stretch_rate, theta_i, theta_j, length;
@@ -88,16 +103,19 @@ typedef struct bond_kinematics {
   ir_node e_x, e_y;                   /* present direction, i to j */
   ir_node per_length;                 /* 1/length, 1/m */
   ir_node theta_rate_i, theta_rate_j; /* rad/s */
+  ir_node twist, twist_rate;          /* rad, rad/s; of bonds that do not twist IR_NONE */
 } bond_kinematics;
 
 /* 2D. The chord is the same along a strip, so what depends on it alone is hoisted. Without
    rotations the angles are IR_NONE. stretch = (2 C.du + du.du)/(s (L + s)): no cancellation for
    small displacements. The end rotations are those of the particles less the chord's, phi = atan2(C
    x c, C . c), wrapped to (-pi, pi]; with rotations it is expected (ir_expect) that chords move by
-   less than a sixteenth of their length, and that angles stay below half a turn. */
-bond_kinematics kinematics_bond(ir *g, bool rotations);
+   less than a sixteenth of their length, and that angles stay below half a turn. The twist is the
+   difference of the rotations about the bond. */
+bond_kinematics kinematics_bond(ir *g, bool rotations, bool twists);
 
 /* The bond to one neighbour of a family, in 2 or 3 dimensions; its chord is the same along a row.
+   Rotations are of the plane (end_rotations.h has those in space).
    With `near` it is expected that bonds are nearly as long as at first (stretched by less than
    1/256). */
 typedef struct family_kinematics {
@@ -107,8 +125,10 @@ typedef struct family_kinematics {
   ir_node now[3];       /* present direction, i to j */
   ir_node reference[3]; /* reference direction */
   ir_node reference_chord[3];
+  ir_node d[3];             /* relative displacement, m */
+  ir_node theta_i, theta_j; /* rad, with rotations in the plane */
 } family_kinematics;
-family_kinematics kinematics_family(ir *g, int dimensions, bool near);
+family_kinematics kinematics_family(ir *g, int dimensions, bool rotations, bool near);
 
 /* Forces on end i and end moments (the particles receive the opposite of these):
    F_i = N e - V n, n = e turned by +90 degrees, V = (M_i + M_j)/L with the present L, which makes
@@ -116,6 +136,7 @@ family_kinematics kinematics_family(ir *g, int dimensions, bool near);
 typedef struct bond_forces {
   ir_node f_x, f_y;           /* what particle i receives, and j the opposite */
   ir_node moment_i, moment_j; /* end moments: particles receive the opposite */
+  ir_node twisting; /* the moment on end j about the bond; on i the opposite; or IR_NONE */
 } bond_forces;
 bond_forces kinematics_forces(ir *g, const bond_kinematics *k, ir_node N, ir_node M_i, ir_node M_j);
 

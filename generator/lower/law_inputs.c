@@ -9,13 +9,16 @@
 const builtin_quantity law_motion[PL_STATE_INPUTS] = {
     QUANTITY_STRETCH, QUANTITY_STRETCH_RATE, QUANTITY_THETA_I, QUANTITY_THETA_J, QUANTITY_LENGTH};
 
+const ends_input law_chord[LAW_CHORD] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y,
+                                         ENDS_CLASS_CHORD_Z};
+
 int law_motion_place(builtin_quantity q) {
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     if (law_motion[k] == q) return k;
   return -1;
 }
 
-/* Motion, class, and what a law of families has in other ways: TWIST, RESOLVED, DIRECTION. */
+/* Motion, class, and what a law has in other ways: TWIST, RESOLVED, DIRECTION. */
 #define X(code, value) +1
 _Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 3 == QUANTITY_COUNT,
                "each quantity has a place where a law finds it");
@@ -35,6 +38,8 @@ void law_inputs_open(law_inputs *v, const law *l, const double *parameters,
     v->quantities[k] = &v->of_class[k];
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     v->quantity_stride[law_motion[k]] = 1;
+  for (int k = 0; k < LAW_CHORD; k++)
+    v->ends[law_chord[k]] = &bonds->chord[k];
   v->parameters = must_calloc((size_t)l->parameters.count + 1, sizeof *v->parameters);
   for (int k = 0; k < l->parameters.count; k++)
     v->parameters[k] = &parameters[k];
@@ -48,7 +53,8 @@ interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in) {
   return (interpreter_inputs){
       .values = {[IR_FROM_PARAMETER] = v->parameters,
                  [IR_FROM_QUANTITY] = v->quantities,
-                 [IR_FROM_FIELD] = in + PL_STATE_INPUTS},
+                 [IR_FROM_FIELD] = in + PL_STATE_INPUTS,
+                 [IR_FROM_ENDS] = v->ends},
       .stride = {[IR_FROM_QUANTITY] = v->quantity_stride, [IR_FROM_FIELD] = v->field_stride}};
 }
 

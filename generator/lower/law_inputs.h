@@ -6,6 +6,7 @@
 #include "dsl/semantics/builtins.h"
 #include "dsl/semantics/law.h"
 #include "generator/ir/interpret.h"
+#include "generator/lower/kinematics.h"
 #include "runtime/kernel.h"
 
 /* Quantities of a bond's motion, in the order of the planes of pl_law's `states`; the tangent is by
@@ -29,6 +30,11 @@ int law_motion_place(builtin_quantity q);
   X(WEIGHT, bonds->weight)                                                                         \
   X(N_FAMILY, bonds->n)
 
+/* Components of the reference chord, of which `direction` is made: inputs IR_FROM_ENDS of a bond
+   class. */
+enum { LAW_CHORD = 3 };
+extern const ends_input law_chord[LAW_CHORD];
+
 /* Their values; those of all other quantities stay as they are. */
 void law_class_values(const pl_bond_class *bonds, double values[QUANTITY_COUNT]);
 
@@ -36,11 +42,12 @@ typedef struct law_inputs {
   double of_class[QUANTITY_COUNT];
   const double *quantities[QUANTITY_COUNT];
   unsigned char quantity_stride[QUANTITY_COUNT];
-  const double **parameters; /* [parameters] */
+  const double *ends[ENDS_COUNT]; /* law_chord */
+  const double **parameters;      /* [parameters] */
   unsigned char *field_stride;
 } law_inputs;
 
-/* `parameters` must outlive the inputs, which must stay where they are. */
+/* `parameters` and `bonds` must outlive the inputs, which must stay where they are. */
 void law_inputs_open(law_inputs *v, const law *l, const double *parameters,
                      const pl_bond_class *bonds);
 /* For states `in` as pl_law's `states` takes them: [PL_STATE_INPUTS + fields][count]. */

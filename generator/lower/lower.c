@@ -135,6 +135,30 @@ static ir_node flow_once(lowering *c, const stmt *rule, ir_node old, ir_node inc
   return rule->when ? ir_select(c->graph, when, flown, old) : flown;
 }
 
+/* A field on bonds has one value, which both ends must find: of a parameter that differs from
+   particle to particle its rule reads the mean of both. What goes over a family, or is the
+   neighbour's, stays. */
+static ir_node of_both_ends(lowering *c, ir_node value) {
+  const law_variation *v = c->variation;
+  ir *g = c->graph;
+  const int nodes = ir_count(g);
+  if (v->varying_count == 0) return value;
+  ir_substitution *s = ir_substitution_new(g);
+  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
+  ir_mark(g, &value, 1, marks);
+  for (ir_node n = 0; n < nodes; n++)
+    if (marks[n] && (ir_operation(g, n) == IR_NEIGHBOUR || ir_is_reduction(ir_operation(g, n))))
+      ir_substitution_add(s, n, n);
+  for (int k = 0; k < v->varying_count; k++) {
+    const ir_node mine = lower_own_parameter(c, v->varying[k]);
+    ir_substitution_add(s, mine, half(g, ir_add(g, mine, ir_unary(g, IR_NEIGHBOUR, mine))));
+  }
+  value = ir_substitution_apply(s, value);
+  ir_substitution_free(s);
+  free(marks);
+  return value;
+}
+
 static void lower_field_rule(lowering *c, const stmt *rule) {
   const symbol *s = rule->symbol;
   if (c->mode == LOWER_FROZEN) return;
@@ -142,9 +166,16 @@ static void lower_field_rule(lowering *c, const stmt *rule) {
     lower_fail(c, s->where, "states that are tensors or vectors cannot be compiled yet");
     return;
   }
+  if (s->shape == SHAPE_BENDING && c->law->bends_in_space) {
+    lower_fail(c, s->where,
+               "a state that is a bending quantity would have to turn with its bond "
+               "in space: that cannot be compiled; keep a number, such as its `norm`");
+    return;
+  }
   ir_node old = lower_field(c->graph, c->law, s->index);
   ir_node value = lower_expr(c, rule->value);
   if (rule->kind == STMT_FLOW) value = flow_once(c, rule, old, value);
+  if (s->place == ON_BOND && lower_is_state_law(c)) value = of_both_ends(c, value);
   if (c->mode == LOWER_STEP) c->text.rules[s->index] = value;
   if (s->kind == SYMBOL_DAMAGE) value = clamp_damage(c, s->place, old, value);
   lower_name_node(c->graph, value, s->name, rule->where);
@@ -167,10 +198,16 @@ static void lower_rule(lowering *c, const stmt *rule) {
 
 /* --- results ---------------------------------------------------------------------------------- */
 
+/* Of a symbol; of count 0 without one. */
+static components components_of(const lowering *c, const symbol *s) {
+  const components *known = s ? lower_binding_of(c, s) : NULL;
+  return known ? *known : (components){0};
+}
+
 /* Value of a symbol that is one number, or IR_NONE. */
-static ir_node value_of(lowering *c, const symbol *s) {
-  components *known = s ? lower_binding_of(c, s) : NULL;
-  return known && known->count == 1 ? known->of[0] : IR_NONE;
+static ir_node value_of(const lowering *c, const symbol *s) {
+  const components v = components_of(c, s);
+  return v.count == 1 ? v.of[0] : IR_NONE;
 }
 
 static ir_node result_node(lowering *c, law_result which) {
@@ -185,14 +222,32 @@ static ir_node force_of_energy(lowering *c, ir_node W) {
   return ir_add(g, ir_div(g, by_stretch, lower_quantity(g, QUANTITY_S)), by_length);
 }
 
-static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quantity theta) {
+static ir_node end_moment(lowering *c, law_result which, ir_node W, builtin_quantity theta,
+                          int axis) {
   ir *g = c->graph;
-  ir_node moment = result_node(c, which), shear = result_node(c, RESULT_V);
-  if (moment != IR_NONE) return moment;
-  if (shear != IR_NONE)
-    return ir_div(g, ir_mul(g, shear, lower_quantity(g, QUANTITY_LENGTH)), ir_constant(g, 2));
-  if (W != IR_NONE) return ir_derivative(g, W, lower_quantity(g, theta));
+  const components moment = components_of(c, c->law->results[which]),
+                   shear = components_of(c, c->law->results[RESULT_V]);
+  if (axis < moment.count) return moment.of[axis];
+  if (axis < shear.count)
+    return ir_div(g, ir_mul(g, shear.of[axis], lower_quantity(g, QUANTITY_LENGTH)),
+                  ir_constant(g, 2));
+  if (W != IR_NONE) return ir_derivative(g, W, lower_bending(g, c->law, theta, axis));
   return lower_fail(c, c->law->tree->name_where, "the law gives no end moments");
+}
+
+static ir_node twisting_moment(lowering *c, ir_node W) {
+  const ir_node given = result_node(c, RESULT_T);
+  if (given != IR_NONE) return given;
+  return W != IR_NONE ? ir_derivative(c->graph, W, lower_quantity(c->graph, QUANTITY_TWIST))
+                      : IR_NONE;
+}
+
+static void lower_moments(lowering *c, lowered_law *out) {
+  for (int k = 0; k < lower_bending_axes(c->law); k++) {
+    out->M_i[k] = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I, k);
+    out->M_j[k] = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J, k);
+  }
+  if (c->law->twists) out->T = twisting_moment(c, out->W);
 }
 
 static void lower_bond_results(lowering *c, lowered_law *out) {
@@ -201,14 +256,25 @@ static void lower_bond_results(lowering *c, lowered_law *out) {
     out->N = lower_fail(c, c->law->tree->name_where, "the law gives no force");
   else if (out->N == IR_NONE)
     out->N = force_of_energy(c, out->W);
-  if (c->law->tree->law == LAW_MICROPOLAR_BOND) {
-    out->M_i = end_moment(c, RESULT_M_I, out->W, QUANTITY_THETA_I);
-    out->M_j = end_moment(c, RESULT_M_J, out->W, QUANTITY_THETA_J);
-  }
+  if (c->law->tree->law == LAW_MICROPOLAR_BOND) lower_moments(c, out);
+  static const char *const of_i[] = {"M_ix", "M_iy", "M_iz"}, *const of_j[] = {"M_jx", "M_jy",
+                                                                               "M_jz"};
+  const bool space = c->law->bends_in_space;
   span nowhere = {0, 0, 0};
   lower_name_node(c->graph, out->N, "N", nowhere);
-  lower_name_node(c->graph, out->M_i, "M_i", nowhere);
-  lower_name_node(c->graph, out->M_j, "M_j", nowhere);
+  for (int k = 0; k < BENDING_AXES; k++)
+    lower_name_node(c->graph, out->M_i[k], space ? of_i[k] : "M_i", nowhere);
+  for (int k = 0; k < BENDING_AXES; k++)
+    lower_name_node(c->graph, out->M_j[k], space ? of_j[k] : "M_j", nowhere);
+  lower_name_node(c->graph, out->T, "T", nowhere);
+}
+
+/* What the law gives is the particle's, and where that is of another law, nothing. What the law
+   itself reads of its force state, a stress say, stays whole. */
+static void take_share(ir *g, lowered_law *out) {
+  const ir_node share = kinematics_input(g, ENDS_SHARE_I);
+  out->F = ir_mul(g, share, out->F);
+  if (out->W != IR_NONE) out->W = ir_mul(g, share, out->W);
 }
 
 static void lower_force_state(lowering *c, lowered_law *out) {
@@ -221,6 +287,7 @@ static void lower_force_state(lowering *c, lowered_law *out) {
     out->F = lower_force_state_of_energy(c, out->W);
   else if (lower_is_per_volumes(given->symbol->dim))
     out->F = lower_force_of_density(c->graph, c->law, out->F);
+  if (c->variation->shares) take_share(c->graph, out);
   lower_name_node(c->graph, out->F, "F", (span){0, 0, 0});
 }
 
@@ -297,10 +364,11 @@ static void resolve_fields(lowering *c, lowered_law *out) {
     ir_substitution_add(known, from[k], to[k]);
   }
   ir_substitution_free(known);
-  ir_node *results[] = {&out->N, &out->M_i, &out->M_j, &out->F, &out->W};
-  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
-    if (*results[k] != IR_NONE)
-      ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
+  ir_node *results[LOWERED_FORCES + 1];
+  int count = lowered_forces(out, results);
+  if (out->W != IR_NONE) results[count++] = &out->W;
+  for (int k = 0; k < count; k++)
+    ir_substitute(g, results[k], 1, from, to, c->rule_count, results[k]);
   ir_substitute(g, out->outputs, c->law->outputs.count, from, to, c->rule_count, out->outputs);
   resolve_text(c, from, to);
   free(from);
@@ -315,10 +383,17 @@ static ir_node opaque_field(ir *g, const law *l, int k) {
 
 bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
                diagnostics *d) {
+  return lower_law_varying(l, g, mode, &(law_variation){.varying_count = 0}, memory, out, d);
+}
+
+bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation *v, arena *memory,
+                       lowered_law *out, diagnostics *d) {
   int fields = l->fields.count;
   size_t field_bytes = ((size_t)fields + 1) * sizeof(ir_node);
-  lowering c = {.law = l, .graph = g, .mode = mode, .memory = memory, .said = d};
-  *out = (lowered_law){.N = IR_NONE, .M_i = IR_NONE, .M_j = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  lowering c = {.law = l, .graph = g, .mode = mode, .variation = v, .memory = memory, .said = d};
+  *out = (lowered_law){.N = IR_NONE, .T = IR_NONE, .F = IR_NONE, .W = IR_NONE};
+  for (int k = 0; k < BENDING_AXES; k++)
+    out->M_i[k] = out->M_j[k] = IR_NONE;
   c.text.rules = arena_alloc(memory, field_bytes);
   c.new_value = must_alloc(field_bytes);
   c.rule = must_alloc(field_bytes);
@@ -348,7 +423,9 @@ bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law 
 ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d) {
   if (!bound) return ir_constant(g, infinite);
   arena *memory = arena_new();
-  lowering c = {.law = l, .graph = g, .mode = LOWER_STEP, .memory = memory, .said = d};
+  const law_variation none = {.varying_count = 0};
+  lowering c = {
+      .law = l, .graph = g, .mode = LOWER_STEP, .variation = &none, .memory = memory, .said = d};
   ir_node n = lower_expr(&c, bound);
   free(c.bound);
   arena_free(memory);

@@ -16,6 +16,11 @@
 bool lower_law(const law *l, ir *g, lower_mode mode, arena *memory, lowered_law *out,
                diagnostics *d);
 
+/* The same of a law of families (or of bonds, as one of families) whose parameters differ in space:
+   inputs IR_FROM_PARTICLE_PARAMETER, or IR_FROM_BOND_PARAMETER. */
+bool lower_law_varying(const law *l, ir *g, lower_mode mode, const law_variation *v, arena *memory,
+                       lowered_law *out, diagnostics *d);
+
 /* A bound of a parameter as IR over the parameters; infinite without an expression. IR_NONE with a
    diagnostic when it cannot be compiled. */
 ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, diagnostics *d);

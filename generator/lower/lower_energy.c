@@ -8,33 +8,42 @@
 
 /* --- of a bond -------------------------------------------------------------------------------- */
 
-enum { ENERGY_PAIRS = 3 }; /* N with the stretch, M_i with theta_i, M_j with theta_j */
+/* N with the stretch, M_i with theta_i, M_j with theta_j, T with the twist. */
+enum { ENERGY_PAIRS = 2 + 2 * BENDING_AXES };
 
 typedef struct energy_parts {
-  ir_node force[ENERGY_PAIRS];  /* N, M_i, M_j at zero rate; IR_NONE where there is none */
-  ir_node motion[ENERGY_PAIRS]; /* stretch, theta_i, theta_j */
+  ir_node force[ENERGY_PAIRS];  /* [count] at zero rate */
+  ir_node motion[ENERGY_PAIRS]; /* [count] */
+  int count;
   ir_node s, length;
 } energy_parts;
 
-static energy_parts parts_at_zero_rate(ir *g, const lowered_law *frozen) {
-  energy_parts p = {{frozen->N, frozen->M_i, frozen->M_j},
-                    {lower_quantity(g, QUANTITY_STRETCH), IR_NONE, IR_NONE},
-                    lower_quantity(g, QUANTITY_S),
-                    lower_quantity(g, QUANTITY_LENGTH)};
+static void add_part(energy_parts *p, ir_node force, ir_node motion) {
+  p->force[p->count] = force;
+  p->motion[p->count++] = motion;
+}
+
+static energy_parts parts_at_zero_rate(ir *g, const law *l, const lowered_law *frozen) {
+  static const builtin_quantity theta[] = {QUANTITY_THETA_I, QUANTITY_THETA_J};
+  const ir_node *moments[] = {frozen->M_i, frozen->M_j};
+  energy_parts p = {.s = IR_NONE};
+  add_part(&p, frozen->N, lower_quantity(g, QUANTITY_STRETCH));
+  p.s = lower_quantity(g, QUANTITY_S);
+  p.length = lower_quantity(g, QUANTITY_LENGTH);
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
-  for (int k = 0; k < ENERGY_PAIRS; k++)
-    if (p.force[k] != IR_NONE) rewrite_zero(g, &p.force[k], 1, &rate, 1, &p.force[k]);
-  if (frozen->M_i != IR_NONE) {
-    p.motion[1] = lower_quantity(g, QUANTITY_THETA_I);
-    p.motion[2] = lower_quantity(g, QUANTITY_THETA_J);
-  }
+  for (int end = 0; end < 2; end++)
+    for (int k = 0; k < BENDING_AXES && moments[end][k] != IR_NONE; k++)
+      add_part(&p, moments[end][k], lower_bending(g, l, theta[end], k));
+  if (frozen->T != IR_NONE) add_part(&p, frozen->T, lower_quantity(g, QUANTITY_TWIST));
+  for (int k = 0; k < p.count; k++)
+    rewrite_zero(g, &p.force[k], 1, &rate, 1, &p.force[k]);
   return p;
 }
 
 static bool is_homogeneous(const ir *g, ir_node f, const energy_parts *p) {
   if (rewrite_depends(g, &f, 1, &p->length, 1)) /* s (1 + stretch) is not */
     return false;
-  double degree = rewrite_degree(g, f, p->motion, ENERGY_PAIRS);
+  double degree = rewrite_degree(g, f, p->motion, p->count);
   return degree == 1 || degree == REWRITE_ZERO;
 }
 
@@ -50,8 +59,8 @@ static ir_node add_some(ir *g, ir_node a, ir_node b) {
 
 static ir_node half_work(ir *g, const energy_parts *p, int first) {
   ir_node sum = IR_NONE;
-  for (int k = first; k < ENERGY_PAIRS; k++)
-    if (p->force[k] != IR_NONE) sum = add_some(g, sum, half(g, work(g, p, k, p->force[k])));
+  for (int k = first; k < p->count; k++)
+    sum = add_some(g, sum, half(g, work(g, p, k, p->force[k])));
   return sum;
 }
 
@@ -59,10 +68,12 @@ static ir_node half_work(ir *g, const energy_parts *p, int first) {
    carries nothing. IR_NONE when N is not of this form. */
 static ir_node affine_energy(ir *g, const energy_parts *p) {
   ir_node N = p->force[0];
-  ir_node moving[] = {p->motion[0], p->motion[1], p->motion[2], p->length};
+  ir_node moving[ENERGY_PAIRS + 1];
+  memcpy(moving, p->motion, (size_t)p->count * sizeof *moving);
+  moving[p->count] = p->length;
   ir_node k = ir_derivative(g, N, p->motion[0]);
-  if (rewrite_depends(g, &N, 1, moving + 1, 3) || rewrite_depends(g, &k, 1, moving, 4) ||
-      ir_operation(g, k) == IR_CONSTANT)
+  if (rewrite_depends(g, &N, 1, moving + 1, p->count) ||
+      rewrite_depends(g, &k, 1, moving, p->count + 1) || ir_operation(g, k) == IR_CONSTANT)
     return IR_NONE;
   ir_node one = ir_constant(g, 1);
   ir_node none = ir_binary(g, IR_EQ, k, ir_constant(g, 0));
@@ -80,15 +91,13 @@ static ir_node path_energy(ir *g, const energy_parts *p) {
     ir_node fraction = ir_constant(g, 0.5 * (1 + sign * at[point % 2]));
     ir_node from[ENERGY_PAIRS + 1], to[ENERGY_PAIRS + 1];
     int count = 0;
-    for (int k = 0; k < ENERGY_PAIRS; k++) {
-      if (p->motion[k] == IR_NONE) continue;
+    for (int k = 0; k < p->count; k++) {
       from[count] = p->motion[k];
       to[count++] = ir_mul(g, fraction, p->motion[k]);
     }
     from[count] = p->length;
     to[count++] = ir_add(g, p->s, ir_mul(g, fraction, ir_sub(g, p->length, p->s)));
-    for (int k = 0; k < ENERGY_PAIRS; k++) {
-      if (p->force[k] == IR_NONE) continue;
+    for (int k = 0; k < p->count; k++) {
       ir_node here;
       ir_substitute(g, &p->force[k], 1, from, to, count, &here);
       sum =
@@ -98,34 +107,33 @@ static ir_node path_energy(ir *g, const energy_parts *p) {
   return sum;
 }
 
-ir_node lower_stored_energy(ir *g, const lowered_law *frozen) {
+ir_node lower_stored_energy(ir *g, const law *l, const lowered_law *frozen) {
   if (frozen->W != IR_NONE) {
     ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE), W;
     rewrite_zero(g, &frozen->W, 1, &rate, 1, &W);
     return W;
   }
-  energy_parts p = parts_at_zero_rate(g, frozen);
-  bool homogeneous[ENERGY_PAIRS];
-  for (int k = 0; k < ENERGY_PAIRS; k++)
-    homogeneous[k] = p.force[k] == IR_NONE || is_homogeneous(g, p.force[k], &p);
-  if (homogeneous[0] && homogeneous[1] && homogeneous[2]) return half_work(g, &p, 0);
-  ir_node moments[] = {p.force[1], p.force[2]};
-  bool central = p.force[1] == IR_NONE;
-  bool apart = central || !rewrite_depends(g, moments, 2, p.motion, 1);
-  ir_node axial = apart && homogeneous[1] && homogeneous[2] ? affine_energy(g, &p) : IR_NONE;
+  energy_parts p = parts_at_zero_rate(g, l, frozen);
+  const bool central = p.count == 1, axial_is = is_homogeneous(g, p.force[0], &p);
+  bool moments_are = true;
+  for (int k = 1; k < p.count; k++)
+    moments_are = is_homogeneous(g, p.force[k], &p) && moments_are;
+  if (axial_is && moments_are) return half_work(g, &p, 0);
+  const bool apart = central || !rewrite_depends(g, p.force + 1, p.count - 1, p.motion, 1);
+  ir_node axial = apart && moments_are ? affine_energy(g, &p) : IR_NONE;
   if (axial == IR_NONE) return path_energy(g, &p);
   return central ? axial : ir_add(g, axial, half_work(g, &p, 1));
 }
 
-ir_node lower_rate_power(ir *g, const lowered_law *frozen, ir_node theta_rate_i,
-                         ir_node theta_rate_j) {
-  energy_parts p = parts_at_zero_rate(g, frozen);
-  ir_node whole[ENERGY_PAIRS] = {frozen->N, frozen->M_i, frozen->M_j};
+ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
+                         ir_node theta_rate_j, ir_node twist_rate) {
+  energy_parts p = parts_at_zero_rate(g, l, frozen);
+  ir_node whole[] = {frozen->N, frozen->M_i[0], frozen->M_j[0], frozen->T};
   ir_node length_rate = ir_mul(g, lower_quantity(g, QUANTITY_STRETCH_RATE), p.s);
-  ir_node rate[ENERGY_PAIRS] = {length_rate, theta_rate_i, theta_rate_j};
+  ir_node rate[] = {length_rate, theta_rate_i, theta_rate_j, twist_rate};
   ir_node power = IR_NONE, stretch_rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
-  for (int k = 0; k < ENERGY_PAIRS; k++) {
-    if (whole[k] == IR_NONE || !rewrite_depends(g, &whole[k], 1, &stretch_rate, 1)) continue;
+  for (int k = 0; k < p.count; k++) {
+    if (!rewrite_depends(g, &whole[k], 1, &stretch_rate, 1)) continue;
     ir_node part = ir_sub(g, whole[k], p.force[k]);
     power = add_some(g, power, ir_mul(g, part, rate[k]));
   }

@@ -10,13 +10,14 @@
    degree one (linear, also piecewise); from the stress-free point where N is affine in the stretch
    alone; otherwise Gauss integration along the straight path from rest (4 points: exact for forces
    up to degree 7). */
-ir_node lower_stored_energy(ir *g, const lowered_law *frozen);
+ir_node lower_stored_energy(ir *g, const law *l, const lowered_law *frozen);
 
 /* Power (W) of the parts of the results that vanish at zero rate: (N - N at zero rate) dL/dt, and
-   the moments' with the given rates of theta_i and theta_j (rad/s; unused for central laws).
+   the moments' with the given rates of theta_i, theta_j and the twist (rad/s; unused where there
+   are none), of bonds that bend in a plane.
    IR_NONE if there are none. */
-ir_node lower_rate_power(ir *g, const lowered_law *frozen, ir_node theta_rate_i,
-                         ir_node theta_rate_j);
+ir_node lower_rate_power(ir *g, const law *l, const lowered_law *frozen, ir_node theta_rate_i,
+                         ir_node theta_rate_j, ir_node twist_rate);
 
 /* Force state from `energy W` of a particle (IR_NONE after a message): bonds share it with the
    other side. */

@@ -99,7 +99,7 @@ static int strain_part(const law *l, int k) {
 static ir_node poisson(lowering *c, const expr *e) {
   const symbol_list *all = &c->law->parameters;
   for (int k = 0; k < all->count; k++)
-    if (strcmp(all->items[k]->name, "nu") == 0) return lower_parameter(c->graph, c->law, k);
+    if (strcmp(all->items[k]->name, "nu") == 0) return lower_own_parameter(c, k);
   return lower_fail(c, e->where,
                     "in a plane this needs Poisson's ratio for the third direction: give the law "
                     "a parameter `nu`");

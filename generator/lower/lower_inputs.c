@@ -7,9 +7,18 @@
 ir_node lower_quantity(ir *g, builtin_quantity q) {
   /* Of the number of bonds, too, a kernel knows the value of its bond class only (a full family).
    */
-  placement on = law_motion_place(q) >= 0 ? ON_BOND : ON_BODY;
+  placement on = law_motion_place(q) >= 0 || q == QUANTITY_TWIST ? ON_BOND : ON_BODY;
   ir_node n = ir_input(g, IR_FROM_QUANTITY, (int)q, builtin_quantities[q].name, on);
   return builtin_quantities[q].place == ON_BOND ? ir_mark_class(g, n) : n;
+}
+
+ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis) {
+  static const char *const names[2][BENDING_AXES] = {{"theta_ix", "theta_iy", "theta_iz"},
+                                                     {"theta_jx", "theta_jy", "theta_jz"}};
+  const int end = theta == QUANTITY_THETA_J;
+  if (!l->bends_in_space) return lower_quantity(g, theta);
+  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + BENDING_AXES * end + axis, names[end][axis],
+                  ON_BOND);
 }
 
 ir_node lower_parameter(ir *g, const law *l, int k) {

@@ -3,11 +3,17 @@
 #define PERILAT_GENERATOR_LOWER_INPUTS_H
 
 #include "dsl/semantics/law.h"
-#include "generator/ir/ir.h"
+#include "generator/lower/lowered.h"
 
-/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j and
-   length vary from bond to bond; the others are those of a bond class. */
+/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j, twist
+   and length vary from bond to bond; the others are those of a bond class. */
 ir_node lower_quantity(ir *g, builtin_quantity q);
+/* Components of the end rotations theta_i and theta_j: one in a plane, of bonds that bend in space
+   three. */
+static inline int lower_bending_axes(const law *l) {
+  return l->bends_in_space ? BENDING_AXES : 1;
+}
+ir_node lower_bending(ir *g, const law *l, builtin_quantity theta, int axis);
 /* The input node of parameter or field k. */
 ir_node lower_parameter(ir *g, const law *l, int k);
 ir_node lower_field(ir *g, const law *l, int k);

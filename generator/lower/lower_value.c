@@ -11,14 +11,20 @@
 
 /* --- names ------------------------------------------------------------------------------------ */
 
-static components lower_quantity_name(lowering *c, const expr *e, builtin_quantity q) {
+static components lower_bending_quantity(const lowering *c, builtin_quantity q) {
+  components v = {lower_bending_axes(c->law), {0}};
+  for (int k = 0; k < v.count; k++)
+    v.of[k] = lower_bending(c->graph, c->law, q, k);
+  return v;
+}
+
+static components lower_quantity_name(lowering *c, builtin_quantity q) {
   if (q == QUANTITY_V) return scalar(lower_volume(c->graph, c->law));
   if (q == QUANTITY_RESOLVED) return scalar(lower_resolved(c->graph, c->law));
-  if (q == QUANTITY_TWIST) return scalar(ir_constant(c->graph, 0)); /* no bond twists in a plane */
+  if (builtin_quantities[q].shape == SHAPE_BENDING) return lower_bending_quantity(c, q);
+  if (q == QUANTITY_TWIST && !c->law->twists) return scalar(ir_constant(c->graph, 0));
   if (q == QUANTITY_N_FAMILY && lower_is_state_law(c)) return scalar(lower_family_size(c->graph));
-  if (q == QUANTITY_DIRECTION && lower_is_state_law(c)) return lower_direction(c->graph, c->law);
-  if (builtin_quantities[q].shape == SHAPE_VECTOR)
-    return lower_failed_value(c, e->where, "vectors cannot be compiled in laws of bonds yet");
+  if (q == QUANTITY_DIRECTION) return lower_direction(c->graph, c->law);
   return scalar(lower_quantity(c->graph, q));
 }
 
@@ -55,9 +61,9 @@ static ir_node lower_choice_name(lowering *c, const expr *e) {
 static components lower_own_name(lowering *c, const expr *e) {
   switch (e->symbol->kind) {
   case SYMBOL_QUANTITY:
-    return lower_quantity_name(c, e, (builtin_quantity)e->symbol->index);
+    return lower_quantity_name(c, (builtin_quantity)e->symbol->index);
   case SYMBOL_PARAMETER:
-    return scalar(lower_parameter(c->graph, c->law, e->symbol->index));
+    return scalar(lower_own_parameter(c, e->symbol->index));
   case SYMBOL_STATE:
   case SYMBOL_DAMAGE:
     return scalar(lower_field_name(c, e));
@@ -270,18 +276,30 @@ static ir_node lower_previous(lowering *c, const expr *e) {
 }
 
 /* diff(f, x): x is a parameter, a quantity, a state or a damage, all of them inputs here. */
-static ir_node lower_diff(lowering *c, const expr *e) {
-  ir_node f = lower_expr(c, e->arguments[0].value), x = lower_expr(c, e->arguments[1].value);
+static ir_node lower_slope(lowering *c, const expr *e, ir_node f, ir_node x) {
   if (ir_operation(c->graph, x) != IR_INPUT)
     return lower_fail(c, e->arguments[1].value->where,
                       "nothing can be differentiated by this in a plane");
   if (lower_is_state_law(c) && !ir_is_uniform(c->graph, f) && !ir_is_uniform(c->graph, x))
     return lower_fail(c, e->where,
-                      "in a law of families only a parameter can be differentiated by yet");
+                      "in a law of families only a parameter that is the same everywhere can be "
+                      "differentiated by yet");
   if (ir_count(c->graph) > MOST_NODES) /* derivatives of derivatives grow without another visit */
     return lower_fail(c, e->where,
                       "with its derivatives written out the law is too large to compile");
   return ir_derivative(c->graph, f, x);
+}
+
+/* By or of a vector component by component. */
+static components lower_diff(lowering *c, const expr *e) {
+  components f = lower_value(c, e->arguments[0].value), x = lower_value(c, e->arguments[1].value);
+  if (f.count > 1 && x.count > 1)
+    return lower_failed_value(c, e->where,
+                              "in space a bending quantity has no one derivative by another");
+  components v = {f.count > x.count ? f.count : x.count, {0}};
+  for (int k = 0; k < v.count; k++)
+    v.of[k] = lower_slope(c, e, f.of[f.count > 1 ? k : 0], x.of[x.count > 1 ? k : 0]);
+  return v;
 }
 
 static ir_node soft_sign(ir *g, ir_node x) {
@@ -294,7 +312,6 @@ static ir_node lower_builtin_call(lowering *c, const expr *e) {
   ir *g = c->graph;
   builtin_function f = (builtin_function)e->builtin;
   if (f == FUNCTION_PREVIOUS) return lower_previous(c, e);
-  if (f == FUNCTION_DIFF) return lower_diff(c, e);
   ir_op op = operation_named(builtin_functions[f].name);
   if (op == IR_OP_COUNT && f != FUNCTION_SOFT_SIGN && f != FUNCTION_MACAULAY)
     return lower_fail(c, e->where, "this function cannot be compiled here");
@@ -320,6 +337,7 @@ static components lower_of_family(lowering *c, const expr *e) {
 
 static components lower_call(lowering *c, const expr *e) {
   if (e->builtin < 0) return lower_user_call(c, e);
+  if (e->builtin == FUNCTION_DIFF) return lower_diff(c, e);
   return lower_is_family_call(e) ? lower_of_family(c, e) : scalar(lower_builtin_call(c, e));
 }
 

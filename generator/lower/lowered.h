@@ -12,6 +12,14 @@ typedef enum lower_mode {
   LOWER_FROZEN /* fields keep the value at hand everywhere: the elastic law of a given state */
 } lower_mode;
 
+/* What is not the same for all particles of a body beside their state. Of laws of families. */
+typedef struct law_variation {
+  const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
+                         to bond of laws of bonds, else from particle to particle */
+  int varying_count;
+  bool shares; /* force state and energy are those of a particle's share (pl_family) */
+} law_variation;
+
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
 typedef struct lowered_line { /* a case line with a guard */
   const expr *cases;
@@ -36,14 +44,23 @@ typedef struct lowered_text {
   int line_count, place_count, flow_count;
 } lowered_text;
 
+enum { BENDING_AXES = 3, LOWERED_FORCES = 2 * BENDING_AXES + 3 };
+
+/* What a law does not give is IR_NONE. */
 typedef struct lowered_law {
-  ir_node N, M_i, M_j; /* results; `force V` and `energy W` are resolved here; central: M IR_NONE */
-  ir_node F;           /* force state in N (the bond force is the mean of both sides), or IR_NONE */
+  ir_node N; /* results; `force V` and `energy W` are resolved here */
+  /* end moments: components about the axes of the lattice, of plane bending the first */
+  ir_node M_i[BENDING_AXES], M_j[BENDING_AXES];
+  ir_node T; /* twisting moment on end j, on end i the opposite; in space */
+  ir_node F; /* force state in N (the bond force is the mean of both sides), or IR_NONE */
   bool along_reference; /* it acts along the reference bond */
   ir_node W;            /* the law's own `energy`, or IR_NONE */
   ir_node *fields;      /* [law->fields.count] new values (LOWER_FROZEN: the inputs themselves) */
   ir_node *outputs;     /* [law->outputs.count] */
   lowered_text text;
 } lowered_law;
+
+/* The places of N, M_i, M_j, T and F that are not IR_NONE. Returns how many. */
+int lowered_forces(lowered_law *p, ir_node **forces);
 
 #endif

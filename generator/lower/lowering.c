@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "dsl/base/hash.h"
+#include "generator/lower/lower_inputs.h"
 
 ir_node lower_fail(lowering *c, span where, const char *what) {
   if (!c->failed) diag_report(c->said, DIAG_NOT_SUPPORTED, where, "%s", what);
@@ -27,6 +28,17 @@ static binding *place_of(const lowering *c, const symbol *s) {
   while (c->bound[k].symbol && c->bound[k].symbol != s)
     k = (k + 1) & (c->bound_room - 1);
   return &c->bound[k];
+}
+
+ir_node lower_own_parameter(const lowering *c, int k) {
+  const law_variation *v = c->variation;
+  for (int n = 0; n < v->varying_count; n++)
+    if (v->varying[n] == k) {
+      const bool families = lower_is_state_law(c);
+      return ir_input(c->graph, families ? IR_FROM_PARTICLE_PARAMETER : IR_FROM_BOND_PARAMETER, n,
+                      c->law->parameters.items[k]->name, families ? ON_PARTICLE : ON_BOND);
+    }
+  return lower_parameter(c->graph, c->law, k);
 }
 
 components *lower_binding_of(const lowering *c, const symbol *s) {

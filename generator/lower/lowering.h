@@ -40,6 +40,7 @@ typedef struct lowering {
   const law *law;
   ir *graph;
   lower_mode mode;
+  const law_variation *variation;
   arena *memory;
   diagnostics *said;
   bool failed;
@@ -68,6 +69,9 @@ static inline ir_node half(ir *g, ir_node n) {
 static inline components scalar(ir_node n) {
   return (components){1, {n}};
 }
+
+/* Parameter k, where it differs in space that of the particle or the bond. */
+ir_node lower_own_parameter(const lowering *c, int k);
 
 components *lower_binding_of(const lowering *c, const symbol *s);
 void lower_bind(lowering *c, const symbol *s, components value);

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/plan/plan_family.h"
 #include "generator/plan/plan_roots.h"
 #include "generator/plan/plan_strips.h"
@@ -27,56 +28,58 @@ static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
 }
 
 kernel_plan *plan_kernel(const law *l, diagnostics *d) {
-  return plan_kernel_varying(l, NULL, 0, d);
+  return plan_kernel_varying(l, &(law_variation){.varying_count = 0}, d);
 }
 
-static kernel_plan *plan_families(const law *l, family_form form, diagnostics *d) {
+static void keep_variation(kernel_plan *plan, const law_variation *v) {
+  int *varying = arena_alloc(plan->memory, ((size_t)v->varying_count + 1) * sizeof *varying);
+  for (int k = 0; k < v->varying_count; k++)
+    varying[k] = v->varying[k];
+  plan->variation = *v;
+  plan->variation.varying = varying;
+}
+
+static kernel_plan *plan_families(const law *l, const law_variation *v, family_form form,
+                                  diagnostics *d) {
   kernel_plan *plan = plan_begin(l);
+  keep_variation(plan, v);
   plan->kind = PL_STATE;
   plan->form = form;
   return finish(plan, plan_programs(plan, d), d);
 }
 
 /* Fields on bonds are worth adding to both ends with few neighbours already: such loops write them
-   only where they change. */
+   only where they change. So are end rotations, which are dear. */
 static bool is_for_pairs(const law *l) {
   enum { WRITTEN_OUT_FASTER = 12 };
-  bool on_bonds = false;
+  bool on_bonds = l->tree->law == LAW_MICROPOLAR_BOND;
   for (int k = 0; k < l->fields.count; k++)
     on_bonds = on_bonds || l->fields.items[k]->place == ON_BOND;
   return on_bonds || l->neighbours > WRITTEN_OUT_FASTER;
 }
 
-kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d) {
+kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagnostics *d) {
   enum { MOST_WRITTEN_OUT = 18 };
-  if (l->irregular || l->neighbours == 0) return plan_families(l, FAMILY_LOOPS, d);
+  if (l->irregular || l->neighbours == 0) return plan_families(l, v, FAMILY_LOOPS, d);
   if (is_for_pairs(l)) {
-    kernel_plan *plan = plan_families(l, FAMILY_PAIRS, d);
+    kernel_plan *plan = plan_families(l, v, FAMILY_PAIRS, d);
     if (!plan || program_sum_count(&plan->step) > 0) return plan;
     plan_free(plan); /* nothing is the same or opposite at both ends */
   }
-  return plan_families(l, l->neighbours <= MOST_WRITTEN_OUT ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
+  const bool few = l->neighbours <= MOST_WRITTEN_OUT;
+  return plan_families(l, v, few ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
 }
 
-kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
-                                 diagnostics *d) {
-  if (l->tree->law == LAW_STATE && varying_count == 0) return plan_kernel_of_families(l, d);
-  if (l->tree->law == LAW_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
-                "parameters of a law of families cannot differ from bond to bond yet");
-    return NULL;
-  }
-  kernel_plan *plan = plan_begin(l);
+kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
+  if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
   bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
-  int *kept = arena_alloc(plan->memory, ((size_t)varying_count + 1) * sizeof *kept);
-  for (int k = 0; k < varying_count; k++)
-    kept[k] = varying[k];
-  plan->varying = kept;
-  plan->varying_count = varying_count;
+  bool twists = micropolar && l->setting == SETTING_SPACE;
+  kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l);
+  keep_variation(plan, v);
   plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
   plan->dimensions = 2;
-  plan->dof = micropolar ? 3 : 2;
-  plan->force_planes = micropolar ? 4 : 2;
+  plan->dof = (micropolar ? 3 : 2) + twists;
+  plan->force_planes = (micropolar ? 4 : 2) + twists;
   plan = finish(plan, plan_strips(plan, d), d);
   if (!plan) return NULL;
   ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);

@@ -44,8 +44,9 @@ typedef enum pass_target {
    (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
    stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, the first
    planes of `in`. IR_FROM_FIELD k: field[k], or in[PL_STATE_INPUTS + k]. IR_FROM_ENDS: all strips.
-   IR_FROM_BOND_PARAMETER k: in strips parameter[k], the value of parameter varying[k] in each bond;
-   all other passes take that parameter as IR_FROM_PARAMETER. */
+   IR_FROM_BOND_PARAMETER k: in strips and families parameter[k], the value of parameter varying[k]
+   in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other passes take that parameter
+   as IR_FROM_PARAMETER. */
 typedef struct pass_root {
   ir_node node;
   pass_target target;
@@ -78,12 +79,12 @@ typedef enum family_form {
 
 typedef struct kernel_plan {
   const law *law;
-  const int *varying; /* [varying_count] parameters that differ from bond to bond */
-  int varying_count;
+  law_variation variation; /* what differs in space */
   ir *graph;
   pass passes[PASS_COUNT];
   loop_cutting cutting;
   int kind, dimensions, dof, force_planes;
+  int rotations;     /* of a particle, behind its dimensions: dof in all */
   ir_node *uniforms; /* [uniform_count] ascending: values hoisted into `prepare`. All nodes, inputs
                         too but no constants, with ir_place <= ON_BODY that a local node or a root
                         of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
@@ -96,6 +97,7 @@ typedef struct kernel_plan {
   family_program step, observe;
   program_links links;
   bool reads_shape;         /* inverse shape matrices */
+  bool reads_share;         /* shares of particles */
   bool stores, reads_rates; /* pl_law */
   arena *memory;
 } kernel_plan;
@@ -105,12 +107,11 @@ kernel_plan *plan_begin(const law *l);
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families.
    NULL with diagnostics when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);
-/* A variant for parameters (indices into law->parameters) that differ from bond to bond. */
-kernel_plan *plan_kernel_varying(const law *l, const int *varying, int varying_count,
-                                 diagnostics *d);
+/* A variant for what differs in space. */
+kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d);
 /* A law of bonds as a law of families, for lattices that are no hexagon: both ends of a bond
    evaluate it. */
-kernel_plan *plan_kernel_of_families(const law *l, diagnostics *d);
+kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagnostics *d);
 void plan_free(kernel_plan *p);
 
 #endif

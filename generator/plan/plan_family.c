@@ -4,7 +4,9 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "dsl/semantics/law_variant.h"
 #include "generator/ir/rewrite.h"
+#include "generator/lower/end_rotations.h"
 #include "generator/lower/kinematics.h"
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
@@ -19,11 +21,11 @@ typedef struct family_planner {
 
 /* Stand for the motion until it is known: components of the present direction; 1/length and chord,
    of which it is the product (where forces act along reference directions: of the reference
-   bond). */
-enum { DIRECTION, PER_LENGTH = 3, CHORD };
+   bond); what end_rotations.h has of a bond in space. */
+enum { DIRECTION, PER_LENGTH = 3, CHORD, BENT = 7, ALONG = 11, TURN, PRESENT_COUNT = TURN + 3 };
 
 static ir_node present(ir *g, int which) {
-  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + which, "e", ON_BOND);
+  return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + 2 * BENDING_AXES + which, "e", ON_BOND);
 }
 
 static ir_node family_sum(ir *g, ir_node n) {
@@ -60,8 +62,51 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   return f;
 }
 
+/* What the bond does, in terms of stand-ins. */
+static bond_actions actions_of(const kernel_plan *plan, const lowered_law *of) {
+  ir *g = plan->graph;
+  ir_node e[3] = {IR_NONE, IR_NONE, IR_NONE};
+  end_rotations r;
+  for (int d = 0; d < plan->dimensions; d++)
+    e[d] = present(g, DIRECTION + d);
+  const ir_node per_length = present(g, PER_LENGTH);
+  if (plan->dimensions == 2) return end_actions_in_plane(g, of, e, per_length);
+  for (int k = 0; k < BENDING_AXES; k++) {
+    r.theta_i[k] = lower_bending(g, plan->law, QUANTITY_THETA_I, k);
+    r.theta_j[k] = lower_bending(g, plan->law, QUANTITY_THETA_J, k);
+    r.turn[k] = present(g, TURN + k);
+  }
+  for (int end = 0; end < 2; end++) {
+    r.h[end] = present(g, BENT + end);
+    r.k[end] = present(g, BENT + 2 + end);
+  }
+  r.along = present(g, ALONG);
+  return end_actions_in_space(g, of, e, per_length, &r);
+}
+
+/* Particles receive the opposite of the moments on the bond's ends. What is the same at both ends
+   and what is the opposite are sums of their own, so that a bond can add them to both. */
+static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *of,
+                                    segment_root *roots) {
+  ir *g = plan->graph;
+  const bond_actions a = actions_of(plan, of);
+  for (int d = 0; d < plan->dimensions; d++)
+    roots[d] =
+        (segment_root){.node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
+  for (int k = 0; k < plan->rotations; k++) {
+    const ir_node even = family_sum(g, a.even[k]), odd = family_sum(g, a.odd[k]);
+    roots[plan->dimensions + k] = (segment_root){.node = ir_neg(g, ir_add(g, even, odd)),
+                                                 .target = TO_PARTICLE_FORCE,
+                                                 .index = plan->dimensions + k};
+  }
+}
+
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots) {
   ir *g = plan->graph;
+  if (plan->rotations) {
+    plan_forces_and_moments(plan, of, roots);
+    return;
+  }
   ir_node f = bond_force(plan, of);
   const bool pairs = plan->form == FAMILY_PAIRS;
   if (pairs) f = ir_mul(g, f, present(g, PER_LENGTH));
@@ -80,7 +125,7 @@ static ir_node stored_energy(family_planner *p) {
   ir_node rate = lower_quantity(g, QUANTITY_STRETCH_RATE);
   ir_node stretch = lower_quantity(g, QUANTITY_STRETCH), s = lower_quantity(g, QUANTITY_S);
   if (l->tree->law != LAW_STATE)
-    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(g, &p->frozen)));
+    return ir_mul(g, ir_constant(g, 0.5), family_sum(g, lower_stored_energy(g, l, &p->frozen)));
   ir_node F, W = p->frozen.W;
   if (W != IR_NONE) {
     rewrite_zero(g, &W, 1, &rate, 1, &W);
@@ -115,12 +160,12 @@ static bool is_of_particle(const symbol *s) {
 
 static root_list step_roots(family_planner *p) {
   const law *l = p->plan->law;
-  root_list r = new_roots(p->plan, l->fields.count + 3);
+  root_list r = new_roots(p->plan, l->fields.count + PL_MAX_DOF);
   for (int k = 0; k < l->fields.count; k++)
     want(&r, p->step.fields[k],
          is_of_particle(l->fields.items[k]) ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
   plan_forces(p->plan, &p->step, r.items + r.count);
-  r.count += p->plan->dimensions;
+  r.count += p->plan->dof;
   return r;
 }
 
@@ -138,11 +183,45 @@ static root_list observe_roots(family_planner *p) {
 
 /* --- motion ----------------------------------------------------------------------------------- */
 
-enum { MOST_MOTION = 10 };
+enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
+
+static int motion_in_plane(ir *g, const family_kinematics *k, ir_node *from, ir_node *to) {
+  from[0] = lower_quantity(g, QUANTITY_THETA_I), to[0] = k->theta_i;
+  from[1] = lower_quantity(g, QUANTITY_THETA_J), to[1] = k->theta_j;
+  return 2;
+}
+
+static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, ir_node *from,
+                           ir_node *to) {
+  ir *g = plan->graph;
+  moving_chord c = {.per_length = k->per_length};
+  int n = 0;
+  for (int d = 0; d < 3; d++) {
+    c.reference[d] = k->reference[d];
+    c.d[d] = k->d[d];
+    c.chord[d] = k->chord[d];
+    c.e[d] = k->now[d];
+  }
+  const end_rotations r = end_rotations_in_space(g, &c, plan->form == FAMILY_PAIRS);
+  for (int axis = 0; axis < BENDING_AXES; axis++) {
+    from[n] = lower_bending(g, plan->law, QUANTITY_THETA_I, axis), to[n++] = r.theta_i[axis];
+    from[n] = lower_bending(g, plan->law, QUANTITY_THETA_J, axis), to[n++] = r.theta_j[axis];
+    from[n] = present(g, TURN + axis), to[n++] = r.turn[axis];
+  }
+  for (int end = 0; end < 2; end++) {
+    from[n] = present(g, BENT + end), to[n++] = r.h[end];
+    from[n] = present(g, BENT + 2 + end), to[n++] = r.k[end];
+  }
+  from[n] = present(g, ALONG), to[n++] = r.along;
+  from[n] = lower_quantity(g, QUANTITY_TWIST), to[n++] = r.twist;
+  return n;
+}
 
 program_motion plan_motion(const kernel_plan *plan, bool reference) {
   ir *g = plan->graph;
-  family_kinematics k = kinematics_family(g, plan->dimensions, plan->form == FAMILY_PAIRS);
+  const bool in_plane = plan->rotations && plan->dimensions == 2;
+  family_kinematics k =
+      kinematics_family(g, plan->dimensions, in_plane, plan->form == FAMILY_PAIRS);
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;
@@ -157,6 +236,9 @@ program_motion plan_motion(const kernel_plan *plan, bool reference) {
     from[n] = present(g, CHORD + d);
     to[n++] = reference ? k.reference_chord[d] : k.chord[d];
   }
+  if (plan->rotations)
+    n += in_plane ? motion_in_plane(g, &k, from + n, to + n)
+                  : motion_in_space(plan, &k, from + n, to + n);
   return (program_motion){from, to, n};
 }
 
@@ -205,14 +287,16 @@ static void motion_from_lists(const kernel_plan *plan, const program_motion *of,
 
 /* The same reciprocals in all that a step computes. */
 static void share_reciprocals(family_planner *p) {
-  int fields = p->plan->law->fields.count, count = 0;
-  ir_node *all = must_alloc(((size_t)fields + 2) * sizeof *all);
-  all[count++] = p->step.F;
-  all[count++] = p->step.N;
+  const int fields = p->plan->law->fields.count;
+  ir_node *force[LOWERED_FORCES];
+  const int count = lowered_forces(&p->step, force);
+  ir_node *all = must_alloc(((size_t)fields + LOWERED_FORCES) * sizeof *all);
+  for (int k = 0; k < count; k++)
+    all[k] = *force[k];
   memcpy(all + count, p->step.fields, (size_t)fields * sizeof *all);
   rewrite_reciprocals(p->g, all, count + fields, all);
-  p->step.F = all[0];
-  p->step.N = all[1];
+  for (int k = 0; k < count; k++)
+    *force[k] = all[k];
   memcpy(p->step.fields, all + count, (size_t)fields * sizeof *all);
   free(all);
 }
@@ -241,26 +325,44 @@ static void rewrite_last(ir *g, root_list *step, root_list *observe) {
   free(all);
 }
 
+/* Of what both ends of a bond in space see alike fused products would tell nothing: where one end
+   computes it, they are fused later. */
 static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
+  if (plan->rotations == 3 && plan->form == FAMILY_PAIRS) return;
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   rewrite_fused(plan->graph, motion->to, motion->count, to);
   motion->to = to;
 }
 
-typedef struct shape_search {
+typedef struct input_search {
   const kernel_plan *plan;
-  bool reads_shape;
-} shape_search;
+  bool (*wanted)(const ir *g, ir_node input);
+  bool found;
+} input_search;
 
-static void look_for_shape(void *context, const ir_node *roots, int root_count) {
-  shape_search *c = context;
+static void look_for_input(void *context, const ir_node *roots, int root_count) {
+  input_search *c = context;
   const ir *g = c->plan->graph;
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
   ir_mark(g, roots, root_count, needed);
-  for (ir_node n = 0; n < ir_count(g) && !c->reads_shape; n++)
-    c->reads_shape =
-        needed[n] && ir_operation(g, n) == IR_INPUT && ir_input_source(g, n) == IR_FROM_SHAPE;
+  for (ir_node n = 0; n < ir_count(g) && !c->found; n++)
+    c->found = needed[n] && ir_operation(g, n) == IR_INPUT && c->wanted(g, n);
   free(needed);
+}
+
+static bool reads(const kernel_plan *plan, bool (*wanted)(const ir *g, ir_node input)) {
+  input_search c = {.plan = plan, .wanted = wanted};
+  plan_visit(plan, look_for_input, &c);
+  return c.found;
+}
+
+static bool is_shape(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_SHAPE;
+}
+
+static bool is_share(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(g, input)].array == FROM_SHARE;
 }
 
 /* Operations of all segments of a step that are done for each neighbour; what is done once for both
@@ -299,24 +401,30 @@ static program_sharing sharing(const family_planner *p) {
 
 static bool reads_thickness(const family_planner *p) {
   const law *l = p->plan->law;
-  ir_node t = lower_quantity(p->g, QUANTITY_T);
-  ir_node results[] = {p->step.F, p->step.N, p->frozen.W};
-  for (int k = 0; k < 3; k++)
-    if (results[k] != IR_NONE && rewrite_depends(p->g, &results[k], 1, &t, 1)) return true;
+  ir_node t = lower_quantity(p->g, QUANTITY_T), *forces[LOWERED_FORCES];
+  lowered_law step = p->step;
+  const int count = lowered_forces(&step, forces);
+  if (p->frozen.W != IR_NONE && rewrite_depends(p->g, &p->frozen.W, 1, &t, 1)) return true;
+  for (int k = 0; k < count; k++)
+    if (rewrite_depends(p->g, forces[k], 1, &t, 1)) return true;
   return rewrite_depends(p->g, p->step.fields, l->fields.count, &t, 1);
 }
 
+void plan_axes(kernel_plan *plan) {
+  const bool turns = plan->law->tree->law == LAW_MICROPOLAR_BOND;
+  plan->dimensions = lower_dimensions(plan->law);
+  plan->rotations = !turns ? 0 : plan->dimensions == 2 ? 1 : 3;
+  plan->dof = plan->dimensions + plan->rotations;
+  if (plan->rotations == 3) plan->law = law_bending_in_space(plan->law);
+}
+
 bool plan_programs(kernel_plan *plan, diagnostics *d) {
-  const law *l = plan->law;
   family_planner p = {.plan = plan, .g = plan->graph};
-  if (l->tree->law == LAW_MICROPOLAR_BOND) {
-    diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
-                "a micropolar law runs on the hexagonal lattice only");
-    return false;
-  }
-  plan->dimensions = plan->dof = l->setting == SETTING_SPACE ? 3 : 2;
-  if (!lower_law(l, p.g, LOWER_HELD, plan->memory, &p.step, d) ||
-      !lower_law(l, p.g, LOWER_FROZEN, plan->memory, &p.frozen, d))
+  plan_axes(plan);
+  const law *l = plan->law;
+  const law_variation *v = &plan->variation;
+  if (!lower_law_varying(l, p.g, LOWER_HELD, v, plan->memory, &p.step, d) ||
+      !lower_law_varying(l, p.g, LOWER_FROZEN, v, plan->memory, &p.frozen, d))
     return false;
   if (plan->dimensions == 3 && reads_thickness(&p)) {
     diag_report(d, DIAG_CONFLICT, l->tree->name_where,
@@ -347,9 +455,8 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
                 PLAN_MOST_PASSES);
     return false;
   }
-  shape_search found = {.plan = plan};
-  plan_visit(plan, look_for_shape, &found);
-  plan->reads_shape = found.reads_shape;
+  plan->reads_shape = reads(plan, is_shape);
+  plan->reads_share = reads(plan, is_share);
   count_cost(plan);
   return true;
 }

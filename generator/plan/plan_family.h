@@ -5,11 +5,15 @@
 #include "generator/plan/plan.h"
 #include "generator/plan/program.h"
 
+/* Axes along which particles move, and about which those of micropolar laws turn; the law of the
+   plan is then for bonds that do. */
+void plan_axes(kernel_plan *p);
+
 /* Fills in a plan of families. False after a diagnostic. */
 bool plan_programs(kernel_plan *p, diagnostics *d);
 
-/* For programs of families: the components of the force on a particle (roots[dimensions]), and what
-   takes the place of stretch, rate, length and direction. */
+/* For programs of families: the components of force and moment on a particle (roots[dof]), and what
+   takes the place of stretch, rate, end rotations, length and direction. */
 void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots);
 program_motion plan_motion(const kernel_plan *plan, bool along_reference);
 

@@ -34,10 +34,11 @@ void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
 
 bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
   ir_node rate = lower_quantity(plan->graph, QUANTITY_STRETCH_RATE);
-  const ir_node results[] = {step->N, step->M_i, step->M_j, step->F};
-  for (int k = 0; k < 4; k++)
-    if (results[k] != IR_NONE && rewrite_depends(plan->graph, &results[k], 1, &rate, 1))
-      return true;
+  lowered_law of = *step;
+  ir_node *forces[LOWERED_FORCES];
+  const int count = lowered_forces(&of, forces);
+  for (int k = 0; k < count; k++)
+    if (rewrite_depends(plan->graph, forces[k], 1, &rate, 1)) return true;
   return rewrite_depends(plan->graph, step->fields, plan->law->fields.count, &rate, 1);
 }
 

@@ -51,8 +51,8 @@ static void substitute(ir *g, ir_node *nodes, int count, const ir_node *from, co
 
 static void substitute_law(ir *g, const law *l, lowered_law *p, const ir_node *from,
                            const ir_node *to, int pairs) {
-  ir_node *results[PL_STATE_RESULTS] = {&p->N, &p->M_i, &p->M_j};
-  for (int k = 0; k < PL_STATE_RESULTS; k++)
+  ir_node *results[] = {&p->N, &p->M_i[0], &p->M_j[0], &p->T};
+  for (size_t k = 0; k < sizeof results / sizeof *results; k++)
     substitute(g, results[k], 1, from, to, pairs);
   substitute(g, p->fields, l->fields.count, from, to, pairs);
 }
@@ -66,18 +66,21 @@ static ir_node *copy_nodes(arena *memory, const ir_node *nodes, int count) {
 /* Shares reciprocals among all that a step computes, once for all passes, so that they agree to the
    bit. */
 static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
+  enum { FORCES = 4 };
   int fields = l->fields.count;
   size_t field_bytes = (size_t)fields * sizeof(ir_node);
-  ir_node *all = must_alloc(PL_STATE_RESULTS * sizeof *all + field_bytes);
+  ir_node *all = must_alloc(FORCES * sizeof *all + field_bytes);
   all[0] = p->N;
-  all[1] = p->M_i; /* IR_NONE stays IR_NONE */
-  all[2] = p->M_j;
-  memcpy(all + PL_STATE_RESULTS, p->fields, field_bytes);
-  rewrite_reciprocals(g, all, PL_STATE_RESULTS + fields, all);
+  all[1] = p->M_i[0]; /* IR_NONE stays IR_NONE */
+  all[2] = p->M_j[0];
+  all[3] = p->T;
+  memcpy(all + FORCES, p->fields, field_bytes);
+  rewrite_reciprocals(g, all, FORCES + fields, all);
   p->N = all[0];
-  p->M_i = all[1];
-  p->M_j = all[2];
-  memcpy(p->fields, all + PL_STATE_RESULTS, field_bytes);
+  p->M_i[0] = all[1];
+  p->M_j[0] = all[2];
+  p->T = all[3];
+  memcpy(p->fields, all + FORCES, field_bytes);
   free(all);
 }
 
@@ -85,12 +88,13 @@ static void share_reciprocals(ir *g, const law *l, lowered_law *p) {
 
 /* Parameters that differ from bond to bond, and the values that a strip brings. */
 static int parameter_pairs(const kernel_plan *p, ir_node *from, ir_node *to) {
-  for (int k = 0; k < p->varying_count; k++) {
-    from[k] = lower_parameter(p->graph, p->law, p->varying[k]);
+  const law_variation *v = &p->variation;
+  for (int k = 0; k < v->varying_count; k++) {
+    from[k] = lower_parameter(p->graph, p->law, v->varying[k]);
     to[k] = ir_input(p->graph, IR_FROM_BOND_PARAMETER, k,
-                     p->law->parameters.items[p->varying[k]]->name, ON_BOND);
+                     p->law->parameters.items[v->varying[k]]->name, ON_BOND);
   }
-  return p->varying_count;
+  return v->varying_count;
 }
 
 /* Law-level inputs and the kinematics that take their place. */
@@ -103,6 +107,9 @@ static int kinematic_pairs(ir *g, const bond_kinematics *k, ir_node *from, ir_no
     from[pairs] = lower_quantity(g, law_motion[q]);
     to[pairs++] = values[q];
   }
+  if (k->twist == IR_NONE) return pairs;
+  from[pairs] = lower_quantity(g, QUANTITY_TWIST);
+  to[pairs++] = k->twist;
   return pairs;
 }
 
@@ -113,8 +120,8 @@ static void fuse(planner *p, seen_law *t) {
   const law *l = p->plan->law;
   const int most = PL_MAX_PLANES + 2 + l->fields.count + l->outputs.count;
   ir_node *all = must_alloc((size_t)most * sizeof *all);
-  ir_node *const single[] = {&t->force.f_x,      &t->force.f_y, &t->force.moment_i,
-                             &t->force.moment_j, &t->stored,    &t->rate_power};
+  ir_node *const single[] = {&t->force.f_x, &t->force.f_y,  &t->force.moment_i, &t->force.moment_j,
+                             &t->stored,    &t->rate_power, &t->force.twisting};
   const int singles = (int)(sizeof single / sizeof *single);
   int count = 0;
   for (int k = 0; k < singles; k++)
@@ -136,21 +143,22 @@ static seen_law see_law(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
-  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR);
+  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, l->twists);
   seen_law t = {.step = p->step};
-  const size_t most = (size_t)(PL_STATE_INPUTS + p->plan->varying_count);
+  const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->variation.varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
   ir_node *to = arena_alloc(memory, most * sizeof *to);
   int pairs = kinematic_pairs(g, &k, from, to);
   pairs += parameter_pairs(p->plan, from + pairs, to + pairs);
   t.step.fields = copy_nodes(memory, p->step.fields, l->fields.count);
   substitute_law(g, l, &t.step, from, to, pairs);
-  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i, t.step.M_j);
+  t.force = kinematics_forces(g, &k, t.step.N, t.step.M_i[0], t.step.M_j[0]);
+  t.force.twisting = t.step.T;
 
-  t.stored = lower_stored_energy(g, &p->frozen);
+  t.stored = lower_stored_energy(g, l, &p->frozen);
   rewrite_reciprocals(g, &t.stored, 1, &t.stored);
   substitute(g, &t.stored, 1, from, to, pairs);
-  t.rate_power = lower_rate_power(g, &p->frozen, k.theta_rate_i, k.theta_rate_j);
+  t.rate_power = lower_rate_power(g, l, &p->frozen, k.theta_rate_i, k.theta_rate_j, k.twist_rate);
   if (t.rate_power != IR_NONE) rewrite_reciprocals(g, &t.rate_power, 1, &t.rate_power);
   substitute(g, &t.rate_power, 1, from, to, pairs);
   t.outputs = copy_nodes(memory, p->frozen.outputs, l->outputs.count);
@@ -190,7 +198,8 @@ static void write_root(pass *a, ir_node node, pass_target target, int index) {
 static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
-  const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j};
+  const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j,
+                            t->force.twisting};
   for (int k = 0; k < p->plan->force_planes; k++)
     write_root(a, planes[k], TO_FORCE, k);
   for (int k = 0; k < fields; k++)
@@ -222,21 +231,23 @@ static void plan_observe(planner *p, const seen_law *t, pass_kind kind) {
     write_root(a, t->outputs[k], TO_OBSERVED, 1 + k);
 }
 
-/* The step law of a bond that is not protected. */
+/* The step law of a bond that is not protected, and not twisted. */
 static lowered_law unprotected_step(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   lowered_law bare = p->step;
   bare.fields = copy_nodes(p->plan->memory, p->step.fields, l->fields.count);
-  ir_node from = kinematics_input(g, ENDS_PROTECTED), to = ir_constant(g, 0);
-  substitute_law(g, l, &bare, &from, &to, 1);
+  const ir_node zero = ir_constant(g, 0), to[] = {zero, zero};
+  ir_node from[] = {kinematics_input(g, ENDS_PROTECTED), IR_NONE};
+  if (l->twists) from[1] = lower_quantity(g, QUANTITY_TWIST);
+  substitute_law(g, l, &bare, from, to, l->twists ? 2 : 1);
   return bare;
 }
 
 static void plan_states(planner *p, const lowered_law *bare) {
   int fields = p->plan->law->fields.count;
   pass *a = begin_pass(p->plan, PASS_STATES, PL_STATE_RESULTS + fields);
-  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
   for (int k = 0; k < fields; k++)
@@ -254,7 +265,7 @@ static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
 static void plan_tangent(planner *p, const lowered_law *bare) {
   ir *g = p->plan->graph;
   pass *a = begin_pass(p->plan, PASS_TANGENT, PL_TANGENTS);
-  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i, bare->M_j};
+  ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     for (int q = 0; q < PL_STATE_RATES; q++) {
       ir_node d = results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);

@@ -154,4 +154,6 @@ void program_build(family_program *out, const char *name, ir *g, arena *memory,
   map_clear(&b.plain);
   map_clear(&b.counted);
   map_clear(&b.users);
+  map_clear(&b.partner);
+  map_clear(&b.partner_sign);
 }

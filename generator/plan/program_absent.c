@@ -46,6 +46,9 @@ static bool is_finite_input(absent_search *s, int pass, ir_node n) {
   const int index = ir_input_index(s->g, n);
   switch (ir_input_source(s->g, n)) {
   case IR_FROM_ENDS:
+  case IR_FROM_BOND_PARAMETER:
+  case IR_FROM_PARTICLE_PARAMETER:
+  case IR_FROM_NEIGHBOUR_PARAMETER:
   case IR_FROM_SHARED:
   case IR_FROM_SHARED_ODD:
     return true;

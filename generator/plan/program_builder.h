@@ -19,6 +19,7 @@ typedef struct builder {
   ir_node *shared; /* [shared_count] values that the ends share, numbered from first_shared */
   int shared_count, first_shared, round;
   node_map resolved, mirrored, linked, reduced, sided, level, parity, plain, counted, users;
+  node_map partner, partner_sign; /* a node that the other end has for it, and +1 with which sign */
 } builder;
 
 static inline bool is_leaf(const ir *g, ir_node n) {

@@ -94,9 +94,11 @@ ir_node program_own_link(builder *b, ir_node n) {
 
 /* What the ends of a bond exchange. */
 static const ends_input exchanged[][2] = {
-    {ENDS_U_IX, ENDS_U_JX},     {ENDS_U_IY, ENDS_U_JY},         {ENDS_U_IZ, ENDS_U_JZ},
-    {ENDS_V_IX, ENDS_V_JX},     {ENDS_V_IY, ENDS_V_JY},         {ENDS_V_IZ, ENDS_V_JZ},
-    {ENDS_HELD_I, ENDS_HELD_J}, {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J}};
+    {ENDS_U_IX, ENDS_U_JX},         {ENDS_U_IY, ENDS_U_JY},       {ENDS_U_IZ, ENDS_U_JZ},
+    {ENDS_V_IX, ENDS_V_JX},         {ENDS_V_IY, ENDS_V_JY},       {ENDS_V_IZ, ENDS_V_JZ},
+    {ENDS_PHI_I, ENDS_PHI_J},       {ENDS_OMEGA_I, ENDS_OMEGA_J}, {ENDS_PHI_IX, ENDS_PHI_JX},
+    {ENDS_PHI_IY, ENDS_PHI_JY},     {ENDS_PHI_IZ, ENDS_PHI_JZ},   {ENDS_HELD_I, ENDS_HELD_J},
+    {ENDS_VOLUME_I, ENDS_VOLUME_J}, {ENDS_MASS_I, ENDS_MASS_J},   {ENDS_SHARE_I, ENDS_SHARE_J}};
 
 static ir_node mirror_ends(builder *b, ir_node n) {
   switch ((ends_input)ir_input_index(b->g, n)) {
@@ -124,6 +126,15 @@ static ir_node mirror_quantity(builder *b, ir_node n) {
   return ir_input(b->g, IR_FROM_QUANTITY, (int)other, builtin_quantities[other].name, ON_BODY);
 }
 
+static const char *name_of_other(builder *b, ir_node n) {
+  return arena_printf(b->memory, "%s_j", ir_name(b->g, n));
+}
+
+static const char *name_of_own(builder *b, ir_node n) {
+  const char *name = ir_name(b->g, n);
+  return arena_text(b->memory, name, strlen(name) - strlen("_j"));
+}
+
 /* Places of fields whose two sides were exchanged: ON_BOND for those of particles, which then can
    be told from values toward a neighbour. */
 static ir_node mirror_input(builder *b, ir_node n) {
@@ -136,15 +147,15 @@ static ir_node mirror_input(builder *b, ir_node n) {
     return mirror_ends(b, n);
   case IR_FROM_FIELD:
     if (ir_place(g, n) == ON_BOND) return n; /* both sides keep the same value */
-    return ir_input(g, IR_FROM_NEIGHBOUR_FIELD, index,
-                    arena_printf(b->memory, "%s_j", ir_name(g, n)),
+    return ir_input(g, IR_FROM_NEIGHBOUR_FIELD, index, name_of_other(b, n),
                     is_of_one_particle(g, n) ? ON_BOND : ON_NEIGHBOUR);
-  case IR_FROM_NEIGHBOUR_FIELD: {
-    const char *name = ir_name(g, n);
-    return ir_input(g, IR_FROM_FIELD, index,
-                    arena_text(b->memory, name, strlen(name) - strlen("_j")),
+  case IR_FROM_NEIGHBOUR_FIELD:
+    return ir_input(g, IR_FROM_FIELD, index, name_of_own(b, n),
                     ir_place(g, n) == ON_BOND ? ON_PARTICLE : ON_NEIGHBOUR);
-  }
+  case IR_FROM_PARTICLE_PARAMETER:
+    return ir_input(g, IR_FROM_NEIGHBOUR_PARAMETER, index, name_of_other(b, n), ON_BOND);
+  case IR_FROM_NEIGHBOUR_PARAMETER:
+    return ir_input(g, IR_FROM_PARTICLE_PARAMETER, index, name_of_own(b, n), ON_PARTICLE);
   case IR_FROM_NEIGHBOUR_LINK:
   case IR_FROM_NEIGHBOUR_BOND_LINK:
     return program_linked_node(b, n);

@@ -2,6 +2,8 @@
 
 #include "generator/plan/program_mirror.h"
 
+enum { MOST_LOOKS = 1000 }; /* operations that a search for an image looks at */
+
 static bool add_term(term_list *t, ir_node n, int sign) {
   if (t->count == MOST_TERMS) return false;
   t->term[t->count] = n;
@@ -45,6 +47,22 @@ static int image_of_operands(builder *b, ir_node x, ir_node y, bool crossed, int
   return sign[0] == 1 && sign[1] == 1 && sign[2] == 1 ? 1 : 0;
 }
 
+/* NaN aside, also in either order. */
+static bool takes_any_order(ir_op op) {
+  return operation_has(op, COMMUTES) || op == IR_MIN || op == IR_MAX;
+}
+
+/* The same where it has not been seen yet, of operations alike. */
+static int image_of_operation(builder *b, ir_node x, ir_node y, int *left) {
+  int sign = image_of_operands(b, x, y, false, left);
+  if (sign == 0 && takes_any_order(ir_operation(b->g, x)))
+    sign = image_of_operands(b, x, y, true, left);
+  if (sign == 0) return 0;
+  map_set(&b->partner, x, y);
+  map_set(&b->partner_sign, x, sign + 1);
+  return sign;
+}
+
 /* 1: the other end has y for x; -1: it has -y; 0: neither can be seen. `left` operations may be
    looked at. */
 static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
@@ -54,15 +72,34 @@ static int image_sign(builder *b, ir_node x, ir_node y, int *left) {
   if (b->sharing != SHARE_PAIRS) return 0;
   if (x == y) return program_parity(b, x);
   if (is_whole(b, x)) return image == ir_neg(b->g, y) ? -1 : 0;
-  if (op != ir_operation(b->g, y) || --*left < 0) return 0;
-  const int sign = image_of_operands(b, x, y, false, left);
-  return sign != 0 || !operation_has(op, COMMUTES) ? sign : image_of_operands(b, x, y, true, left);
+  if (map_get(&b->partner, x) == y) return map_get(&b->partner_sign, x) - 1;
+  return op != ir_operation(b->g, y) || --*left < 0 ? 0 : image_of_operation(b, x, y, left);
+}
+
+/* The two values that n is the smaller or the larger of, also as a choice by comparing them. */
+static bool is_extreme(const ir *g, ir_node n, ir_node *x, ir_node *y) {
+  const ir_op op = ir_operation(g, n);
+  const int first = op == IR_SELECT;
+  if (op != IR_MIN && op != IR_MAX && op != IR_SELECT) return false;
+  *x = ir_operand(g, n, first);
+  *y = ir_operand(g, n, first + 1);
+  if (op != IR_SELECT) return true;
+  const ir_node asked = ir_operand(g, n, 0);
+  if (ir_operation(g, asked) != IR_LT && ir_operation(g, asked) != IR_LE) return false;
+  const ir_node a = ir_operand(g, asked, 0), b = ir_operand(g, asked, 1);
+  return (a == *x && b == *y) || (a == *y && b == *x);
+}
+
+/* Whether the ends exchange what n is the smaller or the larger of. */
+static bool exchanges_extremes(builder *b, ir_node n) {
+  ir_node x, y;
+  int left = MOST_LOOKS;
+  return is_extreme(b->g, n, &x, &y) && image_sign(b, x, y, &left) == 1;
 }
 
 /* Takes the mirror image of term k, with that sign, out of the list; in products no sign may
    change. */
 static bool take_partner(builder *b, term_list *t, int k, int sign, bool of_sum) {
-  enum { MOST_LOOKS = 1000 };
   for (int other = k + 1; other < t->count; other++) {
     int left = MOST_LOOKS;
     const int image = image_sign(b, t->term[k], t->term[other], &left);
@@ -120,7 +157,7 @@ static int parity_of_others(builder *b, ir_node n) {
   if (operation_has(op, EVEN) && operand[0]) return 1;
   if (op == IR_SELECT && operand[0] == 1 && operand[1] == operand[2]) return operand[1];
   if (operand[0] == 1 && operand[1] == 1 && operand[2] == 1) return 1;
-  return program_mirror(b, n) == n ? 1 : 0;
+  return program_mirror(b, n) == n || exchanges_extremes(b, n) ? 1 : 0;
 }
 
 /* Rounding is left aside, since only one end will compute the value. */

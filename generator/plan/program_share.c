@@ -5,7 +5,7 @@
 #include "generator/plan/program_mirror.h"
 #include "generator/plan/program_parity.h"
 
-/* Whether a value follows from motion and fields alone, without what goes over a family or was left
+/* Whether a value follows from motion, fields and parameters alone, without what goes over a family or was left
    by a pass. */
 static bool is_plain(builder *b, ir_node n) {
   int known = map_get(&b->plain, n);
@@ -15,7 +15,7 @@ static bool is_plain(builder *b, ir_node n) {
   if (op == IR_INPUT) {
     const ir_source from = ir_input_source(b->g, n);
     plain = from == IR_FROM_FIELD || from == IR_FROM_NEIGHBOUR_FIELD || from == IR_FROM_ENDS ||
-            ir_is_uniform(b->g, n);
+            ir_is_parameter(from) || ir_is_uniform(b->g, n);
   }
   for (int k = 0; k < ir_arity(op) && plain; k++)
     plain = is_plain(b, ir_operand(b->g, n, k));

@@ -172,7 +172,7 @@ static void let_go(run *r) {
   if (r->result) result_close(r->result);
   if (r->simulation) simulation_free(r->simulation);
   for (int k = 0; r->laws && k < r->deck->lattice_count; k++)
-    free(r->laws[k].parameters);
+    free_parameters(&r->laws[k]);
   for (int k = 0; k < r->open_models; k++)
     model_close(&r->models[k]);
   free(r->frame_buffer);

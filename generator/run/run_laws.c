@@ -13,11 +13,6 @@
 
 /* --- laws ------------------------------------------------------------------------------------- */
 
-static const deck_material *material_of(const run *r, int lattice) {
-  const int m = deck_find_material(r->deck, r->deck->lattices[lattice].name);
-  return m < 0 ? NULL : &r->deck->materials[m];
-}
-
 static const built_in_law *find_built_in(const run_options *o, const deck_material *m) {
   for (int k = 0; k < o->law_count; k++)
     if (strcmp(o->laws[k].model, m->model) == 0 && strcmp(o->laws[k].lattice, m->lattice) == 0)
@@ -86,8 +81,8 @@ bool obeys_mechanics(run *r, int lattice) {
   const deck_lattice like = lattice_like(&r->deck->lattices[lattice], r->lattices[lattice]);
   model *opened = r->model_of[lattice];
   return run_law_obeys(opened, &like, r->laws[lattice].parameters,
-                       deck_where(&material_of(r, lattice)->item, "model"), &opened->said,
-                       &r->said);
+                       deck_where(&deck_material_of(r->deck, lattice)->item, "model"),
+                       &opened->said, &r->said);
 }
 
 /* --- opening ---------------------------------------------------------------------------------- */
@@ -133,24 +128,54 @@ static int take_model(run *r, const deck_material *m, int lattice, deck_material
   return RUN_FAILED;
 }
 
-static bool take_parameters(run *r, const deck_material *values, int lattice) {
+static double *parameters_of(run *r, const deck_material *values, const pl_law *kernel) {
+  double *parameters = must_calloc((size_t)kernel->parameter_count + 1, sizeof *parameters);
+  if (material_parameters(values, kernel, parameters, &r->said)) return parameters;
+  free(parameters);
+  return NULL;
+}
+
+/* Of a region; its options are those of the lattice. */
+static bool take_regional(run *r, int lattice, const deck_material *m, regional_values *out) {
+  deck_material values;
+  const bool good = r->options->laws ? drop_built_in_choices(r, m, r->built_in[lattice], &values)
+                                     : material_law_regional(m, r->model_of[lattice], r->memory,
+                                                             &values, &r->said);
+  *out = (regional_values){m, good ? parameters_of(r, &values, r->laws[lattice].law) : NULL};
+  return out->parameters != NULL;
+}
+
+static bool take_parameters(run *r, const deck_material *m, const deck_material *values,
+                            int lattice) {
   simulation_law *l = &r->laws[lattice];
-  l->parameters = must_calloc((size_t)l->law->parameter_count + 1, sizeof(double));
-  if (material_parameters(values, l->law, l->parameters, &r->said)) return true;
+  double *parameters = parameters_of(r, values, l->law);
+  bool good = parameters != NULL;
+  l->regional = must_calloc((size_t)m->regional_count + 1, sizeof *l->regional);
+  for (int k = 0; k < m->regional_count; k++)
+    good = take_regional(r, lattice, m->regional[k], &l->regional[l->regional_count++]) && good;
+  if (good)
+    l->parameters = parameters;
+  else
+    free(parameters);
+  return good;
+}
+
+void free_parameters(simulation_law *l) {
+  for (int k = 0; k < l->regional_count; k++)
+    free(l->regional[k].parameters);
+  free(l->regional);
   free(l->parameters);
-  l->parameters = NULL;
-  return false;
 }
 
 int load_law(run *r, int lattice) {
-  const deck_material *m = material_of(r, lattice);
+  const deck_material *m = deck_material_of(r->deck, lattice);
   deck_material values;
   if (!m) return INPUT_WRONG; /* said already */
   const int status = !r->options->laws                       ? take_model(r, m, lattice, &values)
                      : take_built_in(r, m, lattice, &values) ? 0
                                                              : INPUT_WRONG;
   if (status) return status;
-  return take_parameters(r, &values, lattice) ? 0 : INPUT_WRONG;
+  return take_parameters(r, m, &values, lattice) ? 0 : INPUT_WRONG;
 }
 
 bool check_law_alone(run *r, const deck_material *m) {

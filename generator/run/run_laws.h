@@ -8,6 +8,8 @@
    them NULL. 0, or an exit status. What a law's own file has to answer for stays in
    models[].said. */
 int load_law(run *r, int lattice);
+/* Of the simulation_law that it filled in. */
+void free_parameters(simulation_law *l);
 /* Only says what is wrong with the law's file and its options: of a material whose lattice is not
    known. */
 bool check_law_alone(run *r, const deck_material *m);

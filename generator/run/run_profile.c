@@ -39,7 +39,7 @@ static double triad(int threads) {
 
 /* What a step must move for a particle: displacements, velocities and fields are read and
    written once, and so is what one pass leaves to another, unless it stays in windows of rows;
-   marks of bonds and what is known of the reference are read. Rows of bonds share marks; where
+   marks of bonds, parameters that differ and what is known of the reference are read. Rows of bonds share marks; where
    bonds add to both ends, their fields are hardly touched. */
 static double bytes_in(const run *r, int number) {
   const pl_law *kernel = r->laws[number].law;
@@ -56,6 +56,8 @@ static double bytes_in(const run *r, int number) {
       both += kernel->link_count + kernel->bond_link_count * sweep_planes(w, PL_ON_NEIGHBOUR);
     read += 2 + (kernel->reads_shape ? PL_SHAPE_PLANES(kernel->dimensions) : 0);
   }
+  const double both_ends = kernel->sum_count > 0 && kernel->varying_place == PL_ON_BOND ? 2 : 1;
+  read += kernel->varying_count * sweep_planes(w, kernel->varying_place) / both_ends;
   if (g->list) read += 2.0 * g->directions * (1.5 + kernel->dimensions) + 3;
   return one * (2 * both + read) * (double)g->particle_count;
 }

@@ -11,7 +11,7 @@
 #include "runtime/analysis/implied.h"
 #include "runtime/analysis/uniform_strain.h"
 #include "runtime/lattice/notch_depth.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/result/checkpoint.h"
 
 /* --- before the run --------------------------------------------------------------------------- */
@@ -31,9 +31,10 @@ static void print_quantity(const char *text, double value, const char *unit_name
 static void announce_uniform_strain(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  const simulation_law *l = &r->laws[lattice];
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
   uniform_response u;
-  if (!uniform_strain_response(r->laws[lattice].law, r->laws[lattice].parameters, w, plane_strain,
-                               &u)) {
+  if (!uniform_strain_response(l->law, l->parameters, f ? f->value : NULL, w, plane_strain, &u)) {
     printf(": no stiffness\n");
     return;
   }
@@ -79,7 +80,7 @@ static void announce_body(const run *r, int lattice) {
   const double few = 0.3, many = 5e6, difference = 0.01; /* %, bonds, of the modulus */
   const rows *w = simulation_rows(r->simulation, lattice);
   const simulation_law *l = &r->laws[lattice];
-  const random_fields *f = simulation_fields(r->simulation, lattice);
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
   implied_elasticity e;
   double E[3];
   if (w->list || lost_bonds(w) < few || !implied_elastic(l->law, l->parameters, w, &e)) return;
@@ -101,7 +102,8 @@ static void announce_body(const run *r, int lattice) {
     print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
     printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
   }
-  puts(": edges and notches lack bonds");
+  puts(f && f->count > 0 ? ": it is not uniform, and edges and notches lack bonds"
+                         : ": edges and notches lack bonds");
 }
 
 static void announce_notch(const notch_depth *n, int number, bool only) {
@@ -137,17 +139,21 @@ static void announce_notches(const run *r, int lattice) {
   if (left > 0) printf("             and %d more\n", left);
 }
 
-/* "S_t from 1.02e-4 to 1.33e-4, mean 1.18e-4": what random fields gave. */
-static void announce_fields(const run *r, int lattice) {
-  const random_fields *f = simulation_fields(r->simulation, lattice);
-  const pl_law *kernel = r->laws[lattice].law;
+/* "S_t differs from bond to bond: 1.02e-4 to 1.33e-4, mean 1.18e-4": random fields, regions. */
+static void announce_planes(const run *r, int lattice) {
+  const parameter_planes *f = simulation_planes(r->simulation, lattice);
+  const simulation_law *l = &r->laws[lattice];
+  const bool particles = l->law->varying_place == PL_ON_PARTICLE;
   for (int k = 0; f && k < f->count; k++) {
-    const pl_parameter *p = &kernel->parameters[kernel->varying[k]];
+    const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
-    printf("  field      %s differs from bond to bond: %.5g to %.5g%s%s, mean of the distribution "
-           "%.5g\n",
-           p->name, f->smallest[k], f->largest[k], *in ? " " : "", in,
-           r->laws[lattice].parameters[kernel->varying[k]]);
+    const char *places = !f->random[k] ? "region to region"
+                         : particles   ? "particle to particle"
+                                       : "bond to bond";
+    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", f->random[k] ? "field" : "regions",
+           p->name, places, f->smallest[k], f->largest[k], *in ? " " : "", in);
+    if (f->random[k]) printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
+    putchar('\n');
   }
 }
 
@@ -205,9 +211,8 @@ void announce(const run *r) {
     announce_notches(r, k);
     announce_law(r, k);
     announce_body(r, k);
+    announce_planes(r, k);
   }
-  for (int k = 0; k < r->deck->lattice_count; k++)
-    announce_fields(r, k);
   if (r->deck->relaxation.increments > 0)
     announce_increments(r);
   else

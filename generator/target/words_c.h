@@ -143,6 +143,9 @@
   /* --- families: $1: number of the array, $2: first particle of the chunk, $3: neighbour --- */  \
   X(PROTECTED_PARTICLES, "family->held$2")                                                         \
   X(VOLUME, "family->volume$2")                                                                    \
+  X(FAMILY_PARAMETER, "family->parameter[$1]$2")                                                   \
+  X(FAMILY_PARAMETER_TOWARD, "family->parameter[$1]$2 + $3*family->plane")                         \
+  X(SHARE, "family->share$2")                                                                      \
   X(MASS, "family->mass$2")                                                                        \
   X(LENGTH, "family->length$2 + $3*family->plane")                                                 \
   X(CHORD, "family->chord[$1]$2 + $3*family->plane")                                               \

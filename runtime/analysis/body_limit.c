@@ -61,10 +61,13 @@ static void stiffness_free(stiffness *b) {
   free(b->probe);
 }
 
-static double largest_of(const double *x, long count) {
+/* The longest way of the probe, m; of a rotation that of what is a spacing off. */
+static double longest_way(const stiffness *b) {
+  const long moving = b->body->dimensions * b->size;
+  const double spacing = b->body->lattice->spacing;
   double most = 0;
-  for (long k = 0; k < count; k++)
-    most = pl_fmax(most, fabs(x[k]));
+  for (long k = 0; k < b->length; k++)
+    most = pl_fmax(most, (k < moving ? 1 : spacing) * fabs(b->probe[k]));
   return most;
 }
 
@@ -88,7 +91,7 @@ static void find_kink(stiffness *b, const double *x) {
   double *sum = vector_of(b), *difference = vector_of(b);
   for (long k = 0; k < b->length; k++)
     b->probe[k] = b->scale[k] * x[k];
-  const double size = tiny * b->body->lattice->spacing / largest_of(b->probe, b->length);
+  const double size = tiny * b->body->lattice->spacing / longest_way(b);
   for (int side = 1; side >= -1; side -= 2) {
     move(b, b->body->displacement, side * size);
     sweep_find_forces(b->sweep);
@@ -109,7 +112,7 @@ static void add_product(stiffness *b, bool rates, double factor, const double *x
   double *const *moving = rates ? b->body->velocity : b->body->displacement;
   for (long k = 0; k < b->length; k++)
     b->probe[k] = b->scale[k] * x[k];
-  const double largest = largest_of(b->probe, b->length);
+  const double largest = longest_way(b);
   if (!(largest > 0)) return;
   const double size = (rates ? tiny_rate : tiny) * b->body->lattice->spacing / largest;
   if (!rates) factor *= b->stiffer;

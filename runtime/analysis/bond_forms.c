@@ -206,12 +206,12 @@ static bool are_allowed(const pl_law *law, const double *values) {
 
 enum { MOST_AT_ONCE = 5, INSIDE = 100 };
 
-static int corner_count(const random_fields *f) {
+static int corner_count(const parameter_planes *f) {
   return f->count <= MOST_AT_ONCE ? 1 << f->count : 2 * f->count + 2;
 }
 
 /* Of field k at a corner, 0 or 1; NaN: the mean. */
-static double corner(const random_fields *f, int c, int k) {
+static double corner(const parameter_planes *f, int c, int k) {
   const double high = f->count <= MOST_AT_ONCE ? c >> k & 1 : c & 1;
   return f->count <= MOST_AT_ONCE || c >= 2 * f->count || c / 2 == k ? high : (double)NAN;
 }
@@ -222,7 +222,7 @@ static double inside(int n, int k) {
   return fmod((n + 1) * (1 + k / 8) * sqrt(prime[k % 8]), 1);
 }
 
-static void take_sample(const pl_law *law, const random_fields *f, int n, double *values) {
+static void take_sample(const pl_law *law, const parameter_planes *f, int n, double *values) {
   const int corners = corner_count(f);
   for (int k = 0; k < f->count; k++) {
     const double share = n < corners ? corner(f, n, k) : inside(n - corners, k);
@@ -240,7 +240,7 @@ static void raise(bond_forms *f, bond_forms *more) {
 }
 
 bond_forms bond_forms_between(const pl_law *law, const double *parameters,
-                              const pl_bond_class *bonds, const random_fields *fields) {
+                              const pl_bond_class *bonds, const parameter_planes *fields) {
   const int corners = corner_count(fields);
   const size_t n = (size_t)law->parameter_count;
   bond_forms f = bond_forms_of(law, parameters, bonds);

@@ -8,7 +8,7 @@
 #include <stdbool.h>
 
 #include "runtime/kernel.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 
 enum { BOND_MOTIONS = 3 /* stretch, theta_i, theta_j; conjugate: N s, M_i, M_j */ };
 
@@ -31,7 +31,7 @@ bond_forms bond_forms_of(const pl_law *law, const double *parameters, const pl_b
    largest of the fields: stiffness at corners and inside, dampers at the corners (with more than
    five fields: all or one of them at an end). */
 bond_forms bond_forms_between(const pl_law *law, const double *parameters,
-                              const pl_bond_class *bonds, const random_fields *fields);
+                              const pl_bond_class *bonds, const parameter_planes *fields);
 
 /* No eigenvalue of a symmetric matrix, row by row, is below 0 by more than `tolerance` times the
    largest. */

@@ -362,5 +362,5 @@ void implied_wave_speeds(const pl_law *law, const double *parameters, const rows
   *out = (implied_waves){.transverse = sqrt(e->G / density)};
   for (int c = 0; c < 2; c++)
     out->longitudinal[c] = sqrt((rows_are_chain(w) ? e->E[c] : e->D[c][c]) / density);
-  if (law->kind == PL_MICROPOLAR) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
+  if (law->dof > law->dimensions) out->rotation_cutoff = stability_omega(law, parameters, w, 0, 0);
 }

@@ -170,12 +170,17 @@ void tensor_region_stress(const tensor_region *r, bond_forces *f, double stress[
 }
 
 void tensor_region_strain(const tensor_region *r, double strain[TENSOR_MOST]) {
+  double volume = 0;
   memset(strain, 0, TENSOR_MOST * sizeof *strain);
   for (long p = 0; p < r->count; p++) {
-    const double part = rows_stressed_volume(r->of->lattice, r->sites[p]) / r->volume;
+    const double V = rows_stressed_volume(r->of->lattice, r->sites[p]);
     double here[TENSOR_MOST] = {0};
     particle_strain(r->of, r->sites[p], here);
+    if (isnan(here[0])) continue;
+    volume += V;
     for (int c = 0; c < TENSOR_MOST; c++)
-      strain[c] += part * here[c];
+      strain[c] += V * here[c];
   }
+  for (int c = 0; c < TENSOR_MOST; c++)
+    strain[c] /= volume;
 }

@@ -36,7 +36,7 @@ typedef struct tensor_region {
 
 tensor_region tensor_region_new(const body *of, const int32_t *sites, long count);
 void tensor_region_free(tensor_region *r);
-/* Means over the volume of the particles. */
+/* Means over the volume of the particles; strains of those that have one, NaN where none has. */
 void tensor_region_stress(const tensor_region *r, bond_forces *f, double stress[TENSOR_MOST]);
 void tensor_region_strain(const tensor_region *r, double strain[TENSOR_MOST]);
 

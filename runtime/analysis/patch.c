@@ -196,7 +196,7 @@ static void new_particles(patch *p) {
   p->held = site_array(p, 1, sizeof *p->held);
   for (long q = -p->lead; q < p->size - p->lead; q++)
     p->bonds[q] = UINT64_MAX;
-  for (int d = 0; d < p->law->dimensions; d++) {
+  for (int d = 0; d < p->law->dof; d++) {
     p->displacement[d] = site_array(p, 1, sizeof(double));
     p->velocity[d] = site_array(p, 1, sizeof(double));
     p->force[d] = site_array(p, 1, sizeof(double));
@@ -207,6 +207,21 @@ static void new_particles(patch *p) {
     for (long q = -p->lead; q < p->size - p->lead; q++)
       p->shape[v][q] = shape[v];
   }
+}
+
+/* Values toward neighbours on bonds, else of particles. */
+static long parameter_planes(const patch *p) {
+  return p->law->varying_place == PL_ON_PARTICLE ? 1 : 2 * p->lattice->directions;
+}
+
+static void new_parameters(patch *p) {
+  p->parameter = must_calloc((size_t)p->law->varying_count + 1, sizeof *p->parameter);
+  for (int k = 0; k < p->law->varying_count; k++)
+    p->parameter[k] = site_array(p, parameter_planes(p), sizeof(double));
+  if (!p->law->reads_share) return;
+  p->share = site_array(p, 1, sizeof(double));
+  for (long q = -p->lead; q < p->size - p->lead; q++)
+    p->share[q] = 1;
 }
 
 static void new_values(patch *p, int more, int wide) {
@@ -248,7 +263,7 @@ static void free_arrays(const patch *p, double **arrays, int count) {
 
 void patch_free(patch *p) {
   if (!p) return;
-  for (int d = 0; d < 3; d++) {
+  for (int d = 0; d < PL_MAX_DOF; d++) {
     free_array(p, p->displacement[d], sizeof(double));
     free_array(p, p->velocity[d], sizeof(double));
     free_array(p, p->force[d], sizeof(double));
@@ -257,6 +272,8 @@ void patch_free(patch *p) {
     free_array(p, p->shape[v], sizeof(double));
   free_array(p, p->bonds, sizeof *p->bonds);
   free_array(p, p->held, sizeof *p->held);
+  free_arrays(p, p->parameter, p->law->varying_count);
+  free_array(p, p->share, sizeof(double));
   free_arrays(p, p->field, p->law->field_count);
   free_arrays(p, p->new_field, p->law->field_count);
   free_arrays(p, p->link, p->law->link_count);
@@ -280,6 +297,9 @@ void patch_virgin(patch *p) {
 void patch_prepare(patch *p, const double *parameters) {
   free(p->uniforms);
   p->uniforms = family_uniforms(p->law, p->lattice, parameters);
+  for (int k = 0; k < p->law->varying_count; k++)
+    for (long q = -p->lead; q < parameter_planes(p) * p->size - p->lead; q++)
+      p->parameter[k][q] = parameters[p->law->varying[k]];
 }
 
 patch *patch_new(const pl_law *law, const double *parameters, const rows *w, const long period[3],
@@ -293,6 +313,7 @@ patch *patch_new(const pl_law *law, const double *parameters, const rows *w, con
   find_margins(w, (const long(*)[3])p->cell, p->margin);
   find_sizes(p);
   new_particles(p);
+  new_parameters(p);
   new_values(p, more, wide);
   patch_virgin(p);
   patch_prepare(p, parameters);
@@ -368,15 +389,17 @@ static void run_pass(patch *p, pl_family_function pass, long first, long count, 
                    .new_field = from_first(&s, p->new_field, law->field_count),
                    .link = from_first(&s, p->link, law->link_count),
                    .bond_link = from_first(&s, p->bond_link, law->bond_link_count),
-                   .force = from_first(&s, p->force, law->dimensions),
+                   .force = from_first(&s, p->force, law->dof),
                    .observed = from_first(&s, p->observed, p->observed_count),
                    .sum = from_first(&s, p->sum, law->sum_count),
                    .ahead_only = ahead_only,
                    .held_near = 1,
+                   .share = p->share ? p->share + first : NULL,
                    .time_step = p->time_step};
   run.shape = (const double *const *)from_first(&s, p->shape, PL_SHAPE_PLANES(law->dimensions));
+  run.parameter = (const double *const *)from_first(&s, p->parameter, law->varying_count);
   run.old_field = (const double *const *)from_first(&s, p->field, law->field_count);
-  for (int d = 0; d < law->dimensions; d++) {
+  for (int d = 0; d < law->dof; d++) {
     run.displacement[d] = p->displacement[d] + first;
     run.velocity[d] = p->velocity[d] + first;
   }

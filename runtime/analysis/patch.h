@@ -24,7 +24,10 @@ typedef struct patch {
   long *image;            /* [sites] the site inside that this one repeats */
   double *uniforms;       /* [neighbours][uniform_count] */
   uint64_t *bonds, *held; /* [size] as in pl_family */
-  double *displacement[3], *velocity[3], *force[3], *shape[PL_SHAPE_PLANES(3)];
+  double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF], *force[PL_MAX_DOF];
+  double *shape[PL_SHAPE_PLANES(3)];
+  double **parameter;          /* [varying] the same everywhere */
+  double *share;               /* 1 everywhere */
   double **field, **new_field; /* [fields] at hand; of the last step */
   double **link, **bond_link;
   double **sum;       /* of laws whose bonds add to both ends (pl_family) */
@@ -59,7 +62,7 @@ void patch_cut(patch *p, long site, int k);
 /* A value, or one plane, of all images as inside. */
 void patch_repeat(const patch *p, double *values);
 /* values[d] becomes the gradient (per m of reference) times position, and `part` (at the sites
-   inside; NULL: nothing) repeated. For displacements and velocities. */
+   inside; NULL: nothing) repeated. For displacements and velocities; rotations stay. */
 void patch_deform(const patch *p, const double gradient[3][3], double *const *part,
                   double *const *values);
 

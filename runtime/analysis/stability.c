@@ -25,13 +25,13 @@ static void kinematic_matrix(const double chord[2], double s, int dof,
   for (int c = 0; c < 2; c++) {
     b[0][c] = -e[c] / s;
     b[0][dof + c] = e[c] / s;
-    if (dof < MOST_DOF) continue;
+    if (dof == 2) continue;
     for (int end = 1; end <= 2; end++) {
       b[end][c] = n[c] / s;
       b[end][dof + c] = -n[c] / s;
     }
   }
-  if (dof < MOST_DOF) return;
+  if (dof == 2) return;
   b[1][2] = 1;
   b[2][dof + 2] = 1;
 }
@@ -65,7 +65,7 @@ static void bond_part(const pl_bond_class *bonds, bond_form d, int dof, wave_par
 
 /* `definite`: no body of such bonds is faster. */
 static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
-                                const random_fields *fields, const rows *w, bool *definite) {
+                                const parameter_planes *fields, const rows *w, bool *definite) {
   crystal c = crystal_new(w, law->dof, w->directions);
   *definite = true;
   for (int k = 0; k < w->directions; k++) {
@@ -82,29 +82,46 @@ static crystal crystal_of_bonds(const pl_law *law, const double *parameters,
   return c;
 }
 
+/* Of a bond from here to R that resists no rigid motion: its energy is a form q D q/2 of the motion
+   q = (u_R - u_0 - theta_0 x R, theta_R - theta_0) of its far end as the near end sees it, so that
+   moving the far end alone gives f_0 = D (u_R, theta_R), and a moment R x f_0 beside. `block` is
+   minus that, rotations as ways (stencil.h). */
+static bool bond_is_definite(const crystal *c, const wave_term *t, const wave_block block,
+                             double spacing) {
+  const int d = c->dimensions, n = c->dof;
+  const double R[3] = {t->R[0] / spacing, t->R[1] / spacing, t->R[2] / spacing};
+  double form[MOST_DOF * MOST_DOF], mean[MOST_DOF * MOST_DOF];
+  for (int q = 0; q < n; q++) {
+    for (int p = 0; p < n; p++)
+      form[p * n + q] = -block[p][q];
+    for (int axis = 0; axis < n - d; axis++) {
+      const int a = d == 2 ? 0 : (axis + 1) % 3, b = d == 2 ? 1 : (axis + 2) % 3;
+      form[(d + axis) * n + q] += R[a] * block[b][q] - R[b] * block[a][q];
+    }
+  }
+  for (int p = 0; p < n; p++)
+    for (int q = 0; q < n; q++)
+      mean[p * n + q] = 0.5 * (form[p * n + q] + form[q * n + p]);
+  return form_is_definite(n, mean, -STABILITY_LEAST);
+}
+
 /* Of a law of bonds as one of families: every block is that of a bond, from differences of
    forces. */
-static bool blocks_are_definite(const crystal *c) {
-  const double tolerance = -STABILITY_LEAST;
+static bool blocks_are_definite(const crystal *c, double spacing) {
   for (int n = 1; n < c->term_count; n++) {
-    double stiffness[MOST_DOF * MOST_DOF], damping[MOST_DOF * MOST_DOF];
-    for (int p = 0; p < c->dof; p++)
-      for (int q = 0; q < c->dof; q++) {
-        stiffness[p * c->dof + q] = -c->terms[n].stiffness.forward[p][q];
-        damping[p * c->dof + q] = -c->terms[n].damping.forward[p][q];
-      }
-    if (!form_is_definite(c->dof, stiffness, tolerance) ||
-        !form_is_definite(c->dof, damping, tolerance))
+    const wave_term *t = &c->terms[n];
+    if (!bond_is_definite(c, t, t->stiffness.forward, spacing) ||
+        !bond_is_definite(c, t, t->damping.forward, spacing))
       return false;
   }
   return true;
 }
 
-static crystal crystal_of(const pl_law *law, const double *parameters, const random_fields *fields,
-                          const rows *w, bool *definite) {
+static crystal crystal_of(const pl_law *law, const double *parameters,
+                          const parameter_planes *fields, const rows *w, bool *definite) {
   if (law->kind != PL_STATE) return crystal_of_bonds(law, parameters, fields, w, definite);
   const crystal c = stencil_crystal(law, parameters, w);
-  *definite = law->pairwise && blocks_are_definite(&c);
+  *definite = law->pairwise && blocks_are_definite(&c, w->spacing);
   return c;
 }
 
@@ -119,7 +136,7 @@ double stability_rounded(double x) {
   return strtod(digits, NULL);
 }
 
-static void take_body(const pl_law *law, const double *parameters, const random_fields *fields,
+static void take_body(const pl_law *law, const double *parameters, const parameter_planes *fields,
                       const rows *w, step_limit *out) {
   step_limit body = *out;
   body_limit(law, parameters, fields ? fields->value : NULL, w, &body);
@@ -128,14 +145,14 @@ static void take_body(const pl_law *law, const double *parameters, const random_
   out->least = body.least;
 }
 
-static void find_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+static void find_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                        const rows *w, step_limit *out) {
   bool definite;
   out->at_surface = false;
   out->least = 0;
-  if (w->list) {
+  if (w->list || (fields && law->kind == PL_STATE)) {
     out->limit = 0;
-    body_limit(law, parameters, NULL, w, out);
+    body_limit(law, parameters, fields ? fields->value : NULL, w, out);
     return;
   }
   crystal c = crystal_of(law, parameters, fields, w, &definite);
@@ -144,7 +161,7 @@ static void find_limit(const pl_law *law, const double *parameters, const random
   if (!definite && out->limit > 0) take_body(law, parameters, fields, w, out);
 }
 
-void stability_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+void stability_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                      const rows *w, step_limit *out) {
   find_limit(law, parameters, fields, w, out);
   out->limit = stability_rounded(out->limit);

@@ -12,14 +12,14 @@
 
 #include "runtime/analysis/step_limit.h"
 #include "runtime/kernel.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows.h"
 
 /* Fills limit, omega_max, damping_ratio, mode as waves_limit does, and at_surface and least. The
    masses of w must be set. `fields` (NULL: none): parameters that differ from bond to bond; the
    limit is then that of a lattice in which no bond is softer than any of these. A law that gives no
    finite tangent at rest has limit 0. The limit has nine significant digits (stability_rounded). */
-void stability_limit(const pl_law *law, const double *parameters, const random_fields *fields,
+void stability_limit(const pl_law *law, const double *parameters, const parameter_planes *fields,
                      const rows *w, step_limit *out);
 
 /* A virgin body with a smaller eigenvalue, over the largest, flies apart; what rounding leaves of

@@ -7,11 +7,13 @@
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
 #include "runtime/analysis/patch.h"
+#include "runtime/base/eigen.h"
 
 /* Small against any strain that a law makes a difference at; with central differences what is left
    is of the second order. */
-static const double tiny = 1e-7;      /* spacings */
-static const double tiny_rate = 1e-3; /* spacings a second */
+static const double tiny = 1e-7;         /* spacings */
+static const double tiny_rate = 1e-3;    /* spacings a second */
+static const double no_stiffness = 1e-9; /* of a particle's: what differences leave */
 
 /* Nothing that happens at the middle comes round to itself: the period is longer than the passes
    reach. */
@@ -46,38 +48,46 @@ static long site_of(const neighbourhood *n, const stencil_block *block) {
   return patch_site(n->p, at);
 }
 
-/* Forces on all when the particle in the middle is moved: [count][3]. */
-static void push(const neighbourhood *n, double *moved, double by, const stencil *out,
-                 double (*force)[3]) {
-  moved[patch_site(n->p, n->reach)] = by;
-  find_forces(n->p, moved);
+/* What a way is to a component: a way, or an angle. */
+static double angle_of(const neighbourhood *n, const stencil *s, int component) {
+  return component < s->dimensions ? 1 : 1 / n->p->lattice->spacing;
+}
+
+typedef double site_force[WAVES_MOST_DOF];
+
+/* Forces on all when component b of the particle in the middle is moved: [count]. */
+static void push(const neighbourhood *n, double *const *moving, int b, double by,
+                 const stencil *out, site_force *force) {
+  moving[b][patch_site(n->p, n->reach)] = by * angle_of(n, out, b);
+  find_forces(n->p, moving[b]);
   for (int k = 0; k < out->count; k++)
-    for (int a = 0; a < out->dimensions; a++)
-      force[k][a] = n->p->force[a][site_of(n, &out->blocks[k])];
+    for (int a = 0; a < out->dof; a++)
+      force[k][a] = n->p->force[a][site_of(n, &out->blocks[k])] * angle_of(n, out, a);
 }
 
 /* Part by which either side of a kink at rest is stiffer than the mean of both, of blocks that
    matter. */
-static void note_kink(stencil *out, double (*up)[3], double (*down)[3]) {
+static void note_kink(stencil *out, site_force *up, site_force *down) {
   const double matters = 1e-3;
   double largest = 0;
-  for (int k = 0; k < 3 * out->count; k++)
-    largest = pl_fmax(largest, fabs(up[k / 3][k % 3] - down[k / 3][k % 3]));
-  for (int k = 0; k < 3 * out->count; k++) {
-    const double odd = fabs(up[k / 3][k % 3] - down[k / 3][k % 3]),
-                 even = fabs(up[k / 3][k % 3] + down[k / 3][k % 3]);
-    if (odd > matters * largest) out->kink = pl_fmax(out->kink, even / odd);
-  }
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dof; a++)
+      largest = pl_fmax(largest, fabs(up[k][a] - down[k][a]));
+  for (int k = 0; k < out->count; k++)
+    for (int a = 0; a < out->dof; a++) {
+      const double odd = fabs(up[k][a] - down[k][a]), even = fabs(up[k][a] + down[k][a]);
+      if (odd > matters * largest) out->kink = pl_fmax(out->kink, even / odd);
+    }
 }
 
 /* Column b of the blocks, -df/d(moved), of the particle in the middle. */
 static void probe(const neighbourhood *n, double *const *moving, double size, int b, bool rates,
                   stencil *out) {
-  double(*up)[3] = must_calloc(2 * (size_t)out->count, sizeof *up), (*down)[3] = up + out->count;
-  push(n, moving[b], size, out, up);
-  push(n, moving[b], -size, out, down);
+  site_force *up = must_calloc(2 * (size_t)out->count, sizeof *up), *down = up + out->count;
+  push(n, moving, b, size, out, up);
+  push(n, moving, b, -size, out, down);
   for (int k = 0; k < out->count; k++)
-    for (int a = 0; a < out->dimensions; a++) {
+    for (int a = 0; a < out->dof; a++) {
       stencil_block *block = &out->blocks[k];
       double *value = rates ? &block->damping[a][b] : &block->stiffness[a][b];
       *value -= up[k][a] / (2 * size);
@@ -113,43 +123,44 @@ static void add_blocks(const neighbourhood *n, stencil *s) {
 }
 
 /* a becomes the mean of itself and b transposed, b its transpose. */
-static void pair_up(double a[3][3], double b[3][3]) {
-  double mean[3][3];
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++)
+static void pair_up(wave_block a, wave_block b) {
+  wave_block mean;
+  for (int p = 0; p < WAVES_MOST_DOF; p++)
+    for (int q = 0; q < WAVES_MOST_DOF; q++)
       mean[p][q] = 0.5 * (a[p][q] + b[q][p]);
-  for (int p = 0; p < 3; p++)
-    for (int q = 0; q < 3; q++) {
-      a[p][q] = mean[p][q];
-      b[q][p] = mean[p][q];
-    }
+  for (int p = 0; p < WAVES_MOST_DOF; p++)
+    for (int q = 0; q < WAVES_MOST_DOF; q++)
+      a[p][q] = b[q][p] = mean[p][q];
 }
 
-static double largest_of(const double block[3][3]) {
+static double largest_of(wave_block block) {
   double most = 0;
-  for (int k = 0; k < 9; k++)
-    if (!(fabs(block[k / 3][k % 3]) <= most)) most = fabs(block[k / 3][k % 3]);
+  for (int p = 0; p < WAVES_MOST_DOF; p++)
+    for (int q = 0; q < WAVES_MOST_DOF; q++)
+      if (!(fabs(block[p][q]) <= most) && !isnan(most)) most = fabs(block[p][q]);
   return most;
 }
 
+/* Moments by rotations need not add up to nothing: all particles may turn against their bonds. */
 static void balance(stencil *s) {
-  double sum[3][3] = {{0}};
+  wave_block sum = {{0}};
   stencil_block *own = &s->blocks[0];
   for (int n = 0; n < s->count; n++)
-    for (int k = 0; k < 9; k++)
-      sum[k / 3][k % 3] += s->blocks[n].stiffness[k / 3][k % 3];
-  s->finite = isfinite(largest_of((const double(*)[3])sum));
-  s->imbalance =
-      largest_of((const double(*)[3])sum) / largest_of((const double(*)[3])own->stiffness);
-  for (int k = 0; k < 9; k++)
-    own->stiffness[k / 3][k % 3] -= sum[k / 3][k % 3];
+    for (int p = 0; p < s->dof; p++)
+      for (int q = 0; q < (p < s->dimensions ? s->dof : s->dimensions); q++)
+        sum[p][q] += s->blocks[n].stiffness[p][q];
+  s->finite = isfinite(largest_of(sum)) && isfinite(largest_of(own->stiffness));
+  s->imbalance = largest_of(sum) / largest_of(own->stiffness);
+  for (int p = 0; p < s->dof; p++)
+    for (int q = 0; q < s->dof; q++)
+      own->stiffness[p][q] -= sum[p][q];
 }
 
 stencil stencil_new(const pl_law *law, const double *parameters, const rows *w) {
-  stencil s = {.dimensions = law->dimensions};
+  stencil s = {.dimensions = law->dimensions, .dof = law->dof};
   neighbourhood near = neighbourhood_new(law, parameters, w);
   add_blocks(&near, &s);
-  for (int b = 0; b < s.dimensions; b++) {
+  for (int b = 0; b < s.dof; b++) {
     probe(&near, near.p->displacement, tiny * w->spacing, b, false, &s);
     probe(&near, near.p->velocity, tiny_rate * w->spacing, b, true, &s);
   }
@@ -180,11 +191,12 @@ static void set_term(wave_term *t, const stencil_block *ahead, const stencil_blo
 
 static void scale_stiffness(crystal *c, double factor) {
   for (int n = 0; n < c->term_count; n++)
-    for (int k = 0; k < WAVES_MOST_DOF * WAVES_MOST_DOF; k++) {
-      c->terms[n].stiffness.self[k / 3][k % 3] *= factor;
-      c->terms[n].stiffness.forward[k / 3][k % 3] *= factor;
-      c->terms[n].stiffness.backward[k / 3][k % 3] *= factor;
-    }
+    for (int p = 0; p < c->dof; p++)
+      for (int q = 0; q < c->dof; q++) {
+        c->terms[n].stiffness.self[p][q] *= factor;
+        c->terms[n].stiffness.forward[p][q] *= factor;
+        c->terms[n].stiffness.backward[p][q] *= factor;
+      }
 }
 
 /* Blocks that rounding left count as none. */
@@ -192,29 +204,63 @@ crystal stencil_crystal(const pl_law *law, const double *parameters, const rows 
   const double nothing = 1e-12;
   stencil s = stencil_new(law, parameters, w);
   crystal c = crystal_new(w, law->dof, (s.count + 1) / 2);
-  const double stiff = largest_of((const double(*)[3])s.blocks[0].stiffness);
+  const double stiff = largest_of(s.blocks[0].stiffness);
   const double critical = sqrt(stiff * w->mass);
+  for (int d = c.dimensions; d < c.dof; d++)
+    c.scale[d] *= w->spacing;
   c.finite = c.finite && s.finite;
   memcpy(c.terms[0].stiffness.self, s.blocks[0].stiffness, sizeof(wave_block));
   memcpy(c.terms[0].damping.self, s.blocks[0].damping, sizeof(wave_block));
   c.term_count = 1;
   for (int n = 1; n < s.count; n += 2) {
-    const bool stiffness = largest_of((const double(*)[3])s.blocks[n].stiffness) > nothing * stiff;
-    const bool damping = largest_of((const double(*)[3])s.blocks[n].damping) > nothing * critical;
+    const bool stiffness = largest_of(s.blocks[n].stiffness) > nothing * stiff;
+    const bool damping = largest_of(s.blocks[n].damping) > nothing * critical;
     if (stiffness || damping) set_term(&c.terms[c.term_count++], &s.blocks[n], &s.blocks[n + 1]);
   }
-  c.damped = largest_of((const double(*)[3])s.blocks[0].damping) > nothing * critical;
+  c.damped = largest_of(s.blocks[0].damping) > nothing * critical;
   if (s.kink > STENCIL_KINK) scale_stiffness(&c, 1 + s.kink);
   stencil_free(&s);
   return c;
 }
 
-/* -1/(2 V) sum of K_ab R_c R_d */
-static double moment(const stencil *s, double volume, int a, int b, int c, int d) {
+/* Long waves feel V k_c k_d [ab,cd]: from ways alone, -1/(2 V) sum of K_ab R_c R_d; less what the
+   rotations take, which are in balance. */
+typedef struct long_waves {
+  const stencil *s;
+  double volume;
+  /* sum of K_aq R_c over all R, q the principal directions of the stiffness of all particles
+     turning alike, over its root */
+  double turned[3][3][3];
+} long_waves;
+
+/* A rotation that nothing holds takes nothing. */
+static void find_turned(long_waves *w) {
+  const stencil *s = w->s;
+  const int d = s->dimensions, turns = s->dof - d;
+  double sum[EIGEN_MOST][EIGEN_MOST] = {{0}}, values[EIGEN_MOST], axes[EIGEN_MOST][EIGEN_MOST];
+  for (int n = 0; n < s->count; n++)
+    for (int p = 0; p < turns; p++)
+      for (int q = 0; q < turns; q++)
+        sum[p][q] += s->blocks[n].stiffness[d + p][d + q];
+  eigen_symmetric(turns, sum, values, axes);
+  for (int m = 0; m < turns; m++) {
+    if (!(values[m] > no_stiffness * s->blocks[0].stiffness[0][0])) continue;
+    for (int n = 0; n < s->count; n++)
+      for (int a = 0; a < d; a++)
+        for (int c = 0; c < d; c++)
+          for (int q = 0; q < turns; q++)
+            w->turned[m][a][c] +=
+                s->blocks[n].stiffness[a][d + q] * s->blocks[n].R[c] * axes[m][q] / sqrt(values[m]);
+  }
+}
+
+static double moment(const long_waves *w, int a, int b, int c, int d) {
   double sum = 0;
-  for (int n = 1; n < s->count; n++)
-    sum -= s->blocks[n].stiffness[a][b] * s->blocks[n].R[c] * s->blocks[n].R[d];
-  return sum / (2 * volume);
+  for (int n = 1; n < w->s->count; n++)
+    sum -= w->s->blocks[n].stiffness[a][b] * w->s->blocks[n].R[c] * w->s->blocks[n].R[d];
+  for (int m = 0; m < w->s->dof - w->s->dimensions; m++)
+    sum -= w->turned[m][a][c] * w->turned[m][b][d] + w->turned[m][a][d] * w->turned[m][b][c];
+  return sum / (2 * w->volume);
 }
 
 void stencil_elastic(const stencil *s, const rows *w, double *D) {
@@ -222,11 +268,12 @@ void stencil_elastic(const stencil *s, const rows *w, double *D) {
   static const int space[][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}};
   const int(*pair)[2] = s->dimensions == 2 ? plane : space;
   const int order = s->dimensions == 2 ? 3 : 6;
-  const double V = rows_stressed_mean(w);
+  long_waves waves = {.s = s, .volume = rows_stressed_mean(w)};
+  find_turned(&waves);
   for (int i = 0; i < order; i++)
     for (int j = 0; j < order; j++) {
       const int p = pair[i][0], q = pair[i][1], r = pair[j][0], t = pair[j][1];
       D[i * order + j] =
-          moment(s, V, p, r, q, t) + moment(s, V, r, q, p, t) - moment(s, V, p, q, r, t);
+          moment(&waves, p, r, q, t) + moment(&waves, r, q, p, t) - moment(&waves, p, q, r, t);
     }
 }

@@ -6,6 +6,7 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/elementary.h"
+#include "runtime/base/lane_sum.h"
 #include "runtime/interaction/interaction.h"
 #include "runtime/lattice/shape_matrix.h"
 
@@ -32,25 +33,105 @@ typedef struct probe {
   double *force[3]; /* [size] by strain: N */
   double volume;    /* m^3 that stresses act in */
   double *left;     /* [particle_count * strains] */
+  double *moment;   /* [rotations * size] N m left; NULL without rotations */
+  double *way;      /* the same: where to turn to */
 } probe;
 
-/* Engineering shear: both halves. */
+/* Engineering shear: both halves; nothing turned. */
 static void displace(probe *p, int strain, double size) {
   const int a = p->first[strain], b = p->second[strain];
   for (long n = 0; n < p->lattice->particle_count; n++) {
     const long q = p->lattice->particle_site[n];
     double at[3];
     rows_place(p->lattice, q, at);
-    for (int d = 0; d < p->dimensions; d++)
+    for (int d = 0; d < p->body->dof; d++)
       p->body->displacement[d][q] = 0;
     p->body->displacement[a][q] = a == b ? size * at[a] : size / 2 * at[b];
     if (a != b) p->body->displacement[b][q] = size / 2 * at[a];
   }
 }
 
+/* --- rotations in balance --------------------------------------------------------------------- */
+
+static long turning_count(const probe *p) {
+  return (p->body->dof - p->dimensions) * p->lattice->size;
+}
+
+static double *turned(const probe *p, long k) {
+  return &p->body->displacement[p->dimensions + k / p->lattice->size][k % p->lattice->size];
+}
+
+static double moment_at(const probe *p, long k) {
+  const long q = k % p->lattice->size;
+  return p->lattice->present[q] ? p->body->force[p->dimensions + k / p->lattice->size][q] : 0;
+}
+
+static double dot(long count, const double *a, const double *b) {
+  return lane_dot(count, NULL, a, b);
+}
+
+static void turn(const probe *p, double by) {
+  for (long k = 0; k < turning_count(p); k++)
+    *turned(p, k) += by * p->way[k];
+}
+
+/* Along the way; returns how much less moment it leaves, as a product with the way, for each unit
+   gone. */
+static double resistance(const probe *p, double size) {
+  double product = 0;
+  turn(p, size);
+  sweep_find_forces(p->sweep);
+  for (long k = 0; k < turning_count(p); k++)
+    product += (p->moment[k] - moment_at(p, k)) / size * p->way[k];
+  return product;
+}
+
+static double largest_of(long count, const double *x) {
+  double most = 0;
+  for (long k = 0; k < count; k++)
+    most = pl_fmax(most, fabs(x[k]));
+  return most;
+}
+
+/* What rounding leaves of moments, squared: of all forces at the arm of a spacing. */
+static double rounding(const probe *p) {
+  double square = 0;
+  for (int d = 0; d < p->dimensions; d++)
+    square += dot(p->lattice->size, p->body->force[d], p->body->force[d]);
+  return 1e-28 * square * p->lattice->spacing * p->lattice->spacing;
+}
+
+/* Particles turn until no moments are left on them (conjugate gradients, Hestenes and Stiefel
+   1952): moments are linear in rotations as small as these. Those that nothing holds stay. */
+static void balance_moments(const probe *p) {
+  enum { MOST_STEPS = 200 };
+  const long count = turning_count(p);
+  sweep_find_forces(p->sweep);
+  for (long k = 0; k < count; k++)
+    p->way[k] = p->moment[k] = moment_at(p, k);
+  double square = dot(count, p->moment, p->moment);
+  const double enough = pl_fmax(1e-20 * square, rounding(p));
+  for (int step = 0; step < MOST_STEPS && square > enough; step++) {
+    const double size = strain_size / largest_of(count, p->way);
+    const double against = resistance(p, size), before = square;
+    if (!(against > 0)) {
+      turn(p, -size);
+      break;
+    }
+    const double part = square / against / size; /* of the change that was tried */
+    for (long k = 0; k < count; k++)
+      p->moment[k] += part * (moment_at(p, k) - p->moment[k]);
+    turn(p, (part - 1) * size);
+    square = dot(count, p->moment, p->moment);
+    for (long k = 0; k < count; k++)
+      p->way[k] = p->moment[k] + square / before * p->way[k];
+  }
+}
+
 static void find_slopes(probe *p, int strain) {
   for (int side = 1; side >= -1; side -= 2) {
     displace(p, strain, side * strain_size);
+    if (p->way) balance_moments(p);
     sweep_find_forces(p->sweep);
     for (int d = 0; d < p->dimensions; d++)
       for (long q = 0; q < p->lattice->size; q++) {
@@ -154,6 +235,10 @@ static probe probe_new(const pl_law *law, const double *parameters, const rows *
   for (long n = 0; n < w->particle_count; n++)
     p.volume += rows_stressed_volume(w, w->particle_site[n]);
   p.left = must_calloc((size_t)w->particle_count * (size_t)p.strains, sizeof *p.left);
+  if (law->dof > law->dimensions) {
+    p.moment = must_calloc((size_t)turning_count(&p), sizeof *p.moment);
+    p.way = must_calloc((size_t)turning_count(&p), sizeof *p.way);
+  }
   return p;
 }
 
@@ -162,6 +247,8 @@ static void probe_free(probe *p) {
   for (int d = 0; d < p->dimensions; d++)
     free(p->force[d]);
   free(p->left);
+  free(p->moment);
+  free(p->way);
 }
 
 /* --- moduli of a body on a lattice ------------------------------------------------------------ */
@@ -256,10 +343,11 @@ bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *
   return finite;
 }
 
-bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
-                             bool plane_strain, uniform_response *out) {
+bool uniform_strain_response(const pl_law *law, const double *parameters, double *const *varying,
+                             const rows *w, bool plane_strain, uniform_response *out) {
   double C[MOST_STRAINS][MOST_STRAINS] = {{0}}, stress[MOST_STRAINS];
   probe p = probe_new(law, parameters, w);
+  p.sweep->parameter = varying;
   *out = (uniform_response){.unresolved = shape_unresolved(w, NULL)};
   for (int c = 0; c < p.strains; c++) {
     find_slopes(&p, c);

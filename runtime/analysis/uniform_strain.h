@@ -1,8 +1,8 @@
-/* What particles that stand on no lattice make of a uniform strain, before anything has happened to
-   them. The mean stress of a free body follows from the forces on its particles alone, -sum(f x)/V
-   (virial theorem); a body with exact families has that of the material, whatever its shape. The
-   forces themselves should be 0 inside; how far they are from it is what a particle feels of the
-   irregularity of its surroundings. */
+/* What particles make of a uniform strain, before anything has happened to them; those that rotate
+   are in balance of moments. The mean stress of a free body follows from the forces on its
+   particles alone, -sum(f x)/V (virial theorem); a body with exact families has that of the
+   material, whatever its shape. The forces themselves should be 0 inside; how far they are from it
+   is what a particle feels of the irregularity of its surroundings. */
 #ifndef PERILAT_RUNTIME_UNIFORM_STRAIN_H
 #define PERILAT_RUNTIME_UNIFORM_STRAIN_H
 
@@ -15,19 +15,20 @@ typedef struct uniform_response {
   /* median over particles and strains of the force left, over stress times the face of a
      particle */
   double left_force;
-  double momentum;   /* largest |sum of forces| over sum of |forces| */
-  long unresolved;   /* particles whose bonds do not resolve all strains */
+  double momentum; /* largest |sum of forces| over sum of |forces| */
+  long unresolved; /* particles whose bonds do not resolve all strains */
 } uniform_response;
 
-/* Of a law of families on a body whose masses are set; plane_strain tells the two planes apart.
-   False where the law gives no finite forces or no stiffness. */
-bool uniform_strain_response(const pl_law *law, const double *parameters, const rows *w,
-                             bool plane_strain, uniform_response *out);
+/* Of a law of families on a body whose masses are set; `varying` as in sweep.h (NULL: none);
+   plane_strain tells the two planes apart. False where the law gives no finite forces or no
+   stiffness. */
+bool uniform_strain_response(const pl_law *law, const double *parameters, double *const *varying,
+                             const rows *w, bool plane_strain, uniform_response *out);
 
 /* Young's moduli (Pa) along x, y and z of a body as it stands on a lattice: of its middle part,
    away from the ends that each is loaded at, stress over the volume of the particles, sides free in
    the mean. A perfect body whose bonds along the load are all there has the lattice's; what its
-   other edges lack makes it softer. `varying` as in sweep.h (NULL: none). NaN in a direction in
+   other edges lack makes it softer. `varying` as above. NaN in a direction in
    which the body is too short to have a middle. False where the law gives no finite forces or no
    stiffness. */
 bool uniform_strain_moduli(const pl_law *law, const double *parameters, double *const *varying,

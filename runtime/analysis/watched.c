@@ -1,5 +1,6 @@
 #include "runtime/analysis/watched.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -89,6 +90,19 @@ static bool open_tip(watched_part *w, const rows_bond *bonds, diagnostics *d) {
   return false;
 }
 
+static bool open_tensor(watched_part *w, diagnostics *d) {
+  double strain[TENSOR_MOST];
+  if (w->deck->placed && !take_nearest(w, d)) return false;
+  w->region = tensor_region_new(w->of, w->sites, w->count);
+  if (w->deck->kind == MONITOR_STRESS) return true;
+  tensor_region_strain(&w->region, strain);
+  if (!isnan(strain[0])) return true;
+  diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, w->deck->placed ? "at" : "region"),
+              "there is no strain: the bonds of each particle lie %s",
+              w->of->dimensions == 2 ? "on a line" : "in a plane");
+  return false;
+}
+
 static bool open_kind(watched_part *w, const rows_bond *bonds, diagnostics *d) {
   switch (w->deck->kind) {
   case MONITOR_FORCE:
@@ -98,9 +112,7 @@ static bool open_kind(watched_part *w, const rows_bond *bonds, diagnostics *d) {
     return open_tip(w, bonds, d);
   case MONITOR_STRESS:
   case MONITOR_STRAIN:
-    if (w->deck->placed && !take_nearest(w, d)) return false;
-    w->region = tensor_region_new(w->of, w->sites, w->count);
-    return true;
+    return open_tensor(w, d);
   case MONITOR_ACCELERATION:
     return !w->deck->placed || take_nearest(w, d);
   case MONITOR_MOMENTUM:

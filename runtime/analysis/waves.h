@@ -8,7 +8,7 @@
 #include "runtime/analysis/step_limit.h"
 #include "runtime/lattice/rows.h"
 
-enum { WAVES_MOST_DOF = 3 };
+enum { WAVES_MOST_DOF = PL_MAX_DOF };
 
 typedef double wave_block[WAVES_MOST_DOF][WAVES_MOST_DOF];
 

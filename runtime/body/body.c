@@ -52,13 +52,16 @@ static void new_motion(body *w) {
 
 static void new_masses(body *w) {
   const rows *g = w->lattice;
-  if (!g->site_mass) return;
-  w->relative_mass = body_doubles(w, g->size);
-  w->mobility = body_doubles(w, g->size);
-  for (long q = 0; q < g->size; q++) {
-    if (!g->present[q]) continue;
-    w->relative_mass[q] = g->site_mass[q] / g->mass;
-    w->mobility[q] = g->mass / g->site_mass[q];
+  const int kinds = w->dof > w->dimensions ? 2 : 1;
+  for (int turns = 0; turns < kinds && g->site_mass; turns++) {
+    w->relative_mass[turns] = body_doubles(w, g->size);
+    w->mobility[turns] = body_doubles(w, g->size);
+    for (long q = 0; q < g->size; q++) {
+      if (!g->present[q]) continue;
+      const double square = turns ? rows_radius_square(g, q) : 1;
+      w->relative_mass[turns][q] = g->site_mass[q] / g->mass * square;
+      w->mobility[turns][q] = g->mass / g->site_mass[q] / square;
+    }
   }
 }
 

@@ -64,9 +64,10 @@ typedef struct body {
   bool forces;             /* somebody looks at the forces of every step */
   bool works;              /* of the energies, the work against the forces of the bonds is kept */
   bool timed;              /* blocks keep the times of their parts of a step */
-  double mass[PL_MAX_DOF]; /* kg, kg, kg m^2; of the mean particle where they are not alike */
-  double *relative_mass;   /* [size] of a particle, over the mean; NULL where all are alike */
-  double *mobility;        /* [size] 1/relative_mass; 0 at absent sites */
+  double mass[PL_MAX_DOF]; /* kg, kg m^2; of the mean particle where they are not alike */
+  /* [size] of a particle, over the mean, of its motion along the axes and about them (body_turns);
+     NULL where all are alike. And the inverse; 0 at absent sites. */
+  double *relative_mass[2], *mobility[2];
   /* velocity that no particle may reach: one spacing, half a turn a step */
   double limit[PL_MAX_DOF];
   double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF]; /* [size] m, rad; m/s, rad/s */
@@ -104,9 +105,15 @@ static inline long body_start(const body *w, int row) {
   return rows_start(w->lattice, row) + w->begin[row];
 }
 
+/* 1 where a component is a rotation, else 0. */
+static inline int body_turns(const body *w, int component) {
+  return component >= w->dimensions;
+}
+
 /* Mass of a particle (kg), or what turns with that component (kg m^2). */
 static inline double body_mass(const body *w, int component, long site) {
-  return w->relative_mass ? w->mass[component] * w->relative_mass[site] : w->mass[component];
+  const double *relative = w->relative_mass[body_turns(w, component)];
+  return relative ? w->mass[component] * relative[site] : w->mass[component];
 }
 
 /* Block with the lowest bad site after the last stage, or -1. Bad rows were not moved from there

@@ -39,8 +39,11 @@ int64_t motion_push(const body *w, row_part at, int component, double *next);
    on the row stays. */
 void motion_note_bad(const body *w, body_block *b, int row, long first);
 /* The velocities become the block's `next`, the displacements follow, the ledger of mass damping
-   and gravity goes on. */
+   and gravity goes on. Rotations in space are rotation vectors, velocities rates of turning about
+   x, y and z: a step turns the particle further, exp(dt w) after what it has turned. */
 void motion_drift(body *w, body_block *b, row_part at);
+/* Moves one component of a particle further, m or rad: in space a rotation about that axis. */
+void motion_shift(body *w, int component, long site, double way);
 /* What a row's motion says of the energies, with the block's `next` and the forces at hand. */
 void motion_observe(body *w, const body_block *b, int row);
 

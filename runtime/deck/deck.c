@@ -53,23 +53,30 @@ deck_names *deck_names_new(arena *a) {
   return n;
 }
 
-#define FIND(group, member)                                                                        \
+#define FIND(group, member, counts)                                                                \
   static int look_for_##group(const deck *k, const char *name) {                                   \
     for (int i = 0; i < k->group##_count; i++)                                                     \
-      if (k->group##s[i].member && strcmp(k->group##s[i].member, name) == 0) return i;             \
+      if (k->group##s[i].member && (counts) && strcmp(k->group##s[i].member, name) == 0) return i; \
     return -1;                                                                                     \
   }                                                                                                \
   int deck_find_##group(const deck *k, const char *name) {                                         \
     if (!k->names) return look_for_##group(k, name);                                               \
     name_index *of = &k->names->kind[DECK_GROUP_##group].of;                                       \
-    for (int *i = &k->names->kind[DECK_GROUP_##group].count; *i < k->group##_count; ++*i)          \
-      if (k->group##s[*i].member) name_index_add(of, k->group##s[*i].member, *i);                  \
+    int *known = &k->names->kind[DECK_GROUP_##group].count;                                        \
+    for (int i = *known; i < k->group##_count; i++)                                                \
+      if (k->group##s[i].member && (counts)) name_index_add(of, k->group##s[i].member, i);         \
+    *known = k->group##_count;                                                                     \
     return name_index_find(of, name);                                                              \
   }
-FIND(region, name)
-FIND(lattice, name)
-FIND(monitor, name)
-FIND(material, lattice)
+FIND(region, name, true)
+FIND(lattice, name, true)
+FIND(monitor, name, true)
+FIND(material, lattice, !k->materials[i].region)
+
+const deck_material *deck_material_of(const deck *k, int lattice) {
+  const int m = deck_find_material(k, k->lattices[lattice].name);
+  return m < 0 ? NULL : &k->materials[m];
+}
 
 char *deck_file_path(const char *deck_path, const char *name) {
   const char *slash = strrchr(deck_path, '/');
@@ -81,6 +88,7 @@ char *deck_file_path(const char *deck_path, const char *name) {
 }
 
 const char *deck_component_name(int dimensions, int component) {
-  static const char *const names[] = {"x", "y", "rotation", "z"};
-  return names[dimensions == 3 && component == 2 ? 3 : component];
+  static const char *const plane[] = {"x", "y", "rotation"};
+  static const char *const space[] = {"x", "y", "z", "rotation_x", "rotation_y", "rotation_z"};
+  return (dimensions == 3 ? space : plane)[component];
 }

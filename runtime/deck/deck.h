@@ -64,13 +64,17 @@ typedef struct deck_assignment { /* parameter = value in a &material */
 typedef struct deck_material {
   deck_item item;
   const char *lattice; /* name */
+  const char *region;  /* name; NULL: of the whole lattice, but for what regions say */
   const char *model;   /* name in models/ or a path ending in .plm */
   deck_assignment *assignments;
   int assignment_count;
-  /* [varying_count] parameters that a &field makes differ from bond to bond */
+  /* [varying_count] parameters that a &field makes differ in space */
   const char **varying;
   const span *varying_where;
   int varying_count;
+  /* [regional_count] the materials of regions of the same lattice; none for these themselves */
+  const struct deck_material **regional;
+  int regional_count;
 } deck_material;
 
 typedef enum field_kind { FIELD_UNIFORM, FIELD_NORMAL, FIELD_LOGNORMAL, FIELD_WEIBULL } field_kind;
@@ -81,10 +85,13 @@ typedef struct deck_number { /* in the unit of a parameter, which the law knows 
   dimension dim;
 } deck_number;
 
-typedef struct deck_field { /* a parameter that differs from bond to bond at random */
+/* Bonds or particles: as the law has its parameters; a bond has the mean of its ends'. */
+typedef enum field_place { FIELD_BY_LAW, FIELD_ON_BONDS, FIELD_ON_PARTICLES } field_place;
+
+typedef struct deck_field { /* a parameter that differs in space at random */
   deck_item item;
   const char *lattice, *parameter;
-  bool on_particles; /* one value a particle; a bond has the mean of its ends' */
+  field_place on;
   field_kind kind;
   deck_number mean, low, high, scale; /* mean not given: the material's value */
   double cv, shape;                   /* 0: not given */
@@ -114,7 +121,7 @@ typedef struct deck_region {
 } deck_region;
 
 /* Components in a deck are degrees of freedom of a particle: in the plane 0 x, 1 y, 2 rotation; in
-   space 0 x, 1 y, 2 z. Bits of `fix` are 1 << component. */
+   space 0 x, 1 y, 2 z, and 3, 4, 5 rotation about x, y, z. Bits of `fix` are 1 << component. */
 enum { FIX_X = 1, FIX_Y = 2, FIX_ROTATION = 4, FIX_Z = 4 };
 
 typedef struct deck_support {
@@ -164,12 +171,19 @@ typedef struct deck_gravity { /* force mass * acceleration on every particle */
   time_function factor;   /* 1: full */
 } deck_gravity;
 
-typedef struct deck_initial_velocity { /* of each particle of the region when the run begins */
+typedef struct deck_placed {     /* a value that may differ from place to place */
+  double value;                  /* SI */
+  const struct formula *formula; /* of x, y, z, instead; or NULL */
+} deck_placed;
+
+typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;
   const char *region;
   int component;
-  double value; /* m/s, rad/s */
-} deck_initial_velocity;
+  deck_placed value;
+} deck_initial;
+typedef deck_initial deck_initial_velocity;     /* m/s, rad/s */
+typedef deck_initial deck_initial_displacement; /* m, rad */
 
 typedef struct deck_stop {
   deck_item item;
@@ -282,6 +296,7 @@ typedef struct deck_file { /* a table that a load was read from */
   LIST(damping)                                                                                    \
   LIST(gravity)                                                                                    \
   LIST(initial_velocity)                                                                           \
+  LIST(initial_displacement)                                                                       \
   LIST(monitor)                                                                                    \
   LIST(stop)                                                                                       \
   ONE(output)                                                                                      \
@@ -332,7 +347,10 @@ int deck_find_region(const deck *k, const char *name);
 int deck_find_lattice(const deck *k, const char *name);
 int deck_find_monitor(const deck *k, const char *name);
 /* Index of the first &material of a lattice, or -1. */
+/* That without region. */
 int deck_find_material(const deck *k, const char *lattice);
+/* That of lattice number `lattice`; NULL without one. */
+const deck_material *deck_material_of(const deck *k, int lattice);
 /* For many searches: none of the names is known yet, they are taken up as the lists grow. */
 deck_names *deck_names_new(arena *a);
 
@@ -340,7 +358,7 @@ deck_names *deck_names_new(arena *a);
    malloc'ed. */
 char *deck_file_path(const char *deck_path, const char *name);
 
-/* "x", "y", and "rotation" in the plane or "z" in space. */
+/* "x", "y", and "rotation" in the plane; "x", "y", "z", "rotation_x", ... in space. */
 const char *deck_component_name(int dimensions, int component);
 
 C_LINKAGE_END

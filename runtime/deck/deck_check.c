@@ -108,16 +108,36 @@ int deck_dimensions_of_region(const deck_reader *r, const char *name) {
   return k < 0 ? 0 : deck_dimensions_of(r, r->k->regions[k].lattice);
 }
 
+static int report_component(deck_reader *r, span where, const char *what, const char *mend) {
+  diag_report(r->d, DIAG_BAD_VALUE, where, "%s", what);
+  if (mend) diag_hint(r->d, "%s", mend);
+  return -1;
+}
+
 int deck_component(deck_reader *r, span where, const char *region, int written) {
   const int dimensions = deck_dimensions_of_region(r, region);
   if (written < DECK_WRITTEN_Z) return written;
   if (dimensions == 2 && written == DECK_WRITTEN_Z)
-    diag_report(r->d, DIAG_BAD_VALUE, where, "there is no direction z in the plane");
-  else if (dimensions == 3 && written == DECK_WRITTEN_ROTATION)
-    diag_report(r->d, DIAG_BAD_VALUE, where, "particles of a lattice in space have no rotation");
-  else
-    return 2;
-  return -1;
+    return report_component(r, where, "there is no direction z in the plane", NULL);
+  if (dimensions == 2 && written > DECK_WRITTEN_ROTATION)
+    return report_component(r, where, "in the plane particles rotate about one axis",
+                            "write `rotation`");
+  if (dimensions == 3 && written == DECK_WRITTEN_ROTATION)
+    return report_component(r, where, "in space particles rotate about three axes",
+                            "write `rotation_x`, `rotation_y` or `rotation_z`");
+  return written > DECK_WRITTEN_ROTATION ? written - 1 : 2;
+}
+
+int deck_components(deck_reader *r, span where, const char *region, int written) {
+  const bool space = deck_dimensions_of_region(r, region) == 3;
+  int components = 0;
+  for (int k = 0; k < DECK_WRITTEN_COUNT; k++) {
+    if (!(written & 1 << k)) continue;
+    const bool all = space && k == DECK_WRITTEN_ROTATION;
+    const int component = all ? 3 : deck_component(r, where, region, k);
+    if (component >= 0) components |= (all ? 1 | 2 | 4 : 1) << component;
+  }
+  return components;
 }
 
 bool deck_take_component(deck_reader *r, const deck_item *item, const char *region,
@@ -128,7 +148,7 @@ bool deck_take_component(deck_reader *r, const deck_item *item, const char *regi
 }
 
 bool deck_is_rotation(const deck_reader *r, const char *region, int component) {
-  return component == 2 && deck_dimensions_of_region(r, region) != 3;
+  return component >= (deck_dimensions_of_region(r, region) == 3 ? 3 : 2);
 }
 
 const char *deck_component_of(const deck_reader *r, const char *region, int component) {

@@ -4,10 +4,11 @@
 #define PERILAT_RUNTIME_DECK_CHECK_H
 
 #include "runtime/deck/deck_schema.h"
+#include "runtime/kernel.h"
 
 /* Where each component of a region is held or driven first; an empty span: nowhere. */
 typedef struct deck_motions {
-  span of[3];
+  span of[PL_MAX_DOF];
 } deck_motions;
 
 typedef struct deck_reader {
@@ -44,13 +45,16 @@ int deck_dimensions_of(const deck_reader *r, const char *lattice);
 int deck_dimensions_of_region(const deck_reader *r, const char *region);
 
 /* Directions as written; their positions are those of DECK_FIXED's bits, too. */
-#define DECK_COMPONENTS "x|y|z|rotation"
-enum { DECK_WRITTEN_Z = 2, DECK_WRITTEN_ROTATION = 3 };
+#define DECK_COMPONENTS "x|y|z|rotation|rotation_x|rotation_y|rotation_z"
+enum { DECK_WRITTEN_Z = 2, DECK_WRITTEN_ROTATION = 3, DECK_WRITTEN_COUNT = 7 };
 /* The degree of freedom of a direction as written. -1 after a message: it is none of the region's
    particles. */
 int deck_component(deck_reader *r, span where, const char *region, int written);
 /* The same for the item's key `component`, in place. False after a message. */
 bool deck_take_component(deck_reader *r, const deck_item *item, const char *region, int *component);
+/* Bits 1 << component of directions as written, bits 1 << direction: `rotation` is all rotations
+   that there are. Of none of the region's particles: 0 bits, after a message. */
+int deck_components(deck_reader *r, span where, const char *region, int written);
 bool deck_is_rotation(const deck_reader *r, const char *region, int component);
 const char *deck_component_of(const deck_reader *r, const char *region, int component);
 

@@ -4,12 +4,14 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/text_table.h"
 
-enum { FROM_FILE = TIME_TABLE + 1, WAYS };
+enum { FROM_FILE = TIME_FORMULA + 1, WAYS };
 
-static const char *const way_words[WAYS] = {"a constant load", "a ramp",  "a ramp and hold",
-                                            "a cosine",        "a table", "a table from a file"};
+static const char *const way_words[WAYS] = {"a constant load",    "a ramp",  "a ramp and hold",
+                                            "a cosine",           "a table", "a formula",
+                                            "a table from a file"};
 
 enum {
   RISING = 1 << TIME_RAMP | 1 << TIME_RAMP_HOLD | 1 << TIME_COSINE,
@@ -18,20 +20,25 @@ enum {
 static const deck_key_use uses[] = {{"rise", RISING, true},
                                     {"times", TABULATED, true},
                                     {"values", TABULATED, true},
-                                    {"file", 1 << FROM_FILE, true}};
+                                    {"file", 1 << FROM_FILE, true},
+                                    {"formula", 1 << TIME_FORMULA, true}};
 
 /* The shape, FROM_FILE for a table that stands in a file; -1 after a message. */
-static int way_of(arena *a, const namelist_group *g, diagnostics *d) {
+static int way_of(arena *a, const namelist_group *g, const deck_load_kind *kind, diagnostics *d) {
   const namelist_key *history = namelist_find(g, "history");
   int way = TIME_CONSTANT;
   if (history)
-    way = deck_choice_read(a, history, DECK_HISTORIES, d);
+    way = deck_choice_read(a, history, kind->knows ? DECK_HISTORIES : DECK_HISTORIES_AS_TABLES, d);
+  else if (namelist_find(g, "formula"))
+    way = TIME_FORMULA;
   else if (namelist_find(g, "rise"))
     way = TIME_RAMP_HOLD;
   else if (namelist_find(g, "times") || namelist_find(g, "values") || namelist_find(g, "file"))
     way = TIME_TABLE;
   if (way == TIME_TABLE && namelist_find(g, "file")) way = FROM_FILE;
-  return way >= 0 && deck_keys_fit(g, uses, 4, way, way_words[way], d) ? way : -1;
+  return way >= 0 && deck_keys_fit(g, uses, sizeof uses / sizeof *uses, way, way_words[way], d)
+             ? way
+             : -1;
 }
 
 static bool read_time(const namelist_group *g, const char *name, deck_bound bound, double *time,
@@ -40,6 +47,13 @@ static bool read_time(const namelist_group *g, const char *name, deck_bound boun
   if (!key) return true;
   return deck_values_counted(key, 1, d) &&
          deck_real_read(&key->values[0], name, "s", bound, time, d);
+}
+
+static bool ends_later(const namelist_group *g, const time_function *f, diagnostics *d) {
+  if (time_function_end(f) > f->start) return true;
+  diag_report(d, DIAG_OUT_OF_BOUNDS, namelist_find(g, "end")->value_where,
+              "`end` must be later than `start`");
+  return false;
 }
 
 static double *read_list(arena *a, const namelist_key *key, const char *name, const char *unit_text,
@@ -237,6 +251,48 @@ static bool read_file(arena *a, const namelist_group *g, const deck_load_kind *k
   return good;
 }
 
+/* --- formulas --------------------------------------------------------------------------------- */
+
+static const formula *read_formula_of(arena *a, const namelist_group *g, const deck_load_kind *kind,
+                                      const char *unit_text, diagnostics *d) {
+  const namelist_key *key = namelist_find(g, "formula");
+  if (!deck_values_counted(key, 1, d)) return NULL;
+  return deck_formula_read(a, &key->values[0], "formula", kind->knows, unit_text, d);
+}
+
+/* As the table of a file: with the full value in the deck a factor, without it the load itself. */
+static bool read_formula(arena *a, const namelist_group *g, const deck_load_kind *kind,
+                         time_function *f, diagnostics *d) {
+  const namelist_key *full = namelist_find(g, kind->key);
+  f->formula = read_formula_of(a, g, kind, full || !kind->unit ? "1" : kind->unit, d);
+  if (f->formula) return true;
+  const diagnostic *last = &d->items[d->count - 1];
+  if (full && last->code == DIAG_UNITS && !last->hint)
+    diag_hint(d, "it is a factor on `%s`; leave that out where the formula is the load itself",
+              full->name);
+  return false;
+}
+
+/* The one whose unit the formula has. */
+static int kind_by_formula(arena *a, const namelist_group *g, const deck_load_kind *kinds,
+                           int count, diagnostics *d) {
+  const formula *f = read_formula_of(a, g, &kinds[0], NULL, d);
+  char words[128];
+  if (!f) return -1;
+  for (int k = 0; k < count; k++)
+    if (formula_is_zero(f) || dim_equal(formula_dimension(f), dimension_of(kinds[k].unit)))
+      return k;
+  dim_describe(formula_dimension(f), words, sizeof words);
+  diag_report(d, DIAG_UNITS, namelist_find(g, "formula")->value_where,
+              "without `%s`%s%s%s in the deck the formula is the load itself, but this is %s",
+              kinds[0].key, count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "",
+              count > 1 ? "`" : "", words);
+  diag_hint(d, "its unit is that of `%s` (%s)%s%s%s%s%s", kinds[0].key, kinds[0].unit,
+            count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "", count > 1 ? "` (" : "",
+            count > 1 ? kinds[1].unit : "", count > 1 ? ")" : "");
+  return -1;
+}
+
 /* --- loads ------------------------------------------------------------------------------------ */
 
 /* The one whose unit the file's column has. */
@@ -267,11 +323,12 @@ static int report_none(const namelist_group *g, const deck_load_kind *kinds, int
                        diagnostics *d) {
   diag_report(d, DIAG_MISSING_KEY, g->where, "`&%s` needs `%s`%s%s%s", g->name, kinds[0].key,
               count > 1 ? " or `" : "", count > 1 ? kinds[1].key : "", count > 1 ? "`" : "");
-  diag_hint(d, "or a `file` with times and values in two columns, with their units");
+  diag_hint(d,
+            "or a `file` with times and values in two columns, with their units, or a `formula`");
   return -1;
 }
 
-int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int count,
+int deck_load_kind_of(arena *a, const namelist_group *g, const deck_load_kind *kinds, int count,
                       diagnostics *d) {
   int found = -1;
   for (int k = 0; k < count; k++) {
@@ -286,6 +343,7 @@ int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int 
     if (key) found = k;
   }
   if (found >= 0) return found;
+  if (namelist_find(g, "formula")) return kind_by_formula(a, g, kinds, count, d);
   return namelist_find(g, "file") ? kind_by_unit(g, kinds, count, d)
                                   : report_none(g, kinds, count, d);
 }
@@ -293,18 +351,21 @@ int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int 
 static bool read_times(arena *a, const namelist_group *g, const deck_load_kind *kind, double full,
                        time_function *f, diagnostics *d) {
   bool good = read_time(g, "start", BOUND_NOT_NEGATIVE, &f->start, d);
+  good &= read_time(g, "end", BOUND_POSITIVE, &f->end, d) && ends_later(g, f, d);
   good &= read_time(g, "rise", BOUND_POSITIVE, &f->rise, d);
-  const int way = way_of(a, g, d);
+  const int way = way_of(a, g, kind, d);
   if (way < 0 || !good) return false;
   f->shape = way == FROM_FILE ? TIME_TABLE : (time_shape)way;
   if (way == FROM_FILE) return read_file(a, g, kind, full, f, d);
+  if (way == TIME_FORMULA) return read_formula(a, g, kind, f, d);
   return f->shape != TIME_TABLE || read_table(a, g, full, f, d);
 }
 
 bool deck_factor_read(arena *a, const namelist_group *g, const char *key, time_function *f,
                       diagnostics *d) {
   *f = (time_function){.value = 1};
-  return read_times(a, g, &(deck_load_kind){.key = key}, 1, f, d);
+  const deck_load_kind kind = {.key = key, .knows = &deck_formula_of_time};
+  return read_times(a, g, &kind, 1, f, d);
 }
 
 bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,

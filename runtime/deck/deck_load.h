@@ -4,14 +4,15 @@
 
 #include "runtime/deck/deck_value.h"
 
-#define DECK_HISTORIES "constant|ramp|ramp and hold|cosine|table"
+#define DECK_HISTORIES           "constant|ramp|ramp and hold|cosine|table|formula"
+#define DECK_HISTORIES_AS_TABLES "constant|ramp|ramp and hold|cosine|table"
 /* The keys themselves, for the table of a group. */
 #define DECK_TIME_KEYS                                                                             \
   {.name = "history",                                                                              \
    .type = DECK_LATER,                                                                             \
    .choices = DECK_HISTORIES,                                                                      \
    .fallback = "= 'constant', in quasi-static runs a ramp over the run; 'ramp and hold' with a "   \
-               "rise, 'table' with times or a file",                                               \
+               "rise, 'table' with times or a file, 'formula' with one",                           \
    DECK_NOT_KEPT,                                                                                  \
    .doc = "how the value develops in time"},                                                       \
       {.name = "start",                                                                            \
@@ -20,6 +21,12 @@
        .fallback = "= 0",                                                                          \
        DECK_NOT_KEPT,                                                                              \
        .doc = "nothing acts before"},                                                              \
+      {.name = "end",                                                                              \
+       .type = DECK_LATER,                                                                         \
+       .unit = "s",                                                                                \
+       .fallback = "= never",                                                                      \
+       DECK_NOT_KEPT,                                                                              \
+       .doc = "nothing acts after: a force is 0, a drive lets go"},                                \
       {.name = "rise",                                                                             \
        .type = DECK_LATER,                                                                         \
        .unit = "s",                                                                                \
@@ -35,24 +42,35 @@
        .unit = "1",                                                                                \
        DECK_NOT_KEPT,                                                                              \
        .doc = "table: factors on the value at those times, straight lines between"},               \
+      {.name = "file",                                                                             \
+       .type = DECK_LATER,                                                                         \
+       DECK_NOT_KEPT,                                                                              \
+       .doc =                                                                                      \
+           "table: instead of `times` and `values`, two columns of a text file beside the deck; "  \
+           "factors on the value, or with a unit and without the value the load itself"},          \
   {                                                                                                \
-    .name = "file", .type = DECK_LATER, DECK_NOT_KEPT,                                             \
-    .doc = "table: instead of `times` and `values`, two columns of a text file beside the deck; "  \
-           "factors on the value, or with a unit and without the value the load itself"            \
+    .name = "formula", .type = DECK_LATER, DECK_NOT_KEPT,                                          \
+    .doc = "formula: an expression; a factor on the value, or with a unit and without the value "  \
+           "the load itself. It reads `t`, the time after `start`, in `&drive` and `&force` also " \
+           "`x`, `y`, `z`, where a particle is at the beginning"                                   \
   }
+
+struct formula_scope; /* dsl/semantics/formula.h */
 
 /* A way to give a load: the key of its full value, and the unit. Where the key is `implied`, values
    of a table without it are the load itself, in SI. */
 typedef struct deck_load_kind {
   const char *key, *unit;
   bool implied;
+  const struct formula_scope
+      *knows; /* what a formula of the load may read; NULL: it cannot be one */
 } deck_load_kind;
 
-/* Which of the kinds a load is: that whose key is written, else that whose unit its file has. -1
-   after messages. */
-int deck_load_kind_of(const namelist_group *g, const deck_load_kind *kinds, int count,
+/* Which of the kinds a load is: that whose key is written, else that whose unit its file or formula
+   has. -1 after messages. */
+int deck_load_kind_of(arena *a, const namelist_group *g, const deck_load_kind *kinds, int count,
                       diagnostics *d);
-/* Reads the full value and the group's history, start, rise, times, values and file. False after
+/* Reads the full value and the group's history, start, end, rise, times, values, file and formula. False after
    messages. */
 bool deck_load_read(arena *a, const namelist_group *g, const deck_load_kind *kind, time_function *f,
                     diagnostics *d);

@@ -295,6 +295,56 @@ static void check_quasi_static(deck_reader *r) {
                 "a quasi-static run begins at rest: no `&initial_velocity` with `&relaxation`");
 }
 
+/* Other values of the same law, in a region of the same lattice. */
+static void check_regional(deck_reader *r, const deck_material *m) {
+  const int region =
+      deck_item_region_known(r, &m->item, m->region) ? deck_find_region(r->k, m->region) : -1;
+  if (region < 0 || !m->lattice || !m->model) return;
+  const char *of = r->k->regions[region].lattice;
+  if (of && strcmp(of, m->lattice) != 0)
+    diag_report(r->d, DIAG_CONFLICT, deck_where(&m->item, "region"),
+                "the region `%s` is of the lattice `%s`, not of `%s`",
+                deck_shown(r->memory, m->region), deck_shown(r->memory, of),
+                deck_shown(r->memory, m->lattice));
+  const int whole = deck_find_material(r->k, m->lattice);
+  if (whole < 0 || deck_same_name(r->k->materials[whole].model, m->model)) return;
+  diag_report(r->d, DIAG_NOT_SUPPORTED, deck_where(&m->item, "model"),
+              "a region has the law of its lattice, with other values");
+  diag_note(r->d, deck_where(&r->k->materials[whole].item, "model"), "the lattice's law");
+}
+
+static void check_regional_materials(deck_reader *r) {
+  const deck *k = r->k;
+  for (int i = 0; i < k->material_count; i++)
+    if (k->materials[i].region) check_regional(r, &k->materials[i]);
+}
+
+/* The material of the lattice whose region `m` is for; -1: nothing fits. */
+static int lattice_material(const deck *k, const deck_material *m) {
+  const int region = m->region ? deck_find_region(k, m->region) : -1;
+  const int whole = region < 0 || !m->lattice ? -1 : deck_find_material(k, m->lattice);
+  const bool fits = whole >= 0 && deck_same_name(k->regions[region].lattice, m->lattice) &&
+                    deck_same_name(k->materials[whole].model, m->model);
+  return fits ? whole : -1;
+}
+
+/* The lattice's material knows those of its regions. */
+static void link_regional(arena *a, deck *k) {
+  for (int i = 0; i < k->material_count; i++) {
+    const int whole = lattice_material(k, &k->materials[i]);
+    if (whole < 0) continue;
+    deck_material *of = (deck_material *)(uintptr_t)&k->materials[whole]; /* still being read */
+    of->regional = arena_room(a, of->regional, of->regional_count, sizeof *of->regional);
+    of->regional[of->regional_count++] = &k->materials[i];
+  }
+}
+
+static bool has_regional(const deck *k, const char *lattice) {
+  for (int i = 0; i < k->material_count; i++)
+    if (k->materials[i].region && deck_same_name(k->materials[i].lattice, lattice)) return true;
+  return false;
+}
+
 static void check_whole(deck_reader *r) {
   const deck *k = r->k;
   const deck_item *simulation = &k->simulation.item;
@@ -303,6 +353,7 @@ static void check_whole(deck_reader *r) {
   if (k->lattice_count == 0 && !deck_lacks(k, "lattice"))
     diag_report(r->d, DIAG_MISSING_KEY, simulation->where, "the deck has no `&lattice`");
   check_quasi_static(r);
+  check_regional_materials(r);
   const bool *has_body = find_bodies(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];
@@ -310,7 +361,8 @@ static void check_whole(deck_reader *r) {
     const char *name = deck_shown(r->memory, lattice->name);
     if (!has_material(k, lattice->name))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
-                  "the lattice `%s` has no `&material`", name);
+                  "the lattice `%s` has no `&material`%s", name,
+                  has_regional(k, lattice->name) ? " without `region`" : "");
     if (needs_body(k, lattice) && !has_body[i])
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
                   name);
@@ -357,6 +409,7 @@ const deck *deck_read_what_is_right(arena *a, source_set *sources, int file,
   if (n->broken || too_many_errors(&r)) k->lacks = ~0u; /* nobody knows what is behind */
   leave_out_all_faulty(k);
   k->names = deck_names_new(a); /* others have moved up */
+  link_regional(a, k);
   return k;
 }
 

@@ -14,7 +14,7 @@ typedef enum deck_type {
   DECK_NAMES,  /* several */
   DECK_WORD,   /* one of `choices`, kept as text */
   DECK_CHOICE, /* one of `choices`, kept as its position */
-  DECK_FIXED,  /* list of directions, kept as bits: x 1, y 2, z 4, rotation 8 */
+  DECK_FIXED,  /* list of directions, kept as bits: 1 << place in DECK_COMPONENTS */
   DECK_REAL,
   DECK_STEP,      /* a time or 'auto', which is kept as 0 */
   DECK_PAIR,      /* two reals */

@@ -266,7 +266,8 @@ int deck_choice_read(arena *a, const namelist_key *key, const char *choices, dia
 
 static bool read_fixed(arena *a, const deck_key_info *info, const namelist_key *key, int *bits,
                        diagnostics *d) {
-  static const int meaning[] = {1, 2, 4, 1 | 2, 1 | 4, 2 | 4, 1 | 2 | 4, 8}; /* as info->choices */
+  static const int meaning[] = {1,         2, 4,  1 | 2, 1 | 4, 2 | 4,
+                                1 | 2 | 4, 8, 16, 32,    64}; /* as info->choices */
   for (int i = 0; i < key->value_count; i++) {
     int choice = choice_of(a, &key->values[i], info->name, info->choices, d);
     if (choice < 0) return false;

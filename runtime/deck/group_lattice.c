@@ -290,6 +290,12 @@ static const deck_key_info material_keys[] = {
      .required = true,
      DECK_AT(material, model),
      .doc = "name of a law in `models/`, or a path that ends in `.plm`"},
+    {.name = "region",
+     .type = DECK_NAME,
+     .fallback = "= the whole lattice",
+     DECK_AT(material, region),
+     .doc = "other values of parameters in a part of the lattice, which has a material without "
+            "`region`, too"},
 };
 
 static bool read_assignment(const namelist_key *key, deck_assignment *a, diagnostics *d) {
@@ -327,17 +333,16 @@ static void check_material(deck_reader *r, const namelist_group *from, void *int
   deck_assignments_read(r->memory, from, item, r->d);
   if (!deck_lattice_known(r, &item->item, item->lattice)) return;
   const int first = deck_find_material(r->k, item->lattice);
-  if (first < 0) return;
+  if (first < 0 || item->region) return;
   diag_report(r->d, DIAG_CONFLICT, deck_where(&item->item, "lattice"),
               "the lattice `%s` has a material already", deck_shown(r->memory, item->lattice));
   diag_note(r->d, r->k->materials[first].item.where, "it is given here");
 }
 
-DECK_LIST(
-    material, .identity = "lattice", .open = true, .check = check_material,
-    .doc =
-        "The law of a lattice's bonds. Every other key sets a parameter or an option of the law, "
-        "e.g. `E = '30 GPa'`.");
+DECK_LIST(material, .identity = "lattice", .open = true, .check = check_material,
+          .doc =
+              "The law of a lattice's bonds, or its parameters in a region. Every other key sets a "
+              "parameter or an option of the law, e.g. `E = '30 GPa'`.");
 
 /* --- random fields ---------------------------------------------------------------------------- */
 
@@ -355,7 +360,7 @@ static const deck_key_info field_keys[] = {
     {.name = "on",
      .type = DECK_WORD,
      .choices = "bond|particle",
-     .fallback = "'bond'",
+     .fallback = "= 'bond' of laws of bonds; of families always 'particle'",
      DECK_NOT_KEPT,
      .doc = "`particle`: a value for each particle; a bond has the mean of its two ends"},
     {.name = "distribution",
@@ -482,7 +487,9 @@ static void add_varying(deck_reader *r, deck_material *m, const deck_field *f) {
 static void check_field(deck_reader *r, const namelist_group *from, void *into) {
   deck_field *item = into;
   const namelist_key *on = namelist_find(from, "on");
-  if (on) item->on_particles = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1;
+  if (on)
+    item->on = deck_choice_read(r->memory, on, "bond|particle", r->d) == 1 ? FIELD_ON_PARTICLES
+                                                                           : FIELD_ON_BONDS;
   if (!deck_keys_fit(from, field_uses, 4, (int)item->kind, field_words[item->kind], r->d)) return;
   bool good = read_number(r, from, "mean", &item->mean);
   good &= read_number(r, from, "low", &item->low);
@@ -501,13 +508,13 @@ static void check_field(deck_reader *r, const namelist_group *from, void *into) 
     return;
   }
   for (int i = 0; i < r->k->material_count; i++)
-    if (deck_same_name(r->k->materials[i].lattice, item->lattice))
+    if (deck_same_name(r->k->materials[i].lattice, item->lattice) && !r->k->materials[i].region)
       add_varying(r, (deck_material *)(uintptr_t)&r->k->materials[i], item); /* still being read */
 }
 
 DECK_LIST(
     field, .identity = "parameter", .check = check_field,
     .doc =
-        "A parameter of the law that differs from bond to bond at random, the same for the same "
+        "A parameter of the law that differs in space at random, the same for the same "
         "seed whatever the threads. Uniform: `low` and `high`, or `cv`; normal, lognormal: `cv`; "
         "Weibull: `shape`, or `cv`.");

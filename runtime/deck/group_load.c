@@ -2,7 +2,9 @@
 
 #include <math.h>
 
+#include "dsl/base/elementary.h"
 #include "runtime/deck/deck_check.h"
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
 
 #define REGION_KEY(group, text)                                                                    \
@@ -14,12 +16,12 @@ static const deck_key_info support_keys[] = {
     REGION_KEY(support, "what is held"),
     {.name = "fix",
      .type = DECK_FIXED,
-     .choices = "x|y|z|xy|xz|yz|xyz|rotation",
+     .choices = "x|y|z|xy|xz|yz|xyz|rotation|rotation_x|rotation_y|rotation_z",
      .required = true,
      DECK_AT(support, fix),
-     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` is "
-            "for lattices in "
-            "space, `rotation` for those in the plane"},
+     .doc = "directions that are held; several: `fix = 'x', 'rotation'`. Here and below, `z` and "
+            "rotations about x, y and z are for lattices in space, `rotation` for those in the "
+            "plane; in space `fix = 'rotation'` holds all three"},
 };
 
 /* Of all regions; NULL where the region is not known. */
@@ -34,7 +36,7 @@ static deck_motions *motions_of(deck_reader *r, const char *region) {
 static void note_motions(deck_reader *r, const char *region, int components, span where) {
   deck_motions *m = motions_of(r, region);
   r->moved |= components;
-  for (int c = 0; m && c < 3; c++)
+  for (int c = 0; m && c < PL_MAX_DOF; c++)
     if (components & 1 << c && m->of[c].end == 0) m->of[c] = where;
 }
 
@@ -43,15 +45,9 @@ static void check_support(deck_reader *r, const namelist_group *from, void *into
   (void)from;
   const int errors = r->d->errors;
   const span where = deck_where(&item->item, "fix");
-  int fix = 0;
   deck_item_region_known(r, &item->item, item->region);
-  for (int k = 0; k <= DECK_WRITTEN_ROTATION; k++) {
-    if (!(item->fix & 1 << k)) continue;
-    const int component = deck_component(r, where, item->region, k);
-    if (component >= 0) fix |= 1 << component;
-  }
-  item->fix = fix;
-  if (r->d->errors == errors) note_motions(r, item->region, fix, where);
+  item->fix = deck_components(r, where, item->region, item->fix);
+  if (r->d->errors == errors) note_motions(r, item->region, item->fix, where);
 }
 
 DECK_LIST(support, .identity = "region", .check = check_support,
@@ -93,9 +89,9 @@ static void check_other_motions(deck_reader *r, const deck_drive *item) {
   diag_note(r->d, other, "the other one");
 }
 
-/* A load without a history grows with the increments of a quasi-static run. */
+/* A load without a history grows with the increments of a quasi-static run, up to its end. */
 static void spread(const deck_reader *r, const namelist_group *from, time_function *f) {
-  const double rest = r->k->simulation.end_time - f->start;
+  const double rest = pl_fmin(r->k->simulation.end_time, time_function_end(f)) - f->start;
   if (r->k->relaxation.increments < 1 || f->shape != TIME_CONSTANT || !(rest > 0)) return;
   if (namelist_find(from, "history")) return;
   f->shape = TIME_RAMP_HOLD;
@@ -103,7 +99,7 @@ static void spread(const deck_reader *r, const namelist_group *from, time_functi
 }
 
 static void warn_of_jump(deck_reader *r, const namelist_group *from, const time_function *f) {
-  if (time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
+  if (f->formula || time_function_jump(f) == 0 || r->k->relaxation.increments > 0) return;
   const bool table = f->shape == TIME_TABLE;
   const namelist_key *at = namelist_find(from, !table ? "displacement" : "values");
   diag_report(r->d, DIAG_DECK_WARNING, (at ? at : namelist_find(from, "file"))->name_where,
@@ -117,9 +113,10 @@ static void complete_drive(deck_reader *r, const namelist_group *from, deck_driv
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
   check_other_motions(r, item);
-  const deck_load_kind kinds[] = {{"velocity", rotates ? "1/s" : "m/s", false},
-                                  {"displacement", rotates ? "1" : "m", false}};
-  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  const deck_load_kind kinds[] = {
+      {"velocity", rotates ? "1/s" : "m/s", false, &deck_formula_of_all},
+      {"displacement", rotates ? "1" : "m", false, &deck_formula_of_all}};
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
   if (kind < 0) return;
   item->is_displacement = kind == 1;
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->motion, r->d)) {
@@ -142,7 +139,8 @@ static void check_drive(deck_reader *r, const namelist_group *from, void *into) 
 }
 
 DECK_LIST(drive, .identity = "region", .check = check_drive,
-          .doc = "Prescribed motion of a region from `start` on; free before. Give `velocity` or "
+          .doc = "Prescribed motion of a region from `start` to `end`; free before and after. Give "
+                 "`velocity` or "
                  "`displacement`.");
 
 /* --- force ------------------------------------------------------------------------------------ */
@@ -152,7 +150,7 @@ static const deck_key_info force_keys[] = {
     {.name = "component",
      .type = DECK_LATER,
      .choices = DECK_COMPONENTS,
-     .fallback = "= 'rotation' with a moment; else required",
+     .fallback = "= 'rotation' with a moment in the plane; else required",
      DECK_NOT_KEPT,
      .doc = "direction of the load"},
     {.name = "total",
@@ -165,32 +163,45 @@ static const deck_key_info force_keys[] = {
      .type = DECK_LATER,
      .unit = "N*m",
      DECK_NOT_KEPT,
-     .doc = "full moment, of all particles together (`rotation`)"},
+     .doc = "full moment, of all particles together (`rotation`; in space about an axis)"},
     DECK_TIME_KEYS,
 };
 
+/* A force has a direction, and so has a moment in space. */
+static bool lacks_component(deck_reader *r, const namelist_group *from, const char *region,
+                            bool rotates) {
+  const bool space = deck_dimensions_of_region(r, region) == 3;
+  if (rotates && !space) return false;
+  diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
+  diag_hint(r->d, rotates ? "component = 'rotation_x', 'rotation_y' or 'rotation_z'"
+                  : space ? "component = 'x', 'y' or 'z'"
+                          : "component = 'x' or 'y'");
+  return true;
+}
+
+/* What gives a load without its full value. */
+static const namelist_key *source_of(const namelist_group *from) {
+  const namelist_key *written = namelist_find(from, "formula");
+  return written ? written : namelist_find(from, "file");
+}
+
 static void check_force(deck_reader *r, const namelist_group *from, void *into) {
   deck_force *item = into;
-  static const deck_load_kind kinds[] = {{"total", "N", false}, {"moment", "N*m", false}};
+  static const deck_load_kind kinds[] = {{"total", "N", false, &deck_formula_of_all},
+                                         {"moment", "N*m", false, &deck_formula_of_all}};
   deck_item_region_known(r, &item->item, item->region);
-  const int kind = deck_load_kind_of(from, kinds, 2, r->d);
+  const int kind = deck_load_kind_of(r->memory, from, kinds, 2, r->d);
   const namelist_key *component = namelist_find(from, "component");
   if (kind < 0) return;
   const bool rotates = kind == 1;
   item->component = rotates ? DECK_WRITTEN_ROTATION : 0;
   if (component) item->component = deck_choice_read(r->memory, component, DECK_COMPONENTS, r->d);
+  if (!component && lacks_component(r, from, item->region, rotates)) return;
   if (item->component < 0 || !deck_take_component(r, &item->item, item->region, &item->component))
     return;
-  if (!component && !rotates) {
-    diag_report(r->d, DIAG_MISSING_KEY, from->where, "`&force` has no `component`");
-    diag_hint(r->d, deck_dimensions_of_region(r, item->region) == 3 ? "component = 'x', 'y' or 'z'"
-                                                                    : "component = 'x' or 'y'");
-    return;
-  }
   if (rotates != deck_is_rotation(r, item->region, item->component)) {
     const namelist_key *key = namelist_find(from, kinds[kind].key);
-    diag_report(r->d, DIAG_CONFLICT,
-                key ? key->name_where : namelist_find(from, "file")->value_where,
+    diag_report(r->d, DIAG_CONFLICT, key ? key->name_where : source_of(from)->value_where,
                 "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
                 key ? "`" : "", deck_component_of(r, item->region, item->component));
     diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
@@ -211,7 +222,7 @@ static const deck_key_info end_moment_keys[] = {
     {.name = "moment",
      .type = DECK_LATER,
      .unit = "N*m",
-     .fallback = "= required, but for a file with a unit",
+     .fallback = "= required, but for a file or formula with a unit",
      DECK_NOT_KEPT,
      .doc = "full moment; counter-clockwise on the body is positive"},
     DECK_TIME_KEYS,
@@ -219,9 +230,9 @@ static const deck_key_info end_moment_keys[] = {
 
 static void check_end_moment(deck_reader *r, const namelist_group *from, void *into) {
   deck_end_moment *item = into;
-  static const deck_load_kind kind = {"moment", "N*m", false};
+  static const deck_load_kind kind = {"moment", "N*m", false, &deck_formula_of_time};
   deck_item_region_known(r, &item->item, item->region);
-  if (deck_load_kind_of(from, &kind, 1, r->d) < 0 ||
+  if (deck_load_kind_of(r->memory, from, &kind, 1, r->d) < 0 ||
       !deck_load_read(r->memory, from, &kind, &item->moment, r->d))
     return;
   deck_warn_late(r, &item->item, "start", item->moment.start);
@@ -324,36 +335,51 @@ static void check_gravity(deck_reader *r, const namelist_group *from, void *into
 DECK_LIST(gravity, .check = check_gravity,
           .doc = "Weight of every particle; several add up. Its work is in the energy ledger.");
 
-/* --- initial velocity ------------------------------------------------------------------------- */
+/* --- motion at the start ---------------------------------------------------------------------- */
+
+#define INITIAL_KEYS(group, unit_text, what)                                                       \
+  REGION_KEY(group, "what moves"),                                                                 \
+      {.name = "component",                                                                        \
+       .type = DECK_CHOICE,                                                                        \
+       .choices = DECK_COMPONENTS,                                                                 \
+       .required = true,                                                                           \
+       DECK_AT(group, component),                                                                  \
+       .doc = "direction of the motion"},                                                          \
+  {                                                                                                \
+    .name = "value", .type = DECK_LATER, .unit = unit_text, .required = true, DECK_NOT_KEPT,       \
+    .doc = what ", of each particle; or a formula of `x`, `y`, `z`, where the particle stands"     \
+  }
 
 static const deck_key_info initial_velocity_keys[] = {
-    REGION_KEY(initial_velocity, "what moves"),
-    {.name = "component",
-     .type = DECK_CHOICE,
-     .choices = DECK_COMPONENTS,
-     .required = true,
-     DECK_AT(initial_velocity, component),
-     .doc = "direction of the motion"},
-    {.name = "value",
-     .type = DECK_LATER,
-     .unit = "m/s; rotation: rad/s",
-     .required = true,
-     DECK_NOT_KEPT,
-     .doc = "the velocity, of each particle"},
-};
+    INITIAL_KEYS(initial_velocity, "m/s; rotation: rad/s", "the velocity")};
+static const deck_key_info initial_displacement_keys[] = {
+    INITIAL_KEYS(initial_displacement, "m; rotation: rad", "the displacement")};
 
-static void check_initial_velocity(deck_reader *r, const namelist_group *from, void *into) {
-  deck_initial_velocity *item = into;
-  const namelist_key *key = namelist_find(from, "value");
+static void check_initial(deck_reader *r, const namelist_group *from, deck_initial *item,
+                          const char *unit_text, const char *unit_of_rotation, const char *hint) {
   deck_item_region_known(r, &item->item, item->region);
   if (!deck_take_component(r, &item->item, item->region, &item->component)) return;
   const bool rotates = deck_is_rotation(r, item->region, item->component);
-  if (!deck_values_counted(key, 1, r->d) ||
-      deck_real_read(&key->values[0], "value", rotates ? "1/s" : "m/s", BOUND_NONE, &item->value,
-                     r->d))
+  const int errors = r->d->errors;
+  if (deck_placed_read(r->memory, namelist_find(from, "value"),
+                       rotates ? unit_of_rotation : unit_text, &item->value, r->d))
     return;
-  if (rotates) diag_hint(r->d, "a rotation's velocity is in rad/s");
+  const diagnostic *last = &r->d->items[r->d->count - 1];
+  if (rotates && r->d->errors > errors && !last->hint) diag_hint(r->d, "%s", hint);
+}
+
+static void check_initial_velocity(deck_reader *r, const namelist_group *from, void *item) {
+  check_initial(r, from, item, "m/s", "1/s", "a rotation's velocity is in rad/s");
+}
+
+static void check_initial_displacement(deck_reader *r, const namelist_group *from, void *item) {
+  check_initial(r, from, item, "m", "1", "a rotation is in rad");
 }
 
 DECK_LIST(initial_velocity, .identity = "region", .check = check_initial_velocity,
           .doc = "Velocity of a region when the run begins.");
+
+DECK_LIST(initial_displacement, .identity = "region", .check = check_initial_displacement,
+          .doc =
+              "Displacement of a region when the run begins: bonds are stretched from the start, "
+              "where it is not a rigid motion.");

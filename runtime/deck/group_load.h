@@ -6,6 +6,6 @@
 
 extern const deck_group_info deck_group_support, deck_group_drive, deck_group_force,
     deck_group_end_moment, deck_group_protect, deck_group_damping, deck_group_gravity,
-    deck_group_initial_velocity;
+    deck_group_initial_velocity, deck_group_initial_displacement;
 
 #endif

@@ -10,7 +10,7 @@
 /* --- monitors --------------------------------------------------------------------------------- */
 
 #define COMPONENTS DECK_COMPONENTS "|xx|yy|zz|xy|yz|xz|kinetic|stored"
-enum { WRITTEN_KINETIC = DECK_WRITTEN_ROTATION + 7 };
+enum { WRITTEN_KINETIC = DECK_WRITTEN_COUNT + 6 };
 
 static const deck_key_info monitor_keys[] = {
     {.name = "name",
@@ -289,13 +289,13 @@ static bool take_axis(deck_reader *r, const namelist_group *from, const namelist
 }
 
 static bool take_direction(deck_reader *r, const namelist_key *key, deck_monitor *item) {
-  const bool turns = item->component == DECK_WRITTEN_ROTATION,
+  const bool turns = item->component >= DECK_WRITTEN_ROTATION,
              in_sum = is_kind(item, OF_SECTION | 1 << MONITOR_MOMENTUM);
-  if (item->component > DECK_WRITTEN_ROTATION || (turns && in_sum))
+  if (item->component >= DECK_WRITTEN_COUNT || (turns && in_sum))
     return refuse_component(r, key, item,
                             in_sum ? "'x', 'y' and, in space, 'z'"
                                    : "'x', 'y', in space 'z', and of particles that turn "
-                                     "'rotation'");
+                                     "'rotation', in space 'rotation_x' and so on");
   return deck_take_component(r, &item->item, watched_region(item), &item->component);
 }
 

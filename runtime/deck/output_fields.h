@@ -2,8 +2,8 @@
    values of field NAME are values_of_NAME in runtime/simulation/frames.c.
 
    X(name, unit, components, exists, kind, words), in the order of results. Components: VECTOR (one
-   for each direction of space) or SCALAR. Exists: in which runs. Kind as in results: "damage" of
-   the law, else "other". */
+   for each direction of space), ROTATION (one for each axis) or SCALAR. Exists: in which runs. Kind
+   as in results: "damage" of the law, else "other". */
 #ifndef PERILAT_RUNTIME_OUTPUT_FIELDS_H
 #define PERILAT_RUNTIME_OUTPUT_FIELDS_H
 
@@ -13,7 +13,7 @@
   X(displacement, "m", VECTOR, always, "other", "displacement")                                    \
   X(velocity, "m/s", VECTOR, always, "other",                                                      \
     "velocity: the mean of those half a step before and after")                                    \
-  X(rotation, "rad", SCALAR, with_rotations, "other", "rotation, counter-clockwise")               \
+  X(rotation, "rad", ROTATION, with_rotations, "other", "rotation, counter-clockwise")             \
   X(force, "N", VECTOR, always, "other", "sum of the forces of the bonds")                         \
   X(damage, "1", SCALAR, with_damage, "damage",                                                    \
     "mean damage of the bonds that the particle began with")                                       \

@@ -1,8 +1,12 @@
 #include "runtime/deck/time_function.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "dsl/base/elementary.h"
+#include "dsl/semantics/formula.h"
+
+/* --- tables ----------------------------------------------------------------------------------- */
 
 /* Piece of the table that holds t: the last k with times[k] <= t; -1 before the first point. */
 static int table_piece(const time_function *f, double t) {
@@ -41,6 +45,31 @@ static double table_integral(const time_function *f, double t) {
   return f->integrals[last] + (f->values[last] + table_at(f, t)) / 2 * (t - f->times[last]);
 }
 
+/* --- formulas --------------------------------------------------------------------------------- */
+
+bool time_function_varies(const time_function *f) {
+  return f->formula &&
+         (formula_reads(f->formula, FORMULA_X) || formula_reads(f->formula, FORMULA_Y) ||
+          formula_reads(f->formula, FORMULA_Z));
+}
+
+time_function time_function_placed(const time_function *f, const double at[3]) {
+  time_function there = *f;
+  memcpy(there.place, at, sizeof there.place);
+  return there;
+}
+
+static double formula_at(const time_function *f, double since) {
+  const double variables[FORMULA_VARIABLES] = {f->place[0], f->place[1], f->place[2], since};
+  return f->value * formula_value(f->formula, variables);
+}
+
+/* --- all shapes ------------------------------------------------------------------------------- */
+
+double time_function_end(const time_function *f) {
+  return f->end > 0 ? f->end : INFINITY;
+}
+
 double time_function_at(const time_function *f, double t) {
   double since = t - f->start;
   if (since < 0) return 0;
@@ -55,6 +84,8 @@ double time_function_at(const time_function *f, double t) {
     return since < f->rise ? f->value * (1 - pl_cos(M_PI * since / f->rise)) / 2 : f->value;
   case TIME_TABLE:
     return table_at(f, since);
+  case TIME_FORMULA:
+    return formula_at(f, since);
   }
   return 0;
 }
@@ -75,8 +106,19 @@ double time_function_integral(const time_function *f, double t) {
            ((rising - f->rise / M_PI * pl_sin(M_PI * rising / f->rise)) / 2 + (since - rising));
   case TIME_TABLE:
     return table_integral(f, since);
+  case TIME_FORMULA:
+    return NAN;
   }
   return 0;
+}
+
+double time_function_way(const time_function *f, double from, double to, int pieces) {
+  const double h = (to - from) / pieces;
+  double sum = 0;
+  for (int k = 0; k < pieces; k++)
+    sum += time_function_at(f, from + k * h) + 4 * time_function_at(f, from + (k + 0.5) * h) +
+           time_function_at(f, from + (k + 1) * h);
+  return sum * h / 6;
 }
 
 /* 0 where the values are held. */
@@ -100,10 +142,21 @@ double time_function_slope(const time_function *f, double t) {
     return since < f->rise ? f->value * M_PI / (2 * f->rise) * pl_sin(M_PI * since / f->rise) : 0;
   case TIME_TABLE:
     return table_slope(f, since);
+  case TIME_FORMULA:
+    return NAN;
   }
   return 0;
 }
 
 double time_function_jump(const time_function *f) {
-  return f->shape == TIME_CONSTANT ? f->value : f->shape == TIME_TABLE ? f->values[0] : 0;
+  switch (f->shape) {
+  case TIME_CONSTANT:
+    return f->value;
+  case TIME_TABLE:
+    return f->values[0];
+  case TIME_FORMULA:
+    return formula_at(f, 0);
+  default:
+    return 0;
+  }
 }

@@ -32,22 +32,23 @@ static const double *force_of_row(const sweep *w, const body_block *b, int row, 
 
    Not 0 when a velocity is not below the limit (NaN is not below anything). */
 static inline __attribute__((always_inline)) int64_t kick(const body *w, const body_block *b,
-                                                          int row, const double *const force[3],
-                                                          int dof, bool each_mass) {
+                                                          int row,
+                                                          const double *const force[PL_MAX_DOF],
+                                                          int dimensions, int dof, bool each_mass) {
   const long start = body_start(w, row), count = w->count[row], pitch = w->lattice->pitch;
-  const double decay = w->decay, *mobility = each_mass ? w->mobility + start : NULL;
-  const double *v[3];
-  double factor[3], *restrict next = b->next;
+  const double decay = w->decay, *v[PL_MAX_DOF], *mobility[2] = {NULL, NULL};
+  double factor[PL_MAX_DOF], *restrict next = b->next;
   int64_t bad = 0;
   for (int d = 0; d < dof; d++) {
     v[d] = w->velocity[d] + start;
     factor[d] = motion_force_part(w) * w->time_step / w->mass[d];
+    if (each_mass) mobility[d >= dimensions] = w->mobility[d >= dimensions] + start;
   }
   INDEPENDENT
   for (long q = 0; q < count; q++)
     for (int d = 0; d < dof; d++) {
-      const double push =
-          each_mass ? factor[d] * mobility[q] * force[d][q] : factor[d] * force[d][q];
+      const double push = each_mass ? factor[d] * mobility[d >= dimensions][q] * force[d][q]
+                                    : factor[d] * force[d][q];
       const double after = decay * v[d][q] + push;
       next[d * pitch + q] = after;
       bad |= __builtin_fabs(after) < w->limit[d] ? INT64_C(0) : INT64_C(1);
@@ -55,15 +56,23 @@ static inline __attribute__((always_inline)) int64_t kick(const body *w, const b
   return bad;
 }
 
+/* With literal numbers of dimensions and components: without rotations and with them. */
+static inline __attribute__((always_inline)) int64_t
+kick_components(const body *of, const body_block *b, int row, const double *const force[PL_MAX_DOF],
+                bool each_mass) {
+  if (of->dof == 2) return kick(of, b, row, force, 2, 2, each_mass);
+  if (of->dof == 6) return kick(of, b, row, force, 3, 6, each_mass);
+  return of->dimensions == 2 ? kick(of, b, row, force, 2, 3, each_mass)
+                             : kick(of, b, row, force, 3, 3, each_mass);
+}
+
 static int64_t kick_row(const sweep *w, body_block *b, int row, bool moving) {
   const body *of = w->body;
-  const bool each = of->mobility != NULL;
-  const double *force[3] = {NULL, NULL, NULL};
+  const double *force[PL_MAX_DOF] = {NULL};
   for (int d = 0; d < of->dof; d++)
     force[d] = force_of_row(w, b, row, d, moving);
-  int64_t bad = of->dof == 2
-                    ? (each ? kick(of, b, row, force, 2, true) : kick(of, b, row, force, 2, false))
-                    : (each ? kick(of, b, row, force, 3, true) : kick(of, b, row, force, 3, false));
+  int64_t bad = of->mobility[0] ? kick_components(of, b, row, force, true)
+                                : kick_components(of, b, row, force, false);
   for (int d = 0; d < of->dof; d++)
     bad |= motion_push(of, whole_row(of, row), d, b->next + d * of->lattice->pitch);
   return bad;
@@ -219,6 +228,13 @@ static void find_shapes(sweep *w, family *f) {
   shape_matrices(w->body->lattice, f->shape);
 }
 
+static void new_shares(sweep *w, family *f) {
+  const long size = w->body->lattice->size;
+  f->whole = body_doubles(w->body, size);
+  for (long q = 0; q < size; q++)
+    f->whole[q] = 1;
+}
+
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->body->lattice->size;
@@ -245,6 +261,7 @@ static void new_blocks(sweep *w, family *f) {
   f->blocks = must_calloc((size_t)w->body->block_count, sizeof *f->blocks);
   for (int k = 0; k < w->body->block_count; k++) {
     family_block *b = &f->blocks[k];
+    b->parameter = body_apart(w->body, (size_t)law->varying_count * one);
     b->old_field = body_apart(w->body, fields);
     b->new_field = body_apart(w->body, fields);
     b->link = body_apart(w->body, (size_t)law->link_count * one);
@@ -276,7 +293,6 @@ static int reach_of(const rows *g) {
 sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
-  assert(law->dof == law->dimensions);
   assert(law->neighbours == 0 || law->neighbours == 2 * w->body->lattice->directions);
   f->neighbours = 2 * w->body->lattice->directions;
   f->reach = reach_of(w->body->lattice);
@@ -285,6 +301,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   new_planes(w, f);
   new_blocks(w, f);
   if (law->reads_shape) find_shapes(w, f);
+  if (law->reads_share) new_shares(w, f);
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);
   if (!f->windows) new_links(w, f);

@@ -10,6 +10,8 @@ static void point_at_fields(const sweep *w, family_block *b, long start) {
   }
   for (int k = 0; k <= w->law->output_count; k++)
     b->observed[k] = f->observed[k] + start;
+  for (int k = 0; k < w->law->varying_count; k++)
+    b->parameter[k] = w->parameter[k] + start;
   for (int k = 0; k < SHAPE_PLANES && f->shape[k]; k++)
     b->shape[k] = f->shape[k] + start;
   for (int d = 0; d < w->body->dof; d++)
@@ -39,6 +41,7 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
   *run = (pl_family){.row_stride = FAMILY_ROWS_ALIKE * w->body->lattice->pitch,
                      .neighbours = f->neighbours,
                      .plane = w->body->lattice->size,
+                     .parameter = b->parameter,
                      .shape = b->shape,
                      .old_field = b->old_field,
                      .new_field = b->new_field,
@@ -57,6 +60,7 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   run->new_plane = w->body->lattice->size;
   run->bonds = w->body->lattice->bonds + start;
   run->held = w->body->lattice->held + start;
+  if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
   point_at_neighbours(w->body->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {
     run->displacement[d] = w->body->displacement[d] + start;

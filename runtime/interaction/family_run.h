@@ -15,8 +15,9 @@ typedef struct family_block { /* pointers to the run at hand, for the law */
   bool observing; /* the observe program reads the fields that the step program has just found */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
+  const double **parameter;
   const double *shape[SHAPE_PLANES];
-  double *force[3];
+  double *force[PL_MAX_DOF];
   char apart[BODY_APART];
 } family_block;
 
@@ -30,6 +31,7 @@ typedef struct family {
   double **bond_link;            /* [bond_links][neighbours * size]; the same */
   double **observed;             /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES];   /* [size]; NULL unless the law reads them */
+  double *whole;                 /* [size] 1, the share of all particles; NULL as before */
   family_block *blocks;          /* [block_count] */
   struct family_window *windows; /* [block_count]; NULL: links of the whole body are kept */
   struct family_pairs *pairs;    /* NULL unless bonds add to both ends */

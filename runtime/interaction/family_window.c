@@ -41,8 +41,8 @@ struct family_window { /* row r stands in place r mod rows */
   long plane;                 /* doubles between planes */
   double **link, **bond_link; /* [links] begin of place 0 */
   /* begin of place 0: of rows that move at once; NULL where all forces are kept */
-  double *force[3];
-  double *memory; /* [links + neighbours*links of bonds + forces][plane] */
+  double *force[PL_MAX_DOF];
+  double *memory;             /* [links + neighbours*links of bonds + forces][plane] */
   double **field, **observed; /* [planes][pitch] what other blocks write for their rows */
   long *offset;               /* [neighbours] of links, from the row at hand */
   int *row_offset;            /* [neighbours] rows to the neighbour */

@@ -39,7 +39,9 @@ struct sweep {
   /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed
      last; which memory is whose may change in a step. */
   double **field, **new_field;
-  double *const *parameter; /* [varying][directions * size] of random fields; not owned */
+  /* [varying][sweep_planes(law->varying_place) * size] parameters that differ in space; not owned */
+  double *const *parameter;
+  const double *share; /* [size] of laws that read it (pl_family); NULL: 1 everywhere; not owned */
   /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state
      observed; NULL without ledger and for laws of families. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;

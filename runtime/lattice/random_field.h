@@ -1,17 +1,16 @@
-/* Random fields: parameters of a law that differ from bond to bond. A value is a function of the
-   seed, of the parameter's name and of the place in the lattice alone, so that it does not depend
-   on threads, on other bodies or on the order of particles.
+/* Random fields: numbers for parameters of a law that differ from bond to bond, or from particle to
+   particle. A value is a function of the seed, of the parameter's name and of the place in the
+   lattice alone, so that it does not depend on threads, on other bodies or on the order of
+   particles.
 
    Behind every distribution stands a standard normal field z: its value is the quantile of Phi(z).
-   Without correlation z comes from a hash of the seed and the lattice coordinates; with a
-   correlation length L it is a sum of random waves (Shinozuka and Deodatis 1991), sqrt(2/M) sum
-   cos(k x + phi), with wave vectors from the spectrum of exp(-(r/L)^2). */
+   Without correlation z comes from a hash of the seed and the lattice coordinates (on no lattice,
+   of the place); with a correlation length L it is a sum of random waves (Shinozuka and Deodatis
+   1991), sqrt(2/M) sum cos(k x + phi), with wave vectors from the spectrum of exp(-(r/L)^2). */
 #ifndef PERILAT_RUNTIME_RANDOM_FIELD_H
 #define PERILAT_RUNTIME_RANDOM_FIELD_H
 
 #include "runtime/deck/deck.h"
-#include "runtime/kernel.h"
-#include "runtime/lattice/rows.h"
 
 /* uniform: low, high. normal: mean, standard deviation. lognormal: mean and deviation of the
    logarithm. Weibull: scale, shape. */
@@ -37,23 +36,12 @@ double random_waves_at(const random_waves *w, const double at[3]);
 /* Standard normal number of a lattice site (its integer coordinates; c is 0 in the plane) and a
    direction (-1: of the particle). */
 double random_normal_of_site(uint64_t seed, int64_t a, int64_t b, int64_t c, int direction);
+/* The same of a place that is no lattice site, by the bits of where it is (m), and of the bond
+   between two such places, from either end. */
+double random_normal_of_place(uint64_t seed, const double at[3]);
+double random_normal_between(uint64_t seed, const double at[3], const double end[3]);
 /* Seed of a field: the deck's, mixed with the parameter's name without regard to case, so that two
    parameters with one seed are independent. */
 uint64_t random_seed_of(const deck_field *f);
-
-/* What the fields of a lattice give: one plane of values for each parameter in law->varying. */
-typedef struct random_fields {
-  int count;      /* law->varying_count */
-  double **value; /* [count][directions * size]; aligned; the mean where there is no bond */
-  double *smallest, *largest; /* [count] of the bonds there are */
-  size_t bytes;
-} random_fields;
-
-/* Evaluates all fields of the lattice. `parameters` are the material's; those with a field become
-   its mean. NULL with diagnostics: a wrong unit, values that the law does not allow (with the place
-   of the first), a kernel that does not read these parameters bond by bond. */
-random_fields *random_fields_new(const deck *k, int lattice, const rows *w, const pl_law *law,
-                                 double *parameters, diagnostics *d);
-void random_fields_free(random_fields *f);
 
 #endif

@@ -61,12 +61,14 @@ static bool *find_used_regions(const deck *k) {
     const int region = name ? deck_find_region(k, name) : -1;                                      \
     if (region >= 0) used[region] = true;                                                          \
   }
+  USED(material, region)
   USED(support, region)
   USED(drive, region)
   USED(force, region)
   USED(end_moment, region)
   USED(protect, region)
   USED(initial_velocity, region)
+  USED(initial_displacement, region)
   USED(monitor, region)
   USED(monitor, between[0])
   USED(monitor, between[1])

@@ -119,6 +119,10 @@ void rows_set_density(rows *w, double rho) {
   w->inertia = 0.4 * w->mass * half * half;
 }
 
+double rows_radius_square(const rows *w, long site) {
+  return pl_pow(w->site_volume[site] / w->volume, 2.0 / w->dimensions);
+}
+
 /* Bonds of a full family; on lists their mean. */
 static double family_size(const rows *w) {
   if (!w->list) return 2 * w->directions;

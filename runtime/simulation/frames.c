@@ -99,7 +99,11 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
 }
 
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  bond_values(of, of->body->state->parameter[from->index], values);
+  double *array = of->body->state->parameter[from->index];
+  if (of->body->law->varying_place == PL_ON_PARTICLE)
+    site_values(of, &array, 1, values);
+  else
+    bond_values(of, array, values);
 }
 
 /* --- fields of any law ------------------------------------------------------------------------ */
@@ -117,7 +121,8 @@ static void values_of_velocity(const frames_of *of, const frame_source *from, do
 }
 
 static void values_of_rotation(const frames_of *of, const frame_source *from, double *values) {
-  site_values(of, of->body->body->displacement + 2, from->components, values);
+  const body *w = of->body->body;
+  site_values(of, w->displacement + w->dimensions, from->components, values);
 }
 
 static void values_of_force(const frames_of *of, const frame_source *from, double *values) {
@@ -204,7 +209,12 @@ static bool with_losses(const deck_output *asked, const pl_law *law) {
   return asked->energy && law->kind != PL_STATE;
 }
 
-enum { SCALAR = 1, VECTOR = 0 /* as many as there are directions of space */ };
+/* as many as there are directions of space, or axes to turn about */
+enum { SCALAR = 1, VECTOR = 0, ROTATION = -1 };
+
+static int component_count(int kind, const pl_law *law) {
+  return kind == VECTOR ? law->dimensions : kind == ROTATION ? law->dof - law->dimensions : kind;
+}
 
 typedef struct own_field {
   const char *name, *unit;
@@ -288,7 +298,7 @@ static void add_own(frame_set *f, const own_field *own, int b) {
   add(f,
       (frame_field){.name = own->name,
                     .unit = own->unit,
-                    .components = own->components == VECTOR ? law->dimensions : own->components,
+                    .components = component_count(own->components, law),
                     .body = b,
                     .kind = own->kind,
                     .long_name = largest ? "the largest damage of the particle" : own->words},
@@ -385,7 +395,7 @@ static void add_of_law(frame_set *f, int b) {
     add(f,
         (frame_field){.name = p->name,
                       .unit = p->unit,
-                      .on_bonds = true,
+                      .on_bonds = law->varying_place != PL_ON_PARTICLE,
                       .components = 1,
                       .body = b,
                       .kind = "other",

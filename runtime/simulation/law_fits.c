@@ -72,8 +72,7 @@ static bool topology_serves(const pl_law *law, const deck_lattice *l, const rows
       d, DIAG_NOT_SUPPORTED, deck_where(&l->item, "kind"),
       "as a law of bonds `%s` runs on a hexagonal lattice, not on particles that stand on none",
       law->name);
-  diag_hint(d,
-            "laws of families, `law state`, run on them, and central laws without random fields");
+  diag_hint(d, "compiled for these it does: use `perilat run`, or build a solver for them");
   return false;
 }
 
@@ -95,9 +94,7 @@ bool law_fits_lattice(const pl_law *law, const deck *k, int lattice, const rows 
   diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&l->item, key),
               "`%s` is a law of bonds: it runs on a hexagonal lattice of nearest neighbours",
               law->name);
-  diag_hint(d,
-            "other lattices bear laws of families, `law state`, and central laws of bonds without "
-            "random fields");
+  diag_hint(d, "compiled for this one it runs, too: use `perilat run`, or build a solver for it");
   return false;
 }
 

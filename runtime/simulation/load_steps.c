@@ -1,5 +1,7 @@
 #include "runtime/simulation/load_steps.h"
 
+#include <math.h>
+
 #include "dsl/base/elementary.h"
 #include "runtime/body/motion.h"
 
@@ -10,8 +12,17 @@ static const time_function *cause_of(const loads *l, int cause) {
                         : &l->deck->end_moments[cause - forces].moment;
 }
 
-static double factor_at(const loads *l, const body *w, int cause, long step) {
-  return load_clock_acting(&l->clock, w, cause_of(l, cause), step);
+/* The function of a load where it acts. */
+static time_function function_at(const loads *l, const time_function *f, int64_t site) {
+  double at[3];
+  if (!time_function_varies(f)) return *f;
+  rows_place(l->lattice, site, at);
+  return time_function_placed(f, at);
+}
+
+static double factor_at(const loads *l, const body *w, const applied *f, long step) {
+  const time_function here = function_at(l, cause_of(l, f->cause), f->site);
+  return load_clock_acting(&l->clock, w, &here, step);
 }
 
 /* --- in time ---------------------------------------------------------------------------------- */
@@ -32,37 +43,116 @@ static double decay_of(const loads *l, const body *w, long step) {
   return decay_with(w, rate);
 }
 
-/* Motion prescribed after `step` steps since the drive's start: m, rad. */
-static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
-  if (c->drive < 0) return 0;
-  const deck_drive *drive = &l->deck->drives[c->drive];
-  return load_clock_value(&l->clock, w, &drive->motion,
-                          drive->is_displacement ? time_function_at : time_function_integral, step);
-}
-
-static double start_of(const loads *l, const constraint *c) {
-  return c->drive < 0 ? 0 : l->deck->drives[c->drive].motion.start;
-}
-
 /* What of the time of a step is rounding. */
 static double hardly(const body *w) {
   return 1e-6 * w->time_step;
 }
 
+static const deck_drive *drive_of(const loads *l, const constraint *c) {
+  return &l->deck->drives[c->drive];
+}
+
+static double start_of(const loads *l, const constraint *c) {
+  return c->drive < 0 ? 0 : drive_of(l, c)->motion.start;
+}
+
+static double end_of(const loads *l, const constraint *c) {
+  return c->drive < 0 ? INFINITY : time_function_end(&drive_of(l, c)->motion);
+}
+
+static time_function motion_of(const loads *l, const constraint *c) {
+  return function_at(l, &drive_of(l, c)->motion, c->site);
+}
+
+/* The way of such a drive is summed up step by step, or increment by increment: from its anchor,
+   which goes along. */
+static bool is_summed(const loads *l, const constraint *c) {
+  return c->drive >= 0 && !drive_of(l, c)->is_displacement && drive_of(l, c)->motion.formula;
+}
+
+/* Slope of a displacement just after t, or just before. Of a formula through five places within half
+   a step, of the fourth order: reactions are by two orders less exact. */
+static double slope_at(const body *w, const time_function *f, double t, bool before) {
+  if (!f->formula) return time_function_slope(f, before ? t - hardly(w) : t);
+  static const double weight[] = {-25, 48, -36, 16, -3};
+  const double h = (before ? -0.125 : 0.125) * w->time_step;
+  double sum = 0;
+  for (int k = 0; k < 5; k++)
+    sum += weight[k] * time_function_at(f, t + k * h);
+  return sum / (12 * h);
+}
+
+/* Velocity that a drive ends with: just before, as kinks often lie there. */
+static double last_velocity(const loads *l, const body *w, const constraint *c) {
+  const time_function f = motion_of(l, c);
+  return drive_of(l, c)->is_displacement ? slope_at(w, &f, f.end, true)
+                                         : time_function_at(&f, f.end);
+}
+
+/* Up to a time within the step that ends after `step` steps. */
+static double way_until(const loads *l, const body *w, const constraint *c, long step, double t) {
+  const time_function f = motion_of(l, c);
+  if (drive_of(l, c)->is_displacement) return time_function_at(&f, t);
+  if (!f.formula) return time_function_integral(&f, t);
+  const double from = pl_fmax(load_clock_time(&l->clock, w, step - 1), f.start);
+  return time_function_way(&f, pl_fmin(from, t), t, 1);
+}
+
+static double motion_in_increment(const loads *l, const body *w, const constraint *c, long step) {
+  enum { PIECES = 16 };
+  const time_function f = motion_of(l, c);
+  in_time *const motion =
+      drive_of(l, c)->is_displacement ? time_function_at : time_function_integral;
+  if (!is_summed(l, c)) return load_clock_value(&l->clock, w, &f, motion, step);
+  return load_clock_part(&l->clock, step) *
+         time_function_way(&f, pl_fmax(l->clock.from, f.start), l->clock.to, PIECES);
+}
+
+/* Motion prescribed after `step` steps: m, rad. Since the drive's start, or what is summed up. After
+   its end it goes on straight. */
+static double motion_at(const loads *l, const body *w, const constraint *c, long step) {
+  if (c->drive < 0) return 0;
+  if (l->clock.ramp > 0) return motion_in_increment(l, w, c, step);
+  const double t = load_clock_time(&l->clock, w, step), end = end_of(l, c);
+  if (t <= end) return way_until(l, w, c, step, t);
+  const double over = is_summed(l, c) ? pl_fmin(t - end, w->time_step) : t - end;
+  return way_until(l, w, c, step, end) + over * last_velocity(l, w, c);
+}
+
+static bool has_ended(const loads *l, const body *w, const constraint *c, long step) {
+  return load_clock_time(&l->clock, w, step) >= end_of(l, c) - hardly(w);
+}
+
 /* A drive holds its particles from the step on that begins with it, to rounding; in a quasi-static
-   run from the beginning of the increment that it begins in. */
+   run in all increments that it acts at the end of. */
 static bool is_held(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0) return true;
-  if (l->clock.ramp > 0) return l->clock.to > load_clock_just_after(&l->clock, start_of(l, c));
-  return load_clock_time(&l->clock, w, step) >= start_of(l, c) - hardly(w);
+  if (l->clock.ramp > 0) return load_clock_settled(&l->clock, &drive_of(l, c)->motion, l->clock.to);
+  return load_clock_time(&l->clock, w, step) >= start_of(l, c) - hardly(w) &&
+         !has_ended(l, w, c, step);
 }
 
 /* Velocity prescribed just after the instant of a step, which rounding may have put before the
    start. */
 static double velocity_at(const loads *l, const body *w, const constraint *c, long step) {
-  const deck_drive *drive = &l->deck->drives[c->drive];
-  const double t = pl_fmax(load_clock_time(&l->clock, w, step), drive->motion.start);
-  return (drive->is_displacement ? time_function_slope : time_function_at)(&drive->motion, t);
+  const time_function f = motion_of(l, c);
+  const double t = pl_fmax(load_clock_time(&l->clock, w, step), f.start);
+  if (t >= end_of(l, c)) return last_velocity(l, w, c);
+  return drive_of(l, c)->is_displacement ? slope_at(w, &f, t, false) : time_function_at(&f, t);
+}
+
+/* The step is the drive's last: it ends within half a step of its instant, or earlier. */
+static bool lets_go(const loads *l, const body *w, const constraint *c, long step) {
+  const double last = load_clock_time(&l->clock, w, step) + 0.5 * w->time_step;
+  return l->clock.ramp == 0 && last >= end_of(l, c) - hardly(w);
+}
+
+/* Velocity after that step: the drive's last one, and from its end on what the particle gains by
+   itself, which a whole step would take to the velocity `free`. */
+static double velocity_let_go(const loads *l, const body *w, const constraint *c, long step,
+                              double free) {
+  const double since = load_clock_time(&l->clock, w, step) + 0.5 * w->time_step - end_of(l, c);
+  return last_velocity(l, w, c) + since / w->time_step * (free - c->velocity);
 }
 
 /* A motion that begins moves on as if it had always gone so: its velocity half a step before is
@@ -70,8 +160,8 @@ static double velocity_at(const loads *l, const body *w, const constraint *c, lo
    velocity. */
 static double impulse_of(const loads *l, const body *w, const constraint *c, long step) {
   if (c->drive < 0 || l->clock.ramp > 0) return 0;
-  const deck_drive *drive = &l->deck->drives[c->drive];
-  if (drive->is_displacement && time_function_jump(&drive->motion) != 0) return 0;
+  const time_function f = motion_of(l, c);
+  if (drive_of(l, c)->is_displacement && time_function_jump(&f) != 0) return 0;
   const double after = (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
   return 2 * velocity_at(l, w, c, step) - after - c->velocity;
 }
@@ -79,7 +169,7 @@ static double impulse_of(const loads *l, const body *w, const constraint *c, lon
 /* The motion takes up a particle that was free and stands where it is. */
 static void take_up(const loads *l, const body *w, constraint *c, long step) {
   if (c->active || !is_held(l, w, c, step)) return;
-  const bool placed = c->drive >= 0 && l->deck->drives[c->drive].is_displacement;
+  const bool placed = c->drive >= 0 && drive_of(l, c)->is_displacement;
   c->active = 1;
   c->held = w->displacement[c->component][c->site];
   c->anchor = placed ? c->held : c->held - motion_at(l, w, c, step);
@@ -103,8 +193,12 @@ static void set_gravity(const loads *l, body *w, long step) {
 
 void load_steps_increment(loads *l, const body *w, load_clock clock) {
   l->clock = clock;
-  for (long i = 0; i < l->constraint_count; i++)
-    take_up(l, w, &l->constraints[i], (long)clock.first);
+  for (long i = 0; i < l->constraint_count; i++) {
+    constraint *c = &l->constraints[i];
+    if (!is_held(l, w, c, (long)clock.first)) c->active = 0;
+    if (is_summed(l, c)) c->anchor = c->held;
+    take_up(l, w, c, (long)clock.first);
+  }
 }
 
 void load_steps_begin(loads *l, body *w) {
@@ -114,7 +208,7 @@ void load_steps_begin(loads *l, body *w) {
     take_up(l, w, c, 0);
   }
   for (long i = 0; i < l->force_count; i++) {
-    l->forces[i].now = l->forces[i].share * factor_at(l, w, l->forces[i].cause, 0);
+    l->forces[i].now = l->forces[i].share * factor_at(l, w, &l->forces[i], 0);
     l->forces[i].velocity = w->velocity[l->forces[i].component][l->forces[i].site];
   }
   if (l->clock.ramp == 0) w->decay = decay_of(l, w, 0);
@@ -151,7 +245,8 @@ void load_steps_set_back(loads *l, body *w) {
   }
   for (long i = 0; i < l->force_count; i++) {
     applied *f = &l->forces[i];
-    const double force = f->share * time_function_at(cause_of(l, f->cause), 0);
+    const time_function here = function_at(l, cause_of(l, f->cause), f->site);
+    const double force = f->share * time_function_at(&here, 0);
     w->velocity[f->component][f->site] -= half * force / body_mass(w, f->component, f->site);
   }
   for (long i = 0; i < l->constraint_count; i++) {
@@ -231,7 +326,7 @@ static void apply_forces(const load_run *r) {
     const double change = given_by(w, f->component, f->site, f->now);
     correct_free_way(w, f->component, f->site, f->velocity, *v, change, &f->sums);
     *v += change;
-    w->displacement[f->component][f->site] += w->time_step * change;
+    motion_shift(r->w, f->component, f->site, w->time_step * change);
   }
 }
 
@@ -253,13 +348,17 @@ static bool is_remembered(remembered *m, int32_t index, double **value) {
 static double motion_after(const load_run *r, const constraint *c, remembered *m) {
   double *motion;
   if (c->drive < 0) return 0;
+  if (time_function_varies(&drive_of(r->l, c)->motion))
+    return motion_at(r->l, r->w, c, r->step + 1);
   if (!is_remembered(m, c->drive, &motion)) *motion = motion_at(r->l, r->w, c, r->step + 1);
   return *motion;
 }
 
 static double force_after(const load_run *r, const applied *f, remembered *m) {
   double *factor;
-  if (!is_remembered(m, f->cause, &factor)) *factor = factor_at(r->l, r->w, f->cause, r->step + 1);
+  if (time_function_varies(cause_of(r->l, f->cause)))
+    return f->share * factor_at(r->l, r->w, f, r->step + 1);
+  if (!is_remembered(m, f->cause, &factor)) *factor = factor_at(r->l, r->w, f, r->step + 1);
   return f->share * *factor;
 }
 
@@ -268,17 +367,17 @@ static double force_for(const body *w, const constraint *c, double change) {
   return body_mass(w, c->component, c->site) * change / (w->time_step * motion_force_part(w));
 }
 
-/* Moves the particle to `target` instead of where it would go. What this takes works with the mean
-   of the velocities before and after. */
-static double pull(const body *w, constraint *c, double target) {
-  double *v = &w->velocity[c->component][c->site], *u = &w->displacement[c->component][c->site];
+/* Moves the particle to `target` instead of where it would go (take_place). What this takes works
+   with the mean of the velocities before and after. */
+static double pull(body *w, constraint *c, double target) {
+  double *v = &w->velocity[c->component][c->site];
   const double before = c->velocity, prescribed = (target - c->held) / w->time_step;
   const double force = force_for(w, c, prescribed - *v);
   correct_free_way(w, c->component, c->site, before, *v, prescribed - *v, &c->sums);
   c->sums.work += 0.5 * w->time_step * force * (before + prescribed);
+  motion_shift(w, c->component, c->site, w->time_step * (prescribed - *v));
   c->held = target;
   *v = prescribed;
-  *u = target;
   return force;
 }
 
@@ -289,7 +388,8 @@ static double impulsive(const body *w, const constraint *c) {
 
 /* A motion that begins between the ends of the step: until then the particle was free. */
 static void begin_on_the_way(const load_run *r, constraint *c, remembered *after) {
-  const body *w = r->w;
+  body *w = r->w;
+  if (has_ended(r->l, w, c, r->step)) return;
   const double rest = load_clock_time(&r->l->clock, w, r->step + 1) - start_of(r->l, c);
   if (r->l->clock.ramp > 0 || rest <= hardly(w)) return;
   const double v = w->velocity[c->component][c->site],
@@ -300,22 +400,41 @@ static void begin_on_the_way(const load_run *r, constraint *c, remembered *after
   pull(w, c, c->anchor + motion_after(r, c, after));
 }
 
+/* The part of the step that the drive still covers decides its force. */
+static void let_go(const load_run *r, constraint *c) {
+  body *w = r->w;
+  const double free = w->velocity[c->component][c->site];
+  const double velocity = velocity_let_go(r->l, w, c, r->step, free);
+  c->reaction = pull(w, c, c->held + w->time_step * velocity) - impulsive(w, c);
+  c->active = 0;
+}
+
 static void apply_motion(const load_run *r, constraint *c, remembered *after) {
-  const body *w = r->w;
+  body *w = r->w;
   const bool held = c->active;
   c->reaction = 0;
-  if (held)
+  if (held && lets_go(r->l, w, c, r->step))
+    let_go(r, c);
+  else if (held)
     c->reaction = pull(w, c, c->anchor + motion_after(r, c, after)) - impulsive(w, c);
   else
     begin_on_the_way(r, c, after);
   c->velocity = w->velocity[c->component][c->site];
+  if (is_summed(r->l, c) && r->l->clock.ramp == 0) c->anchor = c->held;
   c->impulse = c->active && !held ? impulse_of(r->l, w, c, r->step + 1) : 0;
+}
+
+/* After all have moved: in space a turn about one axis moves the rotations about the others. */
+static void take_place(const load_run *r, const constraint *c) {
+  if (c->active && has_moved(r, c->site)) r->w->displacement[c->component][c->site] = c->held;
 }
 
 static void apply_motions(const load_run *r) {
   remembered after = {{0}, {0}};
   for (long i = r->first_constraint; i < r->last_constraint; i++)
     if (has_moved(r, r->l->constraints[i].site)) apply_motion(r, &r->l->constraints[i], &after);
+  for (long i = r->first_constraint; i < r->last_constraint; i++)
+    take_place(r, &r->l->constraints[i]);
 }
 
 /* A force works with the mean of its values at both ends of the way. */
@@ -367,8 +486,20 @@ static double free_velocity(const body *w, int component, int64_t site) {
          w->time_step * motion_force_part(w) * weight;
 }
 
-/* The same when a motion is prescribed. */
+/* With the forces that are applied to it. */
+static double loaded_velocity(const loads *l, const body *w, int component, int64_t site) {
+  double velocity = free_velocity(w, component, site);
+  long i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
+  for (; i < l->force_count && l->forces[i].site == site; i++)
+    if (l->forces[i].component == component)
+      velocity += given_by(w, component, site, l->forces[i].now);
+  return velocity;
+}
+
+/* When a motion is prescribed. */
 static double prescribed_velocity(const loads *l, const body *w, const constraint *c, long step) {
+  if (lets_go(l, w, c, step))
+    return velocity_let_go(l, w, c, step, loaded_velocity(l, w, c->component, c->site));
   return (c->anchor + motion_at(l, w, c, step + 1) - c->held) / w->time_step;
 }
 
@@ -418,10 +549,5 @@ double load_steps_velocity(const loads *l, const body *w, int component, int64_t
   for (; i < count && l->constraints[i].site == site; i++)
     if (l->constraints[i].component == component && l->constraints[i].active)
       return mean_velocity(l, w, &l->constraints[i], step);
-  double after = free_velocity(w, component, site);
-  i = first_at(l->forces, l->force_count, sizeof *l->forces, site);
-  for (; i < l->force_count && l->forces[i].site == site; i++)
-    if (l->forces[i].component == component)
-      after += given_by(w, component, site, l->forces[i].now);
-  return 0.5 * (w->velocity[component][site] + after);
+  return 0.5 * (w->velocity[component][site] + loaded_velocity(l, w, component, site));
 }

@@ -16,7 +16,12 @@
    rounding. A drive leaves its particles free before its start; then their displacement follows
    time_function_integral (or the prescribed displacement) exactly, counted from where each particle
    is at the start. One that begins with a velocity changes the momentum at once: the impulse does
-   work, but is no part of any reaction. */
+   work, but is no part of any reaction.
+
+   A drive that ends at t_e lets go in the step whose middle is the first after t_e,
+     v(n+1/2) = V(t_e) + a (t_(n+1/2) - t_e),   a: of the free particle at t_n, V: of the drive,
+   which is the reaction times the part of t_n - dt/2 .. t_n + dt/2 that it covers, to the second
+   order. Its particles are free from then on. */
 #ifndef PERILAT_RUNTIME_LOAD_STEPS_H
 #define PERILAT_RUNTIME_LOAD_STEPS_H
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "dsl/base/arena.h"
+#include "runtime/lattice/placed_values.h"
 #include "runtime/lattice/rows_select.h"
 
 /* NULL: a region of another lattice. */
@@ -76,7 +77,7 @@ static void add_motions(loads *l, motions *m) {
   int *supports = NULL;
   for (int i = 0; i < k->support_count; i++) {
     const region_sites *at = region_of(l, k->supports[i].region);
-    for (int c = 0; c < 3; c++) {
+    for (int c = 0; c < PL_MAX_DOF; c++) {
       if (!at || !(k->supports[i].fix & (1 << c))) continue;
       bool good = has_component(m, c, deck_where(&k->supports[i].item, "fix"));
       for (long p = 0; good && p < at->count; p++)
@@ -91,6 +92,52 @@ static void add_motions(loads *l, motions *m) {
       good = add_motion(l, m, &supports, at->particles[p], c, i, -1);
   }
   free(supports);
+}
+
+/* --- formulas --------------------------------------------------------------------------------- */
+
+/* What the function has of the particle when it begins. False after a message: no number. */
+static bool first_value(const loads *l, const time_function *f, const deck_item *item,
+                        int32_t particle, double *first, diagnostics *d) {
+  double at[3];
+  rows_place(l->lattice, l->lattice->particle_site[particle], at);
+  const time_function here = time_function_placed(f, at);
+  *first = time_function_at(&here, f->start);
+  if (isfinite(*first)) return true;
+  char text[ROWS_PLACE_TEXT];
+  diag_report(d, DIAG_BAD_NUMBER, deck_where(item, "formula"),
+              "this formula has no finite value at %s, t = 0 s",
+              rows_place_text(l->lattice->dimensions, at, text));
+  return false;
+}
+
+static void check_formula(const loads *l, const time_function *f, const deck_item *item,
+                          const char *region, bool from_zero, diagnostics *d) {
+  const region_sites *at = region_of(l, region);
+  double first = 0;
+  bool jumps = false;
+  if (!f->formula || !at) return;
+  for (long p = 0; p < at->count; p++) {
+    if (!first_value(l, f, item, at->particles[p], &first, d)) return;
+    jumps |= first != 0;
+  }
+  if (!jumps || !from_zero) return;
+  diag_report(d, DIAG_DECK_WARNING, deck_where(item, "formula"),
+              "this displacement begins with a jump");
+  diag_hint(d, "let the formula be 0 at t = 0");
+}
+
+static void check_formulas(const loads *l, diagnostics *d) {
+  const deck *k = l->deck;
+  const bool moves_at_once = k->relaxation.increments == 0;
+  for (int i = 0; i < k->drive_count; i++)
+    check_formula(l, &k->drives[i].motion, &k->drives[i].item, k->drives[i].region,
+                  moves_at_once && k->drives[i].is_displacement, d);
+  for (int i = 0; i < k->force_count; i++)
+    check_formula(l, &k->forces[i].force, &k->forces[i].item, k->forces[i].region, false, d);
+  for (int i = 0; i < k->end_moment_count; i++)
+    check_formula(l, &k->end_moments[i].moment, &k->end_moments[i].item, k->end_moments[i].region,
+                  false, d);
 }
 
 /* --- forces ----------------------------------------------------------------------------------- */
@@ -174,7 +221,23 @@ static void find_holders(loads *l, const motions *m) {
   }
 }
 
-/* --- velocities at the start ------------------------------------------------------------------ */
+/* --- motion at the start ---------------------------------------------------------------------- */
+
+typedef struct initial_list { /* of one kind */
+  const deck_initial *items;
+  int count;
+  const char *are; /* what several are called */
+  bool free;       /* held particles have none */
+} initial_list;
+
+static initial_list velocities_of(const deck *k) {
+  return (initial_list){k->initial_velocitys, k->initial_velocity_count, "velocities", true};
+}
+
+static initial_list displacements_of(const deck *k) {
+  return (initial_list){k->initial_displacements, k->initial_displacement_count, "displacements",
+                        false};
+}
 
 enum { HELD = -1 };
 
@@ -186,35 +249,38 @@ static void mark_held(const loads *l, int *set) {
   }
 }
 
-/* `set` remembers which velocities are given: [dof][size], index of the group + 1, or HELD. */
-static void check_velocity(const loads *l, int index, int *set, diagnostics *d) {
-  const deck_initial_velocity *v = &l->deck->initial_velocitys[index];
+/* `set` remembers which are given: [dof][size], index of the group + 1, or HELD. */
+static void check_initial(const loads *l, const initial_list *list, int index, int *set,
+                          diagnostics *d) {
+  const deck_initial *v = &list->items[index];
   const region_sites *at = region_of(l, v->region);
-  for (long p = 0; at && p < at->count; p++) {
+  for (long p = 0; p < at->count; p++) {
     const int64_t site = l->lattice->particle_site[at->particles[p]];
     int *given = &set[(long)v->component * l->lattice->size + site];
     if (*given) {
       const bool held = *given == HELD;
       char text[ROWS_PLACE_TEXT];
-      diag_report(d, DIAG_CONFLICT, deck_where(&v->item, "region"), "the particle at %s %s %s",
+      diag_report(d, DIAG_CONFLICT, deck_where(&v->item, "region"), "the particle at %s %s%s in %s",
                   place_of(l, site, text),
-                  held ? "is held from the start in" : "is given two initial velocities in",
+                  held ? "is held from the start" : "is given two initial ", held ? "" : list->are,
                   deck_component_name(l->lattice->dimensions, v->component));
-      if (!held) diag_note(d, l->deck->initial_velocitys[*given - 1].item.where, "the other one");
+      if (!held) diag_note(d, list->items[*given - 1].item.where, "the other one");
       return;
     }
     *given = index + 1;
   }
+  free(placed_values(&v->value, l->lattice, at->particles, at->count, deck_where(&v->item, "value"),
+                     d));
 }
 
-static void check_velocities(const loads *l, const motions *m) {
+static void check_initials(const loads *l, const motions *m, initial_list list) {
   int *set = must_calloc((size_t)m->dof * (size_t)l->lattice->size + 1, sizeof *set);
-  mark_held(l, set);
-  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
-    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
+  if (list.free) mark_held(l, set);
+  for (int i = 0; i < list.count; i++) {
+    const deck_initial *v = &list.items[i];
     if (region_of(l, v->region) &&
         has_component(m, v->component, deck_where(&v->item, "component")))
-      check_velocity(l, i, set, m->said);
+      check_initial(l, &list, i, set, m->said);
   }
   free(set);
 }
@@ -243,7 +309,9 @@ loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, 
     add_end_moment(l, i, d);
   put_in_order(l, &m);
   find_holders(l, &m);
-  check_velocities(l, &m);
+  check_initials(l, &m, velocities_of(k));
+  check_initials(l, &m, displacements_of(k));
+  check_formulas(l, d);
   protect(l, w);
   free(m.holder);
   if (d->errors == before) return l;
@@ -273,21 +341,41 @@ long loads_constraints_of(const loads *l, int region, int component, int32_t **i
   return count;
 }
 
-/* --- velocities at the start ------------------------------------------------------------------ */
+/* --- motion at the start ---------------------------------------------------------------------- */
 
-bool loads_initial_velocity(const loads *l, body *w, diagnostics *d) {
-  bool good = true;
-  for (int i = 0; i < l->deck->initial_velocity_count; i++) {
-    const deck_initial_velocity *v = &l->deck->initial_velocitys[i];
-    const region_sites *at = region_of(l, v->region);
-    if (!at) continue;
-    for (long p = 0; p < at->count; p++)
-      w->velocity[v->component][l->lattice->particle_site[at->particles[p]]] = v->value;
-    if (fabs(v->value) < w->limit[v->component]) continue;
+/* Into [component][site]. */
+static bool set_initial(const loads *l, const deck_initial *v, double *const *into,
+                        diagnostics *d) {
+  const region_sites *at = region_of(l, v->region);
+  if (!at) return true;
+  double *values = placed_values(&v->value, l->lattice, at->particles, at->count,
+                                 deck_where(&v->item, "value"), d);
+  for (long p = 0; values && p < at->count; p++)
+    into[v->component][l->lattice->particle_site[at->particles[p]]] = values[p];
+  free(values);
+  return values != NULL;
+}
+
+static bool fits_a_step(const loads *l, const deck_initial *v, const body *w, diagnostics *d) {
+  const region_sites *at = region_of(l, v->region);
+  for (long p = 0; at && p < at->count; p++) {
+    const int64_t site = l->lattice->particle_site[at->particles[p]];
+    if (fabs(w->velocity[v->component][site]) < w->limit[v->component]) continue;
     diag_report(d, DIAG_OUT_OF_BOUNDS, deck_where(&v->item, "value"),
                 "this velocity takes a particle further than %s in one step",
                 v->component < w->dimensions ? "a spacing" : "half a turn");
-    good = false;
+    return false;
   }
+  return true;
+}
+
+bool loads_initial_motion(const loads *l, body *w, diagnostics *d) {
+  const initial_list displacements = displacements_of(l->deck), velocities = velocities_of(l->deck);
+  bool good = true;
+  for (int i = 0; i < displacements.count; i++)
+    good = set_initial(l, &displacements.items[i], w->displacement, d) && good;
+  for (int i = 0; i < velocities.count; i++)
+    good = set_initial(l, &velocities.items[i], w->velocity, d) &&
+           fits_a_step(l, &velocities.items[i], w, d) && good;
   return good;
 }

@@ -61,8 +61,9 @@ typedef struct loads {
 loads *loads_new(const deck *k, int lattice, rows *w, const char *law, int dof, diagnostics *d);
 void loads_free(loads *l);
 
-/* Velocities that regions begin with. False with diagnostics where one is too large for a step. */
-bool loads_initial_velocity(const loads *l, body *w, diagnostics *d);
+/* Displacements and velocities that regions begin with. False with diagnostics where a velocity is
+   too large for a step. */
+bool loads_initial_motion(const loads *l, body *w, diagnostics *d);
 /* Indices of the constraints of a region's particles in a component; malloc'ed. */
 long loads_constraints_of(const loads *l, int region, int component, int32_t **indices);
 

@@ -12,37 +12,31 @@
 
 /* --- what fits -------------------------------------------------------------------------------- */
 
-static const deck_field *field_of(const deck *k, const char *lattice) {
+static bool has_field(const deck *k, const char *lattice) {
   for (int f = 0; f < k->field_count; f++)
-    if (strcmp(k->fields[f].lattice, lattice) == 0) return &k->fields[f];
-  return NULL;
+    if (strcmp(k->fields[f].lattice, lattice) == 0) return true;
+  return false;
 }
 
-static bool open_fields(run_body *b, const deck *k, diagnostics *d) {
-  const deck_field *asked = field_of(k, b->name);
-  if (asked && b->law->kind == PL_STATE) {
-    diag_report(d, DIAG_NOT_SUPPORTED, asked->item.where,
-                "the law `%s` reads whole families: its parameters cannot differ from bond to bond",
-                b->law->name);
-    return false;
-  }
-  if (!asked && b->law->varying_count == 0) return true;
-  b->fields = random_fields_new(k, b->lattice, b->lattice_rows, b->law, b->parameters, d);
-  return b->fields != NULL;
+static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
+  if (!has_field(k, b->name) && b->regional_count == 0 && b->law->varying_count == 0) return true;
+  b->planes = parameter_planes_new(k, b->lattice, b->lattice_rows, b->law, b->parameters,
+                                   b->regional, b->regional_count, d);
+  return b->planes != NULL;
 }
 
 /* What asks for the values of parameters. */
 static bool open_material(run_body *b, const deck *k, diagnostics *d) {
-  const bool fields = open_fields(b, k, d), mass = law_fits_motion(b->law, k, b->lattice, d);
+  const bool planes = open_planes(b, k, d), mass = law_fits_motion(b->law, k, b->lattice, d);
   if (mass) rows_set_density(b->lattice_rows, material_density(b->law, b->parameters));
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
-  return fields && mass &&
-         step_limit_of(k, b->lattice, b->law, b->parameters, b->fields, b->lattice_rows, &b->limit,
+  return planes && mass &&
+         step_limit_of(k, b->lattice, b->law, b->parameters, b->planes, b->lattice_rows, &b->limit,
                        d);
 }
 
 bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
-  enum { ANY_DOF = 3 };
+  enum { ANY_DOF = PL_MAX_DOF };
   b->name = k->lattices[b->lattice].name;
   b->lattice_rows = lattice ? lattice : lattice_build(k, b->lattice, d);
   if (!b->lattice_rows) return false;
@@ -72,15 +66,15 @@ bool run_body_begin(run_body *b, const deck *k, double step, diagnostics *d) {
   b->state = interaction_new(b->lattice_rows, b->law, b->parameters, step, choose_threads(b, k),
                              k->output.energy, k->relaxation.increments > 0);
   b->body = b->state->body;
-  if (b->fields) b->state->parameter = b->fields->value;
+  if (b->planes) b->state->parameter = b->planes->value;
   if (k->gravity_count > 0) body_add_gravity(b->body);
-  return loads_initial_velocity(b->loads, b->body, d);
+  return loads_initial_motion(b->loads, b->body, d);
 }
 
 void run_body_free(run_body *b) {
   loads_free(b->loads);
   sweep_free(b->state);
-  random_fields_free(b->fields);
+  parameter_planes_free(b->planes);
   free(b->bonds);
   if (b->lattice_rows) rows_free(b->lattice_rows);
 }
@@ -92,6 +86,6 @@ double run_body_memory(const run_body *b) {
       g->list ? 2 * g->directions * (sizeof(int32_t) + (1 + (double)g->dimensions) * sizeof(double))
               : 0;
   return (double)b->body->bytes + (list + site) * (double)g->size +
-         (b->fields ? (double)b->fields->bytes : 0) +
+         (b->planes ? (double)b->planes->bytes : 0) +
          (double)sizeof(rows_bond) * (double)g->bond_count;
 }

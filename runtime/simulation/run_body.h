@@ -7,7 +7,7 @@
 #include "dsl/base/diagnostics.h"
 #include "runtime/analysis/step_limit.h"
 #include "runtime/interaction/sweep.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/simulation/ledger.h"
 #include "runtime/simulation/loads.h"
 
@@ -16,9 +16,11 @@ typedef struct run_body {
   const char *name;   /* the lattice's, and so that of its bonds in results */
   rows *lattice_rows; /* owned */
   const pl_law *law;
-  bool fits;             /* the law suits the lattice */
-  double *parameters;    /* the caller's; those of random fields become their mean */
-  random_fields *fields; /* NULL without */
+  bool fits;                       /* the law suits the lattice */
+  double *parameters;              /* the caller's; those of random fields become their mean */
+  const regional_values *regional; /* [regional_count] the caller's */
+  int regional_count;
+  parameter_planes *planes; /* what differs in space; NULL without */
   sweep *state;
   body *body; /* of the state */
   loads *loads;

@@ -106,6 +106,8 @@ simulation *simulation_new_on(rows *const *lattices, const deck *k, const simula
     s->bodies[b].lattice = b;
     s->bodies[b].law = laws[b].law;
     s->bodies[b].parameters = laws[b].parameters;
+    s->bodies[b].regional = laws[b].regional;
+    s->bodies[b].regional_count = laws[b].regional_count;
   }
   if (set_up(s, lattices, d) && d->errors == 0) return s;
   simulation_free(s);
@@ -134,8 +136,8 @@ int simulation_bodies(const simulation *s) {
   return s->body_count;
 }
 
-const random_fields *simulation_fields(const simulation *s, int number) {
-  return s->bodies[number].fields;
+const parameter_planes *simulation_planes(const simulation *s, int number) {
+  return s->bodies[number].planes;
 }
 
 const rows *simulation_rows(const simulation *s, int number) {

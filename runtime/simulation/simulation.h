@@ -15,6 +15,7 @@
 #include "runtime/analysis/step_limit.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows.h"
 #include "runtime/simulation/bad_state.h"
 #include "runtime/simulation/frame_field.h"
@@ -34,6 +35,9 @@ typedef struct simulation_law {
   /* [parameter_count] as of material_parameters; malloc'ed, owned by the caller. A simulation sets
      those that have a random field to its mean. */
   double *parameters;
+  /* [regional_count] those of materials of regions (deck_material.regional); the caller's, too */
+  regional_values *regional;
+  int regional_count;
 } simulation_law;
 
 /* NULL with all diagnostics when the deck does not fit its lattices or the given step is unstable,
@@ -49,8 +53,8 @@ void simulation_free(simulation *s);
 
 /* As many as the deck has lattices, in their order. */
 int simulation_bodies(const simulation *s);
-/* Random fields of the law's parameters; NULL without. */
-const struct random_fields *simulation_fields(const simulation *s, int body);
+/* Parameters of its law that differ in space; NULL without. */
+const parameter_planes *simulation_planes(const simulation *s, int body);
 const rows *simulation_rows(const simulation *s, int body);
 /* The shortest that a body has, and whose it is. */
 const step_limit *simulation_step_limit(const simulation *s);

@@ -30,7 +30,8 @@ static bool ends_after_a_step(const step_limit *limit, const deck *k, diagnostic
 }
 
 bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
-                   const random_fields *fields, const rows *w, step_limit *limit, diagnostics *d) {
+                   const parameter_planes *fields, const rows *w, step_limit *limit,
+                   diagnostics *d) {
   stability_limit(law, parameters, fields, w, limit);
   if (!is_stable_at_rest(limit, law, law_fits_where(k, lattice), d)) return false;
   if (limit->limit > 0) return true;

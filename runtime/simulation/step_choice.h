@@ -6,7 +6,7 @@
 #include "runtime/analysis/step_limit.h"
 #include "runtime/deck/deck.h"
 #include "runtime/kernel.h"
-#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/rows.h"
 
 typedef struct step_plan {
@@ -17,7 +17,8 @@ typedef struct step_plan {
 
 /* The stable step of the virgin body. False with a diagnostic where none is stable. */
 bool step_limit_of(const deck *k, int lattice, const pl_law *law, const double *parameters,
-                   const random_fields *fields, const rows *w, step_limit *limit, diagnostics *d);
+                   const parameter_planes *fields, const rows *w, step_limit *limit,
+                   diagnostics *d);
 /* limit->step, the deck's part of the shortest of these limits. It is that of `law`, and of
    `lattice` where there are others, too (else NULL). */
 bool step_choose(const deck *k, const pl_law *law, const char *lattice, step_limit *limit,

@@ -5,9 +5,9 @@
 
 #include "dsl/base/arena.h"
 
-motions motions_new(const rows *lattice) {
-  motions m = {.dimensions = lattice->dimensions};
-  for (int d = 0; d < m.dimensions; d++) {
+motions motions_new(const rows *lattice, int dof) {
+  motions m = {.dimensions = lattice->dimensions, .dof = dof};
+  for (int d = 0; d < m.dof; d++) {
     m.displacement[d] = must_calloc((size_t)lattice->size, sizeof(double));
     m.velocity[d] = must_calloc((size_t)lattice->size, sizeof(double));
   }
@@ -15,7 +15,7 @@ motions motions_new(const rows *lattice) {
 }
 
 void motions_free(motions *m) {
-  for (int d = 0; d < m->dimensions; d++) {
+  for (int d = 0; d < m->dof; d++) {
     free(m->displacement[d]);
     free(m->velocity[d]);
   }
@@ -30,10 +30,10 @@ static double random_sign(uint64_t *state) {
 }
 
 void motions_start(motions *m, const family_problem *p, double stretch) {
-  const double size = stretch * p->lattice->spacing;
   uint64_t random = UINT64_C(0x9e3779b97f4a7c15);
   for (long q = 0; q < p->lattice->size; q++)
-    for (int d = 0; d < m->dimensions; d++) {
+    for (int d = 0; d < m->dof; d++) {
+      const double size = d < m->dimensions ? stretch * p->lattice->spacing : stretch;
       const bool present = p->lattice->present[q];
       m->displacement[d][q] = present ? size * random_sign(&random) : 0;
       m->velocity[d][q] = present ? size / (10 * p->time_step) * random_sign(&random) : 0;
@@ -92,10 +92,11 @@ static bool is_inside(const outline *box, const rows *g, long site) {
   return true;
 }
 
-/* Largest |a - b| inside over largest |a|. */
-static double difference(double *const *a, double *const *b, const rows *g, const outline *box) {
+/* Largest |a - b| inside over largest |a|, of so many components. */
+static double difference(double *const *a, double *const *b, int count, const rows *g,
+                         const outline *box) {
   double most = 0, scale = 0;
-  for (int d = 0; d < g->dimensions; d++)
+  for (int d = 0; d < count; d++)
     for (long p = 0; p < g->particle_count; p++) {
       const long q = g->particle_site[p];
       scale = larger(scale, fabs(a[d][q]));
@@ -106,6 +107,11 @@ static double difference(double *const *a, double *const *b, const rows *g, cons
 
 double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin) {
   const outline box = outline_of(lattice, margin);
-  return larger(difference(a->displacement, b->displacement, lattice, &box),
-                difference(a->velocity, b->velocity, lattice, &box));
+  const int n = a->dimensions, turns = a->dof - n;
+  const double moved = larger(difference(a->displacement, b->displacement, n, lattice, &box),
+                              difference(a->velocity, b->velocity, n, lattice, &box));
+  if (turns == 0) return moved;
+  return larger(moved,
+                larger(difference(a->displacement + n, b->displacement + n, turns, lattice, &box),
+                       difference(a->velocity + n, b->velocity + n, turns, lattice, &box)));
 }

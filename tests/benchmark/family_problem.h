@@ -19,27 +19,29 @@ typedef struct family_problem {
 
 /* In the order of the lattice's sites. */
 typedef struct motions {
-  int dimensions;
-  double *displacement[3], *velocity[3]; /* [size] m, m/s; 0 where no particle is */
+  int dimensions, dof; /* what is beyond the dimensions turns */
+  /* [size] m, rad; m/s, rad/s; 0 where no particle is */
+  double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
 } motions;
 
-motions motions_new(const rows *lattice);
+motions motions_new(const rows *lattice, int dof);
 void motions_free(motions *m);
 
-/* Each particle is moved at random by up to `stretch` spacings in each direction, and flies at a
-   random velocity that takes it as far within some steps. The same numbers whenever and wherever it
-   is called. */
+/* Each particle is moved at random by up to `stretch` spacings in each direction and turned by as
+   many rad, and flies at a random velocity that takes it as far within some steps. The same numbers
+   whenever and wherever it is called. */
 void motions_start(motions *m, const family_problem *p, double stretch);
 
-/* To and from displacements in spacings and velocities in spacings a step. */
+/* To and from displacements in spacings and velocities in spacings a step; rotations are left out.
+   */
 void motions_scale(double *const *u, double *const *v, const motions *from,
                    const family_problem *p);
 void motions_unscale(motions *to, double *const *u, double *const *v, const family_problem *p);
 
 /* Largest difference of two displacements, relative to the largest displacement of `a`; of
-   velocities likewise; the larger of the two. Of particles that are further than `margin` spacings
-   from the outline of a body that is a rectangle or box. NaN counts as infinite; without particles
-   0. */
+   velocities likewise, and of rotations; the largest of these. Of particles that are further than
+   `margin` spacings from the outline of a body that is a rectangle or box. NaN counts as infinite;
+   without particles 0. */
 double motions_difference(const motions *a, const motions *b, const rows *lattice, double margin);
 
 /* A program that moves such a body: memory is its own; `set` starts with virgin fields. */

@@ -23,6 +23,7 @@ extern const body_program elastic_hexagon_plain,
     concrete_hexagon_plain,
     concrete_hexagon_fused, /* splm_concrete with its first options, hexagon in plane stress */
     elastic_fcc_plain, elastic_fcc_fused, /* splm_elastic, face-centred cubic, 18 neighbours */
+    beams_fcc_plain, beams_fcc_fused,     /* mplm_space, the same */
     lps_cubic_plain, lps_cubic_fused;     /* lps, cubic box, any horizon up to 128 neighbours */
 
 #endif

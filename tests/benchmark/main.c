@@ -55,6 +55,8 @@ static const aim aims[] = {
      0.95},
     {"splm_elastic_fcc_generated_of_handwritten", "splm_elastic, 18 neighbours, of hand-written",
      true, 0.85, 0.95},
+    {"mplm_space_generated_of_handwritten", "mplm_space, 18 neighbours, of hand-written", true,
+     0.85, 0.95},
     {"lps_cubic_generated_of_handwritten", "lps, 122 neighbours, of hand-written", true, 0.85,
      0.95},
     {"mplm_bilinear_generated_times_naive", "mplm_bilinear, times naive", true, 10, 15},

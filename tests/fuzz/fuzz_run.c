@@ -55,7 +55,7 @@ static void set_up_and_run(const deck *read, diagnostics *said) {
   deck of_one_thread = *read, *k = &of_one_thread;
   k->simulation.threads = 1;
   if (!material_parameters(&k->materials[0], &elastic_beam, parameters, said)) return;
-  const simulation_law law = {&elastic_beam, parameters};
+  const simulation_law law = {.law = &elastic_beam, .parameters = parameters};
   simulation *s = simulation_new(k, &law, said);
   MUST((s != NULL) == (said->errors == 0));
   if (s) run_some(s);

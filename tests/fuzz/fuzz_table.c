@@ -42,8 +42,8 @@ static void check_places(const diagnostics *d) {
 }
 
 static void try_load(const char *table, size_t size, unsigned how) {
-  const deck_load_kind kinds[] = {{"velocity", "m/s", how & WITH_BODY},
-                                  {"displacement", "m", false}};
+  const deck_load_kind kinds[] = {{"velocity", "m/s", how & WITH_BODY, NULL},
+                                  {"displacement", "m", false, NULL}};
   char text[400];
   source_set sources = {0};
   diagnostics d;
@@ -55,7 +55,7 @@ static void try_load(const char *table, size_t size, unsigned how) {
   const namelist *n =
       namelist_read(memory, &sources, source_add(&sources, "fuzz.nml", text, strlen(text)), &d);
   time_function f;
-  const int kind = deck_load_kind_of(&n->groups[0], kinds, 2, &d);
+  const int kind = deck_load_kind_of(memory, &n->groups[0], kinds, 2, &d);
   const bool good = kind >= 0 && deck_load_read(memory, &n->groups[0], &kinds[kind], &f, &d);
   MUST(good == (d.errors == 0));
   for (int k = 0; good && k < f.count; k++)

@@ -16,7 +16,7 @@ typedef struct small_run {
   source_set sources;
   diagnostics said;
   const deck *deck;
-  double parameters[ELASTIC_PARAMETERS];
+  double parameters[16]; /* of any law by hand */
   simulation_law law;
   simulation *simulation;
 } small_run;
@@ -30,7 +30,7 @@ static void small_open(small_run *r, const pl_law *law, const char *text) {
   r->deck = deck_read(r->memory, &r->sources, file, NULL, 0, &r->said);
   if (!r->deck || !material_parameters(&r->deck->materials[0], law, r->parameters, &r->said))
     return;
-  r->law = (simulation_law){law, r->parameters};
+  r->law = (simulation_law){.law = law, .parameters = r->parameters};
   r->simulation = simulation_new(r->deck, &r->law, &r->said);
 }
 

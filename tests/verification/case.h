@@ -8,8 +8,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "generator/interpreter/interpreted.h"
 #include "dsl/semantics/law_variant.h"
+#include "generator/interpreter/interpreted.h"
 #include "generator/kernel/material_law.h"
 #include "generator/kernel/model.h"
 #include "generator/plan/plan.h"
@@ -111,16 +111,36 @@ static inline bool deck_case_lattice(deck_case *c, const char *text) {
   return c->lattice != NULL;
 }
 
+static inline double *deck_case_parameters(deck_case *c, const deck_material *values) {
+  double *parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof *parameters);
+  if (material_parameters(values, c->law.law, parameters, &c->said)) return parameters;
+  free(parameters);
+  return NULL;
+}
+
+static inline bool deck_case_regions(deck_case *c, const deck_material *m) {
+  c->law.regional = calloc((size_t)m->regional_count + 1, sizeof *c->law.regional);
+  for (int k = 0; k < m->regional_count; k++) {
+    deck_material values;
+    if (!material_law_regional(m->regional[k], &c->model, c->memory, &values, &c->said))
+      return false;
+    double *parameters = deck_case_parameters(c, &values);
+    if (!parameters) return false;
+    c->law.regional[c->law.regional_count++] = (regional_values){m->regional[k], parameters};
+  }
+  return true;
+}
+
 /* A simulation of the deck with the compiled kernel of its own law. */
 static inline bool deck_case_start(deck_case *c, const char *path) {
   const char *note;
   char error[4096];
-  if (!material_law_open(&c->deck->materials[0], &c->deck->lattices[0], path, &c->model, &c->said))
-    return false;
+  const deck_material *m = deck_material_of(c->deck, 0);
+  if (!m || !material_law_open(m, &c->deck->lattices[0], path, &c->model, &c->said)) return false;
   c->law.law = model_kernel(&c->model, false, &note, error, sizeof error);
   if (!c->law.law) return false;
-  c->law.parameters = calloc((size_t)c->law.law->parameter_count + 1, sizeof(double));
-  if (material_parameters(&c->model.values, c->law.law, c->law.parameters, &c->said))
+  c->law.parameters = deck_case_parameters(c, &c->model.values);
+  if (c->law.parameters && deck_case_regions(c, m))
     c->simulation = simulation_new(c->deck, &c->law, &c->said);
   if (c->said.errors) diag_print(&c->said, stderr);
   return c->simulation != NULL;
@@ -158,6 +178,9 @@ static inline step_status deck_case_go(deck_case *c) {
 static inline void deck_case_close(deck_case *c) {
   if (c->simulation) simulation_free(c->simulation);
   free(c->law.parameters);
+  for (int k = 0; k < c->law.regional_count; k++)
+    free(c->law.regional[k].parameters);
+  free(c->law.regional);
   if (c->model.memory) model_close(&c->model);
   if (c->lattice) rows_free(c->lattice);
   diag_clear(&c->said);

@@ -7,8 +7,7 @@
 
 #include <cmocka.h>
 
-#include "runtime/interaction/interaction.h"
-#include "tests/verification/case.h"
+#include "tests/verification/cantilever.h"
 
 /* --- time step -------------------------------------------------------------------------------- */
 
@@ -82,168 +81,28 @@ static void exact(double length, double x, double y, double *ux, double *uy) {
          (3 * length - x) * x * x);
 }
 
-/* A cantilever of `row_count` rows; each row stands for its share of the depth, as its particles'
- * volume does. */
-typedef struct cantilever {
-  deck_case c;
-  sweep *w;
-  const rows *g;
-  double s, length; /* m: spacing; clamped section to the load's centre */
-  int32_t *held;    /* [particles] 1 where the exact motion is prescribed */
-  double *load;     /* [3 * particles] N, N m */
-  long unknowns;
-} cantilever;
-
-static void open_cantilever(cantilever *b, law_case *beam_law, int row_count) {
+/* Of `row_count` rows; each row stands for its share of the depth, as its particles' volume does.
+   The loaded columns are half a spacing apart. */
+static double tip_error(law_case *beam_law, int row_count) {
+  cantilever b = {.s = depth / row_count * 2 / sqrt(3)};
   char text[1000];
-  memset(b, 0, sizeof *b);
-  b->s = depth / row_count * 2 / sqrt(3);
-  const double half = (row_count - 1) * sqrt(3) / 4 * b->s;
+  const double half = (row_count - 1) * sqrt(3) / 4 * b.s;
   snprintf(text, sizeof text,
            "&simulation end_time = 1 /\n"
            "&lattice name = 'c' kind = 'hexagonal' spacing = %.17g thickness = %.17g origin = 0, "
            "%.17g /\n"
            "&material lattice = 'c' model = 'mplm_bilinear' /\n"
            "&body lattice = 'c' shape = 'rectangle' corner = 0, %.17g size = %.17g, %.17g /\n",
-           b->s, thickness, -half, -half, round(0.4 / b->s) * b->s, 2 * half);
-  assert_true(deck_case_lattice(&b->c, text));
-  b->c.lattice->mass = 2323 * b->c.lattice->volume;
-  b->c.lattice->inertia = 0.1 * b->c.lattice->mass * b->s * b->s;
-  assert_int_equal(b->c.lattice->row_count, row_count);
-  b->g = b->c.lattice;
-  b->length = b->g->width - b->s / 4; /* the loaded columns are half a spacing apart */
-  b->w = interaction_new(b->g, beam_law->compiled, beam_law->parameters, 1e-7, 1, false, true);
-  b->unknowns = 3 * b->g->particle_count;
-  b->held = calloc((size_t)b->g->particle_count, sizeof *b->held);
-  b->load = calloc((size_t)b->unknowns, sizeof *b->load);
-}
-
-static void close_cantilever(cantilever *b) {
-  sweep_free(b->w);
-  free(b->held);
-  free(b->load);
-  deck_case_close(&b->c);
-}
-
-/* The first columns follow the exact solution; the last carry the load. */
-static void set_ends(cantilever *b) {
-  double weight = 0;
-  for (int pass_number = 0; pass_number < 2; pass_number++)
-    for (long p = 0; p < b->g->particle_count; p++) {
-      const double x = b->g->x[b->g->particle_site[p]], y = b->g->y[b->g->particle_site[p]];
-      b->held[p] = x < 0.75 * b->s;
-      if (x < b->g->width - 0.75 * b->s) continue;
-      const double parabola = 1 - 4 * y * y / (depth * depth);
-      if (pass_number == 0)
-        weight += parabola;
-      else
-        b->load[3 * p + 1] = -end_load * parabola / weight;
-    }
-}
-
-/* Forces K u on particles from the kernel: the even terms of its geometry cancel in the difference,
-   and u is made so small (largest turn 1e-6 of a spacing) that the cubic ones are rounding. */
-static void stiffness_times(cantilever *b, const double *u, double *product) {
-  sweep *w = b->w;
-  double size = 1e-300;
-  for (long p = 0; p < b->g->particle_count; p++)
-    for (int d = 0; d < 3; d++)
-      size = fmax(size, fabs(u[3 * p + d]) / (d < 2 ? b->s : 1));
-  for (int side = 1; side >= -1; side -= 2) {
-    for (long p = 0; p < b->g->particle_count; p++)
-      for (int d = 0; d < 3; d++)
-        w->body->displacement[d][b->g->particle_site[p]] = side * 1e-6 / size * u[3 * p + d];
-    sweep_observe(w);
-    for (long p = 0; p < b->g->particle_count; p++)
-      for (int d = 0; d < 3; d++) {
-        const double half = -side * w->body->force[d][b->g->particle_site[p]] * size / 2e-6;
-        product[3 * p + d] = side > 0 ? half : product[3 * p + d] + half;
-      }
-  }
-}
-
-static double dot(const double *a, const double *b, long count) {
-  double sum = 0;
-  for (long k = 0; k < count; k++)
-    sum += a[k] * b[k];
-  return sum;
-}
-
-/* Entries of held particles (their rotations stay free) to zero; the rest by the inverse of a
- * typical stiffness. */
-static void precondition(const cantilever *b, const double *r, double *z) {
-  for (long k = 0; k < b->unknowns; k++) {
-    const bool fixed = k % 3 < 2 && b->held[k / 3];
-    z[k] = fixed ? 0 : r[k] / (k % 3 < 2 ? 1 : 0.05 * b->s * b->s);
-  }
-}
-
-/* K u = load by conjugate gradients, from the exact solution's values at the held particles.
- * Returns the iterations. */
-static int solve(cantilever *b, double *u) {
-  const long n = b->unknowns;
-  double *r = calloc((size_t)n, sizeof *r), *z = calloc((size_t)n, sizeof *z);
-  double *p = calloc((size_t)n, sizeof *p), *Kp = calloc((size_t)n, sizeof *Kp);
-  stiffness_times(b, u, Kp);
-  for (long k = 0; k < n; k++)
-    r[k] = b->load[k] - Kp[k];
-  precondition(b, r, z);
-  memcpy(p, z, (size_t)n * sizeof *p);
-  double rz = dot(r, z, n);
-  const double target = 1e-16 * rz; /* residual by eight digits */
-  int iterations = 0;
-  while (rz > target && iterations < 20000) {
-    stiffness_times(b, p, Kp);
-    for (long k = 0; k < n; k++)
-      if (k % 3 < 2 && b->held[k / 3]) Kp[k] = 0;
-    const double step = rz / dot(p, Kp, n);
-    for (long k = 0; k < n; k++) {
-      u[k] += step * p[k];
-      r[k] -= step * Kp[k];
-    }
-    precondition(b, r, z);
-    const double before = rz;
-    rz = dot(r, z, n);
-    for (long k = 0; k < n; k++)
-      p[k] = z[k] + rz / before * p[k];
-    iterations++;
-  }
-  assert_true(rz <= target);
-  free(r);
-  free(z);
-  free(p);
-  free(Kp);
-  return iterations;
-}
-
-/* Mean deflection of the loaded columns over the exact one, less 1. */
-static double tip_error(law_case *beam_law, int row_count) {
-  cantilever b;
-  open_cantilever(&b, beam_law, row_count);
-  set_ends(&b);
-  double *u = calloc((size_t)b.unknowns, sizeof *u);
-  for (long p = 0; p < b.g->particle_count; p++)
-    if (b.held[p])
-      exact(b.length, b.g->x[b.g->particle_site[p]], b.g->y[b.g->particle_site[p]], &u[3 * p],
-            &u[3 * p + 1]);
-  const int iterations = solve(&b, u);
-  double sum = 0, expected = 0, loaded = 0;
-  for (long p = 0; p < b.g->particle_count; p++) {
-    if (b.load[3 * p + 1] == 0) continue;
-    double ux, uy;
-    exact(b.length, b.g->x[b.g->particle_site[p]], b.g->y[b.g->particle_site[p]], &ux, &uy);
-    sum += u[3 * p + 1];
-    expected += uy;
-    loaded++;
-  }
-  print_message("cantilever, %2d rows, spacing %.3f mm: deflection %.5f of theory's %.4g mm (%ld "
-                "particles, %d "
-                "iterations)\n",
-                row_count, 1e3 * b.s, sum / expected, 1e3 * expected, b.g->particle_count,
-                iterations);
-  free(u);
-  close_cantilever(&b);
-  return sum / expected - 1;
+           b.s, thickness, -half, -half, round(0.4 / b.s) * b.s, 2 * half);
+  assert_true(deck_case_lattice(&b.c, text));
+  rows_set_density(b.c.lattice, 2323);
+  assert_int_equal(b.c.lattice->row_count, row_count);
+  cantilever_open(&b, beam_law->compiled, beam_law->parameters);
+  b.length = b.g->width - b.s / 4;
+  cantilever_ends(&b, 0.75 * b.s, b.g->width - 0.75 * b.s, end_load, depth);
+  const double error = cantilever_error(&b, exact);
+  cantilever_close(&b);
+  return error;
 }
 
 /* The outermost rows lack the bonds to a further row, so that the beam is too soft by O(s/depth):

@@ -38,7 +38,7 @@ static bool start(deck_case *c, const char *model_name, const char *setting, int
 static uniform_response response_of(const deck_case *c) {
   uniform_response u;
   const bool plane_strain = strcmp(c->deck->lattices[0].setting, "plane_strain") == 0;
-  assert_true(uniform_strain_response(c->law.law, c->law.parameters,
+  assert_true(uniform_strain_response(c->law.law, c->law.parameters, NULL,
                                       simulation_rows(c->simulation, 0), plane_strain, &u));
   return u;
 }

@@ -393,8 +393,8 @@ static void a_force_that_knows_left_from_right_fails_the_mirror(void **state) {
   ir *g = p->b.graph;
   ir_node turn =
       ir_add(g, lower_quantity(g, QUANTITY_THETA_I), lower_quantity(g, QUANTITY_THETA_J));
-  ir_node roots[FORCE_COUNT] = {ir_add(g, p->b.law_step.N, turn), p->b.law_step.M_i,
-                                p->b.law_step.M_j};
+  ir_node roots[FORCE_COUNT] = {ir_add(g, p->b.law_step.N, turn), p->b.law_step.M_i[0],
+                                p->b.law_step.M_j[0]};
   probe_free(&p->b.step);
   p->b.step = probe_new(&p->b, roots, FORCE_COUNT);
   physics_histories(p, 2);

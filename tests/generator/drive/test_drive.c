@@ -586,7 +586,6 @@ static void info_refuses(void **state) {
   expect("info mplm_bilinear --spacing -5", 1, "must be greater than 0");
   expect("info mplm_bilinear --set nu=0.4", 1, "is not in [0, 0.33333333]");
   expect("info mplm_bilinear --set mu=0.4", 1, "did you mean `nu`?");
-  expect("info mplm_bilinear --lattice square", 1, "hexagonal lattice of nearest neighbours only");
   expect("info mplm_bilinear --lattice cubic", 1, "is meant for plane_stress");
   expect("info mplm_bilinear --spacin 5", 1, "did you mean `--spacing`?");
   expect("info no_such_law --set E=1", 1, "there is no model `no_such_law`");

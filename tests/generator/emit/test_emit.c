@@ -15,11 +15,11 @@
 #include <unistd.h>
 
 #include "generator/emit/descriptor.h"
-#include "generator/target/c_text.h"
 #include "generator/emit/emit.h"
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"
 #include "generator/kernel/toolchain_compiler.h"
+#include "generator/target/c_text.h"
 
 #define ERROR_SIZE 2000
 
@@ -342,7 +342,7 @@ static ir_node bilinear_damage(ir *g, const bond_kinematics *k, ir_node twice_i,
 /* The micropolar law with bilinear softening and damping, as one pass over strips. */
 static void plan_strips(hand_made *h, pass_kind kind) {
   ir *g = h->plan.graph;
-  bond_kinematics k = kinematics_bond(g, true);
+  bond_kinematics k = kinematics_bond(g, true, false);
   ir_node two = number(g, 2), one = number(g, 1);
   ir_node twice_i = ir_add(g, ir_mul(g, two, k.theta_i), k.theta_j);
   ir_node twice_j = ir_add(g, ir_mul(g, two, k.theta_j), k.theta_i);

@@ -79,7 +79,7 @@ static bond_state random_state(double most) {
 /* N, M_i, M_j enter the graph as fields 0, 1, 2. */
 static void evaluate(const bond_state *b, double *value) {
   ir *g = ir_new();
-  bond_kinematics k = kinematics_bond(g, true);
+  bond_kinematics k = kinematics_bond(g, true, false);
   ir_node N = ir_input(g, IR_FROM_FIELD, 0, "N", ON_BOND);
   ir_node M_i = ir_input(g, IR_FROM_FIELD, 1, "M_i", ON_BOND);
   ir_node M_j = ir_input(g, IR_FROM_FIELD, 2, "M_j", ON_BOND);
@@ -169,7 +169,7 @@ static void small_displacements_lose_nothing(void **state) {
 /* The bond of a large family: 1/length, stretch, length. */
 static void evaluate_near(const bond_state *b, double *value) {
   ir *g = ir_new();
-  const family_kinematics k = kinematics_family(g, 2, true);
+  const family_kinematics k = kinematics_family(g, 2, false, true);
   const ir_node roots[] = {k.per_length, k.stretch, k.length};
   const double *ends[ENDS_COUNT] = {
       [ENDS_U_IX] = &b->u[0][0],           [ENDS_U_IY] = &b->u[0][1],
@@ -350,7 +350,7 @@ static void forces_do_the_work_of_the_law(void **state) {
 static void divides_nothing(void **state) {
   (void)state;
   ir *g = ir_new();
-  bond_kinematics k = kinematics_bond(g, true);
+  bond_kinematics k = kinematics_bond(g, true, false);
   ir_node N = ir_input(g, IR_FROM_FIELD, 0, "N", ON_BOND);
   bond_forces f = kinematics_forces(g, &k, N, N, N);
   ir_node roots[] = {k.stretch, k.stretch_rate, k.theta_i, k.theta_j, f.f_x, f.f_y};

@@ -230,10 +230,22 @@ static void a_returned_flow_ends_on_the_limit(void **state) {
   close_law(t);
 }
 
+/* Of the reference bond, 17 degrees from x and 6.35 mm long. */
+static void the_direction_is_a_unit_vector(void **state) {
+  (void)state;
+  tested_law *t =
+      must_open(CENTRAL("  force N = k*(norm(3*direction) + (direction : direction))*stretch\n"));
+  assert_close(force_of(t, 0.01, 0), 40);
+  close_law(t);
+}
+
+static const char tensor_output[] =
+    "model m\n  law state\n  for space\n  parameter a = 1 [N] in (0, inf)\n"
+    "  strain eps = fit(stretch)\n  force state F[j] = a*stretch[j]\n  output e = eps\nend model\n";
+
 static void what_is_not_compiled_yet_is_said(void **state) {
   (void)state;
-  tested_law *t = open_law("model m\n  law central bond\n  parameter a = 1 [N] in (0, inf)\n"
-                           "  force N = a*stretch*norm(direction)\nend model\n");
+  tested_law *t = open_law(tensor_output);
   assert_non_null(t->law);
   assert_null(t->plan);
   assert_int_equal(t->said.items[t->said.count - 1].code, DIAG_NOT_SUPPORTED);
@@ -243,8 +255,7 @@ static void what_is_not_compiled_yet_is_said(void **state) {
 /* What cannot be compiled is never taken for a bound of 0. */
 static void a_bound_that_cannot_be_compiled_is_said(void **state) {
   (void)state;
-  tested_law *t = open_law("model m\n  law central bond\n  parameter a = 1 [N] in (0, inf)\n"
-                           "  force N = a*stretch*norm(direction)\nend model\n");
+  tested_law *t = open_law(tensor_output);
   ir *g = ir_new();
   const expr *neighbours = t->law->rules[t->law->rule_count - 1]->value;
   const int errors = t->said.errors;
@@ -422,6 +433,7 @@ int main(void) {
       cmocka_unit_test(diff_is_the_derivative),
       cmocka_unit_test(bending_norm_is_the_size),
       cmocka_unit_test(a_returned_flow_ends_on_the_limit),
+      cmocka_unit_test(the_direction_is_a_unit_vector),
       cmocka_unit_test(what_is_not_compiled_yet_is_said),
       cmocka_unit_test(a_bound_that_cannot_be_compiled_is_said),
       cmocka_unit_test(repeated_calls_are_expanded_once),

@@ -10,6 +10,7 @@
 #include "runtime/base/lane_sum.h"
 #include "runtime/body/body.h"
 #include "runtime/body/motion.h"
+#include "tests/runtime/beam_law.h"
 #include "tests/runtime/small_run.h"
 
 enum { DOF = 2 };
@@ -168,11 +169,106 @@ static void sums_have_an_order_of_their_own(void **state) {
   assert_true(lane_square(3 * PL_LANES, weight, a, b) == sum[3]);
 }
 
+/* --- rotations in space ----------------------------------------------------------------------- */
+
+#define CUBES                                                                                      \
+  "&simulation end_time = 1e-5 step = 1e-7 /\n"                                                    \
+  "&lattice name = 'c' kind = 'cubic' spacing = 0.01 /\n"                                          \
+  "&body lattice = 'c' shape = 'box' corner = 0, 0, 0 size = 0.05, 0.05, 0.05 /\n"                 \
+  "&material lattice = 'c' model = 'm' /\n&output frames = 0 /\n"
+
+/* What both rotation vectors do to the axes, one after the other, and what `now` does: farthest
+   apart. */
+static double apart(const double first[3], const double then[3], const double now[3]) {
+  double most = 0;
+  for (int k = 0; k < 3; k++) {
+    double v[3] = {k == 0, k == 1, k == 2}, once[3], twice[3], at_once[3];
+    beam_turned(now, v, at_once);
+    beam_turned(first, v, once);
+    for (int c = 0; c < 3; c++)
+      once[c] += v[c];
+    beam_turned(then, once, twice);
+    for (int c = 0; c < 3; c++)
+      most = fmax(most, fabs(once[c] + twice[c] - v[c] - at_once[c]));
+  }
+  return most;
+}
+
+/* Velocities turn a particle further than it has turned, about axes that stand still; rotation
+   vectors go on beyond whole turns. A small turn keeps its digits. */
+static void rotations_follow_each_other(void **state) {
+  (void)state;
+  enum { ROW = 0 };
+  static const double starts[][3] = {{0, 0, 0},    {1e-9, -2e-9, 3e-9}, {0.1, 0.2, -0.3},
+                                     {1, -2, 1.5}, {0, 0, 3.1},         {0, 0, 6.2},
+                                     {-4, 7, 2},   {14, 0, 0},          {2e-160, 0, 0}};
+  static const double turns[][3] = {{0, 0, 0},     {1e-9, 1e-9, 0}, {0.01, -0.02, 0.005},
+                                    {0, 0, 0.1},   {2e-3, 0, 0},    {0.3, 1, -2},
+                                    {1e-170, 0, 0}};
+  const pl_law law = beams_in(3, PL_ROWS);
+  small_run r;
+  small_open(&r, &law, CUBES);
+  assert_non_null(r.simulation);
+  const rows *g = simulation_rows(r.simulation, 0);
+  body *w = body_new(g, 6, step, 1, BODY_SHARE_ROWS);
+  const long q = body_start(w, ROW);
+  for (int n = 0; n < 9; n++)
+    for (int m = 0; m < 7; m++) {
+      double now[3], sum[3], size = 0, whole = 0;
+      for (int k = 0; k < 3; k++) {
+        w->displacement[3 + k][q] = starts[n][k];
+        w->blocks[0].next[(3 + k) * g->pitch] = turns[m][k] / step;
+        sum[k] = starts[n][k] + turns[m][k];
+        size = fmax(size, fabs(sum[k]));
+      }
+      motion_drift(w, &w->blocks[0], whole_row(w, ROW));
+      for (int k = 0; k < 3; k++) {
+        assert_true(w->velocity[3 + k][q] == turns[m][k] / step);
+        now[k] = w->displacement[3 + k][q];
+        whole = fmax(whole, fabs(now[k] - sum[k]));
+      }
+      assert_true(apart(starts[n], turns[m], now) < 2e-15 * (1 + size));
+      double across[3];
+      beam_cross(starts[n], turns[m], across);
+      if (beam_dot(across, across) == 0) assert_true(whole <= 1e-15 * size);
+      if (size < 1e-8) assert_true(whole <= 1e-8 * size);
+    }
+  body_free(w);
+  small_close(&r);
+}
+
+/* One axis at a time, as loads do. */
+static void a_shift_turns_about_its_axis(void **state) {
+  (void)state;
+  const pl_law law = beams_in(3, PL_ROWS);
+  const double start[3] = {0.4, -1.1, 0.7};
+  small_run r;
+  small_open(&r, &law, CUBES);
+  body *w = body_new(simulation_rows(r.simulation, 0), 6, step, 1, BODY_SHARE_ROWS);
+  const long q = body_start(w, 1) + 1;
+  for (int axis = 0; axis < 3; axis++) {
+    const double turned[3] = {axis == 0 ? 0.2 : 0, axis == 1 ? 0.2 : 0, axis == 2 ? 0.2 : 0};
+    double now[3];
+    for (int k = 0; k < 3; k++)
+      w->displacement[3 + k][q] = start[k];
+    motion_shift(w, 3 + axis, q, 0.2);
+    for (int k = 0; k < 3; k++)
+      now[k] = w->displacement[3 + k][q];
+    assert_true(apart(start, turned, now) < 2e-15);
+    motion_shift(w, axis, q, 0.25);
+    assert_true(w->displacement[axis][q] == 0.25 && w->displacement[3][q] == now[0]);
+  }
+  body_free(w);
+  small_close(&r);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(blocks_share_out_all_rows),
                                      cmocka_unit_test(a_row_drifts_by_its_new_velocities),
                                      cmocka_unit_test(a_row_stays_from_a_bad_velocity_on),
                                      cmocka_unit_test(a_row_tells_its_energies),
-                                     cmocka_unit_test(sums_have_an_order_of_their_own)};
+                                     cmocka_unit_test(sums_have_an_order_of_their_own),
+                                     cmocka_unit_test(rotations_follow_each_other),
+                                     cmocka_unit_test(a_shift_turns_about_its_axis)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -169,20 +169,24 @@ static void dimensions_are_those_of_the_lattice(void **state) {
   }
 }
 
-/* x|y|z|rotation as written: the third degree of freedom is the rotation in the plane, z in
-   space. */
+/* x|y|z|rotation|rotation_x... as written: the third degree of freedom is the rotation in the
+   plane, z in space, where the next three are rotations. */
 static void the_third_degree_of_freedom_turns_in_the_plane(void **state) {
   (void)state;
   static const struct {
     const char *deck, *third, *refusal;
-    int right, wrong;
+    int right, wrong, is;
   } cases[] = {
       {plane, "rotation", "there is no direction z in the plane", DECK_WRITTEN_ROTATION,
-       DECK_WRITTEN_Z},
-      {space, "z", "particles of a lattice in space have no rotation", DECK_WRITTEN_Z,
-       DECK_WRITTEN_ROTATION},
+       DECK_WRITTEN_Z, 2},
+      {plane, "rotation", "in the plane particles rotate about one axis", DECK_WRITTEN_ROTATION,
+       DECK_WRITTEN_ROTATION + 1, 2},
+      {space, "z", "in space particles rotate about three axes", DECK_WRITTEN_Z,
+       DECK_WRITTEN_ROTATION, 2},
+      {space, "z", "in space particles rotate about three axes", DECK_WRITTEN_ROTATION + 3,
+       DECK_WRITTEN_ROTATION, 5},
   };
-  for (int k = 0; k < 2; k++) {
+  for (int k = 0; k < 4; k++) {
     reading r;
     begin(&r, cases[k].deck);
     const deck_item *item = &r.deck.monitors[0].item;
@@ -190,8 +194,9 @@ static void the_third_degree_of_freedom_turns_in_the_plane(void **state) {
     assert_int_equal(deck_component(&r.reader, item->where, "bottom", 0), 0);
     assert_int_equal(deck_component(&r.reader, item->where, "bottom", 1), 1);
     assert_true(deck_take_component(&r.reader, item, "bottom", &component));
-    assert_int_equal(component, 2);
-    assert_true(deck_is_rotation(&r.reader, "bottom", 2) == (k == 0));
+    assert_int_equal(component, cases[k].is);
+    assert_true(deck_is_rotation(&r.reader, "bottom", 2) == (k < 2));
+    assert_true(deck_is_rotation(&r.reader, "bottom", 3));
     assert_false(deck_is_rotation(&r.reader, "bottom", 1));
     assert_string_equal(deck_component_of(&r.reader, "bottom", 1), "y");
     assert_string_equal(deck_component_of(&r.reader, "bottom", 2), cases[k].third);
@@ -200,6 +205,24 @@ static void the_third_degree_of_freedom_turns_in_the_plane(void **state) {
     assert_false(deck_take_component(&r.reader, item, "bottom", &component));
     assert_int_equal(component, cases[k].wrong);
     check_said(&r, DIAG_BAD_VALUE, deck_where(item, "component"), cases[k].refusal);
+    built_end(&r.of);
+  }
+}
+
+/* `fix = 'rotation'` holds the one rotation of the plane, and all three of space. */
+static void all_rotations_are_held_at_once(void **state) {
+  (void)state;
+  const char *const decks[] = {plane, space};
+  for (int k = 0; k < 2; k++) {
+    reading r;
+    begin(&r, decks[k]);
+    const deck_item *item = &r.deck.monitors[0].item;
+    const int all = 1 << DECK_WRITTEN_ROTATION;
+    assert_int_equal(deck_components(&r.reader, item->where, "bottom", 1 | all),
+                     k ? 1 | 56 : 1 | 4);
+    check_silent(&r);
+    if (k == 1)
+      assert_int_equal(deck_components(&r.reader, item->where, "bottom", 4 | 2 * all), 4 | 8);
     built_end(&r.of);
   }
 }
@@ -228,6 +251,7 @@ int main(void) {
       cmocka_unit_test(places_have_the_dimensions_of_their_lattice),
       cmocka_unit_test(dimensions_are_those_of_the_lattice),
       cmocka_unit_test(the_third_degree_of_freedom_turns_in_the_plane),
+      cmocka_unit_test(all_rotations_are_held_at_once),
       cmocka_unit_test(what_begins_with_the_end_is_late),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

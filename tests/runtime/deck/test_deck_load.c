@@ -9,10 +9,12 @@
 #include <math.h>
 #include <string.h>
 
+#include "runtime/deck/deck_formula.h"
 #include "runtime/deck/deck_load.h"
 #include "tests/runtime/deck/notation.h"
 
-static const deck_load_kind kinds[] = {{"velocity", "m/s", false}, {"displacement", "m", false}};
+static const deck_load_kind kinds[] = {{"velocity", "m/s", false, &deck_formula_of_all},
+                                       {"displacement", "m", false, &deck_formula_of_all}};
 
 static bool read_load(notation *n, const char *keys, time_function *f) {
   char text[512];
@@ -20,7 +22,7 @@ static bool read_load(notation *n, const char *keys, time_function *f) {
   read_text(n, text);
   const namelist_group *g = &n->groups->groups[0];
   *f = (time_function){0};
-  const int kind = deck_load_kind_of(g, kinds, 2, &n->said);
+  const int kind = deck_load_kind_of(n->memory, g, kinds, 2, &n->said);
   return kind >= 0 && deck_load_read(n->memory, g, &kinds[kind], f, &n->said);
 }
 
@@ -36,6 +38,7 @@ static void histories_are_what_their_keys_say(void **state) {
                {"displacement = 4 rise = 8", TIME_RAMP_HOLD, 20, 4},
                {"displacement = 4 rise = 8 history = 'ramp'", TIME_RAMP, 20, 10},
                {"displacement = 4 rise = 8 history = 'cosine' start = 1", TIME_COSINE, 5, 2},
+               {"velocity = 2 end = '2 ms'", TIME_CONSTANT, 1e-3, 2},
                {"velocity = 10 times = 0, '1 s', 3 values = 0, 1, -0.5", TIME_TABLE, 2, 2.5}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
     notation n;
@@ -44,6 +47,33 @@ static void histories_are_what_their_keys_say(void **state) {
     assert_int_equal(n.said.count, 0);
     assert_int_equal(f.shape, cases[k].shape);
     assert_true(fabs(time_function_at(&f, cases[k].t) - cases[k].value) < 1e-15);
+    forget(&n);
+  }
+}
+
+/* At x = 3 m; a formula that reads no place is the same everywhere. */
+static void formulas_are_functions_of_place_and_time(void **state) {
+  (void)state;
+  static const struct {
+    const char *keys;
+    bool varies;
+    double start_value, value, way; /* at once, at 2 s after the start, until then */
+  } cases[] = {{"formula = '2 [m/s]*t/1 [s]' start = 1", false, 0, 4, 4},
+               {"formula = '2 [mm]*x/1 [m]' start = '7 ms'", true, 6e-3, 6e-3, 12e-3},
+               {"velocity = '3 mm/s' formula = 'x/1 [m] + (t/1 [s])**3'", true, 9e-3, 33e-3, 30e-3},
+               {"formula = '0'", false, 0, 0, 0}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    notation n;
+    time_function f;
+    if (!read_load(&n, cases[k].keys, &f)) diag_print(&n.said, stderr);
+    assert_int_equal(n.said.count, 0);
+    assert_int_equal(f.shape, TIME_FORMULA);
+    assert_int_equal(time_function_varies(&f), cases[k].varies);
+    const time_function there = time_function_placed(&f, (double[]){3, 0, 0});
+    assert_true(fabs(time_function_jump(&there) - cases[k].start_value) < 1e-15);
+    assert_true(fabs(time_function_at(&there, f.start + 2) - cases[k].value) < 1e-14);
+    assert_true(time_function_at(&there, f.start - 1e-3) == 0);
+    assert_true(fabs(time_function_way(&there, f.start, f.start + 2, 3) - cases[k].way) < 1e-14);
     forget(&n);
   }
 }
@@ -101,6 +131,7 @@ static void a_factor_goes_from_0_to_1(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(histories_are_what_their_keys_say),
+      cmocka_unit_test(formulas_are_functions_of_place_and_time),
       cmocka_unit_test(keys_that_do_not_go_together_are_told),
       cmocka_unit_test(a_load_is_of_one_kind),
       cmocka_unit_test(a_factor_goes_from_0_to_1),

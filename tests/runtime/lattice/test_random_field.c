@@ -7,9 +7,11 @@
 
 #include <cmocka.h>
 #include <omp.h>
+#include <unistd.h>
 
 #include "runtime/deck/deck_read.h"
 #include "runtime/lattice/lattice.h"
+#include "runtime/lattice/parameter_planes.h"
 #include "runtime/lattice/random_field.h"
 #include "runtime/simulation/material.h"
 #include "tests/runtime/small_run.h"
@@ -272,17 +274,12 @@ typedef struct sample {
   small_run run;
   rows *lattice;
   rows_bond *bonds;
-  random_fields *fields;
+  parameter_planes *fields;
 } sample;
 
-/* A body with a field of E; fields stay NULL after an error, which is in run.said. */
-static void sample_open(sample *s, const char *field, double turn, double x, double y, double width,
-                        double height, const char *more) {
-  char text[2048];
-  snprintf(text, sizeof text, HEAD LATTICE "&field parameter = 'E' %s /\n%s", turn, x, y, width,
-           height, field, more);
+/* Of a law whose E differs; fields stay NULL after an error, which is in run.said. */
+static void sample_read(sample *s, const char *text, pl_law law) {
   memset(s, 0, sizeof *s);
-  pl_law law = elastic_bar;
   law.varying = varying_E;
   law.varying_count = 1;
   small_run *r = &s->run;
@@ -294,11 +291,20 @@ static void sample_open(sample *s, const char *field, double turn, double x, dou
   assert_true(material_parameters(&r->deck->materials[0], &law, r->parameters, &r->said));
   s->lattice = lattice_build(r->deck, 0, &r->said);
   s->bonds = rows_bonds(s->lattice);
-  s->fields = random_fields_new(r->deck, 0, s->lattice, &law, r->parameters, &r->said);
+  s->fields = parameter_planes_new(r->deck, 0, s->lattice, &law, r->parameters, NULL, 0, &r->said);
+}
+
+/* A body with a field of E. */
+static void sample_open(sample *s, const char *field, double turn, double x, double y, double width,
+                        double height, const char *more) {
+  char text[2048];
+  snprintf(text, sizeof text, HEAD LATTICE "&field parameter = 'E' %s /\n%s", turn, x, y, width,
+           height, field, more);
+  sample_read(s, text, elastic_bar);
 }
 
 static void sample_close(sample *s) {
-  random_fields_free(s->fields);
+  parameter_planes_free(s->fields);
   free(s->bonds);
   if (s->lattice) rows_free(s->lattice);
   diag_clear(&s->run.said);
@@ -456,6 +462,146 @@ static void correlated_fields_are_smooth(void **state) {
   assert_true(fabs(mean - 1) < standard_errors * spread && spread < 0.1);
 }
 
+/* --- laws of families ---
+
+   A `law state` has its values on particles, a law of bonds as one of families on bonds, at both
+   ends: on any lattice and on none. */
+
+#define SQUARE                                                                                     \
+  "&lattice name = 'c' kind = 'square' spacing = 0.01 thickness = 0.1 horizon = 1.5 /\n"           \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n"
+#define FCC                                                                                        \
+  "&lattice name = 'c' kind = 'fcc' spacing = 0.01 shells = 2 /\n"                                 \
+  "&body lattice = 'c' shape = 'box' corner = 3*0 size = 3*0.2 /\n"
+#define NOISE                                                                                      \
+  "&lattice name = 'c' kind = 'blue_noise' spacing = 0.01 thickness = 0.1 /\n"                     \
+  "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 1, 1 /\n"
+
+static void write_table(const char *path, const char *text) {
+  FILE *out = fopen(path, "w");
+  assert_non_null(out);
+  fputs(text, out);
+  assert_int_equal(fclose(out), 0);
+}
+
+static void family_open(sample *s, const char *lattice, const char *field, bool pairwise) {
+  char text[2048];
+  snprintf(text, sizeof text, HEAD "%s&field parameter = 'E' %s /\n", lattice, field);
+  pl_law law = elastic_bar;
+  law.kind = PL_STATE;
+  law.pairwise = pairwise;
+  law.varying_place = pairwise ? PL_ON_BOND : PL_ON_PARTICLE;
+  sample_read(s, text, law);
+}
+
+static void particles_follow_the_distribution(void **state) {
+  (void)state;
+  static const char *const lattices[] = {SQUARE, FCC, NOISE};
+  static const char *const names[] = {"square", "fcc", "blue noise"};
+  for (int l = 0; l < 3; l++) {
+    sample s;
+    family_open(&s, lattices[l], "distribution = 'lognormal' cv = 0.2", false);
+    must_be_good(&s);
+    const long n = s.lattice->particle_count;
+    double *values = must_calloc((size_t)n, sizeof *values);
+    for (long p = 0; p < n; p++)
+      values[p] = s.fields->value[0][s.lattice->particle_site[p]];
+    for (long q = 0; q < s.lattice->size; q++) /* where no particle is, too */
+      assert_true(s.fields->value[0][q] > 0);
+    check_values(names[l], values, n, 30e9, 0.2, lognormal_E_below);
+    free(values);
+    sample_close(&s);
+  }
+}
+
+static void bonds_of_families_have_one_value_at_both_ends(void **state) {
+  (void)state;
+  static const char *const lattices[] = {SQUARE, FCC, NOISE};
+  static const char *const names[] = {"square", "fcc", "blue noise"};
+  for (int l = 0; l < 3; l++) {
+    sample s;
+    family_open(&s, lattices[l], "distribution = 'lognormal' cv = 0.2", true);
+    must_be_good(&s);
+    const rows *w = s.lattice;
+    double *values = must_calloc((size_t)w->bond_count, sizeof *values);
+    for (long m = 0; m < w->bond_count; m++) {
+      const long back = s.bonds[m].slot / w->size + w->directions;
+      values[m] = value_at(&s, m);
+      assert_true(values[m] == s.fields->value[0][back * w->size + w->particle_site[s.bonds[m].j]]);
+    }
+    check_values(names[l], values, w->bond_count, 30e9, 0.2, lognormal_E_below);
+    free(values);
+    sample_close(&s);
+  }
+}
+
+/* Particles on no lattice in another order, and fewer of them, have the values of their places. */
+static void values_belong_to_places_without_lattice(void **state) {
+  (void)state;
+  sample large, small;
+  static const char field[] = "on = 'particle' distribution = 'weibull' cv = 0.3";
+  enum { POINTS = 400 };
+  char all[64 + 40 * POINTS], half[64 + 40 * POINTS];
+  size_t a = 0, h = 0;
+  a += (size_t)snprintf(all, sizeof all, "x, y, volume\n");
+  h += (size_t)snprintf(half, sizeof half, "x, y, volume\n");
+  for (int k = 0; k < POINTS; k++) {
+    const double x = 0.01 * (k % 20) + 1e-3 * sin(3.0 * k), y = 0.01 * (k / 20);
+    a += (size_t)snprintf(all + a, sizeof all - a, "%.9f, %.9f, 1e-5\n", x, y);
+  }
+  for (int k = POINTS - 1; k >= POINTS / 2; k--) {
+    const double x = 0.01 * (k % 20) + 1e-3 * sin(3.0 * k), y = 0.01 * (k / 20);
+    h += (size_t)snprintf(half + h, sizeof half - h, "%.9f, %.9f, 1e-5\n", x, y);
+  }
+  write_table("all_places.csv", all);
+  write_table("half_places.csv", half);
+  family_open(&large,
+              "&lattice name = 'c' kind = 'particles' file = 'all_places.csv' thickness = 0.1 /\n",
+              field, false);
+  family_open(&small,
+              "&lattice name = 'c' kind = 'particles' file = 'half_places.csv' thickness = 0.1 /\n",
+              field, false);
+  must_be_good(&large);
+  must_be_good(&small);
+  for (long p = 0; p < small.lattice->particle_count; p++) {
+    const long other = POINTS - 1 - p;
+    assert_true(small.fields->value[0][small.lattice->particle_site[p]] ==
+                large.fields->value[0][large.lattice->particle_site[other]]);
+  }
+  sample_close(&large);
+  sample_close(&small);
+  unlink("all_places.csv");
+  unlink("half_places.csv");
+}
+
+static void families_have_no_values_on_bonds(void **state) {
+  (void)state;
+  sample s;
+  family_open(&s, SQUARE, "on = 'bond' distribution = 'normal' cv = 0.1", false);
+  assert_null(s.fields);
+  assert_true(s.run.said.items[0].code == DIAG_NOT_SUPPORTED &&
+              strstr(s.run.said.items[0].message, "have values on particles"));
+  sample_close(&s);
+}
+
+static void clipped_values_stand_at_both_ends(void **state) {
+  (void)state;
+  sample s;
+  family_open(&s, SQUARE, "distribution = 'normal' cv = 0.8 clip = .true.", true);
+  must_be_good(&s);
+  const rows *w = s.lattice;
+  long clipped = 0;
+  for (long m = 0; m < w->bond_count; m++) {
+    const long back = s.bonds[m].slot / w->size + w->directions;
+    assert_true(value_at(&s, m) > 0);
+    assert_true(value_at(&s, m) ==
+                s.fields->value[0][back * w->size + w->particle_site[s.bonds[m].j]]);
+    clipped += value_at(&s, m) < 1e5;
+  }
+  assert_true(clipped > w->bond_count / 20 && clipped < w->bond_count / 5);
+  sample_close(&s);
+}
+
 /* --- what is not allowed --- */
 
 /* The quantile of the waves at the middle of the bond. */
@@ -541,7 +687,7 @@ static void a_kernel_without_the_parameter_is_refused(void **state) {
                   "&field parameter = 'E' distribution = 'normal' cv = 0.1 /\n");
   assert_null(r.simulation);
   assert_int_equal(r.said.items[0].code, DIAG_NOT_SUPPORTED);
-  assert_non_null(strstr(r.said.items[0].message, "the same in all bonds"));
+  assert_non_null(strstr(r.said.items[0].message, "the same everywhere"));
   small_close(&r);
 }
 
@@ -560,6 +706,11 @@ int main(void) {
       cmocka_unit_test(a_bond_has_the_value_of_its_middle),
       cmocka_unit_test(forbidden_values_are_told_with_their_place),
       cmocka_unit_test(clipping_moves_values_to_the_bound),
+      cmocka_unit_test(particles_follow_the_distribution),
+      cmocka_unit_test(bonds_of_families_have_one_value_at_both_ends),
+      cmocka_unit_test(values_belong_to_places_without_lattice),
+      cmocka_unit_test(families_have_no_values_on_bonds),
+      cmocka_unit_test(clipped_values_stand_at_both_ends),
       cmocka_unit_test(a_kernel_without_the_parameter_is_refused),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

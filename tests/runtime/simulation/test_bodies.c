@@ -42,7 +42,7 @@ static void open_all(together *t, const char *text, const pl_law *const *of) {
   t->deck = deck_read(t->memory, &t->sources, file, NULL, 0, &t->said);
   for (int b = 0; t->deck && b < t->deck->lattice_count; b++) {
     assert_true(material_parameters(&t->deck->materials[b], of[b], t->parameters[b], &t->said));
-    t->law[b] = (simulation_law){of[b], t->parameters[b]};
+    t->law[b] = (simulation_law){.law = of[b], .parameters = t->parameters[b]};
   }
   if (t->deck) t->simulation = simulation_new(t->deck, t->law, &t->said);
 }

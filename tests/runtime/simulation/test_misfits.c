@@ -49,6 +49,9 @@ static const misfit misfits[] = {
      "greater than 0 and at most 1"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'stress' at = 0.12, 0 component = 'xx' /\n",
      DIAG_EMPTY_REGION, "no particle stands within a spacing of `at`"},
+    {RUN LAW BLOCK USE "&body lattice = 'c' shape = 'point' at = 0.11, 0 /\n"
+                       "&monitor name = 'n' kind = 'strain' at = 0.11, 0 component = 'xx' /\n",
+     DIAG_EMPTY_REGION, "there is no strain: the bonds of each particle lie on a line"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'force' at = 0.12, 0 normal = 1, 0 /\n",
      DIAG_EMPTY_REGION, "no bond crosses this section"},
     {RUN LAW BLOCK USE "&monitor name = 'n' kind = 'force' at = 0.05, 0 normal = 1, 0 "
@@ -109,7 +112,8 @@ static void misfits_are_told_at_their_line(void **state) {
 /* The caret stands under the word that is wrong; the hint lists what this law can store. */
 static void an_unknown_field_is_answered_with_the_known_ones(void **state) {
   (void)state;
-  static const char text[] = RUN LAW BLOCK USE "&output fields = 'damage', 'toughness', 'energy' /\n";
+  static const char text[] =
+      RUN LAW BLOCK USE "&output fields = 'damage', 'toughness', 'energy' /\n";
   small_run r;
   small_open(&r, &elastic_bar, text);
   assert_null(r.simulation);

@@ -81,6 +81,24 @@ static void momentum_is_what_forces_have_given(void **state) {
   small_close(&r);
 }
 
+/* In the monitor's own unit. */
+static void a_stop_looks_at_them(void **state) {
+  (void)state;
+  small_run r;
+  must_open(&r, &elastic_beam,
+            "&simulation end_time = 2e-4 /\n" BLOCK
+            "&force region = 'left' component = 'x' total = 300 /\n"
+            "&monitor name = 'p' kind = 'momentum' component = 'x' /\n"
+            "&monitor name = 'a' kind = 'acceleration' component = 'rotation' region = 'left' /\n"
+            "&stop monitor = 'p' above = '0.0265 N*s' /\n"
+            "&stop monitor = 'a' above = '1e30 rad/s^2' /\n"
+            "&output frames = 0 sample = 1e-5 /\n");
+  assert_int_equal(small_go(&r), STEP_STOPPED);
+  assert_true(fabs(small_last(&r, "p") - 0.027) < 3e-4);
+  assert_unit(&r, "a", "rad/s^2");
+  small_close(&r);
+}
+
 /* A free body that turns and vibrates: about any place, with what its particles turn by
    themselves. Steps conserve it exactly. */
 static void angular_momentum_stays(void **state) {
@@ -269,6 +287,7 @@ static void the_tip_is_the_furthest_damaged_bond(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(momentum_is_what_forces_have_given),
+      cmocka_unit_test(a_stop_looks_at_them),
       cmocka_unit_test(angular_momentum_stays),
       cmocka_unit_test(accelerations_are_of_the_second_order),
       cmocka_unit_test(a_free_body_falls_as_gravity_says),

@@ -1,0 +1,61 @@
+#include "runtime/deck/deck_formula.h"
+
+#include <ctype.h>
+#include <string.h>
+
+#include "runtime/deck/deck_value.h"
+#include "runtime/deck/time_function.h"
+
+static const formula_variable variables[FORMULA_VARIABLES] = {[FORMULA_X] = {"x", "m"},
+                                                              [FORMULA_Y] = {"y", "m"},
+                                                              [FORMULA_Z] = {"z", "m"},
+                                                              [FORMULA_T] = {"t", "s"}};
+static const formula_variable time_alone[FORMULA_VARIABLES] = {
+    {"", "m"}, {"", "m"}, {"", "m"}, [FORMULA_T] = {"t", "s"}};
+
+const formula_scope deck_formula_of_all = {variables, FORMULA_VARIABLES, "x, y, z (m) and t (s)"};
+const formula_scope deck_formula_of_place = {variables, FORMULA_T, "x, y, z (m) here"};
+const formula_scope deck_formula_of_time = {time_alone, FORMULA_VARIABLES, "t (s) here"};
+
+static bool is_word(const char *text) {
+  size_t length = 0;
+  while (isalnum((unsigned char)text[length]) || text[length] == '_')
+    length++;
+  return text[length] == 0;
+}
+
+/* Behind the number of a quantity stands nothing or a unit: a letter, or `%`, or `1/s`. */
+bool deck_is_formula(const namelist_value *v) {
+  if (v->kind != NAMELIST_TEXT) return false;
+  const char *p = v->text + strspn(v->text, " \t");
+  double ignored;
+  const size_t number = namelist_number(p, strlen(p), &ignored);
+  if (number == 0) return !is_word(p);
+  const char *rest = p + number + strspn(p + number, " \t");
+  return *rest && !isalnum((unsigned char)*rest) && *rest != '%' &&
+         (unsigned char)*rest < 0x80; /* of other letters units are told to be unknown */
+}
+
+const formula *deck_formula_read(arena *a, const namelist_value *v, const char *key,
+                                 const formula_scope *scope, const char *unit_text,
+                                 diagnostics *d) {
+  const bool text = v->kind == NAMELIST_TEXT;
+  const uint32_t written = v->text_where.end - v->text_where.begin;
+  if (text && v->text[strspn(v->text, " \t")] && !strpbrk(v->text, "!\n\r&") &&
+      written == strlen(v->text))
+    return formula_read(a, d->sources, v->text_where, scope, unit_text,
+                        arena_printf(a, "`%s`", key), d);
+  diag_report(d, DIAG_BAD_VALUE, v->where, "`%s` is one expression in quotes", key);
+  diag_hint(d, "for example %s = '2 [mm]*sin(x/10 [mm])'", key);
+  return NULL;
+}
+
+bool deck_placed_read(arena *a, const namelist_key *key, const char *unit_text, deck_placed *p,
+                      diagnostics *d) {
+  *p = (deck_placed){0};
+  if (!deck_values_counted(key, 1, d)) return false;
+  const namelist_value *v = &key->values[0];
+  if (!deck_is_formula(v)) return deck_real_read(v, key->name, unit_text, BOUND_NONE, &p->value, d);
+  p->formula = deck_formula_read(a, v, key->name, &deck_formula_of_place, unit_text, d);
+  return p->formula != NULL;
+}

@@ -1,0 +1,501 @@
+#include "runtime/lattice/parameter_planes.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+#include "dsl/base/arena.h"
+#include "dsl/base/elementary.h"
+#include "runtime/lattice/random_field.h"
+#include "runtime/lattice/rows_select.h"
+
+/* --- places of values ------------------------------------------------------------------------- */
+
+/* Where the law reads values. */
+typedef struct value_places {
+  const rows *rows;
+  const pl_law *law;
+  rows_bond *bonds; /* NULL: on particles */
+  long count;       /* particles or bonds */
+} value_places;
+
+/* A particle (partner < 0), or a bond from its owner to the partner, whose value stands at the owner
+   and in laws of families at the other end, too (`back`; else < 0). */
+typedef struct value_place {
+  int64_t site, partner, at, back;
+  int direction;
+} value_place;
+
+static bool on_particles(const value_places *p) {
+  return p->bonds == NULL;
+}
+
+static value_places places_new(const rows *w, const pl_law *law) {
+  const bool particles = law->varying_place == PL_ON_PARTICLE;
+  return (value_places){.rows = w,
+                        .law = law,
+                        .bonds = particles ? NULL : rows_bonds(w),
+                        .count = particles ? w->particle_count : w->bond_count};
+}
+
+static value_place place_of(const value_places *p, long m) {
+  const rows *w = p->rows;
+  if (on_particles(p)) {
+    const int64_t site = w->particle_site[m];
+    return (value_place){.site = site, .partner = -1, .at = site, .back = -1};
+  }
+  const rows_bond *b = &p->bonds[m];
+  const int direction = (int)(b->slot / w->size);
+  const int64_t partner = w->particle_site[b->j];
+  const bool both = p->law->kind == PL_STATE;
+  return (value_place){.site = w->particle_site[b->i],
+                       .partner = partner,
+                       .at = b->slot,
+                       .back = both ? (direction + w->directions) * w->size + partner : -1,
+                       .direction = direction};
+}
+
+/* Site arrays of a plane. */
+static long planes_of(const value_places *p) {
+  if (on_particles(p)) return 1;
+  return p->law->kind == PL_STATE ? 2 * p->rows->directions : p->rows->directions;
+}
+
+static void put(double *plane, const value_place *at, double value) {
+  plane[at->at] = value;
+  if (at->back >= 0) plane[at->back] = value;
+}
+
+/* --- random fields ---------------------------------------------------------------------------- */
+
+typedef struct field_source {
+  const deck_field *field; /* NULL: the values of regions */
+  const rows *rows;
+  random_distribution distribution;
+  uint64_t seed;
+  random_waves *waves; /* NULL without correlation */
+  bool of_particles;   /* a bond has the mean of its ends */
+} field_source;
+
+/* The number that belongs to a site and a direction, from the site's place in the infinite lattice:
+   the row and layer it is in, and its column along the lattice vectors. */
+static double normal_of(const field_source *s, int64_t site, int direction) {
+  const bravais *b = &s->rows->infinite;
+  double at[3], number[3];
+  rows_place(s->rows, site, at);
+  if (s->rows->list) return random_normal_of_place(s->seed, at);
+  bravais_coordinates(b, at, number);
+  const int64_t row = llround(number[1]), layer = llround(number[2]);
+  const int64_t halves = b->shift_by[0] * row + b->shift_by[1] * layer;
+  const int64_t column = llround(number[0] - 0.5 * (double)halves);
+  return random_normal_of_site(s->seed, column, row, layer, direction);
+}
+
+static double field_of_particle(const field_source *s, int64_t site) {
+  double at[3];
+  rows_place(s->rows, site, at);
+  return random_quantile(&s->distribution,
+                         s->waves ? random_waves_at(s->waves, at) : normal_of(s, site, -1));
+}
+
+static double normal_of_bond(const field_source *s, const value_place *b) {
+  double at[3], end[3];
+  rows_place(s->rows, b->site, at);
+  rows_place(s->rows, b->partner, end);
+  if (!s->waves && s->rows->list) return random_normal_between(s->seed, at, end);
+  if (!s->waves) return normal_of(s, b->site, b->direction);
+  for (int c = 0; c < 3; c++)
+    at[c] = 0.5 * (at[c] + end[c]);
+  return random_waves_at(s->waves, at);
+}
+
+static double field_value(const field_source *s, const value_place *at) {
+  if (at->partner < 0) return field_of_particle(s, at->site);
+  if (s->of_particles)
+    return 0.5 * (field_of_particle(s, at->site) + field_of_particle(s, at->partner));
+  return random_quantile(&s->distribution, normal_of_bond(s, at));
+}
+
+static bool fits(const deck_field *f, const deck_number *n, const char *key, const pl_parameter *p,
+                 diagnostics *d) {
+  const char *bad;
+  size_t bad_length;
+  unit wanted = {.dim = DIMENSIONLESS, .factor = 1};
+  if (p->unit && *p->unit) (void)unit_parse(p->unit, strlen(p->unit), &wanted, &bad, &bad_length);
+  if (!n->given || !n->has_unit || dim_equal(n->dim, wanted.dim)) return true;
+  char given[80], needed[80];
+  dim_describe(n->dim, given, sizeof given);
+  dim_describe(wanted.dim, needed, sizeof needed);
+  diag_report(d, DIAG_UNITS, deck_where(&f->item, key),
+              "`%s` of a field of `%s` needs %s, this is %s", key, p->name, needed, given);
+  return false;
+}
+
+static bool units_fit(const deck_field *f, const pl_parameter *p, diagnostics *d) {
+  const bool mean = fits(f, &f->mean, "mean", p, d), low = fits(f, &f->low, "low", p, d);
+  const bool high = fits(f, &f->high, "high", p, d), scale = fits(f, &f->scale, "scale", p, d);
+  return mean && low && high && scale;
+}
+
+static bool place_fits(const deck_field *f, const value_places *p, diagnostics *d) {
+  if (!on_particles(p) || f->on != FIELD_ON_BONDS) return true;
+  diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "on"),
+              "the law `%s` reads whole families: its parameters have values on particles",
+              p->law->name);
+  diag_hint(d, "leave `on` away, or write on = 'particle'");
+  return false;
+}
+
+static bool open_source(const deck_field *f, const value_places *places, const pl_parameter *p,
+                        double *own, field_source *s, diagnostics *d) {
+  char error[128];
+  if (!units_fit(f, p, d) || !place_fits(f, places, d)) return false;
+  *s = (field_source){.field = f,
+                      .rows = places->rows,
+                      .seed = random_seed_of(f),
+                      .of_particles = f->on == FIELD_ON_PARTICLES};
+  if (!random_distribution_of(f, *own, &s->distribution, error, sizeof error)) {
+    diag_report(d, DIAG_BAD_VALUE, f->item.where, "%s", error);
+    return false;
+  }
+  *own = random_distribution_mean(&s->distribution);
+  if (f->correlation_length > 0) s->waves = random_waves_new(s->seed, f->correlation_length);
+  return true;
+}
+
+/* --- where values come from ------------------------------------------------------------------- */
+
+typedef struct value_sources {
+  const value_places *places;
+  const double *parameters;
+  field_source *field; /* [varying] */
+  const regional_values *regional;
+  int *region_of; /* [size] number in `regional`, or -1: the material without region; NULL */
+} value_sources;
+
+/* Position of a parameter in law->varying, or -1 after a message. */
+static int find_plane(const pl_law *law, const char *name, span where, diagnostics *d) {
+  for (int k = 0; k < law->varying_count; k++)
+    if (strcasecmp(law->parameters[law->varying[k]].name, name) == 0) return k;
+  diag_report(d, DIAG_NOT_SUPPORTED, where,
+              "the kernel of `%s` was made for a `%s` that is the same everywhere", law->name,
+              name);
+  diag_hint(d, "use `perilat run`, or build the solver from this deck again");
+  return -1;
+}
+
+static bool open_fields(const deck *k, int lattice, double *parameters, value_sources *s,
+                        diagnostics *d) {
+  const pl_law *law = s->places->law;
+  bool good = true;
+  for (int i = 0; i < k->field_count; i++) {
+    const deck_field *f = &k->fields[i];
+    if (strcmp(f->lattice, k->lattices[lattice].name) != 0) continue;
+    const int plane = find_plane(law, f->parameter, deck_where(&f->item, "parameter"), d);
+    if (plane < 0) {
+      good = false;
+      continue;
+    }
+    const int p = law->varying[plane];
+    good =
+        open_source(f, s->places, &law->parameters[p], &parameters[p], &s->field[plane], d) && good;
+  }
+  return good;
+}
+
+static bool report_two_materials(const value_sources *s, const regional_values *first,
+                                 const regional_values *second, int64_t site, diagnostics *d) {
+  double at[3];
+  char text[ROWS_PLACE_TEXT];
+  rows_place(s->places->rows, site, at);
+  diag_report(d, DIAG_CONFLICT, deck_where(&second->material->item, "region"),
+              "the particle at %s has two materials: it is in the region `%s`, too",
+              rows_place_text(s->places->rows->dimensions, at, text), first->material->region);
+  diag_note(d, deck_where(&first->material->item, "region"), "its first material is given here");
+  diag_hint(d, "give the regions shapes that have no particle in common");
+  return false;
+}
+
+/* Fills region_of; false after a message. */
+static bool take_region(const deck *k, int number, value_sources *s, diagnostics *d) {
+  const rows *w = s->places->rows;
+  const regional_values *v = &s->regional[number];
+  const int region = deck_find_region(k, v->material->region);
+  int32_t *particles;
+  const long count = rows_select(w, &k->regions[region].shape, &particles);
+  bool good = true;
+  for (long n = 0; n < count && good; n++) {
+    int *own = &s->region_of[w->particle_site[particles[n]]];
+    if (*own >= 0)
+      good = report_two_materials(s, &s->regional[*own], v, w->particle_site[particles[n]], d);
+    *own = number;
+  }
+  free(particles);
+  return good;
+}
+
+/* What differs must differ in the kernel, too. */
+static bool region_fits(const value_sources *s, const regional_values *v, diagnostics *d) {
+  const pl_law *law = s->places->law;
+  for (int p = 0; p < law->parameter_count; p++) {
+    const double own = v->parameters[p], other = s->parameters[p];
+    if (own == other) continue;
+    const char *name = law->parameters[p].name;
+    const int plane = find_plane(law, name, v->material->item.where, d);
+    if (plane < 0) return false;
+    if (!s->field[plane].field) continue;
+    diag_report(d, DIAG_CONFLICT, s->field[plane].field->item.where,
+                "`%s` differs at random, and the material of the region `%s` gives it a value",
+                name, v->material->region);
+    diag_hint(d, "one of both: a &field of the whole lattice, or values by region");
+    return false;
+  }
+  return true;
+}
+
+static bool open_regions(const deck *k, int count, value_sources *s, diagnostics *d) {
+  bool good = true;
+  if (count == 0) return true;
+  s->region_of = must_calloc((size_t)s->places->rows->size, sizeof *s->region_of);
+  for (long q = 0; q < s->places->rows->size; q++)
+    s->region_of[q] = -1;
+  for (int n = 0; n < count; n++)
+    good = region_fits(s, &s->regional[n], d) && take_region(k, n, s, d) && good;
+  return good;
+}
+
+static double value_of_region(const value_sources *s, int parameter, int64_t site) {
+  const int region = s->region_of ? s->region_of[site] : -1;
+  return (region < 0 ? s->parameters : s->regional[region].parameters)[parameter];
+}
+
+static double value_of(const value_sources *s, int plane, const value_place *at) {
+  const int parameter = s->places->law->varying[plane];
+  if (s->field[plane].field) return field_value(&s->field[plane], at);
+  const double mine = value_of_region(s, parameter, at->site);
+  return at->partner < 0 ? mine : 0.5 * (mine + value_of_region(s, parameter, at->partner));
+}
+
+static void fill_plane(const value_sources *s, int plane, double *values) {
+  const value_places *p = s->places;
+  const double mean = s->parameters[p->law->varying[plane]];
+  for (long q = 0; q < planes_of(p) * p->rows->size; q++)
+    values[q] = mean;
+#pragma omp parallel for schedule(static)
+  for (long m = 0; m < p->count; m++) {
+    const value_place at = place_of(p, m);
+    put(values, &at, value_of(s, plane, &at));
+  }
+}
+
+/* --- what the law allows ---------------------------------------------------------------------- */
+
+typedef struct bounds_of {
+  double *values, *lower, *upper; /* [parameters] */
+  unsigned char *low_open, *high_open;
+} bounds_of;
+
+static bounds_of bounds_new(const pl_law *law, const double *parameters) {
+  const size_t n = (size_t)law->parameter_count + 1;
+  bounds_of b = {must_calloc(n, sizeof(double)), must_calloc(n, sizeof(double)),
+                 must_calloc(n, sizeof(double)), must_calloc(n, 1), must_calloc(n, 1)};
+  memcpy(b.values, parameters, (n - 1) * sizeof(double));
+  return b;
+}
+
+static void bounds_free(bounds_of *b) {
+  free(b->values);
+  free(b->lower);
+  free(b->upper);
+  free(b->low_open);
+  free(b->high_open);
+}
+
+static bool is_allowed(const bounds_of *b, int p) {
+  const double v = b->values[p];
+  return isfinite(v) && (b->low_open[p] ? v > b->lower[p] : v >= b->lower[p]) &&
+         (b->high_open[p] ? v < b->upper[p] : v <= b->upper[p]);
+}
+
+/* The nearest allowed value; a millionth inside an end that does not belong to the range. */
+static double clipped(const bounds_of *b, int p, double mean) {
+  const double step = 1e-6 * fabs(mean), v = b->values[p];
+  const double low = b->lower[p] + (b->low_open[p] ? step : 0),
+               high = b->upper[p] - (b->high_open[p] ? step : 0);
+  return v < low ? low : v > high ? high : v;
+}
+
+/* First parameter out of its range at the values at hand, or -1. */
+static int first_fault(const pl_law *law, bounds_of *b) {
+  law->bounds(law, b->values, b->lower, b->upper, b->low_open, b->high_open);
+  for (int p = 0; p < law->parameter_count; p++)
+    if (!is_allowed(b, p)) return p;
+  return -1;
+}
+
+static int plane_of(const pl_law *law, int parameter) {
+  for (int k = 0; k < law->varying_count; k++)
+    if (law->varying[k] == parameter) return k;
+  return -1;
+}
+
+/* "in the bond from (x, y) mm to (x, y) mm" */
+static void name_place(const value_places *p, const value_place *at, char *text, size_t size) {
+  const rows *w = p->rows;
+  char ends[2][ROWS_PLACE_TEXT];
+  double here[3];
+  rows_place(w, at->site, here);
+  rows_place_text(w->dimensions, here, ends[0]);
+  if (at->partner < 0) {
+    snprintf(text, size, "in the particle at %s", ends[0]);
+    return;
+  }
+  rows_place(w, at->partner, here);
+  snprintf(text, size, "in the bond from %s to %s", ends[0],
+           rows_place_text(w->dimensions, here, ends[1]));
+}
+
+/* The group of the deck that a value comes from; where it is of no plane, the first one. */
+static span where_of(const value_sources *s, int plane) {
+  for (int k = plane < 0 ? 0 : plane; k < s->places->law->varying_count; k++)
+    if (s->field[k].field) return s->field[k].field->item.where;
+  return s->regional[0].material->item.where;
+}
+
+static void report_fault(const value_sources *s, long number, const bounds_of *b, int fault,
+                         long count, diagnostics *d) {
+  const pl_law *law = s->places->law;
+  const char *in = law->parameters[fault].unit;
+  const bool pure = !in || !*in || strcmp(in, "1") == 0;
+  const value_place at = place_of(s->places, number);
+  const int plane = plane_of(law, fault);
+  char text[3 * ROWS_PLACE_TEXT];
+  name_place(s->places, &at, text, sizeof text);
+  diag_report(d, DIAG_OUT_OF_BOUNDS, where_of(s, plane),
+              "`%s` = %.6g%s%s %s is not in %c%.6g, %.6g%c, the range of the law `%s`; so are %ld "
+              "of %ld %s",
+              law->parameters[fault].name, b->values[fault], pure ? "" : " ", pure ? "" : in, text,
+              b->low_open[fault] ? '(' : '[', b->lower[fault], b->upper[fault],
+              b->high_open[fault] ? ')' : ']', law->name, count, s->places->count,
+              on_particles(s->places) ? "particles" : "bonds");
+  if (plane < 0 || s->field[plane].field)
+    diag_hint(d, "take a distribution that stays inside, a smaller `cv`, or clip = .true. for the "
+                 "nearest allowed value");
+}
+
+/* The same after clipping, where the deck wants it. */
+static int fault_left(parameter_planes *r, const value_sources *s, const value_place *at,
+                      bounds_of *b) {
+  const pl_law *law = s->places->law;
+  int fault = first_fault(law, b);
+  for (int tries = 0; fault >= 0 && tries < r->count; tries++) {
+    const int plane = plane_of(law, fault);
+    const deck_field *f = plane < 0 ? NULL : s->field[plane].field;
+    if (!f || !f->clip || isnan(b->values[fault])) break;
+    b->values[fault] = clipped(b, fault, s->parameters[fault]);
+    put(r->value[plane], at, b->values[fault]);
+    fault = first_fault(law, b);
+  }
+  return fault;
+}
+
+/* Clips where the deck wants it; false after a message when values stay out of the law's ranges. A
+   range may depend on other parameters: those of the same place. */
+static bool check_values(parameter_planes *r, const value_sources *s, diagnostics *d) {
+  const pl_law *law = s->places->law;
+  bounds_of b = bounds_new(law, s->parameters), first = bounds_new(law, s->parameters);
+  long faults = 0, first_place = -1;
+  int first_parameter = -1;
+  for (long m = 0; m < s->places->count; m++) {
+    const value_place at = place_of(s->places, m);
+    for (int k = 0; k < r->count; k++)
+      b.values[law->varying[k]] = r->value[k][at.at];
+    const int fault = fault_left(r, s, &at, &b);
+    if (fault < 0 || faults++ > 0) continue;
+    first_place = m;
+    first_parameter = fault;
+    memcpy(first.values, b.values, (size_t)law->parameter_count * sizeof(double));
+  }
+  if (faults) {
+    first_fault(law, &first);
+    report_fault(s, first_place, &first, first_parameter, faults, d);
+  }
+  bounds_free(&b);
+  bounds_free(&first);
+  return faults == 0;
+}
+
+/* --- the planes ------------------------------------------------------------------------------- */
+
+static void find_extremes(parameter_planes *r, const value_sources *s) {
+  const value_places *p = s->places;
+  for (int k = 0; k < r->count; k++) {
+    double low = INFINITY, high = -INFINITY;
+    for (long m = 0; m < p->count; m++) {
+      const double value = r->value[k][place_of(p, m).at];
+      low = pl_fmin(low, value);
+      high = pl_fmax(high, value);
+    }
+    r->smallest[k] = p->count ? low : s->parameters[p->law->varying[k]];
+    r->largest[k] = p->count ? high : s->parameters[p->law->varying[k]];
+  }
+}
+
+static double *new_plane(parameter_planes *r, const value_places *p) {
+  const size_t bytes = (size_t)planes_of(p) * (size_t)p->rows->size * sizeof(double);
+  r->bytes += bytes;
+  return must_align(PL_ALIGNMENT, bytes);
+}
+
+static parameter_planes *planes_new(const value_places *p) {
+  const size_t count = (size_t)p->law->varying_count + 1;
+  parameter_planes *r = must_calloc(1, sizeof *r);
+  r->count = p->law->varying_count;
+  r->value = must_calloc(count, sizeof *r->value);
+  r->smallest = must_calloc(count, sizeof *r->smallest);
+  r->largest = must_calloc(count, sizeof *r->largest);
+  r->random = must_calloc(count, sizeof *r->random);
+  return r;
+}
+
+static void sources_free(value_sources *s) {
+  for (int k = 0; k < s->places->law->varying_count; k++)
+    random_waves_free(s->field[k].waves);
+  free(s->field);
+  free(s->region_of);
+}
+
+parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d) {
+  value_places places = places_new(w, law);
+  value_sources s = {.places = &places, .parameters = parameters, .regional = regional};
+  parameter_planes *r = planes_new(&places);
+  s.field = must_calloc((size_t)r->count + 1, sizeof *s.field);
+  bool good = open_fields(k, lattice, parameters, &s, d);
+  good = open_regions(k, regional_count, &s, d) && good;
+  for (int n = 0; good && n < r->count; n++) {
+    r->random[n] = s.field[n].field != NULL;
+    r->value[n] = new_plane(r, &places);
+    fill_plane(&s, n, r->value[n]);
+  }
+  good = good && check_values(r, &s, d);
+  if (good) find_extremes(r, &s);
+  sources_free(&s);
+  free(places.bonds);
+  if (good) return r;
+  parameter_planes_free(r);
+  return NULL;
+}
+
+void parameter_planes_free(parameter_planes *p) {
+  if (!p) return;
+  for (int k = 0; k < p->count; k++)
+    free(p->value[k]);
+  free(p->value);
+  free(p->smallest);
+  free(p->largest);
+  free(p->random);
+  free(p);
+}

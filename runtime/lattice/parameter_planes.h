@@ -1,0 +1,37 @@
+/* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
+   particles for laws of families. They come from random fields (random_field.h), and from materials
+   of regions: a particle of the region has its values, a bond the mean of its ends'. */
+#ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
+#define PERILAT_RUNTIME_PARAMETER_PLANES_H
+
+#include "runtime/deck/deck.h"
+#include "runtime/kernel.h"
+#include "runtime/lattice/rows.h"
+
+/* What a &material with `region` says: values of all parameters of the law. */
+typedef struct regional_values {
+  const deck_material *material;
+  double *parameters; /* [law->parameter_count] SI */
+} regional_values;
+
+typedef struct parameter_planes {
+  int count; /* law->varying_count */
+  double *
+      *value; /* [count], aligned, as the sweep has them (sweep.h): on particles [size], on bonds
+                     [directions * size], of laws of families [2 directions * size]; the mean where
+                     there is no particle or bond */
+  double *smallest, *largest; /* [count] of the particles or bonds there are */
+  bool *random;               /* [count] by a random field, not by regions */
+  size_t bytes;
+} parameter_planes;
+
+/* Evaluates all that the deck says of the lattice. `parameters` are those of the material without
+   region; those with a random field become its mean. NULL with diagnostics: a wrong unit, values
+   that the law does not allow (with the place of the first), two materials for one particle, a
+   kernel that takes such a parameter as the same everywhere. */
+parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d);
+void parameter_planes_free(parameter_planes *p);
+
+#endif
