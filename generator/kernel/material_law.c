@@ -187,7 +187,7 @@ static bool suits_chain(const deck_material *m, const law *of, diagnostics *said
   diag_report(said, DIAG_CONFLICT, deck_where(&m->item, "model"), "the law `%s` %s", of->tree->name,
               families ? "reads whole families, but a chain has bonds along one line alone"
                        : "reads the thickness `t`, which a chain does not have");
-  diag_hint(said, "take a law of bonds that reads `area`, such as `bar`");
+  diag_hint(said, "take a law of bonds that reads `area`, such as `bar` or `beam`");
   return false;
 }
 

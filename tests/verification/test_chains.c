@@ -1,5 +1,5 @@
 /* Chains of particles, the axes of bars and beams, against closed forms: waves of a row of masses,
-   the time that a pulse takes and how it comes back. */
+   the time that a pulse takes and how it comes back, the deflection of a cantilever. */
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -160,11 +160,84 @@ static void a_pulse_comes_back_from_the_free_end(void **state) {
   deck_case_close(&k);
 }
 
+/* The bonds are beams of Euler and Bernoulli without loads between their ends: at the particles the
+   deflection is theory's, P x^2 (3 L - x)/(6 EI), however few there are. A deflection of 1e-6 L
+   shortens the beam by 1e-12 L. The run ends with 1e-9 of the reactions unbalanced, which count by
+   the softness of the whole against that of a bond, about n^3. */
+static void a_cantilever_bends_as_theory_says(void **state) {
+  (void)state;
+  const double I = 1e-9;
+  for (int bonds = 2; bonds <= 16; bonds *= 2) {
+    const double s = 0.32 / bonds, L = 0.32, P = 3e-6 * E * I / (L * L), angle = acos(-1) / 6;
+    char text[2000];
+    deck_case c;
+    snprintf(
+        text, sizeof text,
+        "&simulation end_time = 1 threads = 1 /\n&relaxation increments = 1 tolerance = 1e-9 /\n"
+        "&lattice name = 'l' kind = 'chain' spacing = %.17g area = %.17g rotation = 30 /\n"
+        "&material lattice = 'l' model = 'beam' E = %.17g I = %.17g rho = %.17g /\n"
+        "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = %.17g, 0.001 rotation = 30 "
+        "/\n"
+        "&region name = 'held' shape = 'point' at = 0, 0 /\n"
+        "&region name = 'end' shape = 'point' at = %.17g, %.17g /\n"
+        "&support region = 'held' fix = 'xy', 'rotation' /\n"
+        "&force region = 'end' component = 'x' total = %.17g /\n"
+        "&force region = 'end' component = 'y' total = %.17g /\n",
+        s, area, E, I, rho, L, L * cos(angle), L * sin(angle), -P * sin(angle), P * cos(angle));
+    assert_true(deck_case_text(&c, text));
+    assert_int_equal(deck_case_go(&c), STEP_END);
+    const rows *w = simulation_rows(c.simulation, 0);
+    const body *b = simulation_state(c.simulation, 0)->body;
+    const double end = P * L * L * L / (3 * E * I), turn = P * L * L / (2 * E * I);
+    double worst = 0;
+    assert_int_equal(w->particle_count, bonds + 1);
+    for (int p = 0; p <= bonds; p++) {
+      const long q = w->particle_site[p];
+      const double x = p * s,
+                   across = b->displacement[1][q] * cos(angle) - b->displacement[0][q] * sin(angle);
+      worst = fmax(worst, fabs(across - P * x * x * (3 * L - x) / (6 * E * I)) / end);
+      worst = fmax(worst, fabs(b->displacement[2][q] - P * x * (2 * L - x) / (2 * E * I)) / turn);
+    }
+    print_message("cantilever of %d bonds: deflections and rotations within %.1e of the end's\n",
+                  bonds, worst);
+    assert_true(worst < 1e-6);
+    deck_case_close(&c);
+  }
+}
+
+/* All particles turning alike against their bonds, omega^2 = 12 EI/(s theta) over I_p = m s^2/10,
+   rule where the beam is stout; the swing along it, omega = 2 c/s, where it is slender. */
+static void beams_have_the_stable_step_of_theory(void **state) {
+  (void)state;
+  for (int k = 0; k < 3; k++) {
+    const double I = k == 0 ? 1e-9 : k == 1 ? 5e-10 : 1e-11, m = rho * area * spacing;
+    const double turning = sqrt(120 * E * I / (m * pow(spacing, 3)));
+    const double along = 2 * sqrt(E / rho) / spacing;
+    char text[1000];
+    deck_case c;
+    step_limit step;
+    snprintf(text, sizeof text,
+             "&simulation end_time = 1 /\n"
+             "&lattice name = 'l' kind = 'chain' spacing = %.17g area = %.17g /\n"
+             "&material lattice = 'l' model = 'beam' E = %.17g I = %.17g rho = %.17g /\n"
+             "&body lattice = 'l' shape = 'rectangle' corner = 0, 0 size = 0.2, 0.001 /\n",
+             spacing, area, E, I, rho);
+    assert_true(deck_case_text(&c, text));
+    stability_limit(c.law.law, c.law.parameters, NULL, simulation_rows(c.simulation, 0), &step);
+    print_message("I = %g m^4: largest frequency %+.1e of theory's %.4g rad/s\n", I,
+                  step.omega_max / fmax(turning, along) - 1, fmax(turning, along));
+    assert_true(fabs(step.omega_max / fmax(turning, along) - 1) < 1e-6);
+    deck_case_close(&c);
+  }
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(a_bar_has_its_modulus_and_waves),
       cmocka_unit_test(waves_run_as_in_a_row_of_masses),
       cmocka_unit_test(a_pulse_comes_back_from_the_free_end),
+      cmocka_unit_test(a_cantilever_bends_as_theory_says),
+      cmocka_unit_test(beams_have_the_stable_step_of_theory),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
