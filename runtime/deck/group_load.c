@@ -371,7 +371,10 @@ static void check_initial(deck_reader *r, const namelist_group *from, deck_initi
   const int errors = r->d->errors;
   const bool good =
       deck_placed_read(r->memory, from, rotates ? unit_of_rotation : unit_text, &item->value, r->d);
-  item->value.component = item->component;
+  const int region = item->region ? deck_find_region(r->k, item->region) : -1;
+  item->value.component =
+      item->component - (rotates ? deck_dimensions_of_region(r, item->region) : 0);
+  item->value.lattice = region < 0 ? NULL : r->k->regions[region].lattice;
   if (good) return;
   const diagnostic *last = &r->d->items[r->d->count - 1];
   if (rotates && r->d->errors > errors && !last->hint) diag_hint(r->d, "%s", hint);
