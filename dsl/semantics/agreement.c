@@ -56,17 +56,22 @@ static bool is_bare_number(const expr *e) {
   return e->kind == EXPR_NUMBER && !e->unit_text;
 }
 
+const char *quoted(checker *ck, const expr *e, const char *otherwise) {
+  const char *text = written(ck, e, NULL);
+  return text ? arena_printf(ck->memory, "`%s`", text) : otherwise;
+}
+
 static void hint_unit(checker *ck, const expr *a, const expr *b, value va, value vb) {
   char text[128];
   const expr *bare = is_bare_number(a) ? a : is_bare_number(b) ? b : NULL;
   if (!bare) return;
   dim_unit(bare == a ? vb.dim : va.dim, text, sizeof(text));
-  diag_hint(ck->d, "give the number its unit: `%g [%s]`", bare->number, text);
-}
-
-const char *quoted(checker *ck, const expr *e, const char *otherwise) {
-  const char *text = written(ck, e, NULL);
-  return text ? arena_printf(ck->memory, "`%s`", text) : otherwise;
+  const expr *other = bare == a ? b : a;
+  if (ck->alone && other != bare) /* x/200, where x/200 [mm] is meant */
+    diag_hint(ck->d, "give the number its unit: `%g [%s]`, or divide %s by `1 [%s]`", bare->number,
+              text, quoted(ck, other, "the other one"), text);
+  else
+    diag_hint(ck->d, "give the number its unit: `%g [%s]`", bare->number, text);
 }
 
 value agree(checker *ck, span where, expr *a, value va, expr *b, value vb, const char *deed) {
