@@ -187,10 +187,14 @@ static bool is_identifier(const char *name) {
   return good;
 }
 
-static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
+bool deck_is_history_name(const char *name) {
   static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance"};
+  return deck_is_one_of(name, taken, (int)(sizeof taken / sizeof *taken));
+}
+
+static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
   span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, 4))
+  if (deck_is_history_name(item->name))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a monitor cannot be called `%s`: the result has a history of that name",
                 item->name);
@@ -400,9 +404,10 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   return "1";
 }
 
+/* Where nobody knows the lattice, it is in the plane. */
 static const char *unit_of(const deck_reader *r, const deck_monitor *m) {
-  return deck_monitor_unit(m,
-                           is_kind(m, ALONG_AXIS) && m->component == 2 && dimensions_of(r, m) != 3);
+  const int dimensions = dimensions_of(r, m) == 3 ? 3 : 2;
+  return deck_monitor_unit(m, is_kind(m, ALONG_AXIS) && m->component >= dimensions);
 }
 
 /* --- stops ------------------------------------------------------------------------------------ */
