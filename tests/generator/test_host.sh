@@ -82,6 +82,18 @@ compare cohesive 3e-3 f_t=2e6
 compare mplm_bilinear 5e-3 S_t=1e-4 # micropolar, with rate terms
 compare elastic_central -1e-3 E=2e10
 
+# Kernels made with a later header, whose records have more behind what this host knows, and with an earlier one, whose table
+# ends before the last member.
+perilat check FOLDER/models/cohesive.plm --dump=c >now.c
+sed 's/^} pl_\(law\|strip\|bond_class\|states\);$/  double appended[4];\n&/' now.c >later.c
+sed 's/^  const void \*context;.*//' now.c >earlier.c
+[ "$(diff now.c later.c | grep -c '^> .*appended')" = 4 ] && [ "$(diff now.c earlier.c | grep -c '^<')" = 1 ] || fail "the records"
+./host_c ./cohesive.so 3e-3 10 f_t=2e6 >expected
+for age in later earlier; do
+  eval "\"$compiler\" -std=gnu11 -O1 -fPIC -shared -ffp-contract=off $age.c -o $age.so -lm" || fail "the $age kernel"
+  ./host_c "./$age.so" 3e-3 10 f_t=2e6 | diff expected - || fail "the $age kernel says something else"
+done
+
 # What the host cannot do it says.
 refused() { ! "$@" >log 2>&1 || fail "not refused: $*"; }
 refused ./host_c ./law.so 1e-3 10 E=-1 && grep -q 'E = -1: out of bounds' log || fail "$(cat log)"
