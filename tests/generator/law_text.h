@@ -102,7 +102,11 @@ typedef struct tested_state {
 
 static inline void evaluate_law(const tested_law *t, tested_state *x, int with_tangent) {
   double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS];
+  static const char *const names[] = {"stretch", "stretch_rate", "theta_i", "theta_j", "length"};
   const double *in[] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
+  assert_int_equal(t->kernel->state_input_count, PL_STATE_INPUTS);
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
+    assert_string_equal(t->kernel->state_inputs[k].name, names[k]);
   const double *field[MOST_FIELDS];
   double *out[PL_TANGENTS], *new_field[MOST_FIELDS];
   for (int k = 0; k < MOST_FIELDS; k++) {

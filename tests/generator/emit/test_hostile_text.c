@@ -51,6 +51,12 @@ static void same_tables(const pl_law *a, const pl_law *b) {
     assert_string_equal(a->fields[k].doc ? a->fields[k].doc : "",
                         b->fields[k].doc ? b->fields[k].doc : "");
   }
+  assert_int_equal(a->size, b->size);
+  assert_int_equal(a->state_input_count, b->state_input_count);
+  for (int k = 0; k < a->state_input_count; k++) {
+    assert_string_equal(a->state_inputs[k].name, b->state_inputs[k].name);
+    assert_string_equal(a->state_inputs[k].unit, b->state_inputs[k].unit);
+  }
 }
 
 /* The compiled kernel answers as the interpreter: a name that means something to C would change
