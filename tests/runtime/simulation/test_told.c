@@ -92,6 +92,39 @@ static void strips_have_the_time_of_their_places(void **state) {
   assert_told(&law, &t);
 }
 
+/* Increments take many steps; the deck's time goes through them without a jump, to the end. */
+static void quasi_static_runs_tell_the_time_of_the_deck(void **state) {
+  (void)state;
+  told t = {.law = &elastic_bar};
+  pl_law law = elastic_bar;
+  law.context = &t;
+  law.prepare = told_prepare;
+  law.rows = told_rows;
+  law.rows_observe = told_observe;
+  small_run r;
+  small_open(
+      &r, &law,
+      "&simulation end_time = 1 threads = 1 /\n&relaxation increments = 4 tolerance = 1e-6 /\n"
+      "&lattice name = 'c' kind = 'hexagonal' spacing = 0.01 thickness = 0.1 /\n"
+      "&material lattice = 'c' model = 'm' /\n"
+      "&body lattice = 'c' shape = 'rectangle' corner = 0, 0 size = 0.1, 0.06 /\n"
+      "&output frames = 0 energy = .false. /\n");
+  small_print(&r);
+  assert_non_null(r.simulation);
+  double before = 0;
+  step_status status;
+  do {
+    t.calls = 0;
+    status = simulation_advance(r.simulation, 1, NULL);
+    if (!(t.first >= before && t.last >= t.first && t.last - before < 0.2))
+      fail_msg("from %g s to %g s, then %g s", before, t.first, t.last);
+    before = t.last;
+  } while (status == STEP_OK);
+  assert_int_equal(status, STEP_END);
+  assert_true(fabs(t.last - 1) < 1e-12);
+  small_close(&r);
+}
+
 static void families_have_the_time_of_their_places(void **state) {
   (void)state;
   static const pl_family_function step[] = {told_fields_pass, told_force_pass};
@@ -106,6 +139,7 @@ static void families_have_the_time_of_their_places(void **state) {
 int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(strips_have_the_time_of_their_places),
+      cmocka_unit_test(quasi_static_runs_tell_the_time_of_the_deck),
       cmocka_unit_test(families_have_the_time_of_their_places),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
