@@ -51,6 +51,13 @@ static void dynamic_runs_have_times(void **state) {
   assert_null(strstr(w->said, "increment"));
 }
 
+/* The first look at the clock is after 16 of 99 steps. */
+static void progress_is_what_is_done(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --set \"simulation.end_time='0.03 ms'\"", 0, "in 99 steps");
+  assert_non_null(strstr(w->said, " 16 %  t = 0.0048969 ms"));
+}
+
 /* --- what results tell of their runs ---------------------------------------------------------- */
 
 static void expect_ending(workplace *w, const char *name, const char *ended, int status) {
