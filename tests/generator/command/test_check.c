@@ -272,6 +272,11 @@ static void laws_have_the_section_that_they_read(void **state) {
   write_text(w, "chain.nml", chain);
   expect(w, "check chain.nml", 0, "along this chain E = 200 GPa");
   expect(w, "check chain.nml --set body.corner=0,0.001", 1, "the row of a chain goes through");
+  char watched[sizeof chain + 200];
+  snprintf(watched, sizeof watched,
+           "%s&monitor name = 'e' kind = 'strain' at = 0, 0 component = 'xx' /\n", chain);
+  write_text(w, "watched.nml", watched);
+  expect(w, "check watched.nml", 1, "hint: along a chain it is the `stress` over E");
   expect(w, "check chain.nml --set material.model=mplm_bilinear", 1,
          "reads the thickness `t`, which a chain does not have");
   expect(w, "check chain.nml --set material.model=lps", 1,
@@ -337,6 +342,9 @@ static void all_that_is_wrong_is_said_at_once(void **state) {
   shell(w, "sed 's/[&]body /\\&bodyy /' many.nml > body.nml");
   expect(w, "check body.nml", 1, "there is no group `&bodyy`");
   assert_string_equal(lines_named(w, "body.nml", text), "3 4 5 9");
+  shell(w, "sed '/[&]body/d' beam.nml > bodiless.nml");
+  expect(w, "check bodiless.nml", 1, "the lattice `concrete` has no `&body`");
+  assert_null(strstr(w->said, "empty-region"));
   expect(w, "check many.nml --set material.model=nope", 1, "there is no model `nope`");
   assert_string_equal(lines_named(w, "many.nml", text), "5 8 9 11");
   /* a law that breaks mechanics has no step to be unstable with */
