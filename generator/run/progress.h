@@ -1,5 +1,5 @@
 /* Progress of a long run: on a terminal one line, cut to its width, with the time left; a line
-   for every tenth otherwise. Writes to stderr. */
+   every tenth otherwise. Writes to stderr. */
 #ifndef PERILAT_GENERATOR_PROGRESS_H
 #define PERILAT_GENERATOR_PROGRESS_H
 

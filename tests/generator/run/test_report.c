@@ -234,9 +234,13 @@ static void what_sites_make_of_shapes(void **state) {
 int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
-      ONE(quasi_static_runs_count_increments), ONE(dynamic_runs_have_times),
-      ONE(results_tell_how_the_run_ended),     ONE(quantities_are_told_in_words),
-      ONE(maps_know_their_increment),          ONE(maps_of_space_have_axes),
+      ONE(quasi_static_runs_count_increments),
+      ONE(dynamic_runs_have_times),
+      ONE(progress_is_what_is_done),
+      ONE(results_tell_how_the_run_ended),
+      ONE(quantities_are_told_in_words),
+      ONE(maps_know_their_increment),
+      ONE(maps_of_space_have_axes),
       ONE(what_sites_make_of_shapes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
