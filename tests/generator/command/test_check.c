@@ -260,6 +260,18 @@ static void bonds_of_plane_strain_are_asked_for(void **state) {
   assert_null(strstr(w->said, "warning"));
 }
 
+/* Coefficients that are meant for other neighbours. */
+static void a_modulus_that_was_not_asked_for_is_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "space.nml",
+             "&simulation end_time = '1 ms' /\n"
+             "&lattice name = 'c' kind = 'fcc' spacing = '6 mm' shells = 2 /\n"
+             "&material lattice = 'c' model = 'mplm_space' E = '30 GPa' /\n"
+             "&body lattice = 'c' shape = 'box' corner = 0, 0, 0 size = 0.04, 0.04, 0.04 /\n");
+  expect(w, "check space.nml", 0, "on this lattice E = 30 GPa, nu = 0.2000");
+  expect(w, "check space.nml --set lattice.shells=1", 0, "GPa (E = 30 GPa was asked for), nu = ");
+}
+
 /* A chain has an area and no thickness, other lattices the other way round; families on a line
    resolve no strain. */
 static void laws_have_the_section_that_they_read(void **state) {
@@ -381,6 +393,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(verdicts_that_depend_on_values_say_so, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(commands_agree, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_modulus_that_was_not_asked_for_is_told, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(laws_have_the_section_that_they_read, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(bonds_of_plane_strain_are_asked_for, set_up_workplace,
