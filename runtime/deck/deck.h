@@ -179,6 +179,7 @@ typedef struct deck_placed {     /* a value that may differ from place to place 
   const char *column;            /* its column or field; NULL: the only one */
   const char *unit_text;         /* SI */
   int component;                 /* of a field of vectors */
+  const char *lattice;           /* of the region, whose values a result's are */
 } deck_placed;
 
 typedef struct deck_initial { /* of each particle of the region when the run begins */

@@ -315,6 +315,19 @@ static int lattice_material(const deck *k, const deck_material *m) {
   return fits ? whole : -1;
 }
 
+static const deck_assignment *density_of(const deck_material *m) {
+  for (int n = 0; n < m->assignment_count; n++)
+    if (strcasecmp(m->assignments[n].name, "rho") == 0) return &m->assignments[n];
+  return NULL;
+}
+
+/* The particles of a lattice have one density. */
+static void inherit_density(deck_material *m, const deck_material *whole) {
+  const deck_assignment *density = density_of(whole);
+  if (!density || density_of(m)) return;
+  m->assignments[m->assignment_count++] = *density; /* there is room: for `region` */
+}
+
 /* The lattice's material knows those of its regions. */
 static void link_regional(arena *a, deck *k) {
   for (int i = 0; i < k->material_count; i++) {
@@ -323,10 +336,11 @@ static void link_regional(arena *a, deck *k) {
     deck_material *of = (deck_material *)(uintptr_t)&k->materials[whole]; /* still being read */
     of->regional = arena_room(a, of->regional, of->regional_count, sizeof *of->regional);
     of->regional[of->regional_count++] = &k->materials[i];
+    inherit_density((deck_material *)(uintptr_t)&k->materials[i], of);
   }
 }
 
-/* Middle of the box that holds what a material is for; 0 where no shape says. */
+/* Middle of the box that holds what a material is for; NaN where no shape says. */
 static void find_middle(const deck *k, const deck_material *m, double middle[3]) {
   double lower[3] = {INFINITY, INFINITY, INFINITY}, upper[3] = {-INFINITY, -INFINITY, -INFINITY};
   const int region = m->region ? deck_find_region(k, m->region) : -1;
@@ -340,10 +354,11 @@ static void find_middle(const deck *k, const deck_material *m, double middle[3])
     }
   }
   for (int c = 0; c < 3; c++)
-    middle[c] = isfinite(lower[c] + upper[c]) ? 0.5 * (lower[c] + upper[c]) : 0;
+    middle[c] = isfinite(lower[c] + upper[c]) ? 0.5 * (lower[c] + upper[c]) : NAN;
 }
 
-/* What is asked of a parameter before there are particles, the middle answers. */
+/* What is asked of a parameter before there are particles, the middle answers; the particles
+   themselves are asked when they are known. */
 static void take_middles(deck_reader *r) {
   for (int i = 0; i < r->k->material_count; i++) {
     const deck_material *m = &r->k->materials[i];
@@ -351,13 +366,7 @@ static void take_middles(deck_reader *r) {
     find_middle(r->k, m, middle);
     for (int n = 0; n < m->assignment_count; n++) {
       deck_assignment *a = &m->assignments[n];
-      if (!a->formula) continue;
-      a->value = formula_value(a->formula, middle);
-      if (isfinite(a->value)) continue;
-      diag_report(r->d, DIAG_BAD_NUMBER, a->value_where,
-                  "this formula has no finite value in the middle, at x = %.6g m, y = %.6g m, z = "
-                  "%.6g m",
-                  middle[0], middle[1], middle[2]);
+      if (a->formula) a->value = formula_value(a->formula, middle);
     }
   }
 }

@@ -1,6 +1,7 @@
 #include "runtime/deck/deck_value.h"
 
 #include <assert.h>
+#include <ctype.h>
 #include <limits.h>
 #include <math.h>
 #include <string.h>
@@ -108,10 +109,24 @@ static span part(const namelist_value *v, const char *from, size_t length) {
   return (span){begin, begin + (uint32_t)length, v->where.file};
 }
 
+/* Something of x, y, z, t. */
+static bool looks_like_formula(const char *text) {
+  for (const char *p = text; *p; p++) {
+    const bool begins = p == text || !(isalnum((unsigned char)p[-1]) || p[-1] == '_');
+    const bool ends = !(isalnum((unsigned char)p[1]) || p[1] == '_');
+    if (begins && ends && strchr("xyzt", *p)) return true;
+  }
+  return false;
+}
+
 static bool report_unit(const namelist_value *v, const char *bad, size_t length, diagnostics *d) {
   diag_report(d, DIAG_UNKNOWN_UNIT, part(v, bad, length), "there is no unit `%.*s`",
               shown_length(bad, length), bad);
-  if (!unit_hint(d, bad, length))
+  if (looks_like_formula(v->text))
+    diag_hint(d,
+              "in a formula units stand in brackets, 100 [GPa]*(1 + x/1 [m]); that of a load goes "
+              "into `formula`");
+  else if (!unit_hint(d, bad, length))
     diag_hint(d, "a value in quotes is one number and its unit, e.g. '6.35 mm' or '1000 1/s'");
   return false;
 }

@@ -185,6 +185,22 @@ static bool lacks_component(deck_reader *r, const namelist_group *from, const ch
   return true;
 }
 
+/* What says it is the key, or the unit of the formula or file alone. */
+static void report_kind(deck_reader *r, const namelist_group *from, const char *given,
+                        const char *component, bool rotates) {
+  const namelist_key *key = namelist_find(from, given);
+  if (key) {
+    diag_report(r->d, DIAG_CONFLICT, key->name_where, "`%s` does not go with component = '%s'",
+                given, component);
+    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
+    return;
+  }
+  diag_report(r->d, DIAG_UNITS, source_of(from)->value_where,
+              rotates ? "a force along %s is in N, this is in N*m"
+                      : "a moment, component = '%s', is in N*m, this is in N",
+              component);
+}
+
 static void check_force(deck_reader *r, const namelist_group *from, void *into) {
   deck_force *item = into;
   static const deck_load_kind kinds[] = {{"total", "N", false, &deck_formula_of_all},
@@ -200,11 +216,8 @@ static void check_force(deck_reader *r, const namelist_group *from, void *into) 
   if (item->component < 0 || !deck_take_component(r, &item->item, item->region, &item->component))
     return;
   if (rotates != deck_is_rotation(r, item->region, item->component)) {
-    const namelist_key *key = namelist_find(from, kinds[kind].key);
-    diag_report(r->d, DIAG_CONFLICT, key ? key->name_where : source_of(from)->value_where,
-                "%s%s%s does not go with component = '%s'", key ? "`" : "a ", kinds[kind].key,
-                key ? "`" : "", deck_component_of(r, item->region, item->component));
-    diag_hint(r->d, "write `%s`", rotates ? "total" : "moment");
+    report_kind(r, from, kinds[kind].key, deck_component_of(r, item->region, item->component),
+                rotates);
     return;
   }
   if (!deck_load_read(r->memory, from, &kinds[kind], &item->force, r->d)) return;
@@ -374,7 +387,10 @@ static void check_initial(deck_reader *r, const namelist_group *from, deck_initi
   const int errors = r->d->errors;
   const bool good =
       deck_placed_read(r->memory, from, rotates ? unit_of_rotation : unit_text, &item->value, r->d);
-  item->value.component = item->component;
+  const int region = item->region ? deck_find_region(r->k, item->region) : -1;
+  item->value.component =
+      item->component - (rotates ? deck_dimensions_of_region(r, item->region) : 0);
+  item->value.lattice = region < 0 ? NULL : r->k->regions[region].lattice;
   if (good) return;
   const diagnostic *last = &r->d->items[r->d->count - 1];
   if (rotates && r->d->errors > errors && !last->hint) diag_hint(r->d, "%s", hint);

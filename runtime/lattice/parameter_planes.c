@@ -273,8 +273,23 @@ static bool take_region(const deck *k, int number, value_sources *s, diagnostics
   return good;
 }
 
+static const deck_assignment *given_by(const deck_material *m, const char *name) {
+  for (int n = 0; n < m->assignment_count; n++)
+    if (strcasecmp(m->assignments[n].name, name) == 0) return &m->assignments[n];
+  return NULL;
+}
+
+/* The region says no more of it than the material of its lattice. */
+static bool repeats(const deck *k, const deck_material *m, const pl_parameter *p) {
+  const deck_assignment *own = given_by(m, p->name);
+  const deck_assignment *whole =
+      given_by(&k->materials[deck_find_material(k, m->lattice)], p->name);
+  return !own || own->value == (whole ? whole->value : p->initial);
+}
+
 /* What differs must differ in the kernel, too. */
-static bool region_fits(const value_sources *s, const regional_values *v, diagnostics *d) {
+static bool region_fits(const deck *k, const value_sources *s, const regional_values *v,
+                        diagnostics *d) {
   const pl_law *law = s->places->law;
   for (int p = 0; p < law->parameter_count; p++) {
     const double own = v->parameters[p], other = s->parameters[p];
@@ -282,7 +297,7 @@ static bool region_fits(const value_sources *s, const regional_values *v, diagno
     const char *name = law->parameters[p].name;
     const int plane = find_plane(law, name, v->material->item.where, d);
     if (plane < 0) return false;
-    if (!s->field[plane].field) continue;
+    if (!s->field[plane].field || repeats(k, v->material, &law->parameters[p])) continue;
     diag_report(d, DIAG_CONFLICT, s->field[plane].field->item.where,
                 "`%s` differs at random, and the material of the region `%s` gives it a value",
                 name, v->material->region);
@@ -299,7 +314,7 @@ static bool open_regions(const deck *k, int count, value_sources *s, diagnostics
   for (long q = 0; q < s->places->rows->size; q++)
     s->region_of[q] = -1;
   for (int n = 0; n < count; n++)
-    good = region_fits(s, &s->regional[n], d) && take_region(k, n, s, d) && good;
+    good = region_fits(k, s, &s->regional[n], d) && take_region(k, n, s, d) && good;
   return good;
 }
 

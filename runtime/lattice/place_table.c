@@ -76,7 +76,56 @@ static double *values_of_frame(result_file *f, const deck_placed *p, long places
   return NULL;
 }
 
-static double *values_of_result(const deck_placed *p, long places, span where, diagnostics *d) {
+static bool has_lattice(result_file *f, const deck_placed *p, span where, diagnostics *d) {
+  result_names lattices = result_list(f, "/bonds");
+  bool found = false;
+  for (int k = 0; k < lattices.count; k++)
+    found = found || strcmp(lattices.items[k], p->lattice) == 0;
+  result_names_free(&lattices);
+  if (found) return true;
+  diag_report(d, DIAG_UNKNOWN_NAME, where,
+              "the result is of several lattices, and none of them is named `%s`", p->lattice);
+  return false;
+}
+
+static void keep(place_table *t, double *values, const bool *kept) {
+  long count = 0;
+  for (long k = 0; k < t->count; k++) {
+    if (!kept[k]) continue;
+    for (int c = 0; c < t->dimensions; c++)
+      t->at[c][count] = t->at[c][k];
+    values[count++] = values[k];
+  }
+  t->count = count;
+}
+
+/* Lattices may overlap: of several, that with the region's name counts. Its particles are those of
+   its bonds. */
+static bool keep_lattice(result_file *f, const deck_placed *p, place_table *t, double *values,
+                         span where, diagnostics *d) {
+  long bonds = 0;
+  if (!has_lattice(f, p, where, d)) return false;
+  int32_t *pairs = result_read_bonds(f, p->lattice, &bonds);
+  bool *kept = must_calloc((size_t)t->count + 1, sizeof *kept);
+  for (long b = 0; pairs && b < 2 * bonds; b++)
+    kept[pairs[b]] = true;
+  if (pairs)
+    keep(t, values, kept);
+  else
+    diag_report(d, DIAG_FILE, where, "the bonds of `%s` cannot be read", p->lattice);
+  free(kept);
+  free(pairs);
+  return pairs != NULL;
+}
+
+static bool is_of_several(result_file *f) {
+  result_names lattices = result_list(f, "/bonds");
+  const bool several = lattices.count > 1;
+  result_names_free(&lattices);
+  return several;
+}
+
+static double *values_of_result(const deck_placed *p, place_table *t, span where, diagnostics *d) {
   char error[1024];
   if (!p->column) {
     diag_report(d, DIAG_BAD_VALUE, where, "which field of the result is meant?");
@@ -88,7 +137,11 @@ static double *values_of_result(const deck_placed *p, long places, span where, d
     diag_report(d, DIAG_FILE, where, "%s", error);
     return NULL;
   }
-  double *values = values_of_frame(f, p, places, where, d);
+  double *values = values_of_frame(f, p, t->count, where, d);
+  if (values && is_of_several(f) && !keep_lattice(f, p, t, values, where, d)) {
+    free(values);
+    values = NULL;
+  }
   result_read_close(f);
   return values;
 }
@@ -107,7 +160,7 @@ bool place_table_read(place_table *t, const deck_placed *p, int dimensions, doub
   t->count = places.count;
   if (good)
     t->value = places.text.columns ? values_of_text(&places.text, p, dimensions, where, d)
-                                   : values_of_result(p, t->count, where, d);
+                                   : values_of_result(p, t, where, d);
   particle_table_free(&places);
   if (t->value) bins_of_size(&t->near, dimensions, (const double *const *)t->at, t->count, spacing);
   return t->value != NULL;

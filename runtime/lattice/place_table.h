@@ -14,7 +14,8 @@ typedef struct place_table {
   bins near;
 } place_table;
 
-/* Of the file that `p` names. False with diagnostics, at `where` for what concerns the file as a
+/* Of the file that `p` names; of a result with several lattices, the places of the lattice of that
+   name. False with diagnostics, at `where` for what concerns the file as a
    whole: it cannot be read, is of the other dimensions, lacks the column or field, or that has
    another unit. To be freed in either case. */
 bool place_table_read(place_table *t, const deck_placed *p, int dimensions, double spacing,

@@ -110,6 +110,32 @@ static bool check_sizes(const deck_material *m, const pl_law *law, const double 
   return good;
 }
 
+static const deck_assignment *formula_of(const deck_material *m, const pl_parameter *p) {
+  for (int a = 0; a < m->assignment_count; a++)
+    if (m->assignments[a].formula && strcasecmp(m->assignments[a].name, p->name) == 0)
+      return &m->assignments[a];
+  return NULL;
+}
+
+/* A formula is judged at the particles (parameter_planes.h): where the law forbids its value in the
+   middle, the default answers until they are known. */
+static void replace_formulas(const deck_material *m, const pl_law *law, double *values) {
+  const size_t n = (size_t)law->parameter_count + 1;
+  double *bounds = must_calloc(2 * n, sizeof *bounds);
+  unsigned char *open = must_calloc(2 * n, 1);
+  law->bounds(law, values, bounds, bounds + n, open, open + n);
+  for (size_t p = 0; p + 1 < n; p++) {
+    const double v = values[p];
+    const bool inside = (open[p] ? v > bounds[p] : v >= bounds[p]) &&
+                        (open[n + p] ? v < bounds[n + p] : v <= bounds[n + p]);
+    if ((!inside || !isfinite(v)) && law->parameters[p].has_default &&
+        formula_of(m, &law->parameters[p]))
+      values[p] = law->parameters[p].initial;
+  }
+  free(bounds);
+  free(open);
+}
+
 static bool check_bounds(const deck_material *m, const pl_law *law, const double *values,
                          const span *where, const bool *given, diagnostics *d) {
   const size_t n = (size_t)law->parameter_count + 1;
@@ -131,6 +157,8 @@ static bool check_bounds(const deck_material *m, const pl_law *law, const double
                 "`%s` = %.8g%s%s is not in %c%s, %s%c, the range of the law `%s`",
                 law->parameters[p].name, v, pure ? "" : " ", pure ? "" : u, low_open[p] ? '(' : '[',
                 low, high, high_open[p] ? ')' : ']', law->name);
+    if (formula_of(m, &law->parameters[p]))
+      diag_hint(d, "this is the formula's value in the middle of the bodies");
     if (!given[p])
       diag_hint(d, "this is the law's default; its range depends on the values given here");
     good = false;
@@ -150,6 +178,7 @@ bool material_parameters(const deck_material *m, const pl_law *law, double *valu
   for (int a = 0; a < m->assignment_count; a++)
     good = assign(&m->assignments[a], law, values, where, given, d) && good;
   good = !m->item.faulty && fill_defaults(m, law, values, given, d) && good;
+  if (good) replace_formulas(m, law, values);
   good = good && check_bounds(m, law, values, where, given, d) &&
          check_sizes(m, law, values, where, given, d);
   free(given);

@@ -198,7 +198,7 @@ static void messages_show_the_line(void **state) {
       {PULSE, FORCE "force = 1 file = 7 /", "`file` is the name of a table in quotes"},
       {PULSE, "&end_moment region = 'loader' /", "`&end_moment` needs `moment`"},
       {"t, M [N*m]\n0, 1\n1, 2\n", FORCE "file = 'pulse.csv' /",
-       "a moment does not go with component = 'y'"},
+       "a force along y is in N, this is in N*m"},
       {"t, u [mm]\n0, 1\n1, 2\n", "&drive region = 'loader' component = 'y' file = 'pulse.csv' /",
        "warning: this displacement begins with a jump"},
       {"t, a [m/s^2]\n0, 1\n1, 2\n", "&gravity acceleration = 0, 1 file = 'pulse.csv' /",

@@ -101,6 +101,81 @@ static void a_run_goes_on_from_another(void **state) {
   assert_true(exists(w, "first.h5"));
 }
 
+/* The last frame of the first run is the first one of the next. */
+static void expect_handed_over(workplace *w, const char *field) {
+  assert_int_equal(shell(w, "\"$P\" run first.nml && \"$P\" run next.nml"), 0);
+  char error[512], in[64];
+  double *values[2];
+  long count[2];
+  int components[2];
+  for (int k = 0; k < 2; k++) {
+    result_file *f = result_read(in_workplace(w, k ? "next.h5" : "first.h5"), error, sizeof error);
+    assert_non_null(f);
+    values[k] = result_read_frame(f, field, k ? 0 : 1, &count[k], &components[k], in, sizeof in,
+                                  error, sizeof error);
+    assert_non_null(values[k]);
+    result_read_close(f);
+  }
+  const long size = count[0] * components[0];
+  assert_int_equal(size, count[1] * components[1]);
+  double most = 0;
+  for (long k = 0; k < size; k++)
+    most = fmax(most, fabs(values[0][k]));
+  assert_true(most > 0);
+  assert_memory_equal(values[0], values[1], (size_t)size * sizeof(double));
+  free(values[0]);
+  free(values[1]);
+}
+
+#define OVERLAPPING(name, E)                                                                       \
+  "&lattice name = '" name "' kind = 'hexagonal' spacing = '5 mm' thickness = '10 mm' /\n"         \
+  "&material lattice = '" name "' model = 'splm_elastic' E = '" E "' /\n"                          \
+  "&body lattice = '" name "' shape = 'rectangle' corner = 0, 0 size = '60 mm', '30 mm' /\n"       \
+  "&region name = 'all_" name "' lattice = '" name                                                 \
+  "' shape = 'rectangle' corner = -1, -1 size = 3, 3 /\n"
+#define OVERLAP                                                                                    \
+  "&simulation end_time = '5 us' /\n" OVERLAPPING("a", "30 GPa") OVERLAPPING("b", "10 GPa") OUTPUT
+#define OUTPUT "&output frames = 1 fields = 'displacement' /\n"
+#define MOVE(region, from)                                                                         \
+  "&initial_displacement region = '" region "' component = 'x' " from " /\n"
+
+/* Places that two lattices have in common. */
+static void lattices_that_overlap_go_on_from_their_own_values(void **state) {
+  workplace *w = *state;
+  write_text(w, "first.nml", OVERLAP MOVE("all_a", "value = '1e-6*x'") MOVE("all_b", "value = 0"));
+  write_text(w, "next.nml",
+             OVERLAP MOVE("all_a", "file = 'first.h5:displacement'")
+                 MOVE("all_b", "file = 'first.h5:displacement'") "&initial_displacement region = "
+                                                                 "'all_a' component = 'y' file = "
+                                                                 "'first.h5:displacement' /\n"
+                                                                 "&initial_displacement region = "
+                                                                 "'all_b' component = 'y' file = "
+                                                                 "'first.h5:displacement' /\n");
+  expect_handed_over(w, "displacement");
+  write_text(w, "other.nml",
+             "&simulation end_time = '5 us' /\n" OUTPUT OVERLAPPING("c", "30 GPa")
+                 MOVE("all_c", "file = 'first.h5:displacement'"));
+  assert_int_equal(shell(w, "\"$P\" check other.nml"), 1);
+  assert_non_null(strstr(w->said, "of several lattices, and none of them is named `c`"));
+}
+
+#define CUBE                                                                                       \
+  "&simulation end_time = '1 us' /\n&output frames = 1 fields = 'displacement', 'rotation' /\n"    \
+  "&lattice name = 'l' kind = 'cubic' shells = 2 spacing = '5 mm' /\n"                             \
+  "&material lattice = 'l' model = 'mplm_space' /\n"                                               \
+  "&body lattice = 'l' shape = 'box' corner = 0, 0, 0 size = '20 mm', '20 mm', '20 mm' /\n"        \
+  "&region name = 'all' shape = 'box' corner = -1, -1, -1 size = 3, 3, 3 /\n"
+#define TURN(axis, from)                                                                           \
+  "&initial_displacement region = 'all' component = 'rotation_" axis "' " from " /\n"
+#define TURNED "file = 'first.h5:rotation'"
+
+static void rotations_in_space_go_on(void **state) {
+  workplace *w = *state;
+  write_text(w, "first.nml", CUBE TURN("x", "value = 1e-6") TURN("z", "value = '2e-5*y/1 [m]'"));
+  write_text(w, "next.nml", CUBE TURN("x", TURNED) TURN("y", TURNED) TURN("z", TURNED));
+  expect_handed_over(w, "rotation");
+}
+
 /* The table goes along: with the result, and in a solver. */
 static void a_table_goes_along(void **state) {
   workplace *w = *state;
@@ -128,6 +203,10 @@ int main(void) {
       cmocka_unit_test_setup_teardown(a_solver_knows_formulas, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_run_goes_on_from_another, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(lattices_that_overlap_go_on_from_their_own_values,
+                                      set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(rotations_in_space_go_on, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(a_table_goes_along, set_up_workplace, tear_down_workplace),
   };

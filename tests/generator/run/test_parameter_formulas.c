@@ -148,12 +148,24 @@ static void what_cannot_be_is_told(void **state) {
   refuse(GRADED("E = '10 [GPa]*(1 + x/1 [m])'") "&field parameter = 'E' distribution = 'normal' cv "
                                                 "= 0.1 /\n",
          "`E` differs at random, and the material gives it by a formula");
-  refuse(GRADED("E = '10 [GPa]/(x/47.5 [mm] - 1)'"), "has no finite value in the middle");
+  refuse(GRADED("E = '10 [GPa]*(1 - x/100 [mm])*(1 - x/95 [mm])/(1 - x/95 [mm])'"),
+         "in the bond from (90, 0) mm to (95, 0) mm");
+}
+
+/* Nobody asks for the value in the middle but the particles there. */
+static void the_middle_may_be_forbidden(void **state) {
+  (void)state;
+  deck_case c;
+  assert_true(deck_case_text(&c, CHAIN GRADED("E = '10 [GPa]*abs(x/47.5 [mm] - 1)'")));
+  deck_case_close(&c);
+  assert_true(deck_case_text(&c, CHAIN GRADED("E = '10 [GPa]/abs(x/47.5 [mm] - 1)'")));
+  deck_case_close(&c);
 }
 
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(formulas_say_what_regions_do),
                                      cmocka_unit_test(a_graded_bar_bears_one_force),
+                                     cmocka_unit_test(the_middle_may_be_forbidden),
                                      cmocka_unit_test(what_cannot_be_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }

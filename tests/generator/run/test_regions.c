@@ -255,6 +255,28 @@ static void slips_are_told_at_their_line(void **state) {
   }
 }
 
+/* What a region's material does not say is at random as elsewhere, and it has its lattice's density. */
+static void a_region_may_leave_things_unsaid(void **state) {
+  workplace *w = *state;
+  static const char *const materials[] = {"nu = 0.2 /\n", "E = '25 GPa' /\n",
+                                          "nu = 0.2 rho = 2000 /\n"};
+  for (size_t k = 0; k < sizeof materials / sizeof *materials; k++) {
+    char text[2048];
+    snprintf(
+        text, sizeof text,
+        DISC("square",
+             "horizon = 2.015") "&region name = 'a' shape = 'disc' centre = 0, 0 radius = '20 mm' "
+                                "/\n"
+                                "&material lattice = 'l' model = 'lps' E = '25 GPa' rho = 2000 /\n"
+                                "&field parameter = 'E' distribution = 'normal' mean = '30 GPa' cv "
+                                "= 0.05 /\n"
+                                "&material lattice = 'l' region = 'a' model = 'lps' %s",
+        materials[k]);
+    write_text(w, "unsaid.nml", text);
+    if (shell(w, "\"$P\" check unsaid.nml") != 0) fail_msg("%s%s", materials[k], w->said);
+  }
+}
+
 /* A field of particles for laws of families, of bonds for laws of bonds: with region and mean. */
 static void frames_hold_what_differs(void **state) {
   workplace *w = *state;
@@ -320,6 +342,8 @@ int main(void) {
       cmocka_unit_test(forces_are_slopes_of_the_energy),
       cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
       cmocka_unit_test_setup_teardown(slips_are_told_at_their_line, set_up_workplace,
+                                      tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_region_may_leave_things_unsaid, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(frames_hold_what_differs, set_up_workplace,
                                       tear_down_workplace),
