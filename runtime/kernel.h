@@ -4,10 +4,16 @@
    the host's, who keeps them while the call lasts; what pl_law points to is the kernel's and stays
    as long as that is loaded. Values are in SI. Of a shape [a][b] b is the inner index.
 
-   A host opens the kernel (PL_KERNEL_ENTRY) and compares `abi`, reads `parameters`, checks their
-   values with `bounds`, and calls `prepare` once for each class of bonds. Step by step it calls
-   `rows` for its strips (or the passes of `step` for its particles), adds up the forces, and moves
-   the particles.
+   Records say how long they are: who makes one sets `size` to its sizeof. To pl_law, pl_bond_class,
+   pl_strip, pl_family and pl_states members are only appended, without a new PL_KERNEL_ABI; who
+   reads one that came after this number asks PL_HAS(record, member) first. All others stay as they
+   are while that number stays. A kernel is good for a host when `abi` is the same and its table
+   reaches as far as what the host reads. No more is promised before the language's second edition.
+
+   A host opens the kernel (PL_KERNEL_ENTRY), compares `abi` and looks at `size`, reads
+   `parameters`, checks their values with `bounds`, and calls `prepare` once for each class of
+   bonds. Step by step it calls `rows` for its strips (or the passes of `step` for its particles),
+   adds up the forces, and moves the particles. HOST.md is one.
 
    A strip is a run of bonds of one direction on lattice rows: bond k joins particle k of the near
    ends to particle k of the far ends. With rows of 16 sites, of the bonds up and to the right:
@@ -31,16 +37,20 @@
 
 #include <stdint.h>
 
-#define PL_KERNEL_ABI 14
+#define PL_KERNEL_ABI 15
 #define PL_MAX_DOF    6
 #define PL_MAX_PLANES 12 /* force planes a bond */
 #define PL_STATE_INPUTS                                                                            \
-  5 /* planes of `states` before the fields: stretch, stretch_rate, theta_i, theta_j, length */
-#define PL_STATE_RESULTS 3 /* N, M_i, M_j */
+  5 /* of a state: stretch, stretch_rate (1/s), theta_i, theta_j (rad), length (m) */
+#define PL_STATE_RESULTS 3 /* N (N), M_i, M_j (N m; 0 for central laws) */
 #define PL_STATE_RATES   4 /* inputs that the tangent is by: the first ones */
 #define PL_TANGENTS      (PL_STATE_RESULTS * PL_STATE_RATES)
 #define PL_LANES         8  /* strips on rows are multiples of this */
 #define PL_ALIGNMENT     64 /* B, of arrays */
+
+/* Whether the record pointed to is long enough to hold the member. */
+#define PL_HAS(record, member)                                                                     \
+  ((uint32_t)((const char *)(&(record)->member + 1) - (const char *)(record)) <= (record)->size)
 
 enum pl_law_kind { PL_CENTRAL = 0, PL_MICROPOLAR = 1, PL_STATE = 2 };
 enum pl_field_kind { PL_FIELD_STATE = 0, PL_FIELD_DAMAGE = 1, PL_FIELD_OUTPUT = 2 };
@@ -57,6 +67,7 @@ enum pl_topology { PL_ROWS = 0, PL_LIST = 1 };
 
 /* Quantities that are the same for all bonds of one class (a direction of a lattice), in SI. */
 typedef struct pl_bond_class {
+  uint32_t size;
   double s;              /* reference length, m */
   double spacing;        /* m */
   double t;              /* stiffness thickness, m */
@@ -79,6 +90,11 @@ typedef struct pl_parameter {
   int has_default;  /* 0: a value must be given */
 } pl_parameter;
 
+/* What a law is told of a state. */
+typedef struct pl_input {
+  const char *name, *unit; /* "stretch_rate", "1/s" */
+} pl_input;
+
 /* A state or a damage, which steps change and the host keeps; or an output, computed when asked
    for. */
 typedef struct pl_field {
@@ -89,6 +105,7 @@ typedef struct pl_field {
 } pl_field;
 
 typedef struct pl_strip {
+  uint32_t size;
   long count;           /* bonds, a multiple of PL_LANES; those that fill it up are absent */
   long direction;       /* which bits of `flags` are meant */
   const int64_t *flags; /* [count] of the sites i */
@@ -105,10 +122,26 @@ typedef struct pl_strip {
   double *dissipated_state, *dissipated_rate;
   /* Of rows_observe: [1 + output_count][count], written: stored energy (J), then each output. */
   double *const *observed;
-  double time_step; /* s */
+  double time, time_step; /* s: of the deformation, and to the next one; no law reads `time` yet */
 } pl_strip;
 
+/* Single states of a law of bonds. */
+typedef struct pl_states {
+  uint32_t size;
+  long count;
+  double time, time_step; /* s, as of a strip; no law reads them yet */
+  /* [state_input_count][count] in the order of pl_law.state_inputs: find them by name */
+  const double *const *in;
+  const double *const *field; /* [field_count][count] */
+  /* of `states` [PL_STATE_RESULTS][count]; of `tangent` [PL_TANGENTS][count]: dN/d(stretch, rate,
+     theta_i, theta_j), dM_i/d..., dM_j/d... */
+  double *const *out;
+  double *const *new_field; /* [field_count][count] of `states` */
+} pl_states;
+
 struct pl_law;
+typedef void (*pl_states_function)(const struct pl_law *law, const double *uniforms,
+                                   const pl_states *states);
 /* uniforms: [uniform_count], as `prepare` wrote them for the bonds of this direction */
 typedef void (*pl_strip_function)(const struct pl_law *law, const double *uniforms,
                                   const pl_strip *strip);
@@ -136,6 +169,7 @@ typedef void (*pl_strip_function)(const struct pl_law *law, const double *unifor
    stand in a window of rows: on rows the neighbour's are at q + link_offset[k], and their planes
    `link_plane` apart. */
 typedef struct pl_family {
+  uint32_t size;
   long count;            /* sites of a row, a multiple of PL_LANES */
   long rows, row_stride; /* 1 where pl_law.neighbours is 0 */
   long neighbours;       /* of a full family; even */
@@ -185,7 +219,7 @@ typedef struct pl_family {
   double *const *force;
   /* [1 + output_count]: stored energy (J), then each output; on particles one plane, else planes */
   double *const *observed;
-  double time_step; /* s */
+  double time, time_step; /* s: of the deformation, and to the next one; no law reads `time` yet */
   /* Of laws with sums (pl_law.sum_count): a bond adds to both of its ends. A run is one row, or a
      part of it that begins at its start or where the last run ended, and runs go from lower to
      higher sites; neighbours k < neighbours/2 stand at higher sites. sum[s] is what earlier runs
@@ -240,7 +274,8 @@ typedef struct pl_program {
    moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on end
    j. */
 typedef struct pl_law {
-  int abi;          /* PL_KERNEL_ABI; checked at load */
+  int abi;          /* PL_KERNEL_ABI; checked at load; stands first whatever the number */
+  uint32_t size;    /* of the table, B */
   int kind;         /* pl_law_kind */
   int topology;     /* pl_topology; laws of bonds: PL_ROWS */
   int dimensions;   /* 2, or 3 */
@@ -278,15 +313,10 @@ typedef struct pl_law {
   pl_strip_function rows_ledger;  /* the same and dissipated energies */
   pl_strip_function rows_observe; /* stored energy and outputs; changes nothing */
 
-  /* The law alone, state by state. in: [PL_STATE_INPUTS + field_count][count] stretch, stretch_rate
-     (1/s), theta_i, theta_j (rad), length (m), then fields; out: [PL_STATE_RESULTS +
-     field_count][count] N (N), M_i, M_j (N m; 0 for central laws), then new fields. */
-  void (*states)(const struct pl_law *law, const double *uniforms, long count,
-                 const double *const *in, double *const *out);
-  /* Symbolic tangent at such states: out[PL_TANGENTS][count] =
-     dN/d(stretch, rate, theta_i, theta_j), dM_i/d..., dM_j/d... */
-  void (*tangent)(const struct pl_law *law, const double *uniforms, long count,
-                  const double *const *in, double *const *out);
+  int state_input_count;
+  const pl_input *state_inputs; /* [state_input_count] of pl_states.in */
+  pl_states_function states;    /* the law alone, state by state: forces and new fields */
+  pl_states_function tangent;   /* symbolic, at such states */
 
   /* Laws of families: the members from force_planes to tangent that speak of strips and bonds are
      0. */

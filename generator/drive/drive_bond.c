@@ -67,7 +67,8 @@ static void bond_open(driven_bond *r, const pl_law *kernel, const double *parame
   r->lost_state = next;
   r->lost_rate = next + LANES;
   r->flags[0] = PL_PRESENT(0);
-  r->strip = (pl_strip){.count = LANES,
+  r->strip = (pl_strip){.size = sizeof r->strip,
+                        .count = LANES,
                         .flags = r->flags,
                         .field = r->field,
                         .force = r->force,
@@ -248,6 +249,7 @@ static void put_row(marching *m, double time) {
 /* Work is done before the first row, as much as is there. */
 static void first_row(marching *m, const motion *to, double time) {
   m->at = *to;
+  m->driven_bond.strip.time = time;
   m->forces = bond_step(&m->driven_bond, to);
   double stored = stored_energy(&m->driven_bond, to);
   m->energy[DRIVE_ENERGY_STORED] = stored;
@@ -261,7 +263,9 @@ static void first_row(marching *m, const motion *to, double time) {
    sudden changes between the two. */
 static void next_row(marching *m, const motion *from, const motion *to, double time, double step) {
   double *e = m->energy;
+  m->driven_bond.strip.time = time - step;
   answer before = same_rates(from, &m->at) ? m->forces : bond_probe(&m->driven_bond, from);
+  m->driven_bond.strip.time = time;
   answer after = bond_step(&m->driven_bond, to);
   double lost_before = e[DRIVE_ENERGY_STORED] - stored_energy(&m->driven_bond, from);
   e[DRIVE_ENERGY_DISSIPATED_DAMAGE] += 0.5 * (lost_before + after.lost_state);

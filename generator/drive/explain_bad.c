@@ -68,15 +68,17 @@ void explain_bad(const kernel_plan *p, const double *parameters, const pl_bond_c
   const symbol_list *fields = &p->law->fields;
   const double kinematics[PL_STATE_INPUTS] = {b->stretch, b->stretch_rate, b->theta_i, b->theta_j,
                                               bonds->s * (1 + b->stretch)};
-  double **in = planes_new(PL_STATE_INPUTS + fields->count, 1);
+  double **in = planes_new(PL_STATE_INPUTS, 1), **field = planes_new(fields->count, 1);
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     in[k][0] = kinematics[k];
   for (int f = 0; f < fields->count; f++)
-    in[PL_STATE_INPUTS + f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
+    field[f][0] = f < b->field_count ? b->fields[f] : fields->items[f]->initial;
   law_inputs inputs;
   law_inputs_open(&inputs, p->law, parameters, bonds);
-  interpreter_inputs at = law_inputs_at(&inputs, (const double *const *)in);
+  interpreter_inputs at =
+      law_inputs_at(&inputs, (const double *const *)in, (const double *const *)field);
   report(p, &at, out);
   law_inputs_close(&inputs);
-  planes_free(in, PL_STATE_INPUTS + fields->count);
+  planes_free(in, PL_STATE_INPUTS);
+  planes_free(field, fields->count);
 }

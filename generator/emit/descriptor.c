@@ -1,5 +1,6 @@
 #include "generator/emit/descriptor.h"
 
+#include "generator/lower/law_inputs.h"
 #include "generator/plan/program_facts.h"
 #include <string.h>
 
@@ -56,6 +57,20 @@ static void write_fields(c_text *out, const symbol_list *list, const char *name)
   c_text_add(out, "};\n\n");
 }
 
+static void write_state_inputs(c_text *out) {
+  pl_input inputs[PL_STATE_INPUTS];
+  law_state_inputs(inputs);
+  c_text_add(out, "static const pl_input law_state_inputs[] = {\n");
+  for (int k = 0; k < PL_STATE_INPUTS; k++) {
+    c_text_add(out, "    {");
+    c_text_string(out, inputs[k].name);
+    c_text_add(out, ", ");
+    c_text_string(out, inputs[k].unit);
+    c_text_add(out, "},\n");
+  }
+  c_text_add(out, "};\n\n");
+}
+
 static void write_table(c_text *out, const char *member, const char *array, int count) {
   c_text_add(out, "    .%s_count = %d,\n    .%ss = %s,\n", member, count, member,
              count ? array : "0");
@@ -65,10 +80,12 @@ static void write_table(c_text *out, const char *member, const char *array, int 
 #define KEY_LINE(key) "\n    .key = \"" key "\",\n"
 
 static void write_law(c_text *out, const kernel_plan *p) {
-  c_text_add(out,
-             "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .kind = %d,\n"
-             "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
-             p->kind, p->dimensions, p->dof, p->force_planes);
+  c_text_add(
+      out,
+      "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .size = sizeof(pl_law),\n"
+      "    .kind = %d,\n"
+      "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
+      p->kind, p->dimensions, p->dof, p->force_planes);
   c_text_string(out, p->law->tree->name);
   c_text_add(out, "," KEY_LINE(""));
   write_table(out, "parameter", "law_parameters", p->law->parameters.count);
@@ -120,6 +137,7 @@ void descriptor_entry(const kernel_plan *p, c_text *out) {
 #define X(pass, member, task) c_text_add(out, "    .%s = %s,\n", #member, #member);
     STRIP_PASSES(X)
 #undef X
+    write_table(out, "state_input", "law_state_inputs", PL_STATE_INPUTS);
     c_text_add(out, "    .states = states,\n    .tangent = tangent,\n");
   }
   c_text_add(out, "};\n\nconst pl_law *perilat_kernel(void);\n"
@@ -139,4 +157,5 @@ void descriptor_lists(const kernel_plan *p, c_text *out) {
   write_varying(out, p);
   write_fields(out, &p->law->fields, "law_fields");
   write_fields(out, &p->law->outputs, "law_outputs");
+  if (p->kind != PL_STATE) write_state_inputs(out);
 }

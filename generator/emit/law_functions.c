@@ -17,9 +17,9 @@ static int motion_plane(int quantity) {
 static void declare_state(emitter *e, ir_node n) {
   const int index = ir_input_index(e->graph, n);
   const bool field = ir_input_source(e->graph, n) == IR_FROM_FIELD;
-  const int plane = field ? PL_STATE_INPUTS + index : motion_plane(index);
-  say(e, SAY_DECLARE, "  ", spell(e, SAY_READ), spell(e, SAY_INPUT_ARRAY, e->name[n]),
-      spell(e, SAY_STATE_INPUT, numeral(e, plane)));
+  const char *array = field ? spell(e, SAY_STATE_FIELD, numeral(e, index))
+                            : spell(e, SAY_STATE_INPUT, numeral(e, motion_plane(index)));
+  say(e, SAY_DECLARE, "  ", spell(e, SAY_READ), spell(e, SAY_INPUT_ARRAY, e->name[n]), array);
 }
 
 static const char *state(emitter *e, ir_node n) {
@@ -32,16 +32,18 @@ static const scope of_states = {.before = "  ",
                                 .declare = declare_state,
                                 .input = state};
 
-/* Planes without a root (moments of a central law) are zero. */
-static void write_states(emitter *e, const pass *p, const char *name, int planes) {
+/* Results first, then new fields. Planes without a root (moments of a central law) are zero. */
+static void write_states(emitter *e, const pass *p, const char *name, int results, int fields) {
+  const int planes = results + fields;
   expression_open_roots(e, &of_states, p->roots, p->root_count);
   kernel_function_begin(&e->parts, e->out, "PL_RARE PL_PASS", name, spell(e, SAY_OVER_STATES));
   say(e, SAY_STATES_HEAD);
   expression_declare(e);
   for (int k = 0; k < planes; k++) {
-    const char *plane = numeral(e, k);
-    say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, plane),
-        spell(e, SAY_STATE_RESULT, plane));
+    const char *array = k < results ? spell(e, SAY_STATE_RESULT, numeral(e, k))
+                                    : spell(e, SAY_STATE_NEW_FIELD, numeral(e, k - results));
+    say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), spell(e, SAY_RESULT_ARRAY, numeral(e, k)),
+        array);
   }
   say(e, SAY_OVER_BONDS);
   expression_lines(e);
@@ -57,8 +59,8 @@ static void write_states(emitter *e, const pass *p, const char *name, int planes
 
 void law_functions_of_states(emitter *e) {
   const pass *passes = e->plan->passes;
-  write_states(e, &passes[PASS_STATES], "states", PL_STATE_RESULTS + e->plan->law->fields.count);
-  write_states(e, &passes[PASS_TANGENT], "tangent", PL_TANGENTS);
+  write_states(e, &passes[PASS_STATES], "states", PL_STATE_RESULTS, e->plan->law->fields.count);
+  write_states(e, &passes[PASS_TANGENT], "tangent", PL_TANGENTS, 0);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */

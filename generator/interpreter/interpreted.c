@@ -200,34 +200,36 @@ STRIP_PASSES(X)
 
 /* --- single states ---------------------------------------------------------------------------- */
 
-static void run_law(const pl_law *kernel, const double *uniforms, long count,
-                    const double *const *in, double *const *out, pass_kind kind) {
+static void run_law(const pl_law *kernel, const double *uniforms, const pl_states *s,
+                    pass_kind kind) {
+  const int results = kind == PASS_TANGENT ? PL_TANGENTS : PL_STATE_RESULTS;
   const interpreted *p = kernel->context;
   const pass *a = &p->plan->passes[kind];
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
-  for (long first = 0; first < count; first += LANES) {
-    int now = count - first < LANES ? (int)(count - first) : LANES;
+  for (long first = 0; first < s->count; first += LANES) {
+    int now = s->count - first < LANES ? (int)(s->count - first) : LANES;
     for (int k = 0; k < PL_STATE_INPUTS; k++)
-      w->quantities[law_motion[k]] = in[k] + first;
+      w->quantities[law_motion[k]] = s->in[k] + first;
     for (int k = 0; k < p->plan->law->fields.count; k++)
-      w->fields[k] = in[PL_STATE_INPUTS + k] + first;
+      w->fields[k] = s->field[k] + first;
     interpreter_inputs inputs = inputs_of(w);
     interpreter_run(w->run[kind], &inputs, now, w->result);
-    for (int k = 0; k < a->root_count; k++)
-      memcpy(out[a->roots[k].index] + first, w->result[k], (size_t)now * sizeof(double));
+    for (int k = 0; k < a->root_count; k++) {
+      const int index = a->roots[k].index;
+      double *to = index < results ? s->out[index] : s->new_field[index - results];
+      memcpy(to + first, w->result[k], (size_t)now * sizeof(double));
+    }
   }
   give_back(w);
 }
 
-static void run_states(const pl_law *kernel, const double *uniforms, long count,
-                       const double *const *in, double *const *out) {
-  run_law(kernel, uniforms, count, in, out, PASS_STATES);
+static void run_states(const pl_law *kernel, const double *uniforms, const pl_states *s) {
+  run_law(kernel, uniforms, s, PASS_STATES);
 }
 
-static void run_tangent(const pl_law *kernel, const double *uniforms, long count,
-                        const double *const *in, double *const *out) {
-  run_law(kernel, uniforms, count, in, out, PASS_TANGENT);
+static void run_tangent(const pl_law *kernel, const double *uniforms, const pl_states *s) {
+  run_law(kernel, uniforms, s, PASS_TANGENT);
 }
 
 /* --- values of a bond class, bounds ----------------------------------------------------------- */
@@ -316,6 +318,12 @@ static const pl_parameter *describe_parameters(arena *memory, const symbol_list 
   return all;
 }
 
+static const pl_input *describe_state_inputs(arena *memory) {
+  pl_input *all = arena_alloc(memory, PL_STATE_INPUTS * sizeof *all);
+  law_state_inputs(all);
+  return all;
+}
+
 static int field_kind(const symbol *s) {
   if (s->kind == SYMBOL_DAMAGE) return PL_FIELD_DAMAGE;
   return s->kind == SYMBOL_STATE ? PL_FIELD_STATE : PL_FIELD_OUTPUT;
@@ -354,6 +362,7 @@ static void describe(interpreted *p) {
   const law *l = plan->law;
   p->law = (pl_law){
       .abi = PL_KERNEL_ABI,
+      .size = sizeof(pl_law),
       .kind = plan->kind,
       .dimensions = plan->dimensions,
       .dof = plan->dof,
@@ -379,12 +388,16 @@ static void describe(interpreted *p) {
 #define X(pass, member, task) .member = run_##member,
       STRIP_PASSES(X)
 #undef X
-          .states = run_states,
+          .state_input_count = PL_STATE_INPUTS,
+      .state_inputs = describe_state_inputs(p->memory),
+      .states = run_states,
       .tangent = run_tangent,
       .context = p,
   };
   if (plan->kind != PL_STATE) return;
   p->law.rows = p->law.rows_ledger = p->law.rows_observe = NULL;
+  p->law.state_input_count = 0;
+  p->law.state_inputs = NULL;
   p->law.states = NULL;
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;

@@ -17,31 +17,35 @@ enum { BATCH = 1024, STATES_PER_BOND = 4 };
 /* --- states and tangents ---------------------------------------------------------------------- */
 
 typedef struct state_arrays {
-  int inputs, results;
-  double **in;                   /* [inputs][BATCH] */
-  double **out[2], **tangent[2]; /* [results], [PL_TANGENTS]; of either reader */
+  int fields;
+  double **in, **field;                          /* [PL_STATE_INPUTS], [fields][BATCH] */
+  double **out[2], **new_field[2], **tangent[2]; /* of either reader */
 } state_arrays;
 
 static state_arrays arrays_new(const pl_law *kernel) {
-  state_arrays a = {.inputs = PL_STATE_INPUTS + kernel->field_count,
-                    .results = PL_STATE_RESULTS + kernel->field_count};
-  a.in = planes_new(a.inputs, BATCH);
+  state_arrays a = {.fields = kernel->field_count};
+  a.in = planes_new(PL_STATE_INPUTS, BATCH);
+  a.field = planes_new(a.fields, BATCH);
   for (int side = 0; side < 2; side++) {
-    a.out[side] = planes_new(a.results, BATCH);
+    a.out[side] = planes_new(PL_STATE_RESULTS, BATCH);
+    a.new_field[side] = planes_new(a.fields, BATCH);
     a.tangent[side] = planes_new(PL_TANGENTS, BATCH);
   }
   return a;
 }
 
 static void arrays_free(state_arrays *a) {
-  planes_free(a->in, a->inputs);
+  planes_free(a->in, PL_STATE_INPUTS);
+  planes_free(a->field, a->fields);
   for (int side = 0; side < 2; side++) {
-    planes_free(a->out[side], a->results);
+    planes_free(a->out[side], PL_STATE_RESULTS);
+    planes_free(a->new_field[side], a->fields);
     planes_free(a->tangent[side], PL_TANGENTS);
   }
 }
 
-static void draw_states(const law_readers *l, double **in, uint64_t *seed, int count) {
+static void draw_states(const law_readers *l, const state_arrays *a, uint64_t *seed, int count) {
+  double **in = a->in;
   const pl_law *kernel = l->law[0];
   for (int q = 0; q < count; q++) {
     in[0][q] = pl_fmax(draw_size(seed, -9, 0), -0.9);
@@ -50,24 +54,32 @@ static void draw_states(const law_readers *l, double **in, uint64_t *seed, int c
     in[3][q] = draw_size(seed, -9, 0.5);
     in[4][q] = l->bonds->s * (1 + in[0][q]);
     for (int f = 0; f < kernel->field_count; f++)
-      in[PL_STATE_INPUTS + f][q] = draw_field(seed, &kernel->fields[f]);
+      a->field[f][q] = draw_field(seed, &kernel->fields[f]);
   }
 }
 
 static void compare_states(const law_readers *l, const state_arrays *a, int count, comparison *c) {
   static const char *const names[PL_STATE_RESULTS] = {"N", "M_i", "M_j"};
-  const double *const *in = (const double *const *)a->in;
   for (int side = 0; side < 2; side++) {
     const pl_law *reader = l->law[side];
-    planes_poison(a->out[side], a->results, count);
+    pl_states s = {.size = sizeof s,
+                   .count = count,
+                   .in = (const double *const *)a->in,
+                   .field = (const double *const *)a->field,
+                   .out = a->out[side],
+                   .new_field = a->new_field[side]};
+    planes_poison(a->out[side], PL_STATE_RESULTS, count);
+    planes_poison(a->new_field[side], a->fields, count);
     planes_poison(a->tangent[side], PL_TANGENTS, count);
-    reader->states(reader, l->uniforms[side], count, in, a->out[side]);
-    reader->tangent(reader, l->uniforms[side], count, in, a->tangent[side]);
+    reader->states(reader, l->uniforms[side], &s);
+    s.out = a->tangent[side];
+    reader->tangent(reader, l->uniforms[side], &s);
   }
-  for (int k = 0; k < a->results; k++)
-    comparison_add(c, "states",
-                   k < PL_STATE_RESULTS ? names[k] : l->law[0]->fields[k - PL_STATE_RESULTS].name,
-                   -1, a->out[0][k], a->out[1][k], count);
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
+    comparison_add(c, "states", names[k], -1, a->out[0][k], a->out[1][k], count);
+  for (int f = 0; f < a->fields; f++)
+    comparison_add(c, "states", l->law[0]->fields[f].name, -1, a->new_field[0][f],
+                   a->new_field[1][f], count);
   for (int k = 0; k < PL_TANGENTS; k++)
     comparison_add(c, "tangent", "derivative", k, a->tangent[0][k], a->tangent[1][k], count);
 }
@@ -77,9 +89,10 @@ static void check_states(const law_readers *l, law_inputs *inputs, long wanted, 
   state_arrays a = arrays_new(l->law[0]);
   for (long done = 0; done < wanted; done += BATCH) {
     int count = wanted - done < BATCH ? (int)(wanted - done) : BATCH;
-    draw_states(l, a.in, seed, count);
+    draw_states(l, &a, seed, count);
     compare_states(l, &a, count, c);
-    interpreter_inputs in = law_inputs_at(inputs, (const double *const *)a.in);
+    interpreter_inputs in =
+        law_inputs_at(inputs, (const double *const *)a.in, (const double *const *)a.field);
     guard_watch_see(guards, &in, count);
   }
   arrays_free(&a);

@@ -383,7 +383,8 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
   const long site = MARGIN + first;
   site_arrays s = {.count = 0};
   const long rows = l->law[side]->neighbours && count % (2 * PL_LANES) == 0 ? 2 : 1;
-  pl_family f = {.count = count / rows,
+  pl_family f = {.size = sizeof f,
+                 .count = count / rows,
                  .rows = rows,
                  .row_stride = count / rows,
                  .neighbours = b->neighbours,

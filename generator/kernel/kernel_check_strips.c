@@ -135,7 +135,8 @@ static const strip_pass passes[] = {
 
 static pl_strip strip_of(const strip_arrays *a, int side) {
   const int fields = a->law->field_count;
-  pl_strip s = {.count = SITES,
+  pl_strip s = {.size = sizeof s,
+                .count = SITES,
                 .direction = DIRECTION,
                 .flags = a->flags,
                 .unheld = a->unheld,

@@ -275,6 +275,13 @@ static bool check_law(const pl_law *law, const char *path, const char *key, char
     snprintf(error, size,
              "`%s` was built for version %d of the kernel interface, not %d: build it again", path,
              law->abi, PL_KERNEL_ABI);
+  else if (!PL_HAS(law, observe))
+    snprintf(error, size, "the table of `%s` ends too early, after %u bytes: build it again", path,
+             law->size);
+  else if (law->state_input_count > PL_STATE_INPUTS)
+    snprintf(error, size,
+             "the law of `%s` wants the input `%s` of a state, which is not known here", path,
+             law->state_inputs[PL_STATE_INPUTS].name);
   else if (key && strcmp(law->key, key) != 0)
     snprintf(error, size, "`%s` is the kernel of another law, compiler or processor", path);
   else

@@ -18,6 +18,13 @@ int law_motion_place(builtin_quantity q) {
   return -1;
 }
 
+void law_state_inputs(pl_input out[PL_STATE_INPUTS]) {
+  for (int k = 0; k < PL_STATE_INPUTS; k++) {
+    const builtin_quantity_info *q = &builtin_quantities[law_motion[k]];
+    out[k] = (pl_input){q->name, q->unit};
+  }
+}
+
 /* Motion, class, and what a law has in other ways: TWIST, RESOLVED, DIRECTION. */
 #define X(code, value) +1
 _Static_assert(PL_STATE_INPUTS CLASS_QUANTITIES(X) + 3 == QUANTITY_COUNT,
@@ -47,13 +54,14 @@ void law_inputs_open(law_inputs *v, const law *l, const double *parameters,
   memset(v->field_stride, 1, (size_t)l->fields.count);
 }
 
-interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in) {
+interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in,
+                                 const double *const *field) {
   for (int k = 0; k < PL_STATE_INPUTS; k++)
     v->quantities[law_motion[k]] = in[k];
   return (interpreter_inputs){
       .values = {[IR_FROM_PARAMETER] = v->parameters,
                  [IR_FROM_QUANTITY] = v->quantities,
-                 [IR_FROM_FIELD] = in + PL_STATE_INPUTS,
+                 [IR_FROM_FIELD] = field,
                  [IR_FROM_ENDS] = v->ends},
       .stride = {[IR_FROM_QUANTITY] = v->quantity_stride, [IR_FROM_FIELD] = v->field_stride}};
 }

@@ -9,11 +9,13 @@
 #include "generator/lower/kinematics.h"
 #include "runtime/kernel.h"
 
-/* Quantities of a bond's motion, in the order of the planes of pl_law's `states`; the tangent is by
+/* Quantities of a bond's motion, in the order of pl_law's `state_inputs`; the tangent is by
    the first PL_STATE_RATES of them. */
 extern const builtin_quantity law_motion[PL_STATE_INPUTS];
 /* Place of a quantity among them, or -1. */
 int law_motion_place(builtin_quantity q);
+/* Their names and units. */
+void law_state_inputs(pl_input out[PL_STATE_INPUTS]);
 
 /* Quantities that a bond class knows. X(quantity, its value as C, of a class `bonds`) */
 #define CLASS_QUANTITIES(X)                                                                        \
@@ -50,8 +52,9 @@ typedef struct law_inputs {
 /* `parameters` and `bonds` must outlive the inputs, which must stay where they are. */
 void law_inputs_open(law_inputs *v, const law *l, const double *parameters,
                      const pl_bond_class *bonds);
-/* For states `in` as pl_law's `states` takes them: [PL_STATE_INPUTS + fields][count]. */
-interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in);
+/* For states `in` with their fields, as in pl_states. */
+interpreter_inputs law_inputs_at(law_inputs *v, const double *const *in,
+                                 const double *const *field);
 void law_inputs_close(law_inputs *v);
 
 #endif

@@ -428,6 +428,8 @@ ir_node lower_bound(ir *g, const law *l, const expr *bound, double infinite, dia
       .law = l, .graph = g, .mode = LOWER_STEP, .variation = &none, .memory = memory, .said = d};
   ir_node n = lower_expr(&c, bound);
   free(c.bound);
+  free(c.text.lines);
+  free(c.text.places);
   arena_free(memory);
   return c.failed ? IR_NONE : n;
 }

@@ -42,8 +42,8 @@ typedef enum pass_target {
 
 /* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
    (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
-   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, the first
-   planes of `in`. IR_FROM_FIELD k: field[k], or in[PL_STATE_INPUTS + k]. IR_FROM_ENDS: all strips.
+   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, planes of
+   pl_states.in. IR_FROM_FIELD k: field[k]. IR_FROM_ENDS: all strips.
    IR_FROM_BOND_PARAMETER k: in strips and families parameter[k], the value of parameter varying[k]
    in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other passes take that
    parameter as IR_FROM_PARAMETER. */

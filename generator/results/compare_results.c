@@ -369,6 +369,19 @@ static void write_middle(char *text, size_t size, const frame_context *x, long i
                              c == n - 1 ? ") mm" : "");
 }
 
+static bool same_instant(const frame_context *x, long frame) {
+  const double a = x->time[0][frame], b = x->time[1][frame];
+  return fabs(a - b) <= 1e-9 * pl_fmax(fabs(a), fabs(b));
+}
+
+/* Frames are compared by number: of runs that end at other times they are not of one instant. */
+static int write_instant(char *text, size_t size, const frame_context *x, long frame) {
+  const double a = 1e3 * x->time[0][frame], b = 1e3 * x->time[1][frame];
+  return same_instant(x, frame)
+             ? snprintf(text, size, "  frame %ld, t = %.6g ms, ", frame, a)
+             : snprintf(text, size, "  frame %ld, t = %.6g and %.6g ms, ", frame, a, b);
+}
+
 static void locate_row(finding *f, const frame_context *x) {
   const gap *g = &f->gap;
   const bool on_bonds = table_on_bonds(f->name);
@@ -378,8 +391,7 @@ static void locate_row(finding *f, const frame_context *x) {
   f->frame = g->frame;
   f->at = on_bonds ? "bond" : "particle";
   f->time = x->time[0][g->frame];
-  int n =
-      snprintf(f->place, sizeof f->place, "  frame %ld, t = %.6g ms, ", g->frame, 1e3 * f->time);
+  int n = write_instant(f->place, sizeof f->place, x, g->frame);
   if (!placed) return;
   n += snprintf(f->place + n, sizeof f->place - (size_t)n, "%s %ld at ", f->at, g->row);
   write_middle(f->place + n, sizeof f->place - (size_t)n, x, ends[0], ends[1]);

@@ -52,7 +52,7 @@ void progress_show(progress *p, double fraction, const char *detail) {
     show_line(p, fraction, detail);
   } else if ((int)(10 * fraction) > p->tenths) {
     p->tenths = (int)(10 * fraction);
-    fprintf(stderr, "%3d %%  %s  (%.1f s)\n", 10 * p->tenths, detail, seconds_of(p));
+    fprintf(stderr, "%3.0f %%  %s  (%.1f s)\n", 100 * fraction, detail, seconds_of(p));
   }
 }
 

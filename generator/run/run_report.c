@@ -45,6 +45,26 @@ static void announce_uniform_strain(const run *r, int lattice) {
       u.nu, 100 * u.left_force, u.momentum, u.unresolved);
 }
 
+/* Young's modulus as the deck gives it, Pa; NAN where the law has none of that name. */
+static double modulus_asked(const simulation_law *l) {
+  for (int p = 0; p < l->law->parameter_count; p++) {
+    const pl_parameter *q = &l->law->parameters[p];
+    if (strcmp(q->name, "E") == 0 && strstr(q->unit, "Pa")) return l->parameters[p];
+  }
+  return NAN;
+}
+
+/* In plane strain a body is stiffer than its E. */
+static void announce_modulus(const run *r, int lattice, double implied) {
+  const double difference = 0.02, asked = modulus_asked(&r->laws[lattice]);
+  const rows *w = simulation_rows(r->simulation, lattice);
+  const bool plane_strain = strcmp(r->deck->lattices[lattice].setting, "plane_strain") == 0;
+  print_quantity(rows_are_chain(w) ? ": along this chain E = " : ": on this lattice E = ", implied,
+                 "Pa");
+  if (plane_strain || !(fabs(implied / asked - 1) > difference)) return;
+  print_quantity(" (E = ", asked, "Pa was asked for)");
+}
+
 static void announce_law(const run *r, int lattice) {
   const rows *w = simulation_rows(r->simulation, lattice);
   const pl_law *kernel = r->laws[lattice].law;
@@ -59,8 +79,7 @@ static void announce_law(const run *r, int lattice) {
     return;
   }
   if (implied_elastic(kernel, r->laws[lattice].parameters, w, &e)) {
-    print_quantity(rows_are_chain(w) ? ": along this chain E = " : ": on this lattice E = ", e.E[0],
-                   "Pa");
+    announce_modulus(r, lattice, e.E[0]);
     if (!rows_are_chain(w)) printf(", nu = %.4f", e.nu[0]);
     double strength = implied_strength(kernel, r->laws[lattice].parameters, w, 0, NULL);
     if (isfinite(strength))

@@ -46,7 +46,7 @@
   X(FUNCTION, "$1 void $2(const pl_law *, const double *, $3);\n#if PL_IN_PART($4)\n"              \
     "$1 void $2(const pl_law *law, const double *uniforms, $3) {\n")                               \
   X(FUNCTION_END, "}\n#endif\n\n")                                                                 \
-  X(OVER_STATES, "long count,\n    const double *const *in, double *const *out")                   \
+  X(OVER_STATES, "const pl_states *given")                                                         \
   X(OVER_STRIP, "const pl_strip *strip")                                                           \
   X(OVER_PART_OF_STRIP, "const pl_strip *strip, long first, long last,\n    "                      \
     "double *const *lent, double (*kept)[$1]")                                                     \
@@ -68,9 +68,11 @@
   X(CLASS_CHORD, "bonds->chord[$1]")                                                               \
   X(LOWER_BOUND, "  lower[$1] = $2, low_open[$1] = $3;\n")                                         \
   X(UPPER_BOUND, "  upper[$1] = $2, high_open[$1] = $3;\n")                                        \
-  X(STATES_HEAD, "  (void)law, (void)uniforms, (void)in;\n")                                       \
-  X(STATE_INPUT, "in[$1]")                                                                         \
-  X(STATE_RESULT, "out[$1]")                                                                       \
+  X(STATES_HEAD, "  (void)law, (void)uniforms;\n  const long count = given->count;\n")             \
+  X(STATE_INPUT, "given->in[$1]")                                                                 \
+  X(STATE_FIELD, "given->field[$1]")                                                              \
+  X(STATE_RESULT, "given->out[$1]")                                                               \
+  X(STATE_NEW_FIELD, "given->new_field[$1]")                                                      \
                                                                                                    \
   /* --- strips of bonds --- */                                                                    \
   X(STRIP_HEAD, "  (void)law, (void)uniforms;\n"                                                   \

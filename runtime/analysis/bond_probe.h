@@ -11,15 +11,16 @@ typedef struct bond_motion {
 } bond_motion;
 
 typedef struct bond_probe {
-  double s;                 /* reference length, m */
-  double *fields;           /* [law's fields] at hand; at first their initial values */
-  const double *new_fields; /* [law's fields] of the last bond_probe_forces */
+  double s;           /* reference length, m */
+  double *fields;     /* [law's fields] at hand; at first their initial values */
+  double *new_fields; /* [law's fields] of the last bond_probe_forces; only to be read */
   const pl_law *law;
 
   /* own */
-  double *uniforms, *memory, *results, motion[PL_STATE_INPUTS];
-  const double **in;
-  double **out;
+  pl_states states;
+  double *uniforms, motion[PL_STATE_INPUTS], results[PL_TANGENTS];
+  const double *in[PL_STATE_INPUTS], **field;
+  double *out[PL_TANGENTS], **new_field;
 } bond_probe;
 
 bond_probe *bond_probe_new(const pl_law *law, const double *parameters, const pl_bond_class *bonds);

@@ -376,7 +376,8 @@ static void point_at_marks(site_arrays *s, const patch *p, pl_family *run) {
 static void run_pass(patch *p, pl_family_function pass, long first, long count, bool ahead_only) {
   const pl_law *law = p->law;
   site_arrays s = {.first = first};
-  pl_family run = {.count = count,
+  pl_family run = {.size = sizeof run,
+                   .count = count,
                    .rows = 1,
                    .neighbours = 2 * p->lattice->directions,
                    .plane = p->size,

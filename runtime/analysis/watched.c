@@ -100,6 +100,7 @@ static bool open_tensor(watched_part *w, diagnostics *d) {
   diag_report(d, DIAG_EMPTY_REGION, deck_where(&w->deck->item, w->deck->placed ? "at" : "region"),
               "there is no strain: the bonds of each particle lie %s",
               w->of->dimensions == 2 ? "on a line" : "in a plane");
+  if (rows_are_chain(w->of->lattice)) diag_hint(d, "along a chain it is the `stress` over E");
   return false;
 }
 

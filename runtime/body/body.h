@@ -54,6 +54,7 @@ typedef struct body_totals { /* sums over all particles and bonds, J, up to the 
 typedef struct body {
   const rows *lattice;
   int dimensions, dof;
+  double time;       /* s: of the places */
   double time_step;  /* s */
   double decay;      /* factor of mass damping on the velocities in the coming step; 1: none */
   double gravity[3]; /* m/s^2 in the coming step */

@@ -78,6 +78,15 @@ const deck_material *deck_material_of(const deck *k, int lattice) {
   return m < 0 ? NULL : &k->materials[m];
 }
 
+bool deck_misses_body(const deck *k, int lattice) {
+  const deck_lattice *l = &k->lattices[lattice];
+  if (deck_lacks(k, "body") || !l->name || (l->kind && strcmp(l->kind, "particles") == 0))
+    return false;
+  for (int b = 0; b < k->body_count; b++)
+    if (k->bodys[b].lattice && strcmp(k->bodys[b].lattice, l->name) == 0) return false;
+  return true;
+}
+
 char *deck_file_path(const char *deck_path, const char *name) {
   const char *slash = strrchr(deck_path, '/');
   const int folder = slash && name[0] != '/' ? (int)(slash - deck_path) + 1 : 0;

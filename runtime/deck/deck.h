@@ -358,6 +358,8 @@ int deck_find_monitor(const deck *k, const char *name);
 int deck_find_material(const deck *k, const char *lattice);
 /* That of lattice number `lattice`; NULL without one. */
 const deck_material *deck_material_of(const deck *k, int lattice);
+/* None of its `&body` was written; particles of a file need none. */
+bool deck_misses_body(const deck *k, int lattice);
 /* For many searches: none of the names is known yet, they are taken up as the lists grow. */
 deck_names *deck_names_new(arena *a);
 

@@ -95,9 +95,19 @@ void deck_check_places(deck_reader *r, const namelist_group *from, const deck_gr
       check_place(r, namelist_find(from, info->keys[k].name), info->keys[k].name, dimensions);
 }
 
+/* Of that name, or the only one. */
+static int lattice_named(const deck_reader *r, const char *lattice) {
+  return lattice ? deck_find_lattice(r->k, lattice) : r->k->lattice_count == 1 ? 0 : -1;
+}
+
 int deck_dimensions_of(const deck_reader *r, const char *lattice) {
-  const int l = lattice ? deck_find_lattice(r->k, lattice) : r->k->lattice_count == 1 ? 0 : -1;
+  const int l = lattice_named(r, lattice);
   return l < 0 || !r->k->lattices[l].kind ? 0 : deck_lattice_dimensions(&r->k->lattices[l]);
+}
+
+int deck_lattice_of_region(const deck_reader *r, const char *name) {
+  const int k = name ? deck_find_region(r->k, name) : -1;
+  return k < 0 ? -1 : lattice_named(r, r->k->regions[k].lattice);
 }
 
 /* --- directions ------------------------------------------------------------------------------- */

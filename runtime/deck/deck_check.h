@@ -18,7 +18,6 @@ typedef struct deck_reader {
   /* false when some name could not be read: then unknown names are not reported */
   bool names_known;
   deck_motions *motions; /* [regions] */
-  int moved;             /* components of any region, a bit each */
 } deck_reader;
 
 /* The name that an item's key gives must be that of a lattice, or of a region. */
@@ -42,6 +41,7 @@ void deck_check_places(deck_reader *r, const namelist_group *from, const deck_gr
 /* Dimensions of the lattice of that name, or of the only one; 0 when it is not known which. */
 int deck_dimensions_of(const deck_reader *r, const char *lattice);
 int deck_dimensions_of_region(const deck_reader *r, const char *region);
+int deck_lattice_of_region(const deck_reader *r, const char *region); /* -1: it is not known */
 
 /* Directions as written; their positions are those of DECK_FIXED's bits, too. */
 #define DECK_COMPONENTS "x|y|z|rotation|rotation_x|rotation_y|rotation_z"

@@ -266,22 +266,6 @@ static bool is_no_matter(const char *group, const char *key) {
 
 /* --- the whole deck --------------------------------------------------------------------------- */
 
-/* Lattices with bodies, a mark each. */
-static bool *find_bodies(const deck_reader *r) {
-  const deck *k = r->k;
-  bool *found = arena_alloc(r->memory, (size_t)k->lattice_count + 1);
-  for (int i = 0; i < k->body_count; i++) {
-    const int l = k->bodys[i].lattice ? deck_find_lattice(k, k->bodys[i].lattice) : -1;
-    if (l >= 0) found[l] = true;
-  }
-  return found;
-}
-
-/* A faulty item may be the one that is missed. Particles of a file need no body. */
-static bool needs_body(const deck *k, const deck_lattice *lattice) {
-  return !deck_lacks(k, "body") && !deck_same_name(lattice->kind, "particles");
-}
-
 static bool has_material(const deck *k, const char *lattice) {
   return deck_lacks(k, "material") || deck_find_material(k, lattice) >= 0;
 }
@@ -403,7 +387,6 @@ static void check_whole(deck_reader *r) {
   check_quasi_static(r);
   check_regional_materials(r);
   take_middles(r);
-  const bool *has_body = find_bodies(r);
   for (int i = 0; i < k->lattice_count; i++) {
     const deck_lattice *lattice = &k->lattices[i];
     if (!lattice->name) continue;
@@ -412,7 +395,7 @@ static void check_whole(deck_reader *r) {
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where,
                   "the lattice `%s` has no `&material`%s", name,
                   has_regional(k, lattice->name) ? " without `region`" : "");
-    if (needs_body(k, lattice) && !has_body[i])
+    if (deck_misses_body(k, i))
       diag_report(r->d, DIAG_MISSING_KEY, lattice->item.where, "the lattice `%s` has no `&body`",
                   name);
   }

@@ -35,7 +35,6 @@ static deck_motions *motions_of(deck_reader *r, const char *region) {
 /* Of an item in which nothing is wrong; `components` has a bit each. */
 static void note_motions(deck_reader *r, const char *region, int components, span where) {
   deck_motions *m = motions_of(r, region);
-  r->moved |= components;
   for (int c = 0; m && c < PL_MAX_DOF; c++)
     if (components & 1 << c && m->of[c].end == 0) m->of[c] = where;
 }
@@ -162,7 +161,9 @@ static const deck_key_info force_keys[] = {
      .type = DECK_LATER,
      .unit = "N*m",
      DECK_NOT_KEPT,
-     .doc = "full moment, of all particles together (`rotation`; in space about an axis)"},
+     .doc =
+         "full moment, of all particles together (`rotation`; in space about an axis): a couple on "
+         "each, see [Rotations](#rotations); `&end_moment` bends a section as a whole"},
     DECK_TIME_KEYS,
 };
 
@@ -252,7 +253,9 @@ static void check_end_moment(deck_reader *r, const namelist_group *from, void *i
 }
 
 DECK_LIST(end_moment, .identity = "region", .check = check_end_moment,
-          .doc = "Moment on a region: horizontal forces, linear in y, without resultant.");
+          .doc =
+              "Moment on a region about z, in the plane and in space: forces along x, linear in y, "
+              "without resultant. They bend a body as a whole, whatever its law.");
 
 /* --- protect ---------------------------------------------------------------------------------- */
 

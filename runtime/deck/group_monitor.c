@@ -28,15 +28,19 @@ static const deck_key_info monitor_keys[] = {
     {.name = "region",
      .type = DECK_NAME,
      DECK_AT(monitor, region),
-     .doc = "reaction: force that its supports and drives exert on the body; displacement, "
-            "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
-            "energy: of its particles, without it of all; force: only bonds between its particles; "
-            "tip, tip_speed: only bonds of its particles"},
+     .doc =
+         "reaction: force that its supports and drives exert on the body, of a rotation the sum of "
+         "the couples on its particles, without the moments r x F of forces; displacement, "
+         "velocity, acceleration, field, stress, strain: mean; momentum, angular_momentum, "
+         "energy: of its particles, without it of all; force: only bonds between its particles; "
+         "tip, tip_speed: only bonds of its particles"},
     {.name = "lattice",
      .type = DECK_NAME,
      .fallback = "= the only one; damaged, broken: all",
      DECK_AT(monitor, lattice),
-     .doc = "in place of `region`: the lattice that is watched, where the deck has several"},
+     .doc = "in place of `region`: the lattice that is watched. Where the deck has several, "
+            "momentum, angular_momentum, energy, force, tip, tip_speed, and what is asked `at` a "
+            "place, need one of the two; energies in sum over all are in `energy/...`"},
     {.name = "between",
      .type = DECK_NAMES,
      DECK_AT(monitor, between),
@@ -187,10 +191,14 @@ static bool is_identifier(const char *name) {
   return good;
 }
 
-static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
+bool deck_is_history_name(const char *name) {
   static const char *const taken[] = {"time", "energy", "relaxation_steps", "relaxation_unbalance"};
+  return deck_is_one_of(name, taken, (int)(sizeof taken / sizeof *taken));
+}
+
+static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
   span where = deck_where(&item->item, "name");
-  if (deck_is_one_of(item->name, taken, 4))
+  if (deck_is_history_name(item->name))
     diag_report(r->d, DIAG_RESERVED_NAME, where,
                 "a monitor cannot be called `%s`: the result has a history of that name",
                 item->name);
@@ -204,11 +212,24 @@ static void check_monitor_name(deck_reader *r, const deck_monitor *item) {
                   first < 0 ? NULL : &r->k->monitors[first].item);
 }
 
+/* Regions overlap: whatever moves others of the same lattice may move particles of this one. */
+static bool may_be_moved(const deck_reader *r, const char *region, int component) {
+  const int lattice = deck_lattice_of_region(r, region);
+  bool moved = lattice < 0;
+  for (int k = 0; r->motions && k < r->k->region_count; k++)
+    moved = moved || (r->motions[k].of[component].end != 0 &&
+                      deck_lattice_of_region(r, r->k->regions[k].name) == lattice);
+  return moved;
+}
+
 /* Forces come from supports and drives only; without any along the component a reaction is 0 for
  * ever. */
 static void check_reaction(deck_reader *r, const deck_monitor *item) {
+  const int c = item->component;
   const bool found =
-      deck_lacks(r->k, "support") || deck_lacks(r->k, "drive") || r->moved & 1 << item->component;
+      deck_lacks(r->k, "support") || deck_lacks(r->k, "drive") ||
+      (item->region ? may_be_moved(r, item->region, c)
+                    : may_be_moved(r, item->between[0], c) || may_be_moved(r, item->between[1], c));
   if (found || !r->names_known) return;
   diag_report(r->d, DIAG_CONFLICT, item->item.where,
               "this reaction is always 0: no `&support` or `&drive` acts on `%s`",
@@ -238,7 +259,8 @@ static bool check_lattice(deck_reader *r, const namelist_group *from, const deck
   if (item->region || !is_kind(item, OF_WHOLE) || r->k->lattice_count < 2) return true;
   diag_report(r->d, DIAG_MISSING_KEY, from->where, "%s needs `region` or `lattice` here",
               monitor_words[item->kind]);
-  diag_hint(r->d, "the deck has %d lattices", r->k->lattice_count);
+  diag_hint(r->d, "the deck has %d lattices%s", r->k->lattice_count,
+            is_kind(item, OF_ENERGY) ? "; the result has the sum over all in `energy/...`" : "");
   return false;
 }
 
@@ -400,9 +422,10 @@ const char *deck_monitor_unit(const deck_monitor *m, bool rotates) {
   return "1";
 }
 
+/* Where nobody knows the lattice, it is in the plane. */
 static const char *unit_of(const deck_reader *r, const deck_monitor *m) {
-  return deck_monitor_unit(m,
-                           is_kind(m, ALONG_AXIS) && m->component == 2 && dimensions_of(r, m) != 3);
+  const int dimensions = dimensions_of(r, m) == 3 ? 3 : 2;
+  return deck_monitor_unit(m, is_kind(m, ALONG_AXIS) && m->component >= dimensions);
 }
 
 /* --- stops ------------------------------------------------------------------------------------ */

@@ -9,4 +9,7 @@ extern const deck_group_info deck_group_monitor, deck_group_stop;
 /* Unit of its values; "1" where the law says. `rotates`: its component is a rotation. */
 const char *deck_monitor_unit(const deck_monitor *m, bool rotates);
 
+/* A result has a history of that name, or a folder of histories, whatever the deck says. */
+bool deck_is_history_name(const char *name);
+
 #endif

@@ -67,7 +67,8 @@ static const deck_key_info relaxation_keys[] = {
      .fallback = "1e-4",
      DECK_AT(relaxation, tolerance),
      .doc =
-         "an increment is done when the unbalanced force is this part of the reactions or loads"},
+         "an increment is done when the unbalanced force is this part of the reactions or loads; "
+         "smaller for slender bodies, which bend far under little force: try a tenth and compare"},
     {.name = "most_steps",
      .type = DECK_COUNT,
      .fallback = "100000",

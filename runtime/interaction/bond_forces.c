@@ -60,12 +60,14 @@ static void evaluate(const bond_forces *f, row_part at, int direction) {
   const long near = body_start(w->body, at.row) + at.first,
              far = near + rows_offset(w->body->lattice, at.row, direction),
              slot = direction * w->body->lattice->size + near;
-  pl_strip s = {.count = at.end - at.first,
+  pl_strip s = {.size = sizeof s,
+                .count = at.end - at.first,
                 .direction = direction,
                 .flags = pairwise_flags(w, at.row) + at.first,
                 .parameter = f->parameter,
                 .field = f->field,
                 .force = f->force,
+                .time = w->body->time,
                 .time_step = w->body->time_step};
   for (int k = 0; k < w->law->varying_count; k++)
     f->parameter[k] = w->parameter[k] + slot;

@@ -38,7 +38,8 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
   const family *f = family_of(w);
   family_block *b = &f->blocks[block];
   b->observing = program == &w->law->observe;
-  *run = (pl_family){.row_stride = FAMILY_ROWS_ALIKE * w->body->lattice->pitch,
+  *run = (pl_family){.size = sizeof *run,
+                     .row_stride = FAMILY_ROWS_ALIKE * w->body->lattice->pitch,
                      .neighbours = f->neighbours,
                      .plane = w->body->lattice->size,
                      .parameter = b->parameter,
@@ -49,6 +50,7 @@ void family_run_begin(const sweep *w, const pl_program *program, int block, pl_f
                      .bond_link = b->bond_link,
                      .force = b->force,
                      .observed = b->observed,
+                     .time = w->body->time,
                      .time_step = w->body->time_step};
 }
 

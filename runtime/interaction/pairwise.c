@@ -89,6 +89,7 @@ static void strip_ends(const sweep *w, pairwise_block *b, int row, int direction
   s->direction = direction;
   s->flags = own(w)->flags[row] + first;
   s->unheld = (own(w)->some[row] & PL_PROTECTED(direction)) == 0;
+  s->time = w->body->time;
   s->time_step = w->body->time_step;
   s->parameter = b->parameters;
   for (int k = 0; k < w->law->varying_count; k++)
@@ -120,7 +121,7 @@ static void evaluate_strip(sweep *w, pairwise_block *b, int row, int direction, 
     force[p] = plane(w, buffer, p, direction) + begin;
   for (int f = 0; f < w->law->field_count; f++)
     b->pointers[f] = w->field[f] + site;
-  pl_strip s = {.field = b->pointers, .force = force};
+  pl_strip s = {.size = sizeof s, .field = b->pointers, .force = force};
   strip_ends(w, b, row, direction, first, count, &s);
   const pl_strip_function kernel = w->body->ledger ? w->law->rows_ledger : w->law->rows;
   kernel(w->law, pairwise_uniforms(w, direction), &s);
@@ -183,7 +184,7 @@ static void evaluate_aside(sweep *w, int block, int row, row_forces *buffer) {
       memcpy(b->pointers[f], w->field[f] + k * g->size + start,
              (size_t)w->body->count[row] * sizeof(double));
     }
-    pl_strip s = {.field = b->pointers, .force = force};
+    pl_strip s = {.size = sizeof s, .field = b->pointers, .force = force};
     strip_ends(w, b, row, k, 0, w->body->count[row], &s);
     if (ledger) {
       s.dissipated_state = w->lost_state + start;
@@ -374,7 +375,7 @@ static pl_strip observe_strip(sweep *w, pairwise_block *b, int row, int directio
     b->pointers[f] = w->new_field[f] + direction * g->size + body_start(w->body, row);
   for (int o = 0; o <= w->law->output_count; o++)
     observed[o] = b->observed + o * g->pitch;
-  pl_strip s = {.field = b->pointers, .observed = observed};
+  pl_strip s = {.size = sizeof s, .field = b->pointers, .observed = observed};
   strip_ends(w, b, row, direction, 0, w->body->count[row], &s);
   w->law->rows_observe(w->law, pairwise_uniforms(w, direction), &s);
   return s;

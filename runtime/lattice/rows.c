@@ -133,6 +133,7 @@ pl_bond_class rows_bond_class(const rows *w, int direction) {
   const int k = direction % w->directions;
   const double sign = direction < w->directions || w->list ? 1 : -1;
   return (pl_bond_class){
+      .size = sizeof(pl_bond_class),
       .s = w->length[k],
       .spacing = w->spacing,
       .t = w->stiffness_thickness,

@@ -371,6 +371,7 @@ static void add_of_law(frame_set *f, int b) {
                       .on_bonds = on_bonds(s),
                       .components = 1,
                       .body = b,
+                      .of_law = true,
                       .kind = damages ? "damage" : "state",
                       .long_name =
                           words_of(s->doc, damages ? "damage of the law" : "state of the law")},
@@ -385,6 +386,7 @@ static void add_of_law(frame_set *f, int b) {
                       .on_bonds = on_bonds(o),
                       .components = 1,
                       .body = b,
+                      .of_law = true,
                       .kind = "output",
                       .long_name = words_of(o->doc, "output of the law")},
         values_of_output, k);
@@ -398,6 +400,7 @@ static void add_of_law(frame_set *f, int b) {
                       .on_bonds = law->varying_place != PL_ON_PARTICLE,
                       .components = 1,
                       .body = b,
+                      .of_law = true,
                       .kind = "other",
                       .long_name = words_of(p->doc, "parameter of the law")},
         values_of_parameter, k);

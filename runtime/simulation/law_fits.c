@@ -3,6 +3,8 @@
 #include <string.h>
 #include <strings.h>
 
+#include "runtime/deck/group_monitor.h"
+
 span law_fits_where(const deck *k, int lattice) {
   const deck_lattice *l = &k->lattices[lattice];
   const int m = deck_find_material(k, l->name);
@@ -124,7 +126,7 @@ static bool has_own_name(const deck *k, int lattice, diagnostics *d) {
     diag_note(d, deck_where(&k->lattices[lattice].item, "name"), "the lattice");
     return false;
   }
-  if (strcmp(name, "energy") != 0 && strcmp(name, "time") != 0) return true;
+  if (!deck_is_history_name(name)) return true;
   diag_report(d, DIAG_RESERVED_NAME, deck_where(&k->lattices[lattice].item, "name"),
               "a result has another `%s`: one of several lattices cannot be named so", name);
   return false;
@@ -151,12 +153,17 @@ static bool is_named_once(const deck *k, const frame_field *f, int count, int fi
   return once;
 }
 
+/* What any law has is not what a law is told to name otherwise. */
+static bool is_own_field(const frame_field *f) {
+  return strcmp(f->kind, "other") == 0 && !f->of_law;
+}
+
 bool law_fits_result(const deck *k, const run_body *bodies, const frame_field *fields, int count,
                      diagnostics *d) {
   const int errors = d->errors;
   for (int n = 0; n < count; n++) {
     const char *name = fields[n].name;
-    if (strcmp(fields[n].kind, "other") == 0 || is_named_once(k, fields, count, n)) continue;
+    if (is_own_field(&fields[n]) || is_named_once(k, fields, count, n)) continue;
     diag_report(d, DIAG_RESERVED_NAME, law_fits_where(k, fields[n].body),
                 "`%s` of the law `%s` cannot be stored: a result has another `%s` there", name,
                 bodies[fields[n].body].law->name, name);

@@ -74,9 +74,10 @@ static bool is_loading(const relaxation *r, int64_t step) {
 }
 
 static void damp(relaxation *r, int64_t step) {
-  const double rate = (is_loading(r, step) ? while_loading : 1) * r->state.rate;
+  const double part = is_loading(r, step) ? while_loading : 1;
   for (int b = 0; b < r->body_count; b++)
-    r->bodies[b].body->decay = pl_exp(-rate * r->bodies[b].body->time_step);
+    r->bodies[b].body->decay =
+        pl_exp(-(part * r->looked_at[b].state.rate) * r->bodies[b].body->time_step);
 }
 
 load_clock relaxation_clock(const relaxation *r, int64_t first) {
@@ -93,7 +94,8 @@ void relaxation_next(relaxation *r, int64_t step) {
 }
 
 void relaxation_begin(relaxation *r) {
-  r->state.rate = 2 * M_PI / ((double)r->ramp * r->bodies[0].body->time_step);
+  for (int b = 0; b < r->body_count; b++)
+    r->looked_at[b].state.rate = 2 * M_PI / ((double)r->ramp * r->bodies[b].body->time_step);
   relaxation_next(r, 0);
 }
 
@@ -117,10 +119,11 @@ static void add_motion(const body *w, relaxed_body *last, double *work, double *
 }
 
 static void adapt(relaxation *r) {
-  double work = 0, motion = 0;
-  for (int b = 0; b < r->body_count; b++)
+  for (int b = 0; b < r->body_count; b++) {
+    double work = 0, motion = 0;
     add_motion(r->bodies[b].body, &r->looked_at[b], &work, &motion);
-  if (work > 0 && motion > 0) r->state.rate = 2 * sqrt(work / motion);
+    if (work > 0 && motion > 0) r->looked_at[b].state.rate = 2 * sqrt(work / motion);
+  }
 }
 
 static double square_of(double x) {
@@ -157,22 +160,32 @@ static void add_component(const relaxation *r, const run_body *of, int d, square
     sum->free += square_of(r->total[w->lattice->particle_site[p]] / arm);
 }
 
-static double unbalance_of(relaxation *r) {
+static double unbalance_of(const relaxation *r, int number) {
   squares sum = {0, 0, 0};
-  for (int b = 0; b < r->body_count; b++)
-    for (int d = 0; d < r->bodies[b].body->dof; d++)
-      add_component(r, &r->bodies[b], d, &sum);
+  relaxed_state *state = &r->looked_at[number].state;
+  for (int d = 0; d < r->bodies[number].body->dof; d++)
+    add_component(r, &r->bodies[number], d, &sum);
   const double needed = sqrt(pl_fmax(sum.held, sum.applied));
-  r->state.largest = pl_fmax(r->state.largest, needed);
-  const double against = pl_fmax(needed, forgotten * r->state.largest);
+  state->largest = pl_fmax(state->largest, needed);
+  const double against = pl_fmax(needed, forgotten * state->largest);
   return sum.free == 0 ? 0 : sqrt(sum.free) / against;
+}
+
+/* NaN is no balance. */
+static double largest_unbalance(const relaxation *r) {
+  double most = 0;
+  for (int b = 0; b < r->body_count; b++) {
+    const double here = unbalance_of(r, b);
+    if (!(here <= most)) most = here;
+  }
+  return most;
 }
 
 bool relaxation_look(relaxation *r, int64_t step) {
   const int64_t steps = step - first_step(r);
   adapt(r);
   damp(r, step);
-  r->state.unbalance = unbalance_of(r);
+  r->state.unbalance = largest_unbalance(r);
   if (steps < r->ramp) return false;
   const bool balanced = r->state.unbalance <= r->deck->tolerance;
   if (!balanced && steps < r->deck->most_steps) return false;

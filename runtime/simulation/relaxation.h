@@ -23,12 +23,16 @@ typedef struct relaxation_state { /* what a later step depends on */
   int64_t done;                   /* increments */
   int64_t unbalanced;             /* of these: ended after `most_steps` */
   int64_t steps;                  /* of the last that was done */
-  double rate;                    /* 1/s: mass damping, critical for the motion looked at last */
-  double unbalance;               /* as it was looked at last */
-  double largest;                 /* N: the largest force that it was compared with */
+  double unbalance;               /* as it was looked at last, of the body with the largest */
 } relaxation_state;
 
-typedef struct relaxed_body {                           /* a body at the last look */
+typedef struct relaxed_state { /* of a body, likewise */
+  double rate;                 /* 1/s: mass damping, critical for the motion looked at last */
+  double largest;              /* N: the largest force that its unbalance was compared with */
+} relaxed_state;
+
+typedef struct relaxed_body { /* a body at the last look */
+  relaxed_state state;
   double *displacement[PL_MAX_DOF], *force[PL_MAX_DOF]; /* [size] */
 } relaxed_body;
 
@@ -45,8 +49,8 @@ typedef struct relaxation {
   double *total; /* [size] of the largest body */
 } relaxation;
 
-/* Of all bodies together: they come to rest before the next increment. Forces of the sweeps must
-   be kept. `part` of the largest stable step is taken. */
+/* Each body is damped and judged by itself; all come to rest before the next increment. Forces of
+   the sweeps must be kept. `part` of the largest stable step is taken. */
 relaxation *relaxation_new(const deck *k, const run_body *bodies, int count, double part);
 void relaxation_free(relaxation *r);
 

@@ -52,6 +52,7 @@ static void add_loads(part_list *l, loads *of) {
 static void add_relaxation(part_list *l, relaxation *r) {
   add_part(l, "relaxation", &r->state, sizeof r->state);
   for (int b = 0; b < r->body_count; b++) {
+    add_part(l, "relaxed body", &r->looked_at[b].state, sizeof r->looked_at[b].state);
     const size_t site = (size_t)r->bodies[b].lattice_rows->size * sizeof(double);
     for (int d = 0; d < r->bodies[b].body->dof; d++) {
       add_part(l, "displacement looked at", r->looked_at[b].displacement[d], site);

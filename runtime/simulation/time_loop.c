@@ -174,8 +174,17 @@ static void do_stage(void *of, int task, int block) {
   }
 }
 
+/* The deck's time of the present places, for the laws. */
+static void set_time(simulation *s) {
+  for (int b = 0; b < s->body_count; b++) {
+    body *of = s->bodies[b].body;
+    of->time = load_clock_time(&s->bodies[b].loads->clock, of, (long)s->clock.at.step);
+  }
+}
+
 /* Blocks keep the times of what they do in steps only. */
 static int next_task(simulation *s) {
+  set_time(s);
   for (int b = 0; b < s->body_count; b++)
     s->bodies[b].body->timed = s->profile && !s->observe;
   return s->observe ? s->step_stages : s->go_on ? 0 : TEAM_END;
@@ -204,6 +213,7 @@ static int64_t next_stop(const simulation *s, long steps) {
 }
 
 static void observe_all(simulation *s) {
+  set_time(s);
   for (int b = 0; b < s->body_count; b++)
     sweep_observe(s->bodies[b].state);
 }

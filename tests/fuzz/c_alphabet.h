@@ -30,6 +30,9 @@ static const char *const c_own_words[] = {"static",
                                           "pl_parameter",
                                           "pl_field",
                                           "pl_output",
+                                          "pl_input",
+                                          "pl_states",
+                                          "sizeof",
                                           "PL_FIELD_STATE",
                                           "PL_FIELD_DAMAGE",
                                           "PL_FIELD_OUTPUT",
@@ -76,17 +79,38 @@ static const char *const c_own_words[] = {"static",
                                           "pl_to_bits"};
 /* Words of C that kernels are not written with. */
 static const char *const c_foreign_words[] = {
-    "asm",    "auto",   "break",  "case",    "continue", "default",  "do",       "else",
-    "extern", "float",  "goto",   "inline",  "int",      "register", "short",    "signed",
-    "sizeof", "struct", "switch", "typedef", "typeof",   "union",    "volatile", "while",
-    "linux",  "unix",   "NULL",   "bool",    "true",     "false"};
+    "asm",    "auto",   "break",   "case",   "continue", "default",  "do",    "else",
+    "extern", "float",  "goto",    "inline", "int",      "register", "short", "signed",
+    "struct", "switch", "typedef", "typeof", "union",    "volatile", "while", "linux",
+    "unix",   "NULL",   "bool",    "true",   "false"};
 /* Functions that a kernel defines. */
-static const char *const c_own_functions[] = {
-    "prepare",   "bounds",         "rows",      "rows_ledger", "rows_observe", "states",
-    "tangent",   "perilat_kernel", "step_0",    "step_1",      "step_2",       "step_3",
-    "step_4",    "step_5",         "step_6",    "step_7",      "observe_0",    "observe_1",
-    "observe_2", "observe_3",      "observe_4", "observe_5",   "observe_6",    "observe_7",
-    "rows_unusual", "rows_ledger_unusual", "rows_observe_unusual"};
+static const char *const c_own_functions[] = {"prepare",
+                                              "bounds",
+                                              "rows",
+                                              "rows_ledger",
+                                              "rows_observe",
+                                              "states",
+                                              "tangent",
+                                              "perilat_kernel",
+                                              "step_0",
+                                              "step_1",
+                                              "step_2",
+                                              "step_3",
+                                              "step_4",
+                                              "step_5",
+                                              "step_6",
+                                              "step_7",
+                                              "observe_0",
+                                              "observe_1",
+                                              "observe_2",
+                                              "observe_3",
+                                              "observe_4",
+                                              "observe_5",
+                                              "observe_6",
+                                              "observe_7",
+                                              "rows_unusual",
+                                              "rows_ledger_unusual",
+                                              "rows_observe_unusual"};
 
 static inline bool c_word_in(const char *const *words, size_t count, const char *at,
                              size_t length) {

@@ -25,7 +25,8 @@ typedef struct tested_law {
 /* A bond of the notched beam, 6.35 mm, lattice turned by 17 degrees. */
 static inline pl_bond_class tested_bond(void) {
   const double s = 6.35e-3, t = 0.1524, turn = 17 * acos(-1.0) / 180;
-  pl_bond_class b = {.s = s,
+  pl_bond_class b = {.size = sizeof b,
+                     .s = s,
                      .spacing = s,
                      .t = t,
                      .V = sqrt(3.0) / 2 * s * s * t,
@@ -100,22 +101,29 @@ typedef struct tested_state {
 } tested_state;
 
 static inline void evaluate_law(const tested_law *t, tested_state *x, int with_tangent) {
-  double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS + MOST_FIELDS];
-  const double *in[PL_STATE_INPUTS + MOST_FIELDS] = {&x->stretch, &x->rate, &x->theta_i,
-                                                     &x->theta_j, &length};
-  double *out[PL_TANGENTS];
-  for (int k = 0; k < t->kernel->field_count; k++)
-    in[PL_STATE_INPUTS + k] = &x->field[k];
-  for (int k = 0; k < PL_STATE_RESULTS + MOST_FIELDS; k++)
+  double length = tested_bond().s * (1 + x->stretch), result[PL_STATE_RESULTS];
+  static const char *const names[] = {"stretch", "stretch_rate", "theta_i", "theta_j", "length"};
+  const double *in[] = {&x->stretch, &x->rate, &x->theta_i, &x->theta_j, &length};
+  assert_int_equal(t->kernel->state_input_count, PL_STATE_INPUTS);
+  for (int k = 0; k < PL_STATE_INPUTS; k++)
+    assert_string_equal(t->kernel->state_inputs[k].name, names[k]);
+  const double *field[MOST_FIELDS];
+  double *out[PL_TANGENTS], *new_field[MOST_FIELDS];
+  for (int k = 0; k < MOST_FIELDS; k++) {
+    field[k] = &x->field[k];
+    new_field[k] = &x->new_field[k];
+  }
+  for (int k = 0; k < PL_STATE_RESULTS; k++)
     out[k] = &result[k];
-  t->kernel->states(t->kernel, t->uniforms, 1, in, out);
+  const pl_states s = {
+      .size = sizeof s, .count = 1, .in = in, .field = field, .out = out, .new_field = new_field};
+  t->kernel->states(t->kernel, t->uniforms, &s);
   x->N = result[0];
   x->M_i = result[1];
   x->M_j = result[2];
-  memcpy(x->new_field, result + PL_STATE_RESULTS, (size_t)t->kernel->field_count * sizeof(double));
   for (int k = 0; k < PL_TANGENTS; k++)
     out[k] = &x->tangent[k];
-  if (with_tangent) t->kernel->tangent(t->kernel, t->uniforms, 1, in, out);
+  if (with_tangent) t->kernel->tangent(t->kernel, t->uniforms, &s);
 }
 
 /* --- random numbers --------------------------------------------------------------------------- */

@@ -177,6 +177,7 @@ static const pl_family_function beam_step[] = {beam_forces}, beam_observe[] = {b
 
 static inline pl_law beams_in(int dimensions, int topology) {
   return (pl_law){.abi = PL_KERNEL_ABI,
+                  .size = sizeof(pl_law),
                   .stores = 1,
                   .kind = PL_STATE,
                   .pairwise = 1,

@@ -145,24 +145,23 @@ static void elastic_rows_observe(const pl_law *law, const double *u, const pl_st
   }
 }
 
-static void elastic_states(const pl_law *law, const double *u, long count, const double *const *in,
-                           double *const *out) {
+static void elastic_states(const pl_law *law, const double *u, const pl_states *s) {
   (void)law;
-  for (long q = 0; q < count; q++) {
-    elastic_bond b = {in[0][q], in[1][q], in[2][q], in[3][q], in[4][q], {1, 0}, 0, 0, 0, 0};
-    elastic_forces(u, in[5][q], 0, &b);
-    out[0][q] = b.N;
-    out[1][q] = b.M_i;
-    out[2][q] = b.M_j;
-    out[3][q] = b.omega;
+  for (long q = 0; q < s->count; q++) {
+    elastic_bond b = {s->in[0][q], s->in[1][q], s->in[2][q], s->in[3][q], s->in[4][q],
+                      {1, 0},      0,           0,           0,           0};
+    elastic_forces(u, s->field[0][q], 0, &b);
+    s->out[0][q] = b.N;
+    s->out[1][q] = b.M_i;
+    s->out[2][q] = b.M_j;
+    s->new_field[0][q] = b.omega;
   }
 }
 
-static void elastic_tangent(const pl_law *law, const double *u, long count, const double *const *in,
-                            double *const *out) {
+static void elastic_tangent(const pl_law *law, const double *u, const pl_states *s) {
   const double EI = law->kind == PL_CENTRAL ? 0 : u[UNIFORM_EI];
-  for (long q = 0; q < count; q++) {
-    const double left = 1 - in[5][q], bending = 2 * left * EI / u[UNIFORM_S];
+  for (long q = 0; q < s->count; q++) {
+    const double left = 1 - s->field[0][q], bending = 2 * left * EI / u[UNIFORM_S];
     const double d[12] = {left * u[UNIFORM_EA],
                           left * u[UNIFORM_EA] * u[UNIFORM_TAU],
                           0,
@@ -176,14 +175,14 @@ static void elastic_tangent(const pl_law *law, const double *u, long count, cons
                           bending,
                           2 * bending};
     for (int k = 0; k < 12; k++)
-      out[k][q] = d[k];
+      s->out[k][q] = d[k];
   }
 }
 
 #define ELASTIC_LAW(law_kind, law_name, law_dof, planes)                                           \
   {                                                                                                \
-    .abi = PL_KERNEL_ABI, .stores = 1, .kind = law_kind, .dimensions = 2, .dof = law_dof,          \
-    .force_planes = planes, .name = law_name, .key = law_name,                                     \
+    .abi = PL_KERNEL_ABI, .size = sizeof(pl_law), .stores = 1, .kind = law_kind, .dimensions = 2,  \
+    .dof = law_dof, .force_planes = planes, .name = law_name, .key = law_name,                     \
     .parameter_count = ELASTIC_PARAMETERS, .parameters = elastic_parameters,                       \
     .density = ELASTIC_RHO, .field_count = 1, .fields = elastic_fields, .output_count = 1,         \
     .outputs = elastic_outputs, .uniform_count = ELASTIC_UNIFORMS, .prepare = elastic_prepare,     \

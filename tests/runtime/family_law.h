@@ -206,6 +206,7 @@ static const pl_family_function family_step[] = {family_fields_pass, family_forc
 static const pl_family_function family_observe[] = {family_observe_pass};
 
 static const pl_law family_hexagon = {.abi = PL_KERNEL_ABI,
+                                      .size = sizeof(pl_law),
                                       .stores = 1,
                                       .kind = PL_STATE,
                                       .dimensions = 2,

@@ -73,6 +73,7 @@ static void spring_energy(const pl_law *law, const double *uniforms, const pl_fa
 static const pl_family_function spring_step[] = {spring_forces}, spring_observe[] = {spring_energy};
 
 static const pl_law springs = {.abi = PL_KERNEL_ABI,
+                               .size = sizeof(pl_law),
                                .stores = 1,
                                .kind = PL_STATE,
                                .dimensions = 3,

@@ -222,7 +222,8 @@ static inline void all_bond_forces(sweep *w, double *force[4]) {
       }
       for (int p = 0; p < kernel->force_planes; p++)
         planes[p] = force[p] + k * g->size + near;
-      pl_strip s = {.count = w->body->count[r],
+      pl_strip s = {.size = sizeof(pl_strip),
+                    .count = w->body->count[r],
                     .direction = k,
                     .flags = pairwise_flags(w, r),
                     .field = field,

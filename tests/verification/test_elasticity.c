@@ -91,10 +91,11 @@ static void tangent_at_rest(double tangent[12]) {
   double uniforms[64], *out[12], zero = 0, length = spacing;
   assert_true(kernel->uniform_count <= 64 && kernel->field_count == 1);
   kernel->prepare(kernel, law_under_test.parameters, &bond, uniforms);
-  const double *in[6] = {&zero, &zero, &zero, &zero, &length, &zero};
+  const double *in[] = {&zero, &zero, &zero, &zero, &length}, *field[] = {&zero};
   for (int k = 0; k < 12; k++)
     out[k] = &tangent[k];
-  kernel->tangent(kernel, uniforms, 1, in, out);
+  const pl_states s = {.size = sizeof s, .count = 1, .in = in, .field = field, .out = out};
+  kernel->tangent(kernel, uniforms, &s);
   deck_case_close(&c);
 }
 

@@ -98,7 +98,8 @@ static void pair_open(pair *p, const law_case *c, double distance, double volume
   p->offset[0] = 1;
   p->offset[1] = -1;
   for (int k = 0; k < 2; k++) {
-    const pl_bond_class b = {.s = distance,
+    const pl_bond_class b = {.size = sizeof(pl_bond_class),
+                             .s = distance,
                              .spacing = distance,
                              .V = volume,
                              .shell = 1,
@@ -115,7 +116,8 @@ static void pair_open(pair *p, const law_case *c, double distance, double volume
 static void pair_forces(pair *p, const law_case *c) {
   const double *old[MOST_FIELDS];
   double *new_field[MOST_FIELDS], *link[MOST_LINKS], *force[3];
-  pl_family f = {.count = 8,
+  pl_family f = {.size = sizeof(pl_family),
+                 .count = 8,
                  .rows = 1,
                  .neighbours = 2,
                  .plane = PLACES,

@@ -57,37 +57,36 @@ static double damping_slope(const double *u, double elastic, double rate) {
   return 0;
 }
 
-static void states(const pl_law *law, const double *u, long count, const double *const *in,
-                   double *const *out) {
+static void states(const pl_law *law, const double *u, const pl_states *s) {
   (void)law;
-  for (long k = 0; k < count; k++) {
-    const double elastic = u[EA] * in[0][k], bend = 2 * u[EI] / u[S];
-    out[0][k] = elastic + damping_force(u, elastic, in[1][k]);
-    out[1][k] = bend * (2 * in[2][k] + in[3][k]);
-    out[2][k] = bend * (2 * in[3][k] + in[2][k]);
-    out[3][k] = fmax(in[5][k], in[0][k] > u[UNIFORMS + DAMAGE_AT] ? 0.5 : 0);
+  for (long k = 0; k < s->count; k++) {
+    const double elastic = u[EA] * s->in[0][k], bend = 2 * u[EI] / u[S];
+    s->out[0][k] = elastic + damping_force(u, elastic, s->in[1][k]);
+    s->out[1][k] = bend * (2 * s->in[2][k] + s->in[3][k]);
+    s->out[2][k] = bend * (2 * s->in[3][k] + s->in[2][k]);
+    s->new_field[0][k] = fmax(s->field[0][k], s->in[0][k] > u[UNIFORMS + DAMAGE_AT] ? 0.5 : 0);
   }
 }
 
-static void tangent(const pl_law *law, const double *u, long count, const double *const *in,
-                    double *const *out) {
+static void tangent(const pl_law *law, const double *u, const pl_states *s) {
   (void)law;
-  for (long k = 0; k < count; k++) {
+  for (long k = 0; k < s->count; k++) {
     const double bend = 2 * u[EI] / u[S];
-    const double t[12] = {u[EA],    damping_slope(u, u[EA] * in[0][k], in[1][k]),
+    const double t[12] = {u[EA],    damping_slope(u, u[EA] * s->in[0][k], s->in[1][k]),
                           0,        0,
                           0,        0,
                           2 * bend, bend,
                           0,        0,
                           bend,     2 * bend};
     for (int c = 0; c < 12; c++)
-      out[c][k] = t[c];
+      s->out[c][k] = t[c];
   }
 }
 
 static const pl_field fields[] = {{"omega", "1", "", 0, PL_FIELD_DAMAGE, PL_ON_BOND}};
 
 static const pl_law micropolar = {.abi = PL_KERNEL_ABI,
+                                  .size = sizeof(pl_law),
                                   .kind = PL_MICROPOLAR,
                                   .dimensions = 2,
                                   .dof = 3,
@@ -293,7 +292,8 @@ static double growth(const material *m, double dt, int steps) {
   patch *p = test_calloc(1, sizeof *p);
   const double volume = sqrt(3) / 2 * spacing * spacing * thickness;
   const double mass = density * volume, inertia = 0.4 * mass * spacing * spacing / 4;
-  const pl_bond_class b = {.s = spacing, .t = thickness, .mass_i = mass, .mass_j = mass};
+  const pl_bond_class b = {
+      .size = sizeof(pl_bond_class), .s = spacing, .t = thickness, .mass_i = mass, .mass_j = mass};
   double largest = 0;
   prepare(&micropolar, m->values, &b, p->uniforms);
   for (int i = 0; i < PARTICLES; i++)

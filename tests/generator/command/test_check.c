@@ -260,6 +260,18 @@ static void bonds_of_plane_strain_are_asked_for(void **state) {
   assert_null(strstr(w->said, "warning"));
 }
 
+/* Coefficients that are meant for other neighbours. */
+static void a_modulus_that_was_not_asked_for_is_told(void **state) {
+  workplace *w = *state;
+  write_text(w, "space.nml",
+             "&simulation end_time = '1 ms' /\n"
+             "&lattice name = 'c' kind = 'fcc' spacing = '6 mm' shells = 2 /\n"
+             "&material lattice = 'c' model = 'mplm_space' E = '30 GPa' /\n"
+             "&body lattice = 'c' shape = 'box' corner = 0, 0, 0 size = 0.04, 0.04, 0.04 /\n");
+  expect(w, "check space.nml", 0, "on this lattice E = 30 GPa, nu = 0.2000");
+  expect(w, "check space.nml --set lattice.shells=1", 0, "GPa (E = 30 GPa was asked for), nu = ");
+}
+
 /* A chain has an area and no thickness, other lattices the other way round; families on a line
    resolve no strain. */
 static void laws_have_the_section_that_they_read(void **state) {
@@ -272,6 +284,11 @@ static void laws_have_the_section_that_they_read(void **state) {
   write_text(w, "chain.nml", chain);
   expect(w, "check chain.nml", 0, "along this chain E = 200 GPa");
   expect(w, "check chain.nml --set body.corner=0,0.001", 1, "the row of a chain goes through");
+  char watched[sizeof chain + 200];
+  snprintf(watched, sizeof watched,
+           "%s&monitor name = 'e' kind = 'strain' at = 0, 0 component = 'xx' /\n", chain);
+  write_text(w, "watched.nml", watched);
+  expect(w, "check watched.nml", 1, "hint: along a chain it is the `stress` over E");
   expect(w, "check chain.nml --set material.model=mplm_bilinear", 1,
          "reads the thickness `t`, which a chain does not have");
   expect(w, "check chain.nml --set material.model=lps", 1,
@@ -337,6 +354,9 @@ static void all_that_is_wrong_is_said_at_once(void **state) {
   shell(w, "sed 's/[&]body /\\&bodyy /' many.nml > body.nml");
   expect(w, "check body.nml", 1, "there is no group `&bodyy`");
   assert_string_equal(lines_named(w, "body.nml", text), "3 4 5 9");
+  shell(w, "sed '/[&]body/d' beam.nml > bodiless.nml");
+  expect(w, "check bodiless.nml", 1, "the lattice `concrete` has no `&body`");
+  assert_null(strstr(w->said, "empty-region"));
   expect(w, "check many.nml --set material.model=nope", 1, "there is no model `nope`");
   assert_string_equal(lines_named(w, "many.nml", text), "5 8 9 11");
   /* a law that breaks mechanics has no step to be unstable with */
@@ -373,6 +393,8 @@ int main(void) {
       cmocka_unit_test_setup_teardown(verdicts_that_depend_on_values_say_so, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(commands_agree, set_up_workplace, tear_down_workplace),
+      cmocka_unit_test_setup_teardown(a_modulus_that_was_not_asked_for_is_told, set_up_workplace,
+                                      tear_down_workplace),
       cmocka_unit_test_setup_teardown(laws_have_the_section_that_they_read, set_up_workplace,
                                       tear_down_workplace),
       cmocka_unit_test_setup_teardown(bonds_of_plane_strain_are_asked_for, set_up_workplace,

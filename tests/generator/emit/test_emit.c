@@ -271,7 +271,13 @@ static void assert_same_bits(const ir *g, const pl_law *kernel, const ir_node *n
   fill_states(x, y, field);
   for (int k = 0; k < count + 8; k++)
     in[k] = k == 0 ? x : k == 1 ? y : field;
-  kernel->states(kernel, NULL, STATES, in, out);
+  const pl_states s = {.size = sizeof s,
+                       .count = STATES,
+                       .in = in,
+                       .field = in + 5,
+                       .out = out,
+                       .new_field = count > 3 ? out + 3 : out};
+  kernel->states(kernel, NULL, &s);
   interpret(g, nodes, count, x, y, expected);
   for (int k = 0; k < count; k++)
     for (int q = 0; q < STATES; q++) {
@@ -531,8 +537,12 @@ static void strip_fill(strip_memory *m) {
     m->flags[q] = PL_PRESENT(2);
   }
   m->field[0] = m->omega;
-  m->strip = (pl_strip){
-      .count = STRIP, .direction = 2, .flags = m->flags, .force = m->force, .field = m->field};
+  m->strip = (pl_strip){.size = sizeof(pl_strip),
+                        .count = STRIP,
+                        .direction = 2,
+                        .flags = m->flags,
+                        .force = m->force,
+                        .field = m->field};
   for (int k = 0; k < 3; k++) {
     m->strip.displacement_i[k] = m->in[k];
     m->strip.displacement_j[k] = m->in[3 + k];
@@ -543,7 +553,8 @@ static void strip_fill(strip_memory *m) {
 
 static void run_rows(const pl_law *kernel, strip_memory *m) {
   const double parameters[4] = {5e7, 3e2, 1.18e-4, 0.1};
-  const pl_bond_class bonds = {.s = 6.35e-3, .chord = {6.35e-3, 0, 0}};
+  const pl_bond_class bonds = {
+      .size = sizeof(pl_bond_class), .s = 6.35e-3, .chord = {6.35e-3, 0, 0}};
   double uniforms[64];
   assert_true(kernel->uniform_count <= 64);
   kernel->prepare(kernel, parameters, &bonds, uniforms);

@@ -51,6 +51,12 @@ static void same_tables(const pl_law *a, const pl_law *b) {
     assert_string_equal(a->fields[k].doc ? a->fields[k].doc : "",
                         b->fields[k].doc ? b->fields[k].doc : "");
   }
+  assert_int_equal(a->size, b->size);
+  assert_int_equal(a->state_input_count, b->state_input_count);
+  for (int k = 0; k < a->state_input_count; k++) {
+    assert_string_equal(a->state_inputs[k].name, b->state_inputs[k].name);
+    assert_string_equal(a->state_inputs[k].unit, b->state_inputs[k].unit);
+  }
 }
 
 /* The compiled kernel answers as the interpreter: a name that means something to C would change
@@ -106,7 +112,7 @@ static const char *const hostile_names[] = {
     /* the prelude's and the kernel's own */
     "pl_law", "pl_strip", "pl_sqrt", "PL_RARE", "PL_PASS", "PL_INDEPENDENT", "PL_LANES",
     "PL_PRESENT", "PL_KERNEL_ABI", "PL_HALF_PI_HI", "law", "uniforms", "strip", "count", "q",
-    "flags", "i", "j", "in_", "out", "bonds", "present", "present_bit", "protected",
+    "flags", "i", "j", "in_", "out", "given", "bonds", "present", "present_bit", "protected",
     "protected_bit", "lower", "upper", "low_open", "high_open", "parameters", "law_parameters",
     "law_fields", "the_law", "perilat_kernel", "prepare", "rows", "rows_ledger", "rows_observe",
     "states", "tangent", "to_0", "value_0", "values_0", "far_1", "at_u_ix", "at_force_0",

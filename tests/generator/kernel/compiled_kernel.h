@@ -19,7 +19,8 @@
 #include "generator/kernel/toolchain_compiler.h"
 
 enum { PARAMETER_SETS = 4 };
-static const pl_bond_class bonds = {.s = 6.35e-3,
+static const pl_bond_class bonds = {.size = sizeof(pl_bond_class),
+                                    .s = 6.35e-3,
                                     .spacing = 6.35e-3,
                                     .t = 0.1524,
                                     .V = 5.32e-6,

@@ -128,10 +128,9 @@ static void breaks_protected_bonds(const pl_law *faulty, const double *uniforms,
     if (s->flags[q] & PL_PROTECTED(s->direction)) s->field[0][q] += 0.5;
 }
 
-static void tangent_of_no_moment(const pl_law *faulty, const double *uniforms, long count,
-                                 const double *const *in, double *const *out) {
-  good(faulty)->tangent(good(faulty), uniforms, count, in, out);
-  memset(out[11], 0, (size_t)count * sizeof(double));
+static void tangent_of_no_moment(const pl_law *faulty, const double *uniforms, const pl_states *s) {
+  good(faulty)->tangent(good(faulty), uniforms, s);
+  memset(s->out[11], 0, (size_t)s->count * sizeof(double));
 }
 
 static void bounds_all_open(const pl_law *faulty, const double *parameters, double *lower,

@@ -31,7 +31,8 @@
 
 static char *kernel_text(const char *key, int abi, double flops) {
   const char *format = "%s\n"
-                       "static const pl_law the_law = {.abi = %d, .name = \"hand\", .key = \"%s\", "
+                       "static const pl_law the_law = {.abi = %d, .size = sizeof(pl_law), .name = "
+                       "\"hand\", .key = \"%s\", "
                        ".flops_per_bond = %.17g};\n"
                        "const pl_law *perilat_kernel(void);\n"
                        "const pl_law *perilat_kernel(void) { return &the_law; }\n";
@@ -335,6 +336,52 @@ static void foreign_objects_are_refused_with_the_reason(void **state) {
   assert_int_equal(count_files(p->folder, "c"), 0); /* built: nothing to keep */
 }
 
+/* A law whose table says how long it is, with as many inputs of a state. */
+static char *table_text(size_t length, int inputs) {
+  const char *format = "%s\n"
+                       "static const pl_input inputs[] = {{0}, {0}, {0}, {0}, {0}, {\"humidity\", "
+                       "\"1\"}};\n"
+                       "static const struct {\n  pl_law law;\n  double appended[8];\n} table = "
+                       "{{.abi = PL_KERNEL_ABI, .size = %zu, .name = \"hand\", .key = \"k\", "
+                       ".state_input_count = %d, .state_inputs = inputs}, {0}};\n"
+                       "const pl_law *perilat_kernel(void);\n"
+                       "const pl_law *perilat_kernel(void) { return &table.law; }\n";
+  size_t size = strlen(prelude_kernel_h) + 1000;
+  char *text = malloc(size);
+  assert_non_null(text);
+  snprintf(text, size, format, prelude_kernel_h, length, inputs);
+  return text;
+}
+
+/* Longer tables are of later versions, shorter ones of earlier ones: good are those that have what
+   is read here. */
+static void tables_of_other_lengths_are_taken_where_they_suffice(void **state) {
+  place_of_test *p = *state;
+  const struct {
+    size_t length;
+    int inputs;
+    const char *refused;
+  } cases[] = {{sizeof(pl_law), PL_STATE_INPUTS, NULL},
+               {sizeof(pl_law) + 8 * sizeof(double), PL_STATE_INPUTS, NULL},
+               {offsetof(pl_law, context), PL_STATE_INPUTS, NULL},
+               {offsetof(pl_law, context) - 1, PL_STATE_INPUTS, "ends too early"},
+               {0, PL_STATE_INPUTS, "ends too early, after 0 bytes"},
+               {sizeof(pl_law), PL_STATE_INPUTS + 1, "the input `humidity`"}};
+  for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+    char path[600], error[ERROR_SIZE] = "", *text = table_text(cases[k].length, cases[k].inputs);
+    snprintf(path, sizeof path, "%s/table %zu.so", p->folder, k);
+    assert_true(toolchain_build(text, path, error, sizeof error));
+    free(text);
+    if (cases[k].refused) {
+      assert_refused(path, "k", cases[k].refused);
+      continue;
+    }
+    loaded_kernel kernel;
+    if (!toolchain_open(path, "k", &kernel, error, sizeof error)) fail_msg("%zu: %s", k, error);
+    toolchain_unload(&kernel);
+  }
+}
+
 static void a_text_file_is_no_kernel(void **state) {
   place_of_test *p = *state;
   char path[600];
@@ -426,7 +473,8 @@ static char *text_in_parts(const char *other) {
       "%s\n"
       "extern const double of_other;\n"
       "#if PL_PART == 0\n"
-      "static pl_law the_law = {.abi = PL_KERNEL_ABI, .name = \"hand\", .key = \"parts\"};\n"
+      "static pl_law the_law = {.abi = PL_KERNEL_ABI, .size = sizeof(pl_law), .name = \"hand\", "
+      ".key = \"parts\"};\n"
       "const pl_law *perilat_kernel(void);\n"
       "const pl_law *perilat_kernel(void) { the_law.flops_per_bond = of_other; return &the_law; }\n"
       "#else\n"
@@ -561,6 +609,7 @@ int main(void) {
       IN_OWN_CACHE(what_killed_compilations_left_is_taken_away_after_a_day),
       IN_OWN_CACHE(refused_source_is_kept_and_named),
       IN_OWN_CACHE(foreign_objects_are_refused_with_the_reason),
+      IN_OWN_CACHE(tables_of_other_lengths_are_taken_where_they_suffice),
       IN_OWN_CACHE(a_text_file_is_no_kernel),
       IN_OWN_CACHE(objects_cannot_be_built_where_nothing_can_be_written),
       IN_OWN_CACHE(without_a_compiler_there_is_none),

@@ -316,7 +316,8 @@ static observed_bond observe_turned(const tested_law *t, double stretch, double 
     u[k][0] = stretch * bond.chord[k];
     v[k][0] = rate * bond.chord[k];
   }
-  pl_strip s = {.count = 1,
+  pl_strip s = {.size = sizeof(pl_strip),
+                .count = 1,
                 .flags = flags,
                 .displacement_i = {zero, zero, &i.angle},
                 .velocity_i = {zero, zero, &i.rate},

@@ -211,7 +211,8 @@ static void connect(bonds *b, int count) {
   b->observed_at[0] = b->observed[0];
   for (int k = 0; k < PLANES; k++)
     b->force_at[k] = b->force[k];
-  b->strip = (pl_strip){.count = count,
+  b->strip = (pl_strip){.size = sizeof(pl_strip),
+                        .count = count,
                         .direction = 2,
                         .flags = b->flags,
                         .field = b->field_at,

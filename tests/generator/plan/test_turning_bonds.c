@@ -337,7 +337,12 @@ static void strip_forces(const pl_law *strips, const double *uniforms, const pat
                          long j, double damage, strip_bond *s) {
   int64_t flags[LANES] = {PL_PRESENT(0)};
   double *fields[] = {s->field}, *forces[4];
-  pl_strip strip = {.count = LANES, .flags = flags, .unheld = 1, .field = fields, .force = forces};
+  pl_strip strip = {.size = sizeof(pl_strip),
+                    .count = LANES,
+                    .flags = flags,
+                    .unheld = 1,
+                    .field = fields,
+                    .force = forces};
   memset(s, 0, sizeof *s);
   s->field[0] = damage;
   for (int d = 0; d < 3; d++) {

@@ -31,7 +31,7 @@ static void write_frames(result *r, const variant *v) {
     small_frame(f, u, omega);
     if (f == 1) u[3] += v->displacement; /* y of particle 1 */
     const double *values[] = {u, omega};
-    assert_true(result_frame(r, 0.5 * f, values, error, sizeof error));
+    assert_true(result_frame(r, 0.5 * f * v->end, values, error, sizeof error));
   }
 }
 
@@ -131,6 +131,9 @@ static void samples_at_other_times(void **state) {
   make_result(w, "b.h5", shorter);
   expect(w, "compare a.h5 b.h5 --history load", 2, "0.5  5 samples to 1000 ms");
   expect(w, "compare a.h5 b.h5 --tolerance 0.5", 0, "");
+  shorter.displacement = -0.22;
+  make_result(w, "b.h5", shorter);
+  expect(w, "compare a.h5 b.h5 --field displacement", 2, "frame 1, t = 500 and 250 ms, particle 1");
 }
 
 static void not_a_number_is_a_difference(void **state) {

@@ -51,6 +51,13 @@ static void dynamic_runs_have_times(void **state) {
   assert_null(strstr(w->said, "increment"));
 }
 
+/* The first look at the clock is after 16 of 99 steps. */
+static void progress_is_what_is_done(void **state) {
+  workplace *w = *state;
+  expect(w, "run beam.nml --set \"simulation.end_time='0.03 ms'\"", 0, "in 99 steps");
+  assert_non_null(strstr(w->said, " 16 %  t = 0.0048969 ms"));
+}
+
 /* --- what results tell of their runs ---------------------------------------------------------- */
 
 static void expect_ending(workplace *w, const char *name, const char *ended, int status) {
@@ -227,9 +234,13 @@ static void what_sites_make_of_shapes(void **state) {
 int main(void) {
 #define ONE(test) cmocka_unit_test_setup_teardown(test, set_up_workplace, tear_down_workplace)
   const struct CMUnitTest tests[] = {
-      ONE(quasi_static_runs_count_increments), ONE(dynamic_runs_have_times),
-      ONE(results_tell_how_the_run_ended),     ONE(quantities_are_told_in_words),
-      ONE(maps_know_their_increment),          ONE(maps_of_space_have_axes),
+      ONE(quasi_static_runs_count_increments),
+      ONE(dynamic_runs_have_times),
+      ONE(progress_is_what_is_done),
+      ONE(results_tell_how_the_run_ended),
+      ONE(quantities_are_told_in_words),
+      ONE(maps_know_their_increment),
+      ONE(maps_of_space_have_axes),
       ONE(what_sites_make_of_shapes),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

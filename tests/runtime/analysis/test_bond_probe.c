@@ -16,8 +16,13 @@
 #define NU        0.2
 #define S_T       1e-4
 
-static const pl_bond_class a_bond = {
-    .s = 0.01, .spacing = 0.01, .t = 0.1, .shell = 1, .n = 6, .chord = {0.01, 0, 0}};
+static const pl_bond_class a_bond = {.size = sizeof(pl_bond_class),
+                                     .s = 0.01,
+                                     .spacing = 0.01,
+                                     .t = 0.1,
+                                     .shell = 1,
+                                     .n = 6,
+                                     .chord = {0.01, 0, 0}};
 static const double values[ELASTIC_PARAMETERS] = {E_MODULUS, NU, 2323, 0, S_T};
 
 static double EA(void) {

@@ -69,7 +69,12 @@ static double *forces_by_list(const sweep *w) {
     const int64_t flags = PL_PRESENT(k);
     double field = w->field[0][bonds[m].slot], plane[4] = {0};
     double *fields[] = {&field}, *planes[] = {&plane[0], &plane[1], &plane[2], &plane[3]};
-    pl_strip s = {.count = 1, .direction = k, .flags = &flags, .field = fields, .force = planes};
+    pl_strip s = {.size = sizeof(pl_strip),
+                  .count = 1,
+                  .direction = k,
+                  .flags = &flags,
+                  .field = fields,
+                  .force = planes};
     for (int d = 0; d < w->body->dof; d++) {
       s.displacement_i[d] = &w->body->displacement[d][i];
       s.displacement_j[d] = &w->body->displacement[d][j];

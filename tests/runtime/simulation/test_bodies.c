@@ -423,6 +423,55 @@ static void bodies_relax_together(void **state) {
   close_all(&t);
 }
 
+/* A soft body is balanced as well as a stiff one beside it: its own forces count. */
+static void a_soft_body_comes_to_rest_beside_a_stiff_one(void **state) {
+  (void)state;
+  static const char alone[] =
+      "&simulation end_time = 1 step = 2e-7 /\n&relaxation increments = 1 tolerance = 1e-5 "
+      "/\n" OF_BODY(
+          "soft", "'hexagonal' spacing = 0.01",
+          "E = 30e6") "&body lattice = 'soft' shape = 'rectangle' corner = 0, 0.3 size = 0.06, "
+                      "0.03 /\n"
+                      "&region name = 'a' lattice = 'soft' shape = 'rectangle' corner = 0, 0 size "
+                      "= "
+                      "0.006, 1 /\n"
+                      "&region name = 'b' lattice = 'soft' shape = 'rectangle' corner = 0.054, 0 "
+                      "size = 0.1, 1 /\n"
+                      "&support region = 'a' fix = 'xy' /\n"
+                      "&drive region = 'b' component = 'x' displacement = 1e-5 /\n"
+                      "&monitor name = 'at_a' kind = 'reaction' region = 'a' component = 'x' /\n"
+                      "&monitor name = 'at_b' kind = 'reaction' region = 'b' component = 'x' /\n";
+  static const char stiff[] =
+      OF_BODY("stiff", "'hexagonal' spacing = 0.01", "") "&body lattice = 'stiff' shape = "
+                                                         "'rectangle' corner = 0, 0 size = 0.06, "
+                                                         "0.03 /\n"
+                                                         "&region name = 'c' lattice = 'stiff' "
+                                                         "shape = 'rectangle' corner = 0, 0 size "
+                                                         "= 0.006, 1 /\n"
+                                                         "&region name = 'd' lattice = 'stiff' "
+                                                         "shape = 'rectangle' corner = 0.054, 0 "
+                                                         "size = 0.1, 1 /\n"
+                                                         "&support region = 'c' fix = 'xy' /\n"
+                                                         "&drive region = 'd' component = 'x' "
+                                                         "displacement = 1e-5 /\n";
+  static const pl_law *const bars[] = {&elastic_bar, &elastic_bar};
+  char text[4096];
+  snprintf(text, sizeof text, "%s%s", alone, stiff);
+  together t;
+  open_all(&t, text, bars);
+  if (!t.simulation) diag_print(&t.said, stderr);
+  assert_non_null(t.simulation);
+  while (simulation_advance(t.simulation, 1L << 40, NULL) == STEP_OK)
+    if (simulation_frame_due(t.simulation)) simulation_frame_taken(t.simulation);
+  long unbalanced;
+  assert_int_equal(simulation_increments(t.simulation, &unbalanced), 1);
+  const double at_a = values_of(t.simulation, "at_a")[1], at_b = values_of(t.simulation, "at_b")[1];
+  print_message("%ld unbalanced, %g N and %g N\n", unbalanced, at_a, at_b);
+  assert_int_equal(unbalanced, 0);
+  assert_true(at_b > 1e-4 && fabs(at_a + at_b) < 1e-3 * at_b);
+  close_all(&t);
+}
+
 static void must_refuse(const char *text, const pl_law *const *of, const char *at,
                         const char *sentence) {
   together t;
@@ -451,6 +500,8 @@ static void names_may_not_clash(void **state) {
   open_all(&t, PAIR("one", "two", ""), bars);
   assert_non_null(t.simulation);
   close_all(&t);
+  must_refuse(PAIR("one", "relaxation_steps", ""), bars, "'relaxation_steps'",
+              "a result has another `relaxation_steps`");
   must_refuse(PAIR("one", "energy", ""), bars, "'energy'", "a result has another `energy`");
   must_refuse(PAIR("one", "two", "&monitor name = 'two' kind = 'damaged' /\n"), bars, "'two'",
               "cannot be named as a lattice");
@@ -467,6 +518,7 @@ int main(void) {
       cmocka_unit_test(the_stiffest_body_chooses_the_step),
       cmocka_unit_test(the_bad_body_is_named),
       cmocka_unit_test(bodies_relax_together),
+      cmocka_unit_test(a_soft_body_comes_to_rest_beside_a_stiff_one),
       cmocka_unit_test(names_may_not_clash),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);

@@ -129,6 +129,10 @@ static void fields_are_named_once_in_a_result(void **state) {
   assert_true(law_fits_result(b.deck, &bar, fields + 4, 3, &b.said));
   assert_true(law_fits_result(b.deck, &bar, fields, 1, &b.said));
   assert_int_equal(b.said.count, 0);
+  const frame_field parameter[] = {{.name = "c", .kind = "other", .of_law = true}, fields[5]};
+  assert_false(law_fits_result(b.deck, &bar, parameter, 2, &b.said)); /* stands in frames, too */
+  diag_clear(&b.said);
+  diag_begin(&b.said, &b.sources);
   assert_false(law_fits_result(b.deck, &bar, fields, 7, &b.said));
   assert_int_equal(b.said.count, 3);
   static const char *const refused[] = {"`velocity` of", "`time` of", "`c` of"};

@@ -400,12 +400,12 @@ static void damping_is_critical_for_the_motion_seen(void **state) {
   p.sweep->body->force[0][p.right] = -k * u;
   assert_false(relaxation_look(p.relaxation, 25));
   const double rate = 2 * sqrt(k / p.sweep->body->mass[0]);
-  assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
+  assert_true(fabs(p.relaxation->looked_at[0].state.rate / rate - 1) < 1e-12);
   assert_true(fabs(p.sweep->body->decay - exp(-rate * p.sweep->body->time_step)) < 1e-14);
   p.sweep->body->displacement[0][p.right] = 2 * u; /* forces that help the motion say nothing */
   p.sweep->body->force[0][p.right] = 0;
   relaxation_look(p.relaxation, 50);
-  assert_true(fabs(p.relaxation->state.rate / rate - 1) < 1e-12);
+  assert_true(fabs(p.relaxation->looked_at[0].state.rate / rate - 1) < 1e-12);
   relax_no_more(&p);
 }
 
