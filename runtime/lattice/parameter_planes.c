@@ -433,6 +433,13 @@ static void report_fault(const value_sources *s, long number, const bounds_of *b
   const int plane = plane_of(law, fault);
   char text[3 * ROWS_PLACE_TEXT];
   name_place(s->places, &at, text, sizeof text);
+  if (!isfinite(b->values[fault])) {
+    diag_report(d, DIAG_BAD_NUMBER, where_of(s, plane),
+                "`%s` has no finite value %s; %ld of %ld %s are out of range",
+                law->parameters[fault].name, text, count, s->places->count,
+                on_particles(s->places) ? "particles" : "bonds");
+    return;
+  }
   diag_report(d, DIAG_OUT_OF_BOUNDS, where_of(s, plane),
               "`%s` = %.6g%s%s %s is not in %c%.6g, %.6g%c, the range of the law `%s`; so are %ld "
               "of %ld %s",

@@ -149,7 +149,7 @@ static void what_cannot_be_is_told(void **state) {
                                                 "= 0.1 /\n",
          "`E` differs at random, and the material gives it by a formula");
   refuse(GRADED("E = '10 [GPa]*(1 - x/100 [mm])*(1 - x/95 [mm])/(1 - x/95 [mm])'"),
-         "in the bond from (90, 0) mm to (95, 0) mm");
+         "`E` has no finite value in the bond from (90, 0) mm to (95, 0) mm");
 }
 
 /* Nobody asks for the value in the middle but the particles there. */
