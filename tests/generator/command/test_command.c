@@ -188,21 +188,36 @@ static void what_is_not_checked_says_so(void **state) {
   expect_all(*state, list, COUNT(list));
 }
 
-/* The same body twice: the second stands free. A solver holds both laws. */
-static void a_run_may_have_two_lattices(void **state) {
-  workplace *w = *state;
+/* The same body twice: the second stands free. */
+static void write_two_lattices(workplace *w) {
   assert_int_equal(shell(w, "sed \"s/&region/& lattice = 'concrete'/\" beam.nml > two.nml; "
                             "sed -n '3,5s/concrete/other/gp' beam.nml >> two.nml"),
                    0);
+}
+
+static void a_run_may_have_two_lattices(void **state) {
+  workplace *w = *state;
+  write_two_lattices(w);
   expect(w, "run two.nml", 0, "lattice    other: hexagonal");
+  expect(w, "export beam.h5 --history other/kinetic", 0, "other/kinetic [J]");
+  expect(w, "export beam.h5 --history kinetic", 0, "energy/kinetic [J]");
+  expect(w, "export beam.h5 --frame -1 --bonds --field omega", 0, ",omega [1]");
+  expect(w, "plot beam.h5 --map damage -o two.png", 0, "written two.png");
+}
+
+/* A solver holds both laws. */
+static void a_solver_may_have_two_lattices(void **state) {
+#if defined(__SANITIZE_ADDRESS__)
+  (void)state;
+  skip(); /* as below */
+#else
+  workplace *w = *state;
+  write_two_lattices(w);
+  expect(w, "run two.nml --set output.result=run.h5", 0, "written    run.h5");
   expect(w, "build two.nml -o solver", 0, "written solver");
-  assert_int_equal(shell(w, "mv beam.h5 run.h5 && ./solver > said 2>&1 && grep -q 'energy' said"),
-                   0);
+  assert_int_equal(shell(w, "./solver > said 2>&1 && grep -q 'energy' said"), 0);
   expect(w, "compare run.h5 beam.h5", 0, "none differs by more than 0");
-  expect(w, "export run.h5 --history other/kinetic", 0, "other/kinetic [J]");
-  expect(w, "export run.h5 --history kinetic", 0, "energy/kinetic [J]");
-  expect(w, "export run.h5 --frame -1 --bonds --field omega", 0, ",omega [1]");
-  expect(w, "plot run.h5 --map damage -o two.png", 0, "written two.png");
+#endif
 }
 
 static void paths_with_blanks_and_line_ends_of_windows(void **state) {
@@ -626,6 +641,7 @@ int main(void) {
       ONE(overrides_are_checked),
       ONE(what_is_not_checked_says_so),
       ONE(a_run_may_have_two_lattices),
+      ONE(a_solver_may_have_two_lattices),
       ONE(paths_with_blanks_and_line_ends_of_windows),
       ONE(options_of_a_law),
       ONE(a_law_that_goes_wrong_is_named),
