@@ -347,6 +347,7 @@ static void find_middle(const deck *k, const deck_material *m, double middle[3])
   for (int b = 0; b < (region < 0 ? k->body_count : 1); b++) {
     double low[3], high[3];
     if (region < 0 && !deck_same_name(k->bodys[b].lattice, m->lattice)) continue;
+    if ((region < 0 ? &k->bodys[b].item : &k->regions[region].item)->faulty) continue;
     shape_box(region < 0 ? &k->bodys[b].shape : &k->regions[region].shape, low, high);
     for (int c = 0; c < 3; c++) {
       lower[c] = pl_fmin(lower[c], low[c]);
