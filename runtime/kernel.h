@@ -271,8 +271,8 @@ typedef struct pl_program {
 } pl_program;
 
 /* Force planes. Central 2D: Fx, Fy on i (on j the opposite). Micropolar 2D: Fx, Fy, and the end
-   moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on end
-   j. */
+   moments M_i, M_j of the bond (on the particles the opposite); where it twists, the moment T on
+   end j. */
 typedef struct pl_law {
   int abi;          /* PL_KERNEL_ABI; checked at load; stands first whatever the number */
   uint32_t size;    /* of the table, B */

@@ -27,7 +27,7 @@ enum { MOVES, FIXED };
   X(THETA_J, "theta_j", "1", BENDING, BOND, IN_MICROPOLAR, MOVES, "x = norm(2*theta_j + theta_i)", \
     "rotation of end j less the chord's")                                                          \
   X(TWIST, "twist", "1", SCALAR, BOND, IN_MICROPOLAR, MOVES, "x = twist/s",                        \
-    "rotation of end j about the bond less that of end i; 0 in the plane")                                \
+    "rotation of end j about the bond less that of end i; 0 in the plane")                         \
   X(LENGTH, "length", "m", SCALAR, BOND, IN_ANY, MOVES, "x = length/s - 1",                        \
     "present length of the bond")                                                                  \
   X(S, "s", "m", SCALAR, BOND, IN_ANY, FIXED, "x = stretch*s", "reference length of the bond")     \

@@ -80,8 +80,8 @@ typedef struct law {
   int neighbours;      /* of a full family, where they are known; else 0 */
   /* Lowered for bonds that twist: in space. Else `twist` is 0 and `moment T` nothing. */
   bool twists;
-  /* and that bend about all axes: bending quantities are vectors across the bond, in the axes of the
-     lattice. Else they are numbers. */
+  /* and that bend about all axes: bending quantities are vectors across the bond, in the axes of
+     the lattice. Else they are numbers. */
   bool bends_in_space;
   arena *memory; /* not owned */
   const source_set *sources;

@@ -101,9 +101,9 @@ void family_check_stiffness(family_bench *b) {
   free(force);
 }
 
-/* The moment about bond k on its particle, when the other one alone turns about the bond: of all the
-   particle's bonds none else moves. Over the turn, N m; *size: of the largest force in the body,
-   times the spacing. */
+/* The moment about bond k on its particle, when the other one alone turns about the bond: of all
+   the particle's bonds none else moves. Over the turn, N m; *size: of the largest force in the
+   body, times the spacing. */
 static double twisting_stiffness(family_bench *b, long particle, int k, double *size) {
   enum { FIRST = 3 };
   const double turn = 1e-7;

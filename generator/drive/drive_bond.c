@@ -19,8 +19,8 @@ typedef struct motion {
 } motion;
 
 /* Particle i at the origin, j on the x axis; the chord does not turn, so that the particles'
-   rotations are those of the ends. The twist is that of particle j. The passes work on PL_LANES bonds at once, of which only the
-   first is present. */
+   rotations are those of the ends. The twist is that of particle j. The passes work on PL_LANES
+   bonds at once, of which only the first is present. */
 typedef struct driven_bond {
   const pl_law *kernel;
   double s, *uniforms, **field, **force, **observed;

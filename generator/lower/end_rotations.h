@@ -7,9 +7,9 @@
      theta_i = a e x t_i                    a such that |theta_i| is the angle from e to t_i
      twist   = 2 asin(w . e)                w: vector of the unit quaternion from end i to end j
 
-   so that motions in a plane give what bonds in a plane have (kinematics.h), a rotation of the whole
-   bond gives nothing, and each is small without loss of digits where displacements are. With a law's
-   N, M_i, M_j (across e) and T the bond's ends bear the moments
+   so that motions in a plane give what bonds in a plane have (kinematics.h), a rotation of the
+   whole bond gives nothing, and each is small without loss of digits where displacements are. With
+   a law's N, M_i, M_j (across e) and T the bond's ends bear the moments
 
      m_i = A_i M_i + T u w x e - M e        A = h + k theta theta^T, h = |theta| cot|theta|,
      m_j = A_j M_j + T u w x e + M e        k = (1 - h)/|theta|^2, u = (1 - (w . e)^2)^(-1/2)

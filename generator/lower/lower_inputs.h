@@ -5,8 +5,8 @@
 #include "dsl/semantics/law.h"
 #include "generator/lower/lowered.h"
 
-/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j, twist
-   and length vary from bond to bond; the others are those of a bond class. */
+/* The input node of a built-in quantity that is one number. Stretch, its rate, theta_i, theta_j,
+   twist and length vary from bond to bond; the others are those of a bond class. */
 ir_node lower_quantity(ir *g, builtin_quantity q);
 /* Components of the end rotations theta_i and theta_j: one in a plane, of bonds that bend in space
    three. */

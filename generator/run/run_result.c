@@ -149,8 +149,8 @@ void fingerprint(run *r) {
 
 /* --- result ----------------------------------------------------------------------------------- */
 
-/* Two lattices may have one law: its text is kept once. Kernels of one law for other lattices differ.
- */
+/* Two lattices may have one law: its text is kept once. Kernels of one law for other lattices
+   differ. */
 static const char *text_name(run *r, const result_text *texts, int lattice) {
   const char *name = r->laws[lattice].law->name;
   for (int k = 0; k < lattice; k++)

@@ -56,8 +56,8 @@ double implied_crack_energy(const pl_law *law, const double *parameters, const r
                             int component);
 
 /* Long waves in the virgin lattice, m/s: along x, along y (sqrt(D_xx/rho) and sqrt(D_yy/rho),
-   transverse sqrt(G/rho); of a chain along it, and NAN); frequency below which no rotation wave runs, rad/s (0 for central laws).
-   w->mass must be set. */
+   transverse sqrt(G/rho); of a chain along it, and NAN); frequency below which no rotation wave
+   runs, rad/s (0 for central laws). w->mass must be set. */
 typedef struct implied_waves {
   double longitudinal[2], transverse, rotation_cutoff;
 } implied_waves;

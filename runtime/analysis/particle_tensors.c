@@ -58,7 +58,7 @@ void particle_stress(bond_forces *f, const body *of, double *const *stress) {
 
 /* --- strain ----------------------------------------------------------------------------------- */
 
-/* Sums over the bonds of a site: n n^T, and h n^T with the change of the chord h over its length. */
+/* Sums over the bonds of a site: n n^T, and h n^T, h the change of the chord over its length. */
 static void fit_sums(const body *of, long site, double directions[3][3], double changes[3][3]) {
   const rows *g = of->lattice;
   for (int k = 0; k < 2 * g->directions; k++) {

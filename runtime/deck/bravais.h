@@ -1,4 +1,5 @@
-/* Infinite Bravais lattices as layers of rows of sites; a chain is a single row. Site (column, row, layer) stands at
+/* Infinite Bravais lattices as layers of rows of sites; a chain is a single row. Site (column, row,
+   layer) stands at
      origin + (column + shift) step[0] axis[0] + row step[1] axis[1] + layer step[2] axis[2],
    where the shift of a row is 0 or a half. In the plane there is layer 0 alone. Lengths in m. */
 #ifndef PERILAT_RUNTIME_BRAVAIS_H

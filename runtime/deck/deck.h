@@ -200,26 +200,25 @@ typedef struct deck_stop {
   double after; /* s: not before; default 0 */
 } deck_stop;
 
-typedef enum monitor_kind { /* in the order of the deck's word */
-                            MONITOR_REACTION, /* N: force that a support or drive exerts on the body, on the support: `scale`
-                     * = -1
-                     */
-                            MONITOR_DISPLACEMENT, /* m: mean over the region */
-                            MONITOR_VELOCITY,     /* m/s: mean over the region */
-                            MONITOR_OPENING, /* m: mean displacement of the second region less that of the first */
-                            MONITOR_DAMAGED, /* count of bonds with damage > `above` */
-                            MONITOR_BROKEN,  /* count of bonds with damage >= `above` */
-                            MONITOR_FIELD, /* the law's: mean over the region of a field or an output on particles */
-                            MONITOR_ACCELERATION, /* m/s^2: mean over the region, or at a place */
-                            MONITOR_MOMENTUM, /* N s: of the region, as the next two, or of all particles */
-                            MONITOR_ANGULAR_MOMENTUM, /* N m s, about `about` */
-                            MONITOR_ENERGY,           /* J: kinetic or stored */
-                            MONITOR_FORCE,            /* N: through a section */
-                            MONITOR_TIP,              /* m: way of the furthest damaged bond */
-                            MONITOR_TIP_SPEED,        /* m/s: of that */
-                            MONITOR_STRESS,           /* Pa: mean over the region, or at a place */
-                            MONITOR_STRAIN,           /* 1: the same */
-                            MONITOR_REACTIONS /* N, with `between`: half the reaction of the second less that of the first */
+/* In the order of the deck's word. Without a note: a mean over the region, or at a place. */
+typedef enum monitor_kind {
+  MONITOR_REACTION,         /* N: force of a support or drive on the body; on it with scale = -1 */
+  MONITOR_DISPLACEMENT,     /* m */
+  MONITOR_VELOCITY,         /* m/s */
+  MONITOR_OPENING,          /* m: displacement of the second region less that of the first */
+  MONITOR_DAMAGED,          /* count of bonds with damage > `above` */
+  MONITOR_BROKEN,           /* count of bonds with damage >= `above` */
+  MONITOR_FIELD,            /* the law's: mean of a field or of an output on particles */
+  MONITOR_ACCELERATION,     /* m/s^2 */
+  MONITOR_MOMENTUM,         /* N s: of the region, as the next two, or of all particles */
+  MONITOR_ANGULAR_MOMENTUM, /* N m s, about `about` */
+  MONITOR_ENERGY,           /* J: kinetic or stored */
+  MONITOR_FORCE,            /* N: through a section */
+  MONITOR_TIP,              /* m: way of the furthest damaged bond */
+  MONITOR_TIP_SPEED,        /* m/s: of that */
+  MONITOR_STRESS,           /* Pa */
+  MONITOR_STRAIN,           /* 1 */
+  MONITOR_REACTIONS         /* N, `between`: half of the second's reaction less the first's */
 } monitor_kind;
 
 enum { MONITOR_KINETIC, MONITOR_STORED }; /* components of MONITOR_ENERGY */
@@ -232,8 +231,8 @@ typedef struct deck_monitor {
   const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
-  /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM the
-     axis x, y, z; of tensors as symmetric_tensor.h says */
+  /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM
+     the axis x, y, z; of tensors as symmetric_tensor.h says */
   int component;
   bool placed;                    /* `at` is given */
   double at[3];                   /* m */

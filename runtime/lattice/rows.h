@@ -119,8 +119,8 @@ static inline bool rows_has_bond(const rows *w, long site, int direction) {
   return w->bonds[site] >> direction & 1;
 }
 
-/* Volume of a particle that its stresses act in, m^3: in the plane as thick as laws see it. On lists
-   the mean. */
+/* Volume of a particle that its stresses act in, m^3: in the plane as thick as laws see it. On
+   lists the mean. */
 static inline double rows_stressed_mean(const rows *w) {
   return w->site_area > 0 ? w->site_area * w->stiffness_thickness : w->volume;
 }

@@ -9,7 +9,9 @@
      /input/deck            text; /input/set: what --set changed in it, one a line (only then);
                             /input/models/<name> law text; /input/kernels/<name> generated C;
                             /input/files/<name> tables of loads (only then)
-     /particles/reference   [N, dimensions] m, body by body in the order of the deck's lattices; /particles/body [N]; /particles/volume [N] m^3
+     /particles/reference   [N, dimensions] m, body by body in the order of the deck's lattices
+     /particles/body        [N] which of them
+     /particles/volume      [N] m^3
      /particles/resolved    [N] 1 where the bonds resolve all strains, else 0; only of particles
                             that stand on no lattice
      /bonds/<interaction>   [M, 2] particle indices

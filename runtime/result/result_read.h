@@ -38,9 +38,9 @@ void result_names_free(result_names *n);
 /* Position of the name given in full or, where that says which, by its last part ("kinetic"); else
    -1. */
 int result_names_find(const result_names *n, const char *given);
-/* The full name of a history or a field that is given so; a field of bonds that several interactions
-   have, of all of them, is named with a star for the interaction. False with a sentence that lists
-   what there is. */
+/* The full name of a history or a field that is given so; a field of bonds that several
+   interactions have, of all of them, is named with a star for the interaction. False with a
+   sentence that lists what there is. */
 bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
                  char *error, size_t error_size);
 
@@ -60,8 +60,8 @@ double *result_read_reference(result_file *f, long *particles,
 double *result_read_volume(result_file *f, long *particles); /* [N] m^3 */
 int32_t *result_read_bonds(result_file *f, const char *interaction,
                            long *bonds); /* [M][2]; NULL name: of all, one after the other */
-/* Largest of the damages of each bond (of all interactions); NULL when the frame cannot be read or holds none (error "").
-   */
+/* Largest of the damages of each bond (of all interactions); NULL when the frame cannot be read or
+   holds none (error ""). */
 double *result_read_damage(result_file *f, long frame, long *bonds, char *error, size_t size);
 double *result_read_frame_times(result_file *f, long *frames);
 char *result_read_text(result_file *f, const char *path); /* "/input/deck" */

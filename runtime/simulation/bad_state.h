@@ -16,12 +16,12 @@ typedef struct bad_neighbour {  /* of a law of families */
   const double *fields; /* [law's fields] at its beginning: toward it; those on particles its own */
 } bad_neighbour;
 
-/* When STEP_BAD: of the first body that is bad. `particle` is -1 where only the energies tell (ledger.h). Else it is the lowest
-   particle whose velocity was no number or took it further than a spacing (half a turn) in one
-   step, and its bond that gave such a force, or else the largest. A row was not moved from about
-   the first bad particle on, so that the state there is that before the step; a partner elsewhere
-   is moved back by its velocity. With a law of families there is no such bond, but all neighbours.
-   */
+/* When STEP_BAD: of the first body that is bad. `particle` is -1 where only the energies tell
+   (ledger.h). Else it is the lowest particle whose velocity was no number or took it further than a
+   spacing (half a turn) in one step, and its bond that gave such a force, or else the largest. A
+   row was not moved from about the first bad particle on, so that the state there is that before
+   the step; a partner elsewhere is moved back by its velocity. With a law of families there is no
+   such bond, but all neighbours. */
 typedef struct bad_state {
   int body; /* of the run */
   long step;

@@ -1,12 +1,12 @@
 /* What is watched: reactions, displacements, openings, counts of damaged bonds, the law's values on
-   particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions on them. All values at
-   a sample are of one instant: the state observed (sweep.h).
+   particles, and what watched.h has; their running means, zeros and peaks, and the &stop conditions
+   on them. All values at a sample are of one instant: the state observed (sweep.h).
 
    A value is (mean over the window - value at zero_at, from then on) times scale. The window holds
    the states of the last `average` seconds, the present one included, or all there were so far; of
    velocities the steps that led there, so that their mean is way over time, and that of
-   accelerations velocity over time. Counts are taken as they are. Of the way of a crack's tip in the
-   window its speed is the slope of the straight line that fits it best. */
+   accelerations velocity over time. Counts are taken as they are. Of the way of a crack's tip in
+   the window its speed is the slope of the straight line that fits it best. */
 #ifndef PERILAT_RUNTIME_MONITOR_H
 #define PERILAT_RUNTIME_MONITOR_H
 

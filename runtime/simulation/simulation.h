@@ -71,8 +71,8 @@ int simulation_threads(const simulation *s);   /* that will work on it */
 /* From now on the time that parts of the run take is added to `p` (NULL: no longer); p must stay.
    */
 void simulation_measure(simulation *s, struct profile *p);
-/* The arrays of the state of a body, for tools and tests; before the first step they may be set (an initial
- * velocity, say). */
+/* The arrays of the state of a body, for tools and tests; before the first step they may be set (an
+   initial velocity, say). */
 struct sweep *simulation_state(simulation *s, int body);
 
 /* The &stop of the deck that ended the run (STEP_STOPPED), or NULL. */

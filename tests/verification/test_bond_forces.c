@@ -22,8 +22,10 @@
 #define PLANE(kind)                                                                                \
   HEAD "&lattice name = 'l' spacing = 0.01 thickness = 0.02 kind = " kind " /\n" PLATE
 #define SPACE(kind) HEAD "&lattice name = 'l' spacing = 0.01 kind = " kind " /\n" BALL
-#define FIELD       "&field parameter = 'E' distribution = 'normal' cv = 0.1 seed = 3 on = 'particle' /\n"
-#define OF(model)   "&material lattice = 'l' model = '" model "' /\n"
+#define FIELD                                                                                      \
+  "&field parameter = 'E' distribution = 'normal' cv = 0.1 "                                       \
+  "seed = 3 on = 'particle' /\n"
+#define OF(model) "&material lattice = 'l' model = '" model "' /\n"
 
 static const char *const decks[] = {
     PLANE("'hexagonal' rotation = 7") OF("elastic_central"),

@@ -37,8 +37,8 @@ static void open_disc(deck_case *c, double rotation) {
 }
 
 /* The law without damage: softening begins where no test goes. Hooke's law in plane strain is that
-   of plane stress with E/(1 - nu^2) and nu/(1 - nu): E and nu are chosen so that these are `modulus`
-   and `seen`. */
+   of plane stress with E/(1 - nu^2) and nu/(1 - nu): E and nu are chosen so that these are
+   `modulus` and `seen`. */
 static void use_ratio(double seen) {
   const bool strain = law_under_test.model.law->setting == SETTING_PLANE_STRAIN;
   const double nu = strain ? seen / (1 + seen) : seen;

@@ -593,7 +593,7 @@ static void one_bond_has_its_closed_form(void **state) {
     assert_true(fabs(b->p->force[3 + d][i] - GJ / s * angle * e[d]) < 1e-14 * GJ / s);
     assert_true(fabs(b->p->force[3 + d][j] + GJ / s * angle * e[d]) < 1e-14 * GJ / s);
   }
-  /* bending by -a and 2 a about one axis: moments -(2 EI/s) 0 and (2 EI/s) 3 a, whatever the size */
+  /* bending by -a and 2 a about one axis: moments -(2 EI/s) 0 and (2 EI/s) 3 a, of any size */
   for (int d = 0; d < 3; d++) {
     b->p->displacement[3 + d][i] = -angle * n[d];
     b->p->displacement[3 + d][j] = 2 * angle * n[d];
@@ -612,8 +612,8 @@ static void one_bond_has_its_closed_form(void **state) {
 /* --- isotropy --------------------------------------------------------------------------------- */
 
 /* The energy of a particle of `mplm_space` under uniform strains of any orientation is that of the
-   isotropic body: W = V (lambda/2 tr(e)^2 + mu e:e), which with 18 neighbours stands for E, nu and G
-   in all directions. Of the mean of e and -e, which has no term of third order. */
+   isotropic body: W = V (lambda/2 tr(e)^2 + mu e:e), which with 18 neighbours stands for E, nu and
+   G in all directions. Of the mean of e and -e, which has no term of third order. */
 static void lattice_in_space_is_isotropic(void **state) {
   (void)state;
   turning_body *b = open_body("models/mplm_space", "fcc", 2, INTERPRETED, SPACE);

@@ -255,7 +255,8 @@ static void slips_are_told_at_their_line(void **state) {
   }
 }
 
-/* What a region's material does not say is at random as elsewhere, and it has its lattice's density. */
+/* What a region's material does not say is at random as elsewhere, and it has its lattice's
+   density. */
 static void a_region_may_leave_things_unsaid(void **state) {
   workplace *w = *state;
   static const char *const materials[] = {"nu = 0.2 /\n", "E = '25 GPa' /\n",

@@ -273,8 +273,8 @@ static void a_section_carries_the_load(void **state) {
 
 /* --- crack tips ------------------------------------------------------------------------------- */
 
-/* A row of particles that hardly feel their bonds and fly apart, so that bond k comes to a damage of
-   0.5 half a step before state k + 1. */
+/* A row of particles that hardly feel their bonds and fly apart, so that bond k comes to a damage
+   of 0.5 half a step before state k + 1. */
 static void the_tip_is_the_furthest_damaged_bond(void **state) {
   (void)state;
   char text[2048];
