@@ -66,6 +66,7 @@ static bool laws_are_alike(const run_body *b, diagnostics *d) {
                 "the law `%s` cannot stand beside `%s` on one lattice: %s", law->name, first->name,
                 why);
     diag_note(d, deck_where(&b->laws[0].from->material->item, "model"), "the lattice's law");
+    diag_hint(d, "take two laws of bonds that both rotate or both do not, or two laws of families");
     return false;
   }
   return true;
@@ -163,7 +164,7 @@ bool run_body_open(run_body *b, const deck *k, rows *lattice, diagnostics *d) {
   if (!b->fits) return false;
   for (int n = 0; n < b->law_count; n++)
     law_fits_protection(b->laws[n].law, k, b->lattice, d);
-  return b->loads && open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, d);
+  return open_parts(b, k, d) && all_have_parameters(b) && open_materials(b, k, d) && b->loads;
 }
 
 /* --- the state -------------------------------------------------------------------------------- */
