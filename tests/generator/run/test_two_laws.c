@@ -371,6 +371,11 @@ static void slips_are_told_at_their_line(void **state) {
                                 "&material lattice = 'l' between = 'a', 'c' model = "
                                 "'elastic_central' /\n",
        "no bond joins `a` with `c`", "between = 'a', 'c'"},
+      {WHOLE("elastic_central") ACROSS("elastic_central") "&region name = 'c' shape = 'rectangle' "
+                                                          "corner = -1, -1 size = 1, 1 /\n"
+                                                          "&material lattice = 'l' between = 'a', "
+                                                          "'c' model = 'elastic_central' /\n",
+       "has two materials: it joins other regions, too", "between = 'a', 'c'"},
       {WHOLE("elastic_micropolar") "&region name = 'c' shape = 'point' at = 0, 0 /\n"
                                    "&material lattice = 'l' region = 'c' model = 'mplm_linear' /\n",
        "no bond has both ends in the region `c`", "region = 'c'"},
