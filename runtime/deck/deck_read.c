@@ -367,11 +367,17 @@ static void link_regional(arena *a, deck *k) {
   }
 }
 
-/* A law of its own in a part of the lattice. */
+static bool is_region_of(const deck *k, const char *name, const char *lattice) {
+  const int region = name ? deck_find_region(k, name) : -1;
+  return region >= 0 && deck_same_name(k->regions[region].lattice, lattice);
+}
+
+/* A law of its own in a part of the lattice; what is wrong has been said. */
 static bool is_law_beside(const deck *k, int material, const char *lattice) {
   const deck_material *m = &k->materials[material];
-  return deck_same_name(m->lattice, lattice) && (m->region || m->between[0]) && m->model &&
-         lattice_material(k, m) < 0;
+  if (!deck_same_name(m->lattice, lattice) || !m->model) return false;
+  if (m->region) return is_region_of(k, m->region, lattice) && lattice_material(k, m) < 0;
+  return is_region_of(k, m->between[0], lattice) && is_region_of(k, m->between[1], lattice);
 }
 
 static deck_interaction law_beside(arena *a, const deck *k, int lattice, int material) {

@@ -32,8 +32,8 @@
         "&body lattice = 'l' shape = 'sphere' centre = 3*0 radius = '16 mm' /\n"                   \
         "&region name = 'a' shape = 'box' corner = 0, -1, -1 size = 1, 2, 2 /\n"
 #define HALVES                                                                                     \
-  "&region name = 'a' shape = 'rectangle' corner = 0, -1 size = 1, 2 /\n"                          \
-  "&region name = 'b' shape = 'rectangle' corner = -1, -1 size = '0.999 m', 2 /\n"
+  "&region name = 'a' lattice = 'l' shape = 'rectangle' corner = 0, -1 size = 1, 2 /\n"            \
+  "&region name = 'b' lattice = 'l' shape = 'rectangle' corner = -1, -1 size = '0.999 m', 2 /\n"
 #define WHOLE(model)  "&material lattice = 'l' model = '" model "' /\n"
 #define RIGHT(model)  "&material lattice = 'l' region = 'a' model = '" model "' /\n"
 #define COPY(model)   RIGHT(SOURCE_DIR "/models/" model ".plm")
