@@ -218,11 +218,6 @@ static int find_varying(const deck_material *m, int field, const law *l, diagnos
     diag_report(said, DIAG_UNKNOWN_NAME, m->varying_where[field],
                 "the law `%s` has no parameter `%s`", l->tree->name, wanted);
     diag_suggest(said, wanted, names, l->parameters.count);
-  } else if (l->rho && found == l->rho->index) {
-    diag_report(
-        said, DIAG_NOT_SUPPORTED, m->varying_where[field],
-        "`rho` cannot differ from bond to bond: it belongs to the particles, which have one mass");
-    found = -1;
   }
   free(names);
   return found;
@@ -260,32 +255,12 @@ static const deck_assignment *formula_of(const deck_material *m, const symbol *p
   return NULL;
 }
 
-static bool density_is_one(const deck_material *m, const law *l, diagnostics *said) {
-  const deck_assignment *by_place = l->rho ? formula_of(m, l->rho) : NULL;
-  if (by_place) {
-    diag_report(
-        said, DIAG_NOT_SUPPORTED, by_place->value_where,
-        "`rho` cannot differ from place to place: the particles of a lattice have one mass");
-    return false;
-  }
-  for (int k = 0; l->rho && k < m->regional_count; k++) {
-    const deck_material *of = m->regional[k];
-    if (value_in(of, l->rho) == value_in(m, l->rho)) continue;
-    diag_report(said, DIAG_NOT_SUPPORTED, of->item.where,
-                "`rho` cannot differ from region to region: the particles of a lattice have one "
-                "mass");
-    diag_hint(said, "give the region the `rho` of its lattice, too");
-    return false;
-  }
-  return true;
-}
-
 /* The parameters that random fields, regions or formulas make differ, as the law orders them. */
 static bool find_variation(const deck_material *m, model *out, law_variation *v,
                            diagnostics *said) {
   const symbol_list *all = &out->law->parameters;
   int *varying = arena_alloc(out->memory, ((size_t)all->count + 1) * sizeof *varying);
-  bool good = density_is_one(m, out->law, said);
+  bool good = true;
   *v = (law_variation){.varying = varying};
   for (int k = 0; k < m->varying_count; k++)
     good = find_varying(m, k, out->law, said) >= 0 && good;
@@ -296,10 +271,16 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; on all other lattices as laws
-   of families. */
-static bool needs_families(const deck_lattice *l, const law *of) {
-  return of->tree->law != LAW_STATE && !bravais_is_hexagon(l);
+static bool reads_masses(const law *l) {
+  return law_reads(l, QUANTITY_M_BOND) || law_reads(l, QUANTITY_M_END_I) ||
+         law_reads(l, QUANTITY_M_END_J);
+}
+
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all other
+   lattices, and where they read masses that differ. */
+static bool needs_families(const deck_lattice *l, const law *of, const law_variation *v) {
+  if (of->tree->law == LAW_STATE) return false;
+  return !bravais_is_hexagon(l) || (law_masses_differ(of, v) && reads_masses(of));
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
@@ -307,8 +288,8 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
-  return l && needs_families(l, out->law) ? model_plan_of_families(out, &v)
-                                          : model_plan_varying(out, &v);
+  return l && needs_families(l, out->law, &v) ? model_plan_of_families(out, &v)
+                                              : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

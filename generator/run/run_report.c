@@ -121,8 +121,9 @@ static void announce_body(const run *r, int lattice) {
     print_quantity(c && !isnan(E[0]) ? ", E = " : " E = ", E[c], "Pa");
     printf(" along %c (%+.1f %%)", "xy"[c], 100 * (E[c] / e.E[c] - 1));
   }
-  puts(f && f->count > 0 ? ": it is not uniform, and edges and notches lack bonds"
-                         : ": edges and notches lack bonds");
+  puts(f && f->count > (f->density ? 1 : 0)
+           ? ": it is not uniform, and edges and notches lack bonds"
+           : ": edges and notches lack bonds");
 }
 
 static void announce_notch(const notch_depth *n, int number, bool only) {
@@ -162,8 +163,9 @@ static void announce_notches(const run *r, int lattice) {
 static void announce_planes(const run *r, int lattice) {
   const parameter_planes *f = simulation_planes(r->simulation, lattice);
   const simulation_law *l = &r->laws[lattice];
-  const bool particles = l->law->varying_place == PL_ON_PARTICLE;
   for (int k = 0; f && k < f->count; k++) {
+    const bool particles =
+        l->law->varying_place == PL_ON_PARTICLE || l->law->varying[k] == l->law->density;
     const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
     const char *places = f->placed[k]    ? "place to place"

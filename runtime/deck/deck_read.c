@@ -321,7 +321,7 @@ static const deck_assignment *density_of(const deck_material *m) {
   return NULL;
 }
 
-/* The particles of a lattice have one density. */
+/* Unless a region says otherwise its particles have the density of their lattice. */
 static void inherit_density(deck_material *m, const deck_material *whole) {
   const deck_assignment *density = density_of(whole);
   if (!density || density_of(m)) return;

@@ -40,6 +40,11 @@ static value_places places_new(const rows *w, const pl_law *law) {
                         .count = particles ? w->particle_count : w->bond_count};
 }
 
+/* Whatever the law reads. */
+static value_places places_of_particles(const value_places *p) {
+  return (value_places){.rows = p->rows, .law = p->law, .count = p->rows->particle_count};
+}
+
 static value_place place_of(const value_places *p, long m) {
   const rows *w = p->rows;
   if (on_particles(p)) {
@@ -139,8 +144,20 @@ static bool units_fit(const deck_field *f, const pl_parameter *p, diagnostics *d
   return mean && low && high && scale;
 }
 
-static bool place_fits(const deck_field *f, const value_places *p, diagnostics *d) {
-  if (!on_particles(p) || f->on != FIELD_ON_BONDS) return true;
+static bool is_density(const pl_law *law, const pl_parameter *p) {
+  return law->density >= 0 && p == &law->parameters[law->density];
+}
+
+static bool place_fits(const deck_field *f, const value_places *p, const pl_parameter *of,
+                       diagnostics *d) {
+  const bool density = is_density(p->law, of);
+  if (!(on_particles(p) || density) || f->on != FIELD_ON_BONDS) return true;
+  if (density) {
+    diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "on"),
+                "`%s` is the density of the particles: bonds have no mass", of->name);
+    diag_hint(d, "leave `on` away, or write on = 'particle'");
+    return false;
+  }
   diag_report(d, DIAG_NOT_SUPPORTED, deck_where(&f->item, "on"),
               "the law `%s` reads whole families: its parameters have values on particles",
               p->law->name);
@@ -151,11 +168,11 @@ static bool place_fits(const deck_field *f, const value_places *p, diagnostics *
 static bool open_source(const deck_field *f, const value_places *places, const pl_parameter *p,
                         double *own, field_source *s, diagnostics *d) {
   char error[128];
-  if (!units_fit(f, p, d) || !place_fits(f, places, d)) return false;
+  if (!units_fit(f, p, d) || !place_fits(f, places, p, d)) return false;
   *s = (field_source){.field = f,
                       .rows = places->rows,
                       .seed = random_seed_of(f),
-                      .of_particles = f->on == FIELD_ON_PARTICLES};
+                      .of_particles = f->on == FIELD_ON_PARTICLES || is_density(places->law, p)};
   if (!random_distribution_of(f, *own, &s->distribution, error, sizeof error)) {
     diag_report(d, DIAG_BAD_VALUE, f->item.where, "%s", error);
     return false;
@@ -175,7 +192,8 @@ typedef struct value_sources {
   /* [varying] for the material without region, then for each with one: NULL where it is a number */
   const deck_assignment **formula;
   int regions;
-  int *region_of; /* [size] number in `regional`, or -1: the material without region; NULL */
+  int *region_of;        /* [size] number in `regional`, or -1: the material without region; NULL */
+  const double *density; /* [size] of particles, once it is known; NULL where all have one */
 } value_sources;
 
 /* Position of a parameter in law->varying, or -1 after a message. */
@@ -330,6 +348,10 @@ static double value_of_material(const value_sources *s, int plane, int64_t site)
 }
 
 static double value_of(const value_sources *s, int plane, const value_place *at) {
+  const pl_law *law = s->places->law;
+  if (s->density && law->varying[plane] == law->density)
+    return at->partner < 0 ? s->density[at->site]
+                           : 0.5 * (s->density[at->site] + s->density[at->partner]);
   if (s->field[plane].field) return field_value(&s->field[plane], at);
   const double mine = value_of_material(s, plane, at->site);
   return at->partner < 0 ? mine : 0.5 * (mine + value_of_material(s, plane, at->partner));
@@ -460,7 +482,7 @@ static int fault_left(parameter_planes *r, const value_sources *s, const value_p
   for (int tries = 0; fault >= 0 && tries < r->count; tries++) {
     const int plane = plane_of(law, fault);
     const deck_field *f = plane < 0 ? NULL : s->field[plane].field;
-    if (!f || !f->clip || isnan(b->values[fault])) break;
+    if (!f || !f->clip || !r->value[plane] || isnan(b->values[fault])) break;
     b->values[fault] = clipped(b, fault, s->parameters[fault]);
     put(r->value[plane], at, b->values[fault]);
     fault = first_fault(law, b);
@@ -478,7 +500,7 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
   for (long m = 0; m < s->places->count; m++) {
     const value_place at = place_of(s->places, m);
     for (int k = 0; k < r->count; k++)
-      b.values[law->varying[k]] = r->value[k][at.at];
+      if (r->value[k]) b.values[law->varying[k]] = r->value[k][at.at];
     const int fault = fault_left(r, s, &at, &b);
     if (fault < 0 || faults++ > 0) continue;
     first_place = m;
@@ -497,16 +519,20 @@ static bool check_values(parameter_planes *r, const value_sources *s, diagnostic
 /* --- the planes ------------------------------------------------------------------------------- */
 
 static void find_extremes(parameter_planes *r, const value_sources *s) {
-  const value_places *p = s->places;
   for (int k = 0; k < r->count; k++) {
+    const int parameter = s->places->law->varying[k];
+    const bool density = r->density && parameter == s->places->law->density;
+    const value_places particles = places_of_particles(s->places);
+    const value_places *p = density ? &particles : s->places;
+    const double *values = density ? r->density : r->value[k];
     double low = INFINITY, high = -INFINITY;
     for (long m = 0; m < p->count; m++) {
-      const double value = r->value[k][place_of(p, m).at];
+      const double value = values[place_of(p, m).at];
       low = pl_fmin(low, value);
       high = pl_fmax(high, value);
     }
-    r->smallest[k] = p->count ? low : s->parameters[p->law->varying[k]];
-    r->largest[k] = p->count ? high : s->parameters[p->law->varying[k]];
+    r->smallest[k] = p->count ? low : s->parameters[parameter];
+    r->largest[k] = p->count ? high : s->parameters[parameter];
   }
 }
 
@@ -528,6 +554,23 @@ static parameter_planes *planes_new(const value_places *p) {
   return r;
 }
 
+/* Of particles, whatever the law's bonds read; false after a message. */
+static bool find_density(parameter_planes *r, value_sources *s, diagnostics *d) {
+  const int plane = plane_of(s->places->law, s->places->law->density);
+  const value_places particles = places_of_particles(s->places);
+  value_sources of = *s;
+  if (plane < 0) return true;
+  of.places = &particles;
+  parameter_planes *alone = planes_new(&particles);
+  alone->value[plane] = r->density = new_plane(r, &particles);
+  fill_plane(&of, plane, r->density);
+  const bool good = check_values(alone, &of, d);
+  alone->value[plane] = NULL;
+  parameter_planes_free(alone);
+  s->density = r->density;
+  return good;
+}
+
 static void sources_free(value_sources *s) {
   for (int k = 0; k < s->places->law->varying_count; k++)
     random_waves_free(s->field[k].waves);
@@ -547,7 +590,7 @@ parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w
   s.formula = must_calloc((size_t)(regional_count + 1) * (size_t)(r->count + 1), sizeof *s.formula);
   bool good = open_fields(k, lattice, parameters, &s, d);
   good = open_formulas(k, lattice, regional_count, &s, d) && good;
-  good = open_regions(k, regional_count, &s, d) && good;
+  good = open_regions(k, regional_count, &s, d) && good && find_density(r, &s, d);
   for (int n = 0; good && n < r->count; n++) {
     r->random[n] = s.field[n].field != NULL;
     r->placed[n] = any_formula(&s, regional_count, n) != NULL;
@@ -568,6 +611,7 @@ void parameter_planes_free(parameter_planes *p) {
   for (int k = 0; k < p->count; k++)
     free(p->value[k]);
   free(p->value);
+  free(p->density);
   free(p->smallest);
   free(p->largest);
   free(p->random);

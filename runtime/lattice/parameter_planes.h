@@ -1,7 +1,7 @@
 /* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
    particles for laws of families. They come from random fields (random_field.h), and from
    materials, by formulas of the place and by regions: a particle has the value at its place, of its
-   region, a bond the mean of its ends'. */
+   region, a bond the mean of its ends'. The density stands on particles, whatever else does. */
 #ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
 #define PERILAT_RUNTIME_PARAMETER_PLANES_H
 
@@ -21,6 +21,7 @@ typedef struct parameter_planes {
       *value; /* [count], aligned, as the sweep has them (sweep.h): on particles [size], on bonds
                      [directions * size], of laws of families [2 directions * size]; the mean where
                      there is no particle or bond */
+  double *density;            /* [size] kg/m^3 of the particles; NULL where all have one */
   double *smallest, *largest; /* [count] of the particles or bonds there are */
   bool *random;               /* [count] by a random field, not by regions or formulas */
   bool *placed;               /* [count] by formulas, perhaps in regions */

@@ -98,9 +98,14 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
   free(array);
 }
 
+static bool is_density(const pl_law *law, int varying) {
+  return law->varying[varying] == law->density;
+}
+
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  double *array = of->body->state->parameter[from->index];
-  if (of->body->law->varying_place == PL_ON_PARTICLE)
+  const bool density = is_density(of->body->law, from->index);
+  double *array = density ? of->body->planes->density : of->body->state->parameter[from->index];
+  if (density || of->body->law->varying_place == PL_ON_PARTICLE)
     site_values(of, &array, 1, values);
   else
     bond_values(of, array, values);
@@ -397,7 +402,7 @@ static void add_of_law(frame_set *f, int b) {
     add(f,
         (frame_field){.name = p->name,
                       .unit = p->unit,
-                      .on_bonds = law->varying_place != PL_ON_PARTICLE,
+                      .on_bonds = law->varying_place != PL_ON_PARTICLE && !is_density(law, k),
                       .components = 1,
                       .body = b,
                       .of_law = true,

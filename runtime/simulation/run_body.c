@@ -34,10 +34,18 @@ static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
   return b->planes != NULL;
 }
 
+static void set_masses(run_body *b) {
+  const double rho = material_density(b->law, b->parameters);
+  if (b->planes && b->planes->density)
+    rows_set_densities(b->lattice_rows, rho, b->planes->density);
+  else
+    rows_set_density(b->lattice_rows, rho);
+}
+
 /* What asks for the values of parameters. */
 static bool open_material(run_body *b, const deck *k, diagnostics *d) {
   const bool planes = open_planes(b, k, d), mass = law_fits_motion(b->law, k, b->lattice, d);
-  if (mass) rows_set_density(b->lattice_rows, material_density(b->law, b->parameters));
+  if (mass) set_masses(b);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass &&
          step_limit_of(k, b->lattice, b->law, b->parameters, b->planes, b->lattice_rows, &b->limit,
