@@ -244,15 +244,15 @@ static bool has_field(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
-/* The formula that gives it, of the material or one of its regions; or NULL. */
-static const deck_assignment *formula_of(const deck_material *m, const symbol *parameter) {
+/* The material or one of its regions gives it by a formula or a file. */
+static bool is_placed(const deck_material *m, const symbol *parameter) {
   for (int k = -1; k < m->regional_count; k++) {
     const deck_material *of = k < 0 ? m : m->regional[k];
     for (int n = 0; n < of->assignment_count; n++)
-      if (of->assignments[n].formula && strcasecmp(of->assignments[n].name, parameter->name) == 0)
-        return &of->assignments[n];
+      if (of->assignments[n].placed && strcasecmp(of->assignments[n].name, parameter->name) == 0)
+        return true;
   }
-  return NULL;
+  return false;
 }
 
 /* The parameters that random fields, regions or formulas make differ, as the law orders them. */
@@ -266,7 +266,7 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
     good = find_varying(m, k, out->law, said) >= 0 && good;
   for (int p = 0; p < all->count && good; p++)
     if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
-        formula_of(m, all->items[p]))
+        is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
   return good;
 }

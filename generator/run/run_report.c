@@ -168,16 +168,13 @@ static void announce_planes(const run *r, int lattice) {
         l->law->varying_place == PL_ON_PARTICLE || l->law->varying[k] == l->law->density;
     const pl_parameter *p = &l->law->parameters[l->law->varying[k]];
     const char *in = unit_is_pure(p->unit) ? "" : p->unit;
-    const char *places = f->placed[k]    ? "place to place"
-                         : !f->random[k] ? "region to region"
-                         : particles     ? "particle to particle"
-                                         : "bond to bond";
-    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s",
-           f->placed[k]   ? "formula"
-           : f->random[k] ? "field"
-                          : "regions",
-           p->name, places, f->smallest[k], f->largest[k], *in ? " " : "", in);
-    if (f->random[k]) printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
+    const char *const places[] = {"region to region", "place to place", "place to place",
+                                  particles ? "particle to particle" : "bond to bond"};
+    static const char *const names[] = {"regions", "formula", "file", "field"};
+    printf("  %-10s %s differs from %s: %.5g to %.5g%s%s", names[f->source[k]], p->name,
+           places[f->source[k]], f->smallest[k], f->largest[k], *in ? " " : "", in);
+    if (f->source[k] == PLANE_AT_RANDOM)
+      printf(", mean of the distribution %.5g", l->parameters[l->law->varying[k]]);
     putchar('\n');
   }
 }

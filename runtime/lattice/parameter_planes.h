@@ -1,6 +1,6 @@
 /* Parameters of a law that differ in space: planes of their values, on bonds for laws of bonds, on
    particles for laws of families. They come from random fields (random_field.h), and from
-   materials, by formulas of the place and by regions: a particle has the value at its place, of its
+   materials, by formulas of the place, by files of places and by regions: a particle has the value at its place, of its
    region, a bond the mean of its ends'. The density stands on particles, whatever else does. */
 #ifndef PERILAT_RUNTIME_PARAMETER_PLANES_H
 #define PERILAT_RUNTIME_PARAMETER_PLANES_H
@@ -15,6 +15,14 @@ typedef struct regional_values {
   double *parameters; /* [law->parameter_count] SI */
 } regional_values;
 
+/* Why values differ; formulas and files perhaps in regions. */
+typedef enum plane_source {
+  PLANE_BY_REGIONS,
+  PLANE_BY_FORMULA,
+  PLANE_BY_FILE,
+  PLANE_AT_RANDOM
+} plane_source;
+
 typedef struct parameter_planes {
   int count; /* law->varying_count */
   double *
@@ -23,8 +31,8 @@ typedef struct parameter_planes {
                      there is no particle or bond */
   double *density;            /* [size] kg/m^3 of the particles; NULL where all have one */
   double *smallest, *largest; /* [count] of the particles or bonds there are */
-  bool *random;               /* [count] by a random field, not by regions or formulas */
-  bool *placed;               /* [count] by formulas, perhaps in regions */
+  plane_source *source;       /* [count] */
+  size_t plane_size;          /* doubles of one of `value` */
   size_t bytes;
 } parameter_planes;
 
@@ -35,6 +43,8 @@ typedef struct parameter_planes {
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const rows *w, const pl_law *law,
                                        double *parameters, const regional_values *regional,
                                        int regional_count, diagnostics *d);
+/* Tells values of other files from each other; 0 without a file. */
+uint64_t parameter_planes_fingerprint(const parameter_planes *p);
 void parameter_planes_free(parameter_planes *p);
 
 #endif

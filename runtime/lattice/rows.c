@@ -123,10 +123,20 @@ void rows_set_density(rows *w, double rho) {
   w->inertia = 0.4 * w->mass * half * half;
 }
 
-void rows_set_densities(rows *w, double mean, const double *rho) {
+/* That of all, where all are alike, to the last bit. */
+static double middle_density(const rows *w, const double *rho) {
+  double least = INFINITY, most = 0;
+  for (long p = 0; p < w->particle_count; p++) {
+    least = pl_fmin(least, rho[w->particle_site[p]]);
+    most = pl_fmax(most, rho[w->particle_site[p]]);
+  }
+  return 0.5 * (least + most);
+}
+
+void rows_set_densities(rows *w, const double *rho) {
   if (!w->site_mass)
     w->site_mass = must_align(PL_ALIGNMENT, (size_t)w->size * sizeof *w->site_mass);
-  rows_set_density(w, mean);
+  rows_set_density(w, middle_density(w, rho));
   for (long p = 0; p < w->particle_count; p++) {
     const long site = w->particle_site[p];
     w->site_mass[site] = rho[site] * volume_of(w, site);

@@ -170,9 +170,9 @@ int rows_degree(const rows *w, long site);
    I = 2/5 m (s/2)^2 (Asadollahi 2014); on lists s is a spacing of its own, that of particles as
    large as itself. */
 void rows_set_density(rows *w, double rho);
-/* The same where each particle has a density of its own, [size]; `mean` is that of the masses that
-   stand for all. */
-void rows_set_densities(rows *w, double mean, const double *rho);
+/* The same where each particle has a density of its own, [size]. `mass` and `inertia` are of one
+   between the least and the largest. */
+void rows_set_densities(rows *w, const double *rho);
 /* The square of a particle's radius over that of the mean particle; 1 but on lists. */
 double rows_radius_square(const rows *w, long site);
 

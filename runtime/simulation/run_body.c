@@ -18,16 +18,16 @@ static bool has_field(const deck *k, const char *lattice) {
   return false;
 }
 
-static bool has_formula(const deck_material *m) {
+static bool has_placed(const deck_material *m) {
   for (int n = 0; n < m->assignment_count; n++)
-    if (m->assignments[n].formula) return true;
+    if (m->assignments[n].placed) return true;
   return false;
 }
 
 static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
   const int material = deck_find_material(k, b->name);
   if (!has_field(k, b->name) && b->regional_count == 0 && b->law->varying_count == 0 &&
-      (material < 0 || !has_formula(&k->materials[material])))
+      (material < 0 || !has_placed(&k->materials[material])))
     return true;
   b->planes = parameter_planes_new(k, b->lattice, b->lattice_rows, b->law, b->parameters,
                                    b->regional, b->regional_count, d);
@@ -35,11 +35,10 @@ static bool open_planes(run_body *b, const deck *k, diagnostics *d) {
 }
 
 static void set_masses(run_body *b) {
-  const double rho = material_density(b->law, b->parameters);
   if (b->planes && b->planes->density)
-    rows_set_densities(b->lattice_rows, rho, b->planes->density);
+    rows_set_densities(b->lattice_rows, b->planes->density);
   else
-    rows_set_density(b->lattice_rows, rho);
+    rows_set_density(b->lattice_rows, material_density(b->law, b->parameters));
 }
 
 /* What asks for the values of parameters. */

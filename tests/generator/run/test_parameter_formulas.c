@@ -99,9 +99,29 @@ static void the_middle_may_be_forbidden(void **state) {
   deck_case_close(&c);
 }
 
+/* A run does not go on with another file. */
+static void other_files_are_told_from_each_other(void **state) {
+  (void)state;
+  uint64_t prints[3];
+  for (int k = 0; k < 3; k++) {
+    deck_case c;
+    FILE *out = fopen("stiffness.csv", "w");
+    assert_non_null(out);
+    fputs("x [mm], y, E [GPa]\n", out);
+    for (int p = 0; p < 20; p++)
+      fprintf(out, "%d, 0, %.17g\n", 5 * p, 30 + (k == 2 && p == 7 ? 1e-9 : 0));
+    fclose(out);
+    open_text(&c, CHAIN("hexagonal") GRADED("E = 'stiffness.csv'"));
+    prints[k] = parameter_planes_fingerprint(simulation_planes(c.simulation, 0));
+    deck_case_close(&c);
+  }
+  assert_true(prints[0] != 0 && prints[0] == prints[1] && prints[0] != prints[2]);
+}
+
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(formulas_say_what_regions_do),
                                      cmocka_unit_test(a_graded_bar_bears_one_force),
+                                     cmocka_unit_test(other_files_are_told_from_each_other),
                                      cmocka_unit_test(the_middle_may_be_forbidden),
                                      cmocka_unit_test(what_cannot_be_is_told)};
   return cmocka_run_group_tests(tests, NULL, NULL);
