@@ -188,11 +188,14 @@ typedef struct pl_family {
   const double *displacement[PL_MAX_DOF], *velocity[PL_MAX_DOF];
   /* Lists. Where there is no neighbour, `neighbour` leads to a site that is absent, and the chord
      is some vector that is not 0. */
-  const int32_t *neighbour;    /* [neighbours][plane] sites from here to the neighbour */
-  const uint64_t *incoming;    /* [count] bit k: the bond to neighbour k + neighbours/2 exists */
-  const double *length;        /* [neighbours][plane] m */
-  const double *chord[3];      /* [neighbours][plane] reference chord to the neighbour, m */
-  const double *volume, *mass; /* [count] of the particles: m^3, kg */
+  const int32_t *neighbour; /* [neighbours][plane] sites from here to the neighbour */
+  const uint64_t *incoming; /* [count] bit k: the bond to neighbour k + neighbours/2 exists */
+  const double *length;     /* [neighbours][plane] m */
+  const double *chord[3];   /* [neighbours][plane] reference chord to the neighbour, m */
+  const double *volume;     /* [count] of the particles, m^3 */
+  /* [count] kg: of the particles of lists, and where the density is one of the parameters that are
+     not the same everywhere. */
+  const double *mass;
   /* [varying_count] SI: the parameters that are not the same everywhere. On particles one plane, a
      particle's own; on bonds one for each neighbour, `plane` doubles apart, the same from both
      ends. Finite everywhere. */

@@ -52,13 +52,23 @@ typedef struct deck_lattice {
   const char *setting; /* "plane_stress" (default) or "plane_strain"; "space" */
 } deck_lattice;
 
+typedef struct deck_placed {     /* a value that may differ from place to place */
+  double value;                  /* SI */
+  const struct formula *formula; /* of x, y, z, instead; or NULL */
+  const char *path;              /* of a table or result with places and values; or NULL */
+  const char *column;            /* its column or field; NULL: the only one */
+  const char *unit_text;         /* SI */
+  int component;                 /* of a field of vectors; negative: there is none */
+  const char *lattice; /* whose particles are meant: of a result the values of that name */
+} deck_placed;
+
 typedef struct deck_assignment { /* parameter = value in a &material */
   const char *name;              /* as written */
   double value; /* SI; of a formula in the middle of the lattice's or region's bodies */
   bool has_unit;
-  dimension dim;                 /* when has_unit */
-  const struct formula *formula; /* of x, y, z, where the value differs from place to place */
-  const char *word;              /* a string that is not a number: an option's choice; else NULL */
+  dimension dim;             /* when has_unit */
+  const deck_placed *placed; /* where it differs from place to place: a formula, or a file */
+  const char *word;          /* a string that is not a number: an option's choice; else NULL */
   span name_where, value_where;
 } deck_assignment;
 
@@ -182,16 +192,6 @@ typedef struct deck_gravity { /* force mass * acceleration on every particle */
   double acceleration[3]; /* m/s^2 */
   time_function factor;   /* 1: full */
 } deck_gravity;
-
-typedef struct deck_placed {     /* a value that may differ from place to place */
-  double value;                  /* SI */
-  const struct formula *formula; /* of x, y, z, instead; or NULL */
-  const char *path;              /* of a table or result with places and values; or NULL */
-  const char *column;            /* its column or field; NULL: the only one */
-  const char *unit_text;         /* SI */
-  int component;                 /* of a field of vectors */
-  const char *lattice;           /* of the region, whose values a result's are */
-} deck_placed;
 
 typedef struct deck_initial { /* of each particle of the region when the run begins */
   deck_item item;

@@ -197,7 +197,7 @@ law_part *law_parts_new(const deck *k, int first, int count, const rows *w, bool
   good = good && bonds_have_one(&o);
   for (int law = 0; law < count && good; law++) {
     parts[law].bonds = rows_part(w, bonds_of(&o, families, law));
-    if (families) parts[law].share = share_of(&o, law);
+    parts[law].share = share_of(&o, law);
     good = is_for_something(&o, law, parts[law].bonds);
   }
   owners_free(&o);

@@ -110,9 +110,14 @@ static void values_of_output(const frames_of *of, const frame_source *from, doub
   free(array);
 }
 
+static bool is_density(const pl_law *law, int varying) {
+  return law->varying[varying] == law->density;
+}
+
 static void values_of_parameter(const frames_of *of, const frame_source *from, double *values) {
-  const double *array = of->law->state->parameter[from->index];
-  if (of->law->law->varying_place == PL_ON_PARTICLE)
+  const bool density = is_density(of->law->law, from->index);
+  const double *array = density ? of->law->planes->density : of->law->state->parameter[from->index];
+  if (density || of->law->law->varying_place == PL_ON_PARTICLE)
     law_site_values(of, array, values);
   else
     bond_values(of, array, values);
@@ -430,7 +435,7 @@ static void add_of_law(frame_set *f, int n) {
     add(f,
         (frame_field){.name = p->name,
                       .unit = p->unit,
-                      .on_bonds = law->varying_place != PL_ON_PARTICLE,
+                      .on_bonds = law->varying_place != PL_ON_PARTICLE && !is_density(law, k),
                       .components = 1,
                       .interaction = n,
                       .of_law = true,

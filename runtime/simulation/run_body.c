@@ -20,16 +20,16 @@ static bool has_field(const deck *k, const char *lattice) {
   return false;
 }
 
-static bool has_formula(const deck_material *m) {
+static bool has_placed(const deck_material *m) {
   for (int n = 0; n < m->assignment_count; n++)
-    if (m->assignments[n].formula) return true;
+    if (m->assignments[n].placed) return true;
   return false;
 }
 
 static bool open_planes(const run_body *b, run_law *l, const deck *k, diagnostics *d) {
   const deck_material *m = l->from->material;
   if (!(l == b->laws && has_field(k, b->name)) && l->regional_count == 0 &&
-      l->law->varying_count == 0 && !has_formula(m))
+      l->law->varying_count == 0 && !has_placed(m))
     return true;
   l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->law, l->parameters, l->regional,
                                    l->regional_count, d);
@@ -101,8 +101,8 @@ static interaction_law law_beside(const run_body *b, const run_law *l) {
   return (interaction_law){.law = l->law,
                            .parameters = l->parameters,
                            .varying = l->planes ? l->planes->value : NULL,
-                           .lattice = l->share ? b->lattice_rows : l->rows,
-                           .share = l->share};
+                           .lattice = l->law->reads_share ? b->lattice_rows : l->rows,
+                           .share = l->law->reads_share ? l->share : NULL};
 }
 
 static interaction_law *laws_beside(const run_body *b) {
@@ -123,17 +123,41 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   return step_limit_check(k, b->lattice, b->law, &b->limit, d);
 }
 
-static bool density_is_one(const run_body *b, diagnostics *d) {
-  const double rho = material_density(b->law, b->laws[0].parameters);
-  for (int n = 1; n < b->law_count; n++) {
+static double density_of(const run_law *l, long site) {
+  return l->planes && l->planes->density ? l->planes->density[site]
+                                         : material_density(l->law, l->parameters);
+}
+
+/* They differ from particle to particle, or kernels ask for each. */
+static bool densities_differ(const run_body *b) {
+  const double first = material_density(b->law, b->laws[0].parameters);
+  bool differ = false;
+  for (int n = 0; n < b->law_count; n++) {
     const run_law *l = &b->laws[n];
-    if (material_density(l->law, l->parameters) == rho || !l->from->material->region) continue;
-    diag_report(d, DIAG_NOT_SUPPORTED, l->from->material->item.where,
-                "`rho` cannot differ from region to region: the particles of a lattice have one "
-                "mass");
-    return false;
+    differ = differ || (l->planes && l->planes->density) ||
+             (!l->from->material->between[0] && material_density(l->law, l->parameters) != first);
   }
-  return true;
+  return differ;
+}
+
+/* Each particle has that of its own law. */
+static void set_masses(run_body *b) {
+  const rows *g = b->lattice_rows;
+  if (!densities_differ(b)) {
+    rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
+    law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
+    return;
+  }
+  double *rho = must_calloc((size_t)g->size, sizeof *rho);
+  for (int n = 0; n < b->law_count; n++)
+    for (long p = 0; p < g->particle_count; p++) {
+      const long site = g->particle_site[p];
+      if (!b->laws[n].share || b->laws[n].share[site] > 0)
+        rho[site] = density_of(&b->laws[n], site);
+    }
+  rows_set_densities(b->lattice_rows, rho);
+  free(rho);
+  law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
 }
 
 /* What asks for the values of parameters. */
@@ -143,11 +167,7 @@ static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
     planes = open_planes(b, &b->laws[n], k, d) && planes;
     mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
   }
-  mass = mass && density_is_one(b, d);
-  if (mass) {
-    rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
-    law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
-  }
+  if (mass && planes) set_masses(b);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass && find_limit(b, k, d);
 }

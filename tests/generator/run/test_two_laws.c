@@ -175,6 +175,32 @@ static void forces_are_slopes_of_the_energy(void **state) {
               5e-9);
 }
 
+/* --- masses ----------------------------------------------------------------------------------- */
+
+/* Each particle has the density of its own law, whose bonds read its mass where they ask for it. */
+static void check_masses(const char *text) {
+  deck_case c;
+  open_text(&c, text);
+  const sweep *w = simulation_state(c.simulation, 0);
+  const rows *g = w->body->lattice;
+  for (long p = 0; p < g->particle_count; p++) {
+    const long site = g->particle_site[p];
+    const double V = g->site_volume ? g->site_volume[site] : g->volume,
+                 m = (g->x[site] > -1e-9 ? 7850 : 2300) * V;
+    assert_true(fabs(body_mass(w->body, 0, site) / m - 1) < 1e-14);
+  }
+  deck_case_close(&c);
+}
+
+static void particles_have_the_mass_of_their_law(void **state) {
+  (void)state;
+#define LIGHT(model) "&material lattice = 'l' model = '" model "' rho = 2300 /\n"
+#define HEAVY(model) "&material lattice = 'l' region = 'a' model = '" model "' rho = 7850 /\n"
+  check_masses(DISC("square", "horizon = 2.015") LIGHT("lps") HEAVY("pmb"));
+  check_masses(DISC("blue_noise", "") LIGHT("lps") HEAVY("splm_elastic"));
+  check_masses(DISC("hexagonal", "") LIGHT("mplm_bilinear") HEAVY("elastic_micropolar"));
+}
+
 /* --- the stable step -------------------------------------------------------------------------- */
 
 /* Between that of either law alone; and a body that rings at 0.999 of it keeps its energy. */
@@ -404,6 +430,7 @@ int main(void) {
       cmocka_unit_test(two_copies_of_a_law_are_the_law),
       cmocka_unit_test(a_bond_has_the_law_of_both_ends_or_none),
       cmocka_unit_test(forces_are_slopes_of_the_energy),
+      cmocka_unit_test(particles_have_the_mass_of_their_law),
       cmocka_unit_test(the_step_is_that_of_both),
       cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
       ONE(a_weak_plane_breaks),
