@@ -268,6 +268,10 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
     if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
         is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
+  v->shares = m->beside && out->law->tree->law == LAW_STATE;
+  v->masses = m->beside;
+  for (int k = 0; out->law->rho && k < v->varying_count; k++)
+    v->masses = v->masses || varying[k] == out->law->rho->index;
   return good;
 }
 
@@ -277,10 +281,11 @@ static bool reads_masses(const law *l) {
 }
 
 /* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all other
-   lattices, and where they read masses that differ. */
-static bool needs_families(const deck_lattice *l, const law *of, const law_variation *v) {
+   lattices, beside other laws, and where they read masses that differ. */
+static bool needs_families(const deck_material *m, const deck_lattice *l, const law *of,
+                           const law_variation *v) {
   if (of->tree->law == LAW_STATE) return false;
-  return !bravais_is_hexagon(l) || (law_masses_differ(of, v) && reads_masses(of));
+  return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
@@ -288,8 +293,8 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
-  return l && needs_families(l, out->law, &v) ? model_plan_of_families(out, &v)
-                                              : model_plan_varying(out, &v);
+  return l && needs_families(m, l, out->law, &v) ? model_plan_of_families(out, &v)
+                                                 : model_plan_varying(out, &v);
 }
 
 bool material_law_open(const deck_material *m, const deck_lattice *l, const char *deck_path,

@@ -174,8 +174,6 @@ static void slips_are_told_at_their_line(void **state) {
                 "region `c` holds no particle", "name = 'c'"},
                {"&material lattice = 'l' region = 'd' model = 'lps' E = '1 GPa' /\n",
                 "there is no region `d`", "region = 'd'"},
-               {"&material lattice = 'l' region = 'a' model = 'pmb' E = '1 GPa' /\n",
-                "a region has the law of its lattice", "model = 'pmb'"},
                {"&material lattice = 'l' region = 'a' model = 'lps' rho = 0 /\n",
                 "`rho` = 0 kg/m^3 is not in (0, inf)", "rho = 0"},
                {"&material lattice = 'l' region = 'a' model = 'lps' E = '-1 GPa' /\n",
