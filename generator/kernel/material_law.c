@@ -255,16 +255,6 @@ static bool is_placed(const deck_material *m, const symbol *parameter) {
   return false;
 }
 
-static bool reads_masses(const law *l) {
-  return law_reads(l, QUANTITY_M_BOND) || law_reads(l, QUANTITY_M_END_I) ||
-         law_reads(l, QUANTITY_M_END_J);
-}
-
-/* Particles of laws beside may be heavier: masses are read of each. */
-static bool is_density_beside(const deck_material *m, const law *l, const symbol *parameter) {
-  return m->beside && l->rho == parameter && reads_masses(l);
-}
-
 /* The parameters that random fields, regions or formulas make differ, as the law orders them. */
 static bool find_variation(const deck_material *m, model *out, law_variation *v,
                            diagnostics *said) {
@@ -276,17 +266,26 @@ static bool find_variation(const deck_material *m, model *out, law_variation *v,
     good = find_varying(m, k, out->law, said) >= 0 && good;
   for (int p = 0; p < all->count && good; p++)
     if (has_field(m, all->items[p]) || differs_by_region(m, all->items[p]) ||
-        is_placed(m, all->items[p]) || is_density_beside(m, out->law, all->items[p]))
+        is_placed(m, all->items[p]))
       varying[v->varying_count++] = p;
+  v->shares = m->beside && out->law->tree->law == LAW_STATE;
+  v->masses = m->beside;
+  for (int k = 0; out->law->rho && k < v->varying_count; k++)
+    v->masses = v->masses || varying[k] == out->law->rho->index;
   return good;
 }
 
-/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all
-   other lattices, beside other laws, and where they read masses that differ. */
+static bool reads_masses(const law *l) {
+  return law_reads(l, QUANTITY_M_BOND) || law_reads(l, QUANTITY_M_END_I) ||
+         law_reads(l, QUANTITY_M_END_J);
+}
+
+/* Laws of bonds run as strips on the hexagon of nearest neighbours; as laws of families on all other
+   lattices, beside other laws, and where they read masses that differ. */
 static bool needs_families(const deck_material *m, const deck_lattice *l, const law *of,
                            const law_variation *v) {
   if (of->tree->law == LAW_STATE) return false;
-  return m->beside || !bravais_is_hexagon(l) || (law_masses_differ(of, v) && reads_masses(of));
+  return m->beside || !bravais_is_hexagon(l) || (v->masses && reads_masses(of));
 }
 
 bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out,
@@ -294,7 +293,6 @@ bool material_law_plan(const deck_material *m, const deck_lattice *l, model *out
   law_variation v;
   if (!take_setting(m, l, out, said) || !suits_section(m, l, out->law, said)) return false;
   if (!find_variation(m, out, &v, said)) return false;
-  v.shares = m->beside && out->law->tree->law == LAW_STATE;
   return l && needs_families(m, l, out->law, &v) ? model_plan_of_families(out, &v)
                                                  : model_plan_varying(out, &v);
 }

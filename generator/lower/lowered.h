@@ -17,16 +17,9 @@ typedef struct law_variation {
   const int *varying; /* [varying_count] ascending: law->parameters that differ in space: from bond
                          to bond of laws of bonds, else from particle to particle */
   int varying_count;
+  bool masses; /* particles have masses of their own */
   bool shares; /* force state and energy are those of a particle's share (pl_family) */
 } law_variation;
-
-/* Particles have masses of their own. */
-static inline bool law_masses_differ(const law *l, const law_variation *v) {
-  bool differ = false;
-  for (int k = 0; l->rho && k < v->varying_count; k++)
-    differ = differ || v->varying[k] == l->rho->index;
-  return differ;
-}
 
 /* What became of the law's text (LOWER_STEP only), for checks that speak about it. */
 typedef struct lowered_line { /* a case line with a guard */

@@ -377,6 +377,11 @@ static bool is_share(const ir *g, ir_node input) {
          ends_origins[ir_input_index(g, input)].array == FROM_SHARE;
 }
 
+static bool is_mass(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_ENDS &&
+         ends_origins[ir_input_index(g, input)].array == FROM_MASS;
+}
+
 /* Operations of all segments of a step that are done for each neighbour; what is done once for both
    ends counts half. */
 static void count_cost(kernel_plan *plan) {
@@ -451,7 +456,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   rewrite_last(p.g, &step, &observe);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
-  if (l->irregular || law_masses_differ(l, v)) {
+  if (l->irregular || v->masses) {
     const program_motion each = l->irregular ? list_inputs(plan) : masses(plan);
     read_of_each(plan, &each, &step);
     read_of_each(plan, &each, &observe);
@@ -469,6 +474,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   }
   plan->reads_shape = reads(plan, is_shape);
   plan->reads_share = reads(plan, is_share);
+  plan->reads_mass = reads(plan, is_mass);
   count_cost(plan);
   return true;
 }

@@ -225,6 +225,7 @@ typedef enum monitor_kind {
   MONITOR_ANGULAR_MOMENTUM, /* N m s, about `about` */
   MONITOR_ENERGY,           /* J: kinetic or stored */
   MONITOR_FORCE,            /* N: through a section */
+  MONITOR_MOMENT,           /* N m: through a section, about `at` */
   MONITOR_TIP,              /* m: way of the furthest damaged bond */
   MONITOR_TIP_SPEED,        /* m/s: of that */
   MONITOR_STRESS,           /* Pa */
@@ -242,8 +243,9 @@ typedef struct deck_monitor {
   const char *lattice; /* NULL: the region's, or the only one; of counts all */
   const char *between[2];
   const char *field;
-  /* of the particles' motion; of MONITOR_FORCE -1: along the normal; of MONITOR_ANGULAR_MOMENTUM
-     the axis x, y, z; of tensors as symmetric_tensor.h says */
+  /* of the particles' motion; of MONITOR_FORCE, MONITOR_MOMENT -1: along the normal; of
+     MONITOR_ANGULAR_MOMENTUM, MONITOR_MOMENT the axis x, y, z; of tensors as symmetric_tensor.h
+     says */
   int component;
   bool placed;                    /* `at` is given */
   double at[3];                   /* m */

@@ -61,7 +61,8 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   run->new_plane = w->lattice->size;
   run->bonds = w->lattice->bonds + start;
   run->held = w->lattice->held + start;
-  if (w->lattice->site_mass) run->mass = w->lattice->site_mass + start;
+  if (w->law->reads_mass)
+    run->mass = (w->lattice->site_mass ? w->lattice->site_mass : family_of(w)->mass) + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
   point_at_neighbours(w->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {

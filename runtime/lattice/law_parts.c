@@ -138,12 +138,19 @@ static uint64_t *bonds_of(const law_owners *o, bool families, int law) {
   return bonds;
 }
 
-static double *share_of(const law_owners *o, int law) {
-  double *share = rows_array(o->rows->size, sizeof *share);
+static unsigned char *own_of(const law_owners *o, int law) {
+  unsigned char *own = must_calloc((size_t)o->rows->size, 1);
   for (long p = 0; p < o->rows->particle_count; p++) {
     const long site = o->rows->particle_site[p];
-    share[site] = o->of_site[site] == law;
+    own[site] = o->of_site[site] == law;
   }
+  return own;
+}
+
+static double *share_of(const rows *w, const unsigned char *own) {
+  double *share = rows_array(w->size, sizeof *share);
+  for (long q = 0; q < w->size; q++)
+    share[q] = own[q];
   return share;
 }
 
@@ -197,7 +204,8 @@ law_part *law_parts_new(const deck *k, int first, int count, const rows *w, bool
   good = good && bonds_have_one(&o);
   for (int law = 0; law < count && good; law++) {
     parts[law].bonds = rows_part(w, bonds_of(&o, families, law));
-    parts[law].share = share_of(&o, law);
+    parts[law].own = own_of(&o, law);
+    if (families) parts[law].share = share_of(w, parts[law].own);
     good = is_for_something(&o, law, parts[law].bonds);
   }
   owners_free(&o);
@@ -217,6 +225,7 @@ void law_parts_take_masses(law_part *parts, int count, const rows *w) {
 void law_parts_free(law_part *parts, int count) {
   for (int n = 0; parts && n < count; n++) {
     rows_part_free(parts[n].bonds);
+    free(parts[n].own);
     free(parts[n].share);
   }
   free(parts);

@@ -189,6 +189,7 @@ static bool open_source(const deck_field *f, const value_places *places, const p
 typedef struct value_sources {
   const value_places *places;
   const deck_material *whole; /* of the law where no region says otherwise */
+  const unsigned char *own;   /* [size] 1 where a particle is of the law; NULL: everywhere */
   const double *parameters;
   field_source *field; /* [varying] */
   const regional_values *regional;
@@ -339,13 +340,16 @@ static bool open_regions(const deck *k, int count, value_sources *s, diagnostics
   return good;
 }
 
-/* Of a region, or without one (-1). */
+/* Of a region, or without one (-1), as far as the law asks for their values. */
 static long particles_in(const value_sources *s, int region, int32_t *particles) {
   const rows *w = s->places->rows;
   long count = 0;
-  for (long p = 0; p < w->particle_count; p++)
-    if ((s->region_of ? s->region_of[w->particle_site[p]] : -1) == region)
+  for (long p = 0; p < w->particle_count; p++) {
+    const long site = w->particle_site[p];
+    if ((s->region_of ? s->region_of[site] : -1) == region &&
+        (!s->own || s->own[site] || rows_degree(w, site) > 0))
       particles[count++] = (int32_t)p;
+  }
   return count;
 }
 
@@ -359,7 +363,10 @@ static bool read_file(value_sources *s, int region, int plane, int32_t *particle
   const long count = particles_in(s, region, particles);
   double *values = placed_values(&from, w, particles, count, a->value_where, d);
   if (!values) return false;
-  s->of_file[number] = must_calloc((size_t)w->size, sizeof(double));
+  s->of_file[number] = must_alloc((size_t)w->size * sizeof(double));
+  for (long q = 0; q < w->size; q++)
+    s->of_file[number][q] =
+        (region < 0 ? s->parameters : s->regional[region].parameters)[law->varying[plane]];
   for (long p = 0; p < count; p++)
     s->of_file[number][w->particle_site[particles[p]]] = values[p];
   free(values);
@@ -631,12 +638,13 @@ static void sources_free(value_sources *s) {
 }
 
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
-                                       const rows *w, const pl_law *law, double *parameters,
-                                       const regional_values *regional, int regional_count,
-                                       diagnostics *d) {
+                                       const rows *w, const unsigned char *own, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d) {
   value_places places = places_new(w, law);
   value_sources s = {.places = &places,
                      .whole = whole,
+                     .own = own,
                      .parameters = parameters,
                      .regional = regional,
                      .regions = regional_count};

@@ -37,13 +37,15 @@ typedef struct parameter_planes {
 } parameter_planes;
 
 /* Evaluates all that the deck says of the law of a material on the lattice. `parameters` are those
-   of the material `whole`, `regional` those of the regions that have its law; those with a random field become its mean. NULL with diagnostics: a wrong unit, values
-   that the law does not allow (with the place of the first), two materials for one particle, a
-   kernel that takes such a parameter as the same everywhere. */
+   of the material `whole`, `regional` those of the regions that have its law; those with a random
+   field become its mean. `own`: [size] 1 where a particle is of the law, NULL: everywhere. NULL
+   with diagnostics: a wrong unit, values that the law does not allow (with the place of the first),
+   a place without one, two materials for one particle, a kernel that takes such a parameter as the
+   same everywhere. */
 parameter_planes *parameter_planes_new(const deck *k, int lattice, const deck_material *whole,
-                                       const rows *w, const pl_law *law, double *parameters,
-                                       const regional_values *regional, int regional_count,
-                                       diagnostics *d);
+                                       const rows *w, const unsigned char *own, const pl_law *law,
+                                       double *parameters, const regional_values *regional,
+                                       int regional_count, diagnostics *d);
 /* Tells values of other files from each other; 0 without a file. */
 uint64_t parameter_planes_fingerprint(const parameter_planes *p);
 void parameter_planes_free(parameter_planes *p);

@@ -172,8 +172,7 @@ static int first_bad(const bad_search *s) {
 static const run_law *law_at(const run_body *of, long site) {
   for (int n = 0; n < of->law_count; n++) {
     const run_law *l = &of->laws[n];
-    const double *share = l->state->share;
-    if (share ? share[site] > 0 : rows_degree(l->rows, site) > 0) return l;
+    if (l->share ? l->share[site] > 0 : rows_degree(l->rows, site) > 0) return l;
   }
   return of->laws;
 }

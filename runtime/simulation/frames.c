@@ -74,9 +74,9 @@ static void site_values(const frames_of *of, double *const *arrays, int componen
 /* Of the particles that are of the law. */
 static void law_site_values(const frames_of *of, const double *array, double *values) {
   const rows *g = of->body->lattice_rows;
-  const double *share = of->law->share;
+  const unsigned char *own = of->law->own;
   for (long p = 0; p < g->particle_count; p++)
-    if (!share || share[g->particle_site[p]] > 0) values[p] = array[g->particle_site[p]];
+    if (!own || own[g->particle_site[p]]) values[p] = array[g->particle_site[p]];
 }
 
 static void bond_values(const frames_of *of, const double *array, double *values) {

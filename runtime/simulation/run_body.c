@@ -31,8 +31,8 @@ static bool open_planes(const run_body *b, run_law *l, const deck *k, diagnostic
   if (!(l == b->laws && has_field(k, b->name)) && l->regional_count == 0 &&
       l->law->varying_count == 0 && !has_placed(m))
     return true;
-  l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->law, l->parameters, l->regional,
-                                   l->regional_count, d);
+  l->planes = parameter_planes_new(k, b->lattice, m, l->rows, l->own, l->law, l->parameters,
+                                   l->regional, l->regional_count, d);
   return l->planes != NULL;
 }
 
@@ -91,6 +91,7 @@ static bool open_parts(run_body *b, const deck *k, diagnostics *d) {
   b->parts = law_parts_new(k, first, b->law_count, b->lattice_rows, families, d);
   for (int n = 0; n < b->law_count && b->parts; n++) {
     b->laws[n].rows = b->parts[n].bonds;
+    b->laws[n].own = b->parts[n].own;
     b->laws[n].share = b->parts[n].share;
   }
   return b->parts != NULL;
@@ -101,8 +102,8 @@ static interaction_law law_beside(const run_body *b, const run_law *l) {
   return (interaction_law){.law = l->law,
                            .parameters = l->parameters,
                            .varying = l->planes ? l->planes->value : NULL,
-                           .lattice = l->law->reads_share ? b->lattice_rows : l->rows,
-                           .share = l->law->reads_share ? l->share : NULL};
+                           .lattice = l->share ? b->lattice_rows : l->rows,
+                           .share = l->share};
 }
 
 static interaction_law *laws_beside(const run_body *b) {
@@ -123,41 +124,38 @@ static bool find_limit(run_body *b, const deck *k, diagnostics *d) {
   return step_limit_check(k, b->lattice, b->law, &b->limit, d);
 }
 
-static double density_of(const run_law *l, long site) {
-  return l->planes && l->planes->density ? l->planes->density[site]
-                                         : material_density(l->law, l->parameters);
+/* Of the particles that a law owns; those between regions own none. */
+static void take_densities(const run_body *b, const run_law *l, double *rho) {
+  const rows *g = b->lattice_rows;
+  const double one = material_density(l->law, l->parameters);
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    if (!l->own || l->own[q])
+      rho[q] = l->planes && l->planes->density ? l->planes->density[q] : one;
+  }
 }
 
-/* They differ from particle to particle, or kernels ask for each. */
-static bool densities_differ(const run_body *b) {
-  const double first = material_density(b->law, b->laws[0].parameters);
-  bool differ = false;
+static bool density_is_one(const run_body *b) {
+  const double rho = material_density(b->law, b->laws[0].parameters);
+  bool same = true;
   for (int n = 0; n < b->law_count; n++) {
     const run_law *l = &b->laws[n];
-    differ = differ || (l->planes && l->planes->density) ||
-             (!l->from->material->between[0] && material_density(l->law, l->parameters) != first);
+    same = same && !(l->planes && l->planes->density) &&
+           (l->from->material->between[0] || material_density(l->law, l->parameters) == rho);
   }
-  return differ;
+  return same;
 }
 
-/* Each particle has that of its own law. */
 static void set_masses(run_body *b) {
-  const rows *g = b->lattice_rows;
-  if (!densities_differ(b)) {
+  if (density_is_one(b)) {
     rows_set_density(b->lattice_rows, material_density(b->law, b->laws[0].parameters));
-    law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
     return;
   }
-  double *rho = must_calloc((size_t)g->size, sizeof *rho);
+  double *rho = must_calloc((size_t)b->lattice_rows->size, sizeof *rho);
   for (int n = 0; n < b->law_count; n++)
-    for (long p = 0; p < g->particle_count; p++) {
-      const long site = g->particle_site[p];
-      if (!b->laws[n].share || b->laws[n].share[site] > 0)
-        rho[site] = density_of(&b->laws[n], site);
-    }
+    take_densities(b, &b->laws[n], rho);
   rows_set_densities(b->lattice_rows, rho);
   free(rho);
-  law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
 }
 
 /* What asks for the values of parameters. */
@@ -167,7 +165,8 @@ static bool open_materials(run_body *b, const deck *k, diagnostics *d) {
     planes = open_planes(b, &b->laws[n], k, d) && planes;
     mass = law_fits_motion(b->laws[n].law, k, b->lattice, d) && mass;
   }
-  if (mass && planes) set_masses(b);
+  if (mass) set_masses(b);
+  if (mass) law_parts_take_masses(b->parts, b->law_count, b->lattice_rows);
   if (deck_lacks(k, "simulation") || deck_lacks(k, "relaxation")) return false;
   return planes && mass && find_limit(b, k, d);
 }

@@ -234,26 +234,60 @@ static double mass_of(const body *w) {
   return sum;
 }
 
+static void check_momentum(deck_case *c, const char *name, bool checked) {
+  assert_int_equal(deck_case_go(c), STEP_END);
+  const long last = simulation_history(c->simulation, NULL) - 1;
+  const body *w = simulation_state(c->simulation, 0)->body;
+  const double t = w->time, mass = mass_of(w);
+  const double p = deck_case_series(c, "p")[last] / (2000 * t) - 1,
+               q = deck_case_series(c, "q")[last] / (-1000 * t * mass) - 1,
+               work = deck_case_series(c, "energy/external")[last],
+               k = deck_case_series(c, "k")[last] / deck_case_series(c, "energy/kinetic")[last] - 1,
+               lost = deck_case_series(c, "energy/imbalance")[last] / work;
+  print_message("%s: momentum %+.1e and %+.1e off, kinetic energy %+.1e, imbalance %+.1e\n", name,
+                p, q, k, lost);
+  assert_true(fabs(p) < 1e-12 && fabs(q) < 1e-12 && fabs(k) < 1e-12);
+  if (checked) assert_true(fabs(lost) < 1e-6);
+}
+
 static void forces_and_weight_are_the_momentum(void **state) {
   (void)state;
   for (int b = 0; b < BODIES; b++) {
     deck_case c;
     open_pushed(&c, &bodies[b], 1, STEPWISE);
-    assert_int_equal(deck_case_go(&c), STEP_END);
-    const long last = simulation_history(c.simulation, NULL) - 1;
-    const body *w = simulation_state(c.simulation, 0)->body;
-    const double t = w->time, mass = mass_of(w);
-    const double p = deck_case_series(&c, "p")[last] / (2000 * t) - 1,
-                 q = deck_case_series(&c, "q")[last] / (-1000 * t * mass) - 1,
-                 work = deck_case_series(&c, "energy/external")[last],
-                 k = deck_case_series(&c, "k")[last] /
-                         deck_case_series(&c, "energy/kinetic")[last] -
-                     1,
-                 lost = deck_case_series(&c, "energy/imbalance")[last] / work;
-    print_message("%s, %s: momentum %+.1e and %+.1e off, kinetic energy %+.1e, imbalance %+.1e\n",
-                  bodies[b].kind, bodies[b].law, p, q, k, lost);
-    assert_true(fabs(p) < 1e-12 && fabs(q) < 1e-12 && fabs(k) < 1e-12);
-    if (strcmp(bodies[b].law, "lps") != 0) assert_true(fabs(lost) < 1e-6);
+    check_momentum(&c, bodies[b].law, strcmp(bodies[b].law, "lps") != 0);
+    deck_case_close(&c);
+  }
+}
+
+#define BESIDE(first, second)                                                                      \
+  "&material lattice = 'l' model = " first " rho = 2000 / ! %s\n"                                  \
+  "&material lattice = 'l' region = 'right' model = " second " / ! %s\n"
+
+/* The particles of that region and their density. */
+static void write_right(const rows *g) {
+  FILE *out = fopen("right.csv", "w");
+  assert_non_null(out);
+  fputs("x, y, rho [g/cm^3]\n", out);
+  for (long p = 0; p < g->particle_count; p++) {
+    const long q = g->particle_site[p];
+    if (g->x[q] > 0.051 - 1e-9) fprintf(out, "%.17g, %.17g, 7\n", g->x[q], g->y[q]);
+  }
+  fclose(out);
+}
+
+/* Each law brings its own, from a file of its region, too; one reads masses. */
+static void laws_on_one_lattice_have_their_densities(void **state) {
+  (void)state;
+  static const char *const materials[] = {
+      BESIDE("'elastic_micropolar'", "'mplm_linear' zeta = 0.02 rho = 7000"),
+      BESIDE("'elastic_micropolar'", "'mplm_linear' zeta = 0.02 rho = 'right.csv:rho'"),
+      BESIDE("'lps'", "'pmb' rho = 7000")};
+  for (int k = 0; k < 3; k++) {
+    deck_case c;
+    open_pushed(&c, &bodies[k < 2 ? 1 : 3], 1, materials[k]);
+    if (k == 0) write_right(simulation_rows(c.simulation, 0));
+    check_momentum(&c, materials[k], false);
     deck_case_close(&c);
   }
 }
@@ -357,6 +391,7 @@ int main(void) {
                                      cmocka_unit_test(bodies_bear_the_step_and_no_more),
                                      cmocka_unit_test(dampers_count_as_in_the_lightest_lattice),
                                      cmocka_unit_test(forces_and_weight_are_the_momentum),
+                                     cmocka_unit_test(laws_on_one_lattice_have_their_densities),
                                      cmocka_unit_test(equal_densities_are_one_density),
                                      cmocka_unit_test(threads_and_a_resume_give_the_same_bits),
                                      cmocka_unit_test(laws_read_the_masses_of_their_ends),
