@@ -52,7 +52,8 @@ static void check_bonds(const char *text, int laws, bool families) {
     }
   for (int n = 0; n < laws; n++) {
     assert_int_equal(parts[n].bonds->bond_count, count[n]);
-    for (long p = 0; p < w->particle_count; p++)
+    assert_true((parts[n].share != NULL) == families);
+    for (long p = 0; p < w->particle_count && families; p++)
       assert_true(parts[n].share[w->particle_site[p]] == (right(w, w->particle_site[p]) == n));
   }
   law_parts_free(parts, laws);
