@@ -14,7 +14,7 @@
 #include "generator/lower/law_inputs.h"
 #include "generator/plan/program_facts.h"
 
-enum { LANES = INTERPRET_LANES, RUN_PREPARE = PASS_COUNT, RUN_COUNT, MOST_WORKERS = 64 };
+enum { LANES = INTERPRET_LANES, RUN_PREPARE = PROGRAM_COUNT, RUN_COUNT, MOST_WORKERS = 64 };
 
 /* One caller's working space. */
 typedef struct worker {
@@ -71,7 +71,7 @@ static void set_up_worker(interpreted *p, worker *w) {
   for (int k = 0; k < RUN_COUNT; k++)
     if (p->root_count[k] > 0)
       w->run[k] = interpreter_new(plan->graph, p->roots[k], p->root_count[k]);
-  if (plan->kind == PL_STATE) w->family = family_runner_new(plan, p->inputs);
+  if (plan->form != FORM_STRIPS) w->family = family_runner_new(plan, p->inputs);
   w->parameters = arena_alloc(p->memory, (parameters + 1) * sizeof *w->parameters);
   w->fields = arena_alloc(p->memory, (fields + 1) * sizeof *w->fields);
   w->field_stride = arena_alloc(p->memory, fields + 1);
@@ -144,7 +144,7 @@ static void point_at_ends(worker *w, const pl_strip *s, long first, int count) {
   w->ends[ENDS_TIME_STEP] = &s->time_step;
 }
 
-static void store(const pass_root *r, const pl_strip *s, long first, int count,
+static void store(const segment_root *r, const pl_strip *s, long first, int count,
                   const double *from) {
   const int64_t *flags = s->flags + first;
   const int64_t present = PL_PRESENT(s->direction);
@@ -171,9 +171,9 @@ static void store(const pass_root *r, const pl_strip *s, long first, int count,
 }
 
 static void run_strip(const pl_law *kernel, const double *uniforms, const pl_strip *s,
-                      pass_kind kind) {
+                      program_task task) {
   const interpreted *p = kernel->context;
-  const pass *a = &p->plan->passes[kind];
+  const segment *a = plan_segment(p->plan, task);
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
   for (long first = 0; first < s->count; first += LANES) {
@@ -184,27 +184,27 @@ static void run_strip(const pl_law *kernel, const double *uniforms, const pl_str
     for (int k = 0; k < p->plan->variation.varying_count; k++)
       w->bond_parameters[k] = s->parameter[k] + first;
     interpreter_inputs in = inputs_of(w);
-    interpreter_run(w->run[kind], &in, count, w->result);
+    interpreter_run(w->run[task], &in, count, w->result);
     for (int k = 0; k < a->root_count; k++)
       store(&a->roots[k], s, first, count, w->result[k]);
   }
   give_back(w);
 }
 
-#define X(pass, member, task)                                                                      \
+#define X(task, member)                                                                            \
   static void run_##member(const pl_law *kernel, const double *uniforms, const pl_strip *s) {      \
-    run_strip(kernel, uniforms, s, pass);                                                          \
+    run_strip(kernel, uniforms, s, task);                                                          \
   }
-STRIP_PASSES(X)
+STRIP_PROGRAMS(X)
 #undef X
 
 /* --- single states ---------------------------------------------------------------------------- */
 
 static void run_law(const pl_law *kernel, const double *uniforms, const pl_states *s,
-                    pass_kind kind) {
-  const int results = kind == PASS_TANGENT ? PL_TANGENTS : PL_STATE_RESULTS;
+                    program_task task) {
+  const int results = task == PROGRAM_TANGENT ? PL_TANGENTS : PL_STATE_RESULTS;
   const interpreted *p = kernel->context;
-  const pass *a = &p->plan->passes[kind];
+  const segment *a = plan_segment(p->plan, task);
   worker *w = borrow(kernel);
   point_at_uniforms(p, w, uniforms);
   for (long first = 0; first < s->count; first += LANES) {
@@ -214,7 +214,7 @@ static void run_law(const pl_law *kernel, const double *uniforms, const pl_state
     for (int k = 0; k < p->plan->law->fields.count; k++)
       w->fields[k] = s->field[k] + first;
     interpreter_inputs inputs = inputs_of(w);
-    interpreter_run(w->run[kind], &inputs, now, w->result);
+    interpreter_run(w->run[task], &inputs, now, w->result);
     for (int k = 0; k < a->root_count; k++) {
       const int index = a->roots[k].index;
       double *to = index < results ? s->out[index] : s->new_field[index - results];
@@ -225,11 +225,11 @@ static void run_law(const pl_law *kernel, const double *uniforms, const pl_state
 }
 
 static void run_states(const pl_law *kernel, const double *uniforms, const pl_states *s) {
-  run_law(kernel, uniforms, s, PASS_STATES);
+  run_law(kernel, uniforms, s, PROGRAM_STATES);
 }
 
 static void run_tangent(const pl_law *kernel, const double *uniforms, const pl_states *s) {
-  run_law(kernel, uniforms, s, PASS_TANGENT);
+  run_law(kernel, uniforms, s, PROGRAM_TANGENT);
 }
 
 /* --- values of a bond class, bounds ----------------------------------------------------------- */
@@ -254,7 +254,7 @@ static void run_prepare(const pl_law *kernel, const double *parameters, const pl
 static void run_bounds(const pl_law *kernel, const double *parameters, double *lower, double *upper,
                        unsigned char *low_open, unsigned char *high_open) {
   const interpreted *p = kernel->context;
-  const pass *a = &p->plan->passes[PASS_BOUNDS];
+  const segment *a = plan_segment(p->plan, PROGRAM_BOUNDS);
   const symbol_list *list = &p->plan->law->parameters;
   worker *w = borrow(kernel);
   for (int k = 0; k < list->count; k++) {
@@ -263,7 +263,7 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
     high_open[k] = list->items[k]->declared->in.upper_open;
   }
   interpreter_inputs in = inputs_of(w);
-  if (w->run[PASS_BOUNDS]) interpreter_run(w->run[PASS_BOUNDS], &in, 1, w->result);
+  if (w->run[PROGRAM_BOUNDS]) interpreter_run(w->run[PROGRAM_BOUNDS], &in, 1, w->result);
   for (int k = 0; k < a->root_count; k++)
     (a->roots[k].target == TO_LOWER ? lower : upper)[a->roots[k].index] = w->result[k][0];
   give_back(w);
@@ -344,7 +344,7 @@ static const pl_field *describe_fields(arena *memory, const symbol_list *list) {
   return all;
 }
 
-static pl_program program_facts(arena *memory, const ir *g, const family_program *p,
+static pl_program program_facts(arena *memory, const ir *g, const kernel_program *p,
                                 const pl_family_function *passes) {
   uint64_t *shared = arena_alloc(memory, ((size_t)p->pass_count + 1) * sizeof *shared);
   for (int k = 0; k < p->pass_count; k++)
@@ -363,7 +363,7 @@ static void describe(interpreted *p) {
   p->law = (pl_law){
       .abi = PL_KERNEL_ABI,
       .size = sizeof(pl_law),
-      .kind = plan->kind,
+      .kind = plan_kind(plan),
       .dimensions = plan->dimensions,
       .dof = plan->dof,
       .force_planes = plan->force_planes,
@@ -385,8 +385,8 @@ static void describe(interpreted *p) {
       .divisions_per_bond = plan->divisions_per_bond,
       .prepare = run_prepare,
       .bounds = run_bounds,
-#define X(pass, member, task) .member = run_##member,
-      STRIP_PASSES(X)
+#define X(task, member) .member = run_##member,
+      STRIP_PROGRAMS(X)
 #undef X
           .state_input_count = PL_STATE_INPUTS,
       .state_inputs = describe_state_inputs(p->memory),
@@ -394,7 +394,7 @@ static void describe(interpreted *p) {
       .tangent = run_tangent,
       .context = p,
   };
-  if (plan->kind != PL_STATE) return;
+  if (plan->form == FORM_STRIPS) return;
   p->law.rows = p->law.rows_ledger = p->law.rows_observe = NULL;
   p->law.state_input_count = 0;
   p->law.state_inputs = NULL;
@@ -402,14 +402,15 @@ static void describe(interpreted *p) {
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
-  p->law.sum_count = program_sum_count(&plan->step);
+  p->law.sum_count = program_sum_count(&plan->programs[PROGRAM_STEP]);
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
-  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);
+  p->law.step = program_facts(p->memory, plan->graph, &plan->programs[PROGRAM_STEP], step_passes);
+  p->law.observe =
+      program_facts(p->memory, plan->graph, &plan->programs[PROGRAM_OBSERVE], observe_passes);
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */
@@ -418,12 +419,14 @@ static void describe(interpreted *p) {
    kernels it is computed in `prepare` and read by strips. */
 static void take_roots(interpreted *p, int run, const ir_node *inputs) {
   const kernel_plan *plan = p->plan;
-  const pass *a = &plan->passes[run];
+  if (!plan->programs[run].pass_count || (run <= PROGRAM_OBSERVE && plan->form != FORM_STRIPS))
+    return;
+  const segment *a = plan_segment(plan, (program_task)run);
   p->root_count[run] = a->root_count;
   p->roots[run] = arena_alloc(p->memory, ((size_t)a->root_count + 1) * sizeof(ir_node));
   for (int k = 0; k < a->root_count; k++)
     p->roots[run][k] = a->roots[k].node;
-  if (run != PASS_BOUNDS)
+  if (run != PROGRAM_BOUNDS)
     ir_substitute(plan->graph, p->roots[run], a->root_count, plan->uniforms, inputs,
                   plan->uniform_count, p->roots[run]);
 }
@@ -438,7 +441,7 @@ static void take_all_roots(interpreted *p) {
                          name ? name : "uniform", ON_BODY);
   }
   p->inputs = inputs;
-  for (int run = 0; run < PASS_COUNT; run++)
+  for (int run = 0; run < PROGRAM_COUNT; run++)
     take_roots(p, run, inputs);
   p->roots[RUN_PREPARE] = plan->uniforms;
   p->root_count[RUN_PREPARE] = plan->uniform_count;

@@ -31,8 +31,8 @@ struct family_runner {
   unsigned char *ones, ends_stride[ENDS_COUNT];
 };
 
-static const family_program *program_of(const kernel_plan *p, int which) {
-  return which ? &p->observe : &p->step;
+static const kernel_program *program_of(const kernel_plan *p, int which) {
+  return &p->programs[which ? PROGRAM_OBSERVE : PROGRAM_STEP];
 }
 
 /* --- making ----------------------------------------------------------------------------------- */
@@ -54,10 +54,10 @@ static interpreter *segment_interpreter(family_runner *r, const segment *a, cons
 static void make_interpreters(family_runner *r, const ir_node *inputs, int *slots, int *planes,
                               int *roots) {
   for (int which = 0; which < 2; which++) {
-    const family_program *q = program_of(r->plan, which);
+    const kernel_program *q = program_of(r->plan, which);
     r->run[which] = arena_alloc(r->memory, ((size_t)q->pass_count + 1) * sizeof(interpreter **));
     for (int k = 0; k < q->pass_count; k++) {
-      const family_pass *now = &q->passes[k];
+      const program_pass *now = &q->passes[k];
       *slots = larger(*slots, now->slot_count);
       *planes = larger(*planes, now->plane_count);
       r->run[which][k] =
@@ -121,7 +121,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
 void family_runner_free(family_runner *r) {
   if (!r) return;
   for (int which = 0; which < 2; which++) {
-    const family_program *q = program_of(r->plan, which);
+    const kernel_program *q = program_of(r->plan, which);
     for (int k = 0; k < q->pass_count; k++)
       for (int s = 0; s < q->passes[k].segment_count; s++)
         interpreter_free(r->run[which][k][s]);
@@ -273,7 +273,7 @@ static void point_at_neighbour(family_runner *r, const pl_family *f, long first,
   if (f->neighbour) point_at_list(r, f, first, k);
 }
 
-static void point_at_planes(family_runner *r, const family_pass *now, long k) {
+static void point_at_planes(family_runner *r, const program_pass *now, long k) {
   for (int n = 0; n < now->plane_count; n++)
     r->planes[n] = r->plane + ((size_t)n * MOST_NEIGHBOURS + (size_t)k) * LANES;
 }
@@ -318,23 +318,19 @@ static interpreter_inputs inputs_of(const family_runner *r) {
 
 static double *target_of(family_runner *r, const segment_root *root, const pl_family *f, long first,
                          long k) {
+  const bool own = root->over == OVER_PARTICLES;
   switch (root->target) {
   case TO_LINK:
-    return f->link[root->index] + first;
-  case TO_BOND_LINK:
-    return f->bond_link[root->index] + first + k * f->link_plane;
+    return own ? f->link[root->index] + first
+               : f->bond_link[root->index] + first + k * f->link_plane;
   case TO_SHARED:
     return shared_plane(f, root->index, k) + first;
-  case TO_PARTICLE_FIELD:
-    return f->new_field[root->index] + first;
-  case TO_PARTICLE_FORCE:
+  case TO_FIELD:
+    return f->new_field[root->index] + first + (own ? 0 : k * f->new_plane);
+  case TO_FORCE:
     return f->force[root->index] + first;
-  case TO_PARTICLE_OBSERVED:
-    return f->observed[root->index] + first;
-  case TO_NEIGHBOUR_FIELD:
-    return f->new_field[root->index] + first + k * f->new_plane;
-  case TO_NEIGHBOUR_OBSERVED:
-    return f->observed[root->index] + first + k * f->new_plane;
+  case TO_OBSERVED:
+    return f->observed[root->index] + first + (own ? 0 : k * f->new_plane);
   case TO_PLANE:
     return r->plane + ((size_t)root->index * MOST_NEIGHBOURS + (size_t)k) * LANES;
   default:
@@ -420,7 +416,7 @@ static void start_reductions(family_runner *r, const segment *a) {
 
 /* --- running ---------------------------------------------------------------------------------- */
 
-static void run_segment(family_runner *r, interpreter *run, const family_pass *now,
+static void run_segment(family_runner *r, interpreter *run, const program_pass *now,
                         const segment *a, const pl_family *f, long first, long lanes,
                         const double *uniforms) {
   const long loops = a->kind == OVER_PARTICLES    ? 1
@@ -451,7 +447,7 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
 
 void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
                        const pl_family *f) {
-  const family_pass *now = &program_of(r->plan, observe)->passes[number];
+  const program_pass *now = &program_of(r->plan, observe)->passes[number];
   if (f->ahead_only && !program_is_paired(now)) return;
   for (long first = 0; first < f->count; first += LANES) {
     const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
