@@ -34,8 +34,12 @@ typedef struct sweep_engine {
 typedef sweep_engine sweep_engine_new(sweep *w, const double *parameters);
 
 struct sweep {
-  body *body; /* owned */
+  body *body;          /* owned, but of one law beside others (joint.h) */
+  const rows *lattice; /* with the bonds that the law is at work on; the body's, or some of these */
   const pl_law *law;
+  bool beside; /* the engine finds forces and leaves it to others to move the particles */
+  double
+      *force[PL_MAX_DOF]; /* [size] N, N m: sums over its bonds; the body's unless it is beside */
   /* [fields][sweep_planes * size] of the state that the last step left behind, and of that observed
      last; which memory is whose may change in a step. */
   double **field, **new_field;
@@ -51,6 +55,9 @@ struct sweep {
 
 /* The fields start at their initial values. The body is the sweep's from then on. */
 sweep *sweep_new(body *of, const pl_law *law, const double *parameters, sweep_engine_new *engine);
+/* One that finds forces of its own on a body that others move, and that it does not own. */
+sweep *sweep_beside(body *of, const rows *lattice, const pl_law *law, const double *parameters,
+                    const double *share, sweep_engine_new *engine);
 void sweep_free(sweep *w);
 
 /* Site arrays that make up a field or an output in that place (pl_place): one for each direction of
