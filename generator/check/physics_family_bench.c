@@ -33,11 +33,10 @@ static void watch_all(family_bench *b, watching *v, bool wide) {
   const lowered_text *t = &b->step.text;
   for (int k = 0; k < b->law->fields.count; k++)
     if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE) watch(v, t->rules[k], &b->rule[k], wide);
-  for (int k = 0; k < t->line_count; k++)
-    watch(v, t->lines[k].guard, &b->guard[k], wide);
-  for (int k = 0; k < t->flow_count; k++) {
-    watch(v, t->flows[k].when, &b->guard[t->line_count + k], wide);
-    watch(v, t->flows[k].overstress, &b->overstress[k], wide);
+  for (int k = 0; k < b->conditions.count; k++) {
+    watch(v, b->conditions.node[k], &b->guard[k], wide);
+    if (k >= t->line_count)
+      watch(v, t->flows[k - t->line_count].overstress, &b->overstress[k - t->line_count], wide);
   }
 }
 
@@ -78,15 +77,9 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
   if (!lower_law(p->law, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
   const lowered_text *t = &b->step.text;
   b->rule = watches(b, fields);
-  b->guard = watches(b, t->line_count + t->flow_count);
+  b->conditions = conditions_new(t, p->graph, b->memory);
+  b->guard = watches(b, b->conditions.count);
   b->overstress = watches(b, t->flow_count);
-  b->seen = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
-  b->varies = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
-  for (int k = 0; k < t->line_count; k++)
-    b->varies[k] = !ir_is_uniform(p->graph, t->lines[k].guard);
-  for (int k = 0; k < t->flow_count; k++)
-    b->varies[t->line_count + k] =
-        t->flows[k].when != IR_NONE && !ir_is_uniform(p->graph, t->flows[k].when);
   segment step = {.root_count = 0};
   watching text = {.plan = p, .observed = 1 + l->outputs.count};
   for (int k = 0; k < fields; k++)

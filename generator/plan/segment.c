@@ -32,8 +32,9 @@ void segment_replace(segment *a, const ir_node *values) {
 
 unsigned char *segment_needed(const ir *g, const segment *a) {
   unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  for (int k = 0; k < a->root_count; k++)
-    ir_mark(g, &a->roots[k].node, 1, needed);
+  ir_node *values = segment_values(a);
+  ir_mark(g, values, a->root_count, needed);
+  free(values);
   return needed;
 }
 
