@@ -193,6 +193,7 @@ static void describe_families(interpreted *p) {
   p->law.sum_count = program_sum_count(&plan->programs[PROGRAM_STEP]);
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
+  p->law.reads_mass = plan->reads_mass;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
@@ -236,6 +237,7 @@ static void describe(interpreted *p) {
   else
     describe_families(p);
 }
+
 /* --- making and freeing ----------------------------------------------------------------------- */
 
 /* Inputs that stand for the uniforms, numbered after the parameters. */

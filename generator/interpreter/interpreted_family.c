@@ -20,6 +20,7 @@ static const double *motion_of(const pl_family *f, int end) {
 
 /* What a segment of the particles reads: neighbours are not touched. */
 static void point_at_particles(runner *r, const pl_family *f, long first) {
+  const double **ends = r->at[IR_FROM_ENDS];
   for (int k = 0; k < r->plan->links.of_particles; k++)
     r->at[IR_FROM_LINK][k] = f->link[k] + first;
   for (int k = 0; k < r->plan->law->fields.count; k++)
@@ -30,17 +31,15 @@ static void point_at_particles(runner *r, const pl_family *f, long first) {
     r->at[IR_FROM_SHAPE][k] = f->shape[k] + first;
   for (int n = 0; n < r->motion_count[OF_I]; n++) {
     const int end = r->motion[OF_I][n];
-    r->at[IR_FROM_ENDS][end] = motion_of(f, end) + first;
+    ends[end] = motion_of(f, end) + first;
   }
   for (long q = 0; q < LANES && first + q < f->count; q++)
     r->protection[0][q] = f->held[first + q] ? 1 : 0;
-  r->at[IR_FROM_ENDS][ENDS_HELD_I] = r->protection[0];
-  if (r->plan->reads_share) r->at[IR_FROM_ENDS][ENDS_SHARE_I] = f->share + first;
-  if (f->neighbour) {
-    r->at[IR_FROM_ENDS][ENDS_VOLUME_I] = f->volume + first;
-    r->at[IR_FROM_ENDS][ENDS_MASS_I] = f->mass + first;
-  }
-  r->at[IR_FROM_ENDS][ENDS_TIME_STEP] = &f->time_step;
+  ends[ENDS_HELD_I] = r->protection[0];
+  if (r->plan->reads_share) ends[ENDS_SHARE_I] = f->share + first;
+  if (f->volume) ends[ENDS_VOLUME_I] = f->volume + first;
+  if (f->mass) ends[ENDS_MASS_I] = f->mass + first;
+  ends[ENDS_TIME_STEP] = &f->time_step;
 }
 
 /* Where the values of neighbour k of the chunk's particles stand, given where those of the run's
@@ -98,24 +97,25 @@ static void point_at_shared(runner *r, const pl_family *f, long first, long k) {
 }
 
 static void point_at_list(runner *r, const pl_family *f, long first, long k) {
+  const double **ends = r->at[IR_FROM_ENDS];
   static const ends_input chord[] = {ENDS_CHORD_X, ENDS_CHORD_Y, ENDS_CHORD_Z};
   for (int d = 0; d < r->plan->dimensions; d++)
-    r->at[IR_FROM_ENDS][chord[d]] = f->chord[d] + k * f->plane + first;
-  r->at[IR_FROM_ENDS][ENDS_REFERENCE_LENGTH] = f->length + k * f->plane + first;
-  r->at[IR_FROM_ENDS][ENDS_VOLUME_J] = at_neighbours(r, f, f->volume, first, k);
-  r->at[IR_FROM_ENDS][ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
+    ends[chord[d]] = f->chord[d] + k * f->plane + first;
+  ends[ENDS_REFERENCE_LENGTH] = f->length + k * f->plane + first;
+  ends[ENDS_VOLUME_J] = at_neighbours(r, f, f->volume, first, k);
 }
 
 /* On bonds each neighbour has a plane. */
 static void point_at_parameters(runner *r, const pl_family *f, long first, long k) {
+  const double **ends = r->at[IR_FROM_ENDS];
   const bool on_bonds = r->plan->law->tree->law != LAW_STATE;
   for (int n = 0; n < r->plan->variation.varying_count; n++)
     if (on_bonds)
       r->at[IR_FROM_BOND_PARAMETER][n] = f->parameter[n] + k * f->plane + first;
     else
       r->at[IR_FROM_NEIGHBOUR_PARAMETER][n] = at_neighbours(r, f, f->parameter[n], first, k);
-  if (r->plan->reads_share)
-    r->at[IR_FROM_ENDS][ENDS_SHARE_J] = at_neighbours(r, f, f->share, first, k);
+  if (f->mass) ends[ENDS_MASS_J] = at_neighbours(r, f, f->mass, first, k);
+  if (r->plan->reads_share) ends[ENDS_SHARE_J] = at_neighbours(r, f, f->share, first, k);
 }
 
 static void point_at_neighbour(runner *r, const pl_family *f, long first, long k,
