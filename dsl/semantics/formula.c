@@ -16,8 +16,9 @@ enum { MOST_STEPS = 500, LARGEST_EXPONENT = 16 };
   X(NUMBER, s->number)                                                                             \
   X(VARIABLE, variables[s->a])                                                                     \
   X(ADD, a + b)                                                                                    \
-  X(SUB, a - b) X(MUL, a *b) X(DIV, a / b) X(NEG, -a) X(ONE, s->of_one(a)) X(TWO, s->of_two(a, b)) \
-      X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) & (b != 0))                         \
+  X(SUB, a - b)                                                                                    \
+  X(MUL, a *b) X(DIV, a / b) X(POW, pl_pow(a, b)) X(NEG, -a) X(ONE, s->of_one(a))                  \
+      X(TWO, s->of_two(a, b)) X(LT, a < b) X(LE, a <= b) X(EQ, a == b) X(AND, (a != 0) & (b != 0)) \
           X(OR, (a != 0) | (b != 0)) X(NOT, a == 0) X(SELECT, a != 0 ? b : c)
 
 typedef enum step_code {
@@ -137,7 +138,7 @@ static int whole_power(flattening *t, int base, int n) {
 
 /* As laws are compiled (generator/ir): small whole and half exponents by products and a root. */
 static int power(flattening *t, int base, int exponent) {
-  if (t->too_long || !is_number(t, exponent)) return call_two(t, pl_pow, base, exponent);
+  if (t->too_long || !is_number(t, exponent)) return two(t, STEP_POW, base, exponent);
   const double n = t->f->steps[exponent].number, size = fabs(n);
   const bool half = size == floor(size) + 0.5;
   int result;
@@ -146,7 +147,7 @@ static int power(flattening *t, int base, int exponent) {
   else if (size <= LARGEST_EXPONENT && (size == floor(size) || half))
     result = whole_power(t, base, (int)size);
   else
-    return call_two(t, pl_pow, base, exponent);
+    return two(t, STEP_POW, base, exponent);
   if (half) result = two(t, STEP_MUL, result, call_one(t, pl_sqrt, base));
   return n < 0 ? two(t, STEP_DIV, number(t, 1), result) : result;
 }
@@ -154,35 +155,20 @@ static int power(flattening *t, int base, int exponent) {
 static int flatten(flattening *t, const expr *e);
 
 static int flatten_binary(flattening *t, const expr *e) {
+  static const struct {
+    step_code by;
+    operator_reading reading;
+  } computed[] = {
+#define X(code, text, operation, reading) [OP_##code] = {STEP_##operation, reading},
+      TREE_BINARY_OPERATORS(X)
+#undef X
+  };
+  const step_code by = computed[e->binary].by;
+  const operator_reading reading = computed[e->binary].reading;
   const int a = flatten(t, e->left), b = flatten(t, e->right);
-  switch (e->binary) {
-  case OP_OR:
-    return two(t, STEP_OR, a, b);
-  case OP_AND:
-    return two(t, STEP_AND, a, b);
-  case OP_EQ:
-    return two(t, STEP_EQ, a, b);
-  case OP_NE:
-    return one(t, STEP_NOT, two(t, STEP_EQ, a, b));
-  case OP_LT:
-    return two(t, STEP_LT, a, b);
-  case OP_LE:
-    return two(t, STEP_LE, a, b);
-  case OP_GT:
-    return two(t, STEP_LT, b, a);
-  case OP_GE:
-    return two(t, STEP_LE, b, a);
-  case OP_ADD:
-    return two(t, STEP_ADD, a, b);
-  case OP_SUB:
-    return two(t, STEP_SUB, a, b);
-  case OP_DIV:
-    return two(t, STEP_DIV, a, b);
-  case OP_POW:
-    return power(t, a, b);
-  default:
-    return two(t, STEP_MUL, a, b);
-  }
+  if (by == STEP_POW) return power(t, a, b);
+  const int result = reading == READ_EXCHANGED ? two(t, by, b, a) : two(t, by, a, b);
+  return reading == READ_NEGATED ? one(t, STEP_NOT, result) : result;
 }
 
 static int flatten_number(flattening *t, const expr *e) {

@@ -13,7 +13,7 @@ const char *stmt_kind_name(stmt_kind kind) {
 }
 
 static const char *binary_op_text(binary_op op) {
-#define X(code, text, precedence) text,
+#define X(code, text, operation, reading) text,
   static const char *const texts[OP_BINARY_COUNT] = {TREE_BINARY_OPERATORS(X)};
 #undef X
   return texts[op];

@@ -32,14 +32,28 @@ typedef enum expr_kind {
   EXPR_CASES     /* | value when guard  ... | value otherwise */
 } expr_kind;
 
-/* X(code, text, precedence): binary operators; a higher precedence binds tighter. */
+/* How an operator is computed by an operation of the same or another name: a > b is b < a. */
+typedef enum operator_reading { READ_AS_WRITTEN, READ_NEGATED, READ_EXCHANGED } operator_reading;
+
+/* X(code, text, operation, reading): binary operators. A contraction of numbers is a product. */
 #define TREE_BINARY_OPERATORS(X)                                                                   \
-  X(OR, "or", 1) X(AND, "and", 2)                                                                  \
-  X(EQ, "==", 4) X(NE, "/=", 4) X(LT, "<", 4) X(LE, "<=", 4) X(GT, ">", 4) X(GE, ">=", 4)          \
-  X(ADD, "+", 5) X(SUB, "-", 5) X(MUL, "*", 6) X(DIV, "/", 6) X(CONTRACT, ":", 6) X(POW, "**", 8)
+  X(OR, "or", OR, READ_AS_WRITTEN)                                                                 \
+  X(AND, "and", AND, READ_AS_WRITTEN)                                                              \
+  X(EQ, "==", EQ, READ_AS_WRITTEN)                                                                 \
+  X(NE, "/=", EQ, READ_NEGATED)                                                                    \
+  X(LT, "<", LT, READ_AS_WRITTEN)                                                                  \
+  X(LE, "<=", LE, READ_AS_WRITTEN)                                                                 \
+  X(GT, ">", LT, READ_EXCHANGED)                                                                   \
+  X(GE, ">=", LE, READ_EXCHANGED)                                                                  \
+  X(ADD, "+", ADD, READ_AS_WRITTEN)                                                                \
+  X(SUB, "-", SUB, READ_AS_WRITTEN)                                                                \
+  X(MUL, "*", MUL, READ_AS_WRITTEN)                                                                \
+  X(DIV, "/", DIV, READ_AS_WRITTEN)                                                                \
+  X(CONTRACT, ":", MUL, READ_AS_WRITTEN)                                                           \
+  X(POW, "**", POW, READ_AS_WRITTEN)
 
 typedef enum binary_op {
-#define X(code, text, precedence) OP_##code,
+#define X(code, text, operation, reading) OP_##code,
   TREE_BINARY_OPERATORS(X)
 #undef X
   OP_BINARY_COUNT

@@ -1,7 +1,6 @@
 #include "generator/check/physics.h"
 
 #include <assert.h>
-#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -171,43 +170,6 @@ static void check_families(family_bench *b) {
   }
 }
 
-/* --- guards of the law that were seen both ways ----------------------------------------------- */
-
-/* A guard of the law's text, and how it was seen. */
-typedef struct seen_guard {
-  lowered_line of;
-  unsigned char seen; /* 1: false, 2: true */
-} seen_guard;
-
-static int by_line(const void *a, const void *b) {
-  const lowered_line *x = &((const seen_guard *)a)->of, *y = &((const seen_guard *)b)->of;
-  const uintptr_t of_x = (uintptr_t)x->cases, of_y = (uintptr_t)y->cases;
-  return of_x != of_y ? (of_x < of_y ? -1 : 1) : x->line - y->line;
-}
-
-/* Guards of one line count once, however often its function is called. */
-static void count_guards(const bench *b, physics_report *report) {
-  const lowered_text *t = &b->law_step.text;
-  seen_guard *guards = must_alloc(((size_t)t->line_count + 1) * sizeof *guards);
-  int count = 0;
-  for (int k = 0; k < t->line_count; k++)
-    if (b->varies[k]) guards[count++] = (seen_guard){t->lines[k], b->seen[k]};
-  qsort(guards, (size_t)count, sizeof *guards, by_line);
-  for (int k = 0; k < count;) {
-    const int first = k;
-    unsigned char seen = 0;
-    for (; k < count && by_line(&guards[first], &guards[k]) == 0; k++)
-      seen |= guards[k].seen;
-    report->guards++;
-    report->guards_reached += seen == 3;
-  }
-  free(guards);
-  for (int k = t->line_count; k < b->guards.count; k++) {
-    report->guards += b->varies[k];
-    report->guards_reached += b->varies[k] && b->seen[k] == 3;
-  }
-}
-
 /* --- a law ------------------------------------------------------------------------------------ */
 
 /* What single bonds have said already is not said again. */
@@ -229,7 +191,7 @@ static void check_law_of_bonds(const law *l, const physics_options *o, diagnosti
   if (bench_open(&p->b, l, o, d)) {
     p->pool = must_alloc((size_t)POOL_MOST * (size_t)p->b.width * sizeof *p->pool);
     check_bonds(p);
-    count_guards(&p->b, report);
+    conditions_count(&p->b.conditions, report);
     report->states = p->b.evaluated;
     check_twisting_bonds(p, report);
     free(p->pool);
@@ -243,10 +205,7 @@ static void check_law_of_families(const law *l, const physics_options *o, diagno
   family_bench *b = family_bench_new(l, o, d);
   if (!b) return;
   check_families(b);
-  for (int k = 0; k < b->step.text.line_count + b->step.text.flow_count; k++) {
-    report->guards += b->varies[k];
-    report->guards_reached += b->varies[k] && b->seen[k] == 3;
-  }
+  conditions_count(&b->conditions, report);
   report->states = b->evaluated;
   family_bench_free(b);
 }

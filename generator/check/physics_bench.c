@@ -69,20 +69,11 @@ bool bench_tired(const bench *b) {
 /* --- opening ---------------------------------------------------------------------------------- */
 
 static void open_guards(bench *b) {
-  const lowered_text *t = &b->law_step.text;
-  int count = t->line_count + t->flow_count;
-  b->varies = arena_alloc(b->memory, (size_t)count + 1);
-  b->seen = arena_alloc(b->memory, (size_t)count + 1);
-  ir_node *guards = must_alloc(((size_t)count + 1) * sizeof *guards);
-  for (int k = 0; k < t->line_count; k++)
-    guards[k] = t->lines[k].guard;
-  for (int k = 0; k < t->flow_count; k++) {
-    ir_node when = t->flows[k].when;
-    guards[t->line_count + k] = when == IR_NONE ? ir_constant(b->graph, 1) : when;
-  }
-  for (int k = 0; k < count; k++)
-    b->varies[k] = !ir_is_uniform(b->graph, guards[k]);
-  b->guards = probe_new(b, guards, count);
+  const law_conditions all = b->conditions = conditions_new(&b->law_step.text, b->graph, b->memory);
+  ir_node *guards = must_alloc(((size_t)all.count + 1) * sizeof *guards);
+  for (int k = 0; k < all.count; k++)
+    guards[k] = all.node[k] == IR_NONE ? ir_constant(b->graph, 1) : all.node[k];
+  b->guards = probe_new(b, guards, all.count);
   free(guards);
 }
 
@@ -271,5 +262,5 @@ void bench_watch(bench *b, double *const *states, int count) {
   probe_run(b, &b->guards, states, count);
   for (int k = 0; k < b->guards.count; k++)
     for (int lane = 0; lane < count; lane++)
-      b->seen[k] |= b->guards.out[k][lane] != 0 ? 2 : 1;
+      conditions_see(&b->conditions, k, b->guards.out[k][lane] != 0);
 }

@@ -4,7 +4,7 @@
 #ifndef PERILAT_GENERATOR_PHYSICS_BENCH_H
 #define PERILAT_GENERATOR_PHYSICS_BENCH_H
 
-#include "generator/check/physics.h"
+#include "generator/check/physics_conditions.h"
 #include "generator/ir/interpret.h"
 #include "generator/lower/lower.h"
 
@@ -45,15 +45,14 @@ typedef struct bench {
   uint64_t seed;
   struct rows *lattices[BENCH_LATTICES];
   int lattice_count;
-  unsigned char *strides; /* ones: every input has a value for each state */
-  double evaluated;       /* states so far */
-  double allowed;         /* states after which the present check ends */
-  int operations;         /* of one evaluation of the law */
-  probe step;             /* N, M_i, M_j, new fields, rules of the fields */
-  probe frozen;           /* N, M_i, M_j with the fields at hand */
-  probe guards;           /* truth of the guard of each line of law_step.text, then of each flow */
-  unsigned char *varies;  /* [guards.count] the guard depends on the state */
-  unsigned char *seen;    /* [guards.count] 1: false, 2: true */
+  unsigned char *strides;    /* ones: every input has a value for each state */
+  double evaluated;          /* states so far */
+  double allowed;            /* states after which the present check ends */
+  int operations;            /* of one evaluation of the law */
+  probe step;                /* N, M_i, M_j, new fields, rules of the fields */
+  probe frozen;              /* N, M_i, M_j with the fields at hand */
+  law_conditions conditions; /* of law_step.text */
+  probe guards;              /* [conditions.count] whether they hold */
 } bench;
 
 /* False when the law cannot be lowered (said in `d`), or there is no such lattice. */

@@ -15,35 +15,28 @@
 
 /* --- plans ------------------------------------------------------------------------------------ */
 
-typedef struct roots {
-  segment_root *items;
-  int count, observed; /* places of observed values taken so far */
-} roots;
-
-static roots roots_new(kernel_plan *p, int most) {
-  return (roots){arena_alloc(p->memory, ((size_t)most + 1) * sizeof(segment_root)), 0, 0};
-}
-
-static void want(roots *r, ir_node n, segment_target target, int index) {
-  r->items[r->count++] = (segment_root){.node = n, .target = target, .index = index};
-}
+/* What is observed beside the law's own results. */
+typedef struct watching {
+  kernel_plan *plan;
+  segment wanted;
+  int observed; /* places of observed values taken so far */
+} watching;
 
 /* Numbers of particles are observed first, those toward neighbours after them. */
-static void watch(const ir *g, roots *r, ir_node n, watched *w, bool wide) {
-  if (n == IR_NONE || ir_is_of_particle(g, n) == wide) return;
-  *w = (watched){r->observed++, wide};
-  want(r, n, wide ? TO_NEIGHBOUR_OBSERVED : TO_PARTICLE_OBSERVED, w->at);
+static void watch(watching *v, ir_node n, watched *w, bool wide) {
+  if (n == IR_NONE || ir_is_of_particle(v->plan->graph, n) == wide) return;
+  *w = (watched){v->observed++, wide};
+  plan_want(v->plan, &v->wanted, n, TO_OBSERVED, wide ? OVER_NEIGHBOURS : OVER_PARTICLES, w->at);
 }
 
-static void watch_all(family_bench *b, const ir *g, roots *r, bool wide) {
+static void watch_all(family_bench *b, watching *v, bool wide) {
   const lowered_text *t = &b->step.text;
   for (int k = 0; k < b->law->fields.count; k++)
-    if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE) watch(g, r, t->rules[k], &b->rule[k], wide);
-  for (int k = 0; k < t->line_count; k++)
-    watch(g, r, t->lines[k].guard, &b->guard[k], wide);
-  for (int k = 0; k < t->flow_count; k++) {
-    watch(g, r, t->flows[k].when, &b->guard[t->line_count + k], wide);
-    watch(g, r, t->flows[k].overstress, &b->overstress[k], wide);
+    if (b->law->fields.items[k]->kind == SYMBOL_DAMAGE) watch(v, t->rules[k], &b->rule[k], wide);
+  for (int k = 0; k < b->conditions.count; k++) {
+    watch(v, b->conditions.node[k], &b->guard[k], wide);
+    if (k >= t->line_count)
+      watch(v, t->flows[k - t->line_count].overstress, &b->overstress[k - t->line_count], wide);
   }
 }
 
@@ -55,17 +48,26 @@ static watched *watches(family_bench *b, int count) {
 }
 
 static kernel_plan *begin(const law *l) {
-  kernel_plan *p = plan_begin(l);
-  p->kind = PL_STATE;
+  kernel_plan *p = plan_begin(l, FORM_LOOPS);
   plan_axes(p);
   p->reads_shape = true; /* a body keeps them */
   return p;
 }
 
-static void build(kernel_plan *p, family_program *out, const roots *r, bool along_reference) {
+static void build(kernel_plan *p, program_task task, const segment *wanted, bool along_reference) {
   program_motion motion = plan_motion(p, along_reference);
-  program_build(out, "check", p->graph, p->memory, r->items, r->count, &motion, SHARE_NOTHING,
+  program_build(&p->programs[task], "check", p->graph, p->memory, wanted, &motion, SHARE_NOTHING,
                 &p->links);
+}
+
+/* Builds both programs; false where they have too many passes. */
+static bool build_both(kernel_plan *p, const segment *step, const segment *observe,
+                       bool along_reference) {
+  build(p, PROGRAM_STEP, step, along_reference);
+  build(p, PROGRAM_OBSERVE, observe, along_reference);
+  plan_hoist(p);
+  return p->programs[PROGRAM_STEP].pass_count <= PLAN_MOST_PASSES &&
+         p->programs[PROGRAM_OBSERVE].pass_count <= PLAN_MOST_PASSES;
 }
 
 static bool plan_whole(family_bench *b, int *narrow, int *all) {
@@ -75,31 +77,19 @@ static bool plan_whole(family_bench *b, int *narrow, int *all) {
   if (!lower_law(p->law, p->graph, LOWER_STEP, b->memory, &b->step, b->said)) return false;
   const lowered_text *t = &b->step.text;
   b->rule = watches(b, fields);
-  b->guard = watches(b, t->line_count + t->flow_count);
+  b->conditions = conditions_new(t, p->graph, b->memory);
+  b->guard = watches(b, b->conditions.count);
   b->overstress = watches(b, t->flow_count);
-  b->seen = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
-  b->varies = arena_alloc(b->memory, (size_t)(t->line_count + t->flow_count) + 1);
-  for (int k = 0; k < t->line_count; k++)
-    b->varies[k] = !ir_is_uniform(p->graph, t->lines[k].guard);
-  for (int k = 0; k < t->flow_count; k++)
-    b->varies[t->line_count + k] =
-        t->flows[k].when != IR_NONE && !ir_is_uniform(p->graph, t->flows[k].when);
-  roots step = roots_new(p, fields + PL_MAX_DOF),
-        text = roots_new(p, fields + t->line_count + 2 * t->flow_count);
+  segment step = {.root_count = 0};
+  watching text = {.plan = p, .observed = 1 + l->outputs.count};
   for (int k = 0; k < fields; k++)
-    want(&step, b->step.fields[k],
-         l->fields.items[k]->place <= ON_PARTICLE ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
-  plan_forces(p, &b->step, step.items + step.count);
-  step.count += p->dof;
-  text.observed = 1 + l->outputs.count;
-  watch_all(b, p->graph, &text, false);
+    plan_want(p, &step, b->step.fields[k], TO_FIELD, segment_kind_at(l->fields.items[k]->place), k);
+  plan_forces(p, &b->step, &step);
+  watch_all(b, &text, false);
   *narrow = text.observed - 1 - l->outputs.count;
-  watch_all(b, p->graph, &text, true);
+  watch_all(b, &text, true);
   *all = text.observed - 1 - l->outputs.count;
-  build(p, &p->step, &step, b->step.along_reference);
-  build(p, &p->observe, &text, b->step.along_reference);
-  plan_hoist(p);
-  return p->step.pass_count <= PLAN_MOST_PASSES && p->observe.pass_count <= PLAN_MOST_PASSES;
+  return build_both(p, &step, &text.wanted, b->step.along_reference);
 }
 
 static bool plan_frozen(family_bench *b) {
@@ -107,14 +97,11 @@ static bool plan_frozen(family_bench *b) {
   lowered_law frozen;
   if (!lower_law(p->law, p->graph, LOWER_FROZEN, p->memory, &frozen, b->said)) return false;
   b->has_energy = frozen.W != IR_NONE && b->law->tree->law == LAW_STATE;
-  roots step = roots_new(p, PL_MAX_DOF), energy = roots_new(p, 1);
-  plan_forces(p, &frozen, step.items);
-  step.count = p->dof;
-  want(&energy, b->has_energy ? frozen.W : ir_constant(p->graph, 0), TO_PARTICLE_OBSERVED, 0);
-  build(p, &p->step, &step, frozen.along_reference);
-  build(p, &p->observe, &energy, frozen.along_reference);
-  plan_hoist(p);
-  return p->step.pass_count <= PLAN_MOST_PASSES && p->observe.pass_count <= PLAN_MOST_PASSES;
+  segment step = {.root_count = 0}, energy = {.root_count = 0};
+  plan_forces(p, &frozen, &step);
+  plan_want(p, &energy, b->has_energy ? frozen.W : ir_constant(p->graph, 0), TO_OBSERVED,
+            OVER_PARTICLES, 0);
+  return build_both(p, &step, &energy, frozen.along_reference);
 }
 
 /* --- the body --------------------------------------------------------------------------------- */

@@ -5,7 +5,7 @@
 #ifndef PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 #define PERILAT_GENERATOR_PHYSICS_FAMILY_BENCH_H
 
-#include "generator/check/physics.h"
+#include "generator/check/physics_conditions.h"
 #include "generator/plan/plan.h"
 #include "runtime/analysis/patch.h"
 
@@ -34,14 +34,13 @@ typedef struct family_bench {
   bool has_energy;
   double *parameters;
   uint64_t seed;
-  watched *rule;         /* [fields] of damages */
-  watched *guard;        /* [lines + flows of step.text] */
-  watched *overstress;   /* [flows]; at -1 where there is none */
-  unsigned char *varies; /* [lines + flows] the guard depends on the state */
-  unsigned char *seen;   /* [lines + flows] 1: false, 2: true */
-  long values;           /* of a displacement: dof * particles */
-  double evaluated;      /* particles so far */
-  double bonds;          /* of all passes over them */
+  watched *rule;             /* [fields] of damages */
+  watched *guard;            /* [conditions.count] */
+  watched *overstress;       /* [flows]; at -1 where there is none */
+  law_conditions conditions; /* of step.text */
+  long values;               /* of a displacement: dof * particles */
+  double evaluated;          /* particles so far */
+  double bonds;              /* of all passes over them */
 } family_bench;
 
 /* NULL when the law cannot be lowered or there is no such lattice (said in `d`). */

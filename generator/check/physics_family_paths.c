@@ -17,10 +17,6 @@ static const double GAIN_TOLERANCE = 1e-6; /* of a cycle's peak energy */
 /* Of laws that are conservative only while whole, only a gain beyond this share is an error. */
 static const double GAIN_OF_NONCONSERVATIVE = 0.1;
 
-static int guard_count(const family_bench *b) {
-  return b->step.text.line_count + b->step.text.flow_count;
-}
-
 /* --- one leg of a history --------------------------------------------------------------------- */
 
 typedef struct flow_tally { /* states just beyond a yield limit */
@@ -43,7 +39,7 @@ static leg leg_new(const family_bench *b) {
            .u = family_bench_values(b),
            .force = family_bench_values(b),
            .other = family_bench_values(b)};
-  for (int k = 0; k < guard_count(b); k++)
+  for (int k = 0; k < b->conditions.count; k++)
     l.truths += family_bench_places(b, b->guard[k]);
   for (int k = 0; k < 2; k++)
     l.truth[k] = must_calloc((size_t)l.truths + 1, 1);
@@ -69,16 +65,16 @@ static void move_on_leg(family_bench *b, leg *l, double way) {
 /* Truth of every guard at every place where its bond exists. */
 static void find_truths(family_bench *b, unsigned char *truth) {
   family_bench_observe(b);
-  for (int k = 0; k < guard_count(b); k++)
+  for (int k = 0; k < b->conditions.count; k++)
     for (int q = 0; q < family_bench_places(b, b->guard[k]); q++)
       *truth++ =
           family_bench_exists(b, b->guard[k], q) && family_bench_value(b, b->guard[k], q) != 0;
 }
 
 static void note_seen(family_bench *b, const unsigned char *truth) {
-  for (int k = 0; k < guard_count(b); k++)
+  for (int k = 0; k < b->conditions.count; k++)
     for (int q = 0; q < family_bench_places(b, b->guard[k]); q++, truth++)
-      if (family_bench_exists(b, b->guard[k], q)) b->seen[k] |= *truth ? 2 : 1;
+      if (family_bench_exists(b, b->guard[k], q)) conditions_see(&b->conditions, k, *truth);
 }
 
 /* --- what every step is asked ----------------------------------------------------------------- */

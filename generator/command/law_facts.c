@@ -14,51 +14,41 @@ bool law_facts_of_families(const law_facts *f) {
 }
 
 int law_facts_passes(const kernel_plan *p) {
-  return p->kind == PL_STATE ? p->step.pass_count : 1;
+  return p->programs[PROGRAM_STEP].pass_count;
 }
 
 /* --- bytes ------------------------------------------------------------------------------------ */
 
 /* Arrays that a segment over neighbours or bonds reads and writes, without what a pass keeps for
-   itself. */
-static long arrays_of_segment(const ir *g, const segment *a) {
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+   itself. Of a field of a strip the old values are read in any case, to stay where a bond is
+   absent. */
+static long arrays_of_segment(const kernel_plan *p, const segment *a) {
+  const ir *g = p->graph;
+  const bool strip = p->form == FORM_STRIPS;
+  unsigned char *needed = segment_needed(g, a);
   long count = 1; /* the bits of the bonds */
   for (int k = 0; k < a->root_count; k++) {
-    ir_mark(g, &a->roots[k].node, 1, needed);
-    count += a->roots[k].target == TO_NEIGHBOUR_FIELD || a->roots[k].target == TO_SHARED;
+    const segment_target target = a->roots[k].target;
+    count += (target == TO_FIELD) * (strip ? 2 : 1) + (target == TO_SHARED || target == TO_FORCE);
   }
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_operation(g, n) != IR_INPUT || ir_is_uniform(g, n)) continue;
     const ir_source from = ir_input_source(g, n);
-    count += from != IR_FROM_SLOT && from != IR_FROM_PLANE;
+    count += strip ? from == IR_FROM_ENDS : from != IR_FROM_SLOT && from != IR_FROM_PLANE;
   }
   free(needed);
   return count;
 }
 
-static long bytes_of_families(const kernel_plan *p) {
-  long count = 0;
-  for (int k = 0; k < p->step.pass_count; k++)
-    for (int s = 0; s < p->step.passes[k].segment_count; s++)
-      if (p->step.passes[k].segments[s].kind != OVER_PARTICLES)
-        count += arrays_of_segment(p->graph, &p->step.passes[k].segments[s]) *
-                 (p->step.passes[k].segments[s].kind == OVER_BONDS ? 1 : 2);
-  return 8 * count / 2; /* of the two ends of a bond, one */
-}
-
 long law_facts_bytes(const kernel_plan *p) {
-  if (p->kind == PL_STATE) return bytes_of_families(p);
-  const pass *a = &p->passes[PASS_ROWS];
-  unsigned char *needed = must_calloc((size_t)ir_count(p->graph) + 1, 1);
-  long count = a->root_count + 1; /* the flags */
-  for (int k = 0; k < a->root_count; k++) {
-    ir_mark(p->graph, &a->roots[k].node, 1, needed);
-    count += a->roots[k].target == TO_FIELD; /* read, too, to keep it where a bond is absent */
-  }
-  for (ir_node n = 0; n < ir_count(p->graph); n++)
-    count += needed[n] && ir_operation(p->graph, n) == IR_INPUT && !ir_is_uniform(p->graph, n) &&
-             ir_input_source(p->graph, n) == IR_FROM_ENDS;
-  free(needed);
-  return 8 * count;
+  const kernel_program *step = &p->programs[PROGRAM_STEP];
+  long count = 0; /* at both ends of a bond */
+  for (int k = 0; k < step->pass_count; k++)
+    for (int s = 0; s < step->passes[k].segment_count; s++) {
+      const segment *a = &step->passes[k].segments[s];
+      if (a->kind == OVER_PARTICLES) continue;
+      const bool once = a->kind == OVER_BONDS && p->form != FORM_STRIPS;
+      count += arrays_of_segment(p, a) * (once ? 1 : 2);
+    }
+  return 8 * count / 2;
 }

@@ -55,7 +55,7 @@ static void print_cost(const law_facts *f) {
       "Cost per bond%s and step: %.0f operations, %.0f of them divisions or roots; %ld bytes; %d "
       "pass%s; %d value%s computed once "
       "per lattice\n",
-      p->kind == PL_STATE ? " of either side" : "", p->flops_per_bond + p->divisions_per_bond,
+      p->form != FORM_STRIPS ? " of either side" : "", p->flops_per_bond + p->divisions_per_bond,
       p->divisions_per_bond, law_facts_bytes(p), passes, passes == 1 ? "" : "es", p->uniform_count,
       p->uniform_count == 1 ? "" : "s");
 }

@@ -38,10 +38,9 @@ static int part(int dimensions, int k) {
 /* A plan that observes the stress (by virtual work, of the bond forces) and the force state, of
    the step that begins with the fields at hand. NULL when the law cannot be lowered. */
 static kernel_plan *plan_stress(const law *l, diagnostics *d) {
-  kernel_plan *p = plan_begin(l);
+  kernel_plan *p = plan_begin(l, FORM_LOOPS);
   lowered_law step;
   ir *g = p->graph;
-  p->kind = PL_STATE;
   p->dimensions = p->dof = l->setting == SETTING_SPACE ? 3 : 2;
   p->reads_shape = true;
   if (!lower_law(l, g, LOWER_STEP, p->memory, &step, d)) {
@@ -50,7 +49,7 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
   }
   static const ends_input chord[] = {ENDS_CLASS_CHORD_X, ENDS_CLASS_CHORD_Y, ENDS_CLASS_CHORD_Z};
   const int count = part_count(p->dimensions), own = 1 + l->outputs.count;
-  segment_root roots[PARTS + 1];
+  segment wanted = {.root_count = 0};
   ir_node other = ir_make(g, IR_NEIGHBOUR, step.F, IR_NONE, IR_NONE);
   ir_node force = ir_mul(g, ir_constant(g, 0.5), ir_add(g, step.F, other));
   ir_node twice = ir_mul(g, ir_constant(g, 2), lower_quantity(g, QUANTITY_V));
@@ -61,14 +60,12 @@ static kernel_plan *plan_stress(const law *l, diagnostics *d) {
     ir_node y = kinematics_input(g, chord[second_axis[which]]);
     ir_node term = ir_mul(g, ir_mul(g, x, y), moment);
     ir_node sum = ir_make(g, IR_FAMILY_SUM, term, IR_NONE, IR_NONE);
-    roots[k] = (segment_root){
-        .node = ir_div(g, sum, twice), .target = TO_PARTICLE_OBSERVED, .index = own + k};
+    plan_want(p, &wanted, ir_div(g, sum, twice), TO_OBSERVED, OVER_PARTICLES, own + k);
   }
-  roots[count] =
-      (segment_root){.node = step.F, .target = TO_NEIGHBOUR_OBSERVED, .index = own + count};
+  plan_want(p, &wanted, step.F, TO_OBSERVED, OVER_NEIGHBOURS, own + count);
   program_motion motion = plan_motion(p, step.along_reference);
-  program_build(&p->observe, "stress", g, p->memory, roots, count + 1, &motion, SHARE_NOTHING,
-                &p->links);
+  program_build(&p->programs[PROGRAM_OBSERVE], "stress", g, p->memory, &wanted, &motion,
+                SHARE_NOTHING, &p->links);
   plan_hoist(p);
   return p;
 }

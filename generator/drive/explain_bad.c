@@ -10,11 +10,8 @@
 /* Named values that the law's states need, in the order of evaluation. An unnamed one may be
    infinite and yet not matter: it may stand in a case that is not taken. */
 static ir_node *named_values(const kernel_plan *p, int *count) {
-  const pass *states = &p->passes[PASS_STATES];
   const ir *g = p->graph;
-  unsigned char *marks = must_calloc((size_t)ir_count(g), 1);
-  for (int k = 0; k < states->root_count; k++)
-    ir_mark(g, &states->roots[k].node, 1, marks);
+  unsigned char *marks = segment_needed(g, plan_segment(p, PROGRAM_STATES));
   ir_node *named = must_calloc((size_t)ir_count(g) + 1, sizeof *named);
   *count = 0;
   for (ir_node n = 0; n < ir_count(g); n++)
@@ -34,7 +31,7 @@ static void say(const kernel_plan *p, ir_node n, const char *what, FILE *out) {
 /* The largest of the law's results, or -1 when all are zero. */
 static int largest_result(const kernel_plan *p, const ir_node *named, int count,
                           double *const *values) {
-  const pass *states = &p->passes[PASS_STATES];
+  const segment *states = plan_segment(p, PROGRAM_STATES);
   int largest = -1;
   for (int k = 0; k < count; k++)
     for (int r = 0; r < states->root_count && r < PL_STATE_RESULTS; r++)

@@ -85,7 +85,7 @@ static void write_law(c_text *out, const kernel_plan *p) {
       "static const pl_law the_law = {\n    .abi = PL_KERNEL_ABI,\n    .size = sizeof(pl_law),\n"
       "    .kind = %d,\n"
       "    .dimensions = %d,\n    .dof = %d,\n    .force_planes = %d,\n    .name = ",
-      p->kind, p->dimensions, p->dof, p->force_planes);
+      plan_kind(p), p->dimensions, p->dof, p->force_planes);
   c_text_string(out, p->law->tree->name);
   c_text_add(out, "," KEY_LINE(""));
   write_table(out, "parameter", "law_parameters", p->law->parameters.count);
@@ -105,7 +105,7 @@ static void write_law(c_text *out, const kernel_plan *p) {
   c_text_add(out, ",\n    .prepare = prepare,\n    .bounds = bounds,\n");
 }
 
-static void write_program(c_text *out, const kernel_plan *of, const family_program *p) {
+static void write_program(c_text *out, const kernel_plan *of, const kernel_program *p) {
   c_text_add(out, "    .%s = {%d, %s_passes, %u, %u, %d, %s_shared},\n", p->name, p->pass_count,
              p->name, program_at_hand(of->graph, p), program_upward(of->graph, p),
              program_reaches_spared(of->graph, p), p->name);
@@ -117,26 +117,26 @@ static void write_programs(c_text *out, const kernel_plan *p) {
              ".bond_link_count = %d,\n    .sum_count = %d,\n    .constant_sum_count = %d,\n    "
              ".reads_shape = %d,\n    .pairwise = %d,\n",
              p->law->irregular ? "PL_LIST" : "PL_ROWS",
-             p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
-             p->links.of_bonds, program_sum_count(&p->step),
-             program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
+             p->form == FORM_UNROLLED ? p->law->neighbours : 0, p->links.of_particles,
+             p->links.of_bonds, program_sum_count(&p->programs[PROGRAM_STEP]),
+             program_constant_sums(p->graph, &p->programs[PROGRAM_STEP], NULL), p->reads_shape,
              p->law->tree->law != LAW_STATE);
   if (p->variation.varying_count && p->law->tree->law == LAW_STATE)
     c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
   if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");
   if (p->reads_mass) c_text_add(out, "    .reads_mass = 1,\n");
-  write_program(out, p, &p->step);
-  write_program(out, p, &p->observe);
+  write_program(out, p, &p->programs[PROGRAM_STEP]);
+  write_program(out, p, &p->programs[PROGRAM_OBSERVE]);
 }
 
 void descriptor_entry(const kernel_plan *p, c_text *out) {
   c_text_add(out, "#if PL_IN_PART(0)\n");
   write_law(out, p);
-  if (p->kind == PL_STATE) {
+  if (p->form != FORM_STRIPS) {
     write_programs(out, p);
   } else {
-#define X(pass, member, task) c_text_add(out, "    .%s = %s,\n", #member, #member);
-    STRIP_PASSES(X)
+#define X(task, member) c_text_add(out, "    .%s = %s,\n", #member, #member);
+    STRIP_PROGRAMS(X)
 #undef X
     write_table(out, "state_input", "law_state_inputs", PL_STATE_INPUTS);
     c_text_add(out, "    .states = states,\n    .tangent = tangent,\n");
@@ -158,5 +158,5 @@ void descriptor_lists(const kernel_plan *p, c_text *out) {
   write_varying(out, p);
   write_fields(out, &p->law->fields, "law_fields");
   write_fields(out, &p->law->outputs, "law_outputs");
-  if (p->kind != PL_STATE) write_state_inputs(out);
+  if (p->form == FORM_STRIPS) write_state_inputs(out);
 }

@@ -3,11 +3,11 @@
 #include "generator/emit/descriptor.h"
 #include "generator/emit/law_functions.h"
 #include "generator/emit/programs.h"
-#include "generator/emit/strip.h"
 #include "generator/target/prelude.h"
 
 static void write_prelude(emitter *e) {
-  say(e, SAY_PRELUDE, spell(e, e->plan->kind == PL_STATE ? SAY_FAMILY_OPTIONS : SAY_STRIP_OPTIONS));
+  say(e, SAY_PRELUDE,
+      spell(e, e->plan->form == FORM_STRIPS ? SAY_STRIP_OPTIONS : SAY_FAMILY_OPTIONS));
   c_text_add(e->out, "%s\n%s\n", prelude_kernel_h, prelude_elementary_h);
   say(e, SAY_PRELUDE_END);
 }
@@ -19,14 +19,7 @@ char *emit_kernel(const kernel_plan *p) {
   write_prelude(&e);
   descriptor_lists(p, &out);
   law_functions_of_parameters(&e);
-  if (p->kind == PL_STATE) {
-    programs_functions(&e);
-  } else {
-#define X(pass, member, task) strip_pass(&e, &p->passes[pass], #member);
-    STRIP_PASSES(X)
-#undef X
-    law_functions_of_states(&e);
-  }
+  programs_functions(&e);
   descriptor_entry(p, &out);
   emitter_end(&e);
   return out.text;

@@ -99,18 +99,18 @@ const char *family_input_array(const emitter *e, ir_node n, const family_index *
 }
 
 const char *family_root_array(const emitter *e, const segment_root *r, const family_index *at) {
-  static const word words[] = {[TO_SLOT] = SAY_SLOT,
-                               [TO_SUM] = SAY_SLOT,
-                               [TO_LARGEST] = SAY_SLOT,
-                               [TO_SMALLEST] = SAY_SLOT,
-                               [TO_LINK] = SAY_LINK,
-                               [TO_PARTICLE_FIELD] = SAY_NEW_FIELD,
-                               [TO_PARTICLE_FORCE] = SAY_FORCE,
-                               [TO_PARTICLE_OBSERVED] = SAY_OBSERVED,
-                               [TO_NEIGHBOUR_FIELD] = SAY_NEW_FIELD_TOWARD,
-                               [TO_NEIGHBOUR_OBSERVED] = SAY_OBSERVED_TOWARD,
-                               [TO_PLANE] = SAY_PLANE,
-                               [TO_BOND_LINK] = SAY_BOND_LINK};
+  static const struct {
+    word own, toward;
+  } words[] = {[TO_SLOT] = {.own = SAY_SLOT},
+               [TO_SUM] = {.toward = SAY_SLOT},
+               [TO_LARGEST] = {.toward = SAY_SLOT},
+               [TO_SMALLEST] = {.toward = SAY_SLOT},
+               [TO_FORCE] = {.own = SAY_FORCE},
+               [TO_LINK] = {SAY_LINK, SAY_BOND_LINK},
+               [TO_FIELD] = {SAY_NEW_FIELD, SAY_NEW_FIELD_TOWARD},
+               [TO_OBSERVED] = {SAY_OBSERVED, SAY_OBSERVED_TOWARD},
+               [TO_PLANE] = {.toward = SAY_PLANE}};
   if (r->target == TO_SHARED) return shared(e, r->index, at, at->k, "0");
-  return spell(e, words[r->target], numeral(e, r->index), at->first, at->k);
+  const word array = r->over == OVER_PARTICLES ? words[r->target].own : words[r->target].toward;
+  return spell(e, array, numeral(e, r->index), at->first, at->k);
 }

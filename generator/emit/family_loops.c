@@ -70,7 +70,7 @@ void family_loops_particles(emitter *e, const segment *a) {
                            .uniform = SAY_UNIFORM,
                            .declare = family_loops_declare,
                            .input = family_loops_input};
-  family_segment_open(e, a, &in);
+  expression_open_segment(e, &in, a);
   say(e, SAY_OVER_PARTICLES);
   write_loop(e, a);
   say(e, SAY_END, "    ");
@@ -84,7 +84,7 @@ void family_loops_neighbours(emitter *e, const segment *a) {
                     .uniform = list ? SAY_UNIFORM : SAY_UNIFORM_OF_NEIGHBOUR,
                     .declare = family_loops_declare,
                     .input = family_loops_input};
-  family_segment_open(e, a, &in);
+  expression_open_segment(e, &in, a);
   const bool odd = expression_reads(e, IR_FROM_SHARED_ODD);
   family_loops_start(e, a);
   say(e, a->kind == OVER_BONDS ? SAY_OVER_OWNED : SAY_OVER_NEIGHBOURS);

@@ -2,12 +2,6 @@
 
 #include <stdlib.h>
 
-void family_segment_open(emitter *e, const segment *a, const scope *in) {
-  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
-  expression_open(e, in, nodes, segment_nodes(e->graph, a, nodes));
-  free(nodes);
-}
-
 bool family_segment_asks(const segment *a) {
   for (int k = 0; k < a->root_count; k++)
     if (segment_asks(&a->roots[k])) return true;

@@ -9,8 +9,6 @@
 
 #include "generator/target/expression.h"
 
-/* Begins a segment; expression_close ends it. */
-void family_segment_open(emitter *e, const segment *a, const scope *in);
 /* Some value of the segment is another one where the bond is absent. */
 bool family_segment_asks(const segment *a);
 bool family_root_is_reduction(const segment_root *r);

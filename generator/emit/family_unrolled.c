@@ -180,7 +180,7 @@ static void write_segment(emitter *e, const segment *a) {
                      of_neighbours = {.indent = "        ", .uniform = SAY_UNIFORM, .input = input};
   static const family_index own = {.first = ""};
   const int neighbours = e->plan->law->neighbours;
-  family_segment_open(e, a, a->kind == OVER_PARTICLES ? &of_particles : &of_neighbours);
+  expression_open_segment(e, a->kind == OVER_PARTICLES ? &of_particles : &of_neighbours, a);
   for (int k = 0; k < a->root_count; k++)
     if (family_root_is_reduction(&a->roots[k]))
       say(e, SAY_STORE, "      ", spell(e, SAY_SLOT_VARIABLE, numeral(e, a->roots[k].index)),
@@ -202,7 +202,7 @@ static void declare_known(emitter *e, known_texts *t, word type, word name) {
   free(t->text);
 }
 
-static void declare_variables(emitter *e, const family_pass *p, int arrays) {
+static void declare_variables(emitter *e, const program_pass *p, int arrays) {
   for (int k = 0; k < arrays && e->plan->law->neighbours <= MOST_KEPT; k++)
     say(e, SAY_VARIABLE, spell(e, SAY_READ_VARIABLE, numeral(e, k)));
   for (int k = 0; k < p->slot_count; k++)
@@ -212,7 +212,7 @@ static void declare_variables(emitter *e, const family_pass *p, int arrays) {
       say(e, SAY_VARIABLE, spell(e, SAY_PLANE_VARIABLE, numeral(e, k), numeral(e, n)));
 }
 
-void family_unrolled_pass(emitter *e, const family_pass *p) {
+void family_unrolled_pass(emitter *e, const program_pass *p) {
   unrolled u = {.neighbour = -1};
   c_text *out = e->out, body = {0};
   e->form = &u;

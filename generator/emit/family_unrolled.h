@@ -1,4 +1,4 @@
-/* The form of passes with unrolled neighbours (FAMILY_WRITTEN_OUT): one loop over the particles of
+/* The form of passes with unrolled neighbours (FORM_UNROLLED): one loop over the particles of
    a run, in which neighbour stands after neighbour; what segments leave for each other stays in
    registers.
 
@@ -17,6 +17,6 @@
 
 #include "generator/target/expression.h"
 
-void family_unrolled_pass(emitter *e, const family_pass *p);
+void family_unrolled_pass(emitter *e, const program_pass *p);
 
 #endif

@@ -33,10 +33,11 @@ static const scope of_states = {.before = "  ",
                                 .input = state};
 
 /* Results first, then new fields. Planes without a root (moments of a central law) are zero. */
-static void write_states(emitter *e, const pass *p, const char *name, int results, int fields) {
+static void write_states(emitter *e, program_task task, int results, int fields) {
   const int planes = results + fields;
-  expression_open_roots(e, &of_states, p->roots, p->root_count);
-  kernel_function_begin(&e->parts, e->out, "PL_RARE PL_PASS", name, spell(e, SAY_OVER_STATES));
+  expression_open_segment(e, &of_states, plan_segment(e->plan, task));
+  kernel_function_begin(&e->parts, e->out, "PL_RARE PL_PASS", e->plan->programs[task].name,
+                        spell(e, SAY_OVER_STATES));
   say(e, SAY_STATES_HEAD);
   expression_declare(e);
   for (int k = 0; k < planes; k++) {
@@ -48,7 +49,7 @@ static void write_states(emitter *e, const pass *p, const char *name, int result
   say(e, SAY_OVER_BONDS);
   expression_lines(e);
   for (int k = 0; k < planes; k++) {
-    const pass_root *r = expression_find_root(e, TO_OUT, k);
+    const segment_root *r = expression_find_root(e, TO_OUT, k);
     say(e, SAY_STORE, "    ", spell(e, SAY_HERE, spell(e, SAY_RESULT_ARRAY, numeral(e, k))),
         r ? expression_whole(e, r->node) : "0.0");
   }
@@ -58,9 +59,8 @@ static void write_states(emitter *e, const pass *p, const char *name, int result
 }
 
 void law_functions_of_states(emitter *e) {
-  const pass *passes = e->plan->passes;
-  write_states(e, &passes[PASS_STATES], "states", PL_STATE_RESULTS, e->plan->law->fields.count);
-  write_states(e, &passes[PASS_TANGENT], "tangent", PL_TANGENTS, 0);
+  write_states(e, PROGRAM_STATES, PL_STATE_RESULTS, e->plan->law->fields.count);
+  write_states(e, PROGRAM_TANGENT, PL_TANGENTS, 0);
 }
 
 /* --- parameters ------------------------------------------------------------------------------- */
@@ -99,8 +99,8 @@ static void write_prepare(emitter *e) {
 }
 
 /* `lower[3] = 0.0, low_open[3] = 1;` */
-static void write_bound(emitter *e, int number, pass_target target, bool is_open) {
-  const pass_root *r = expression_find_root(e, target, number);
+static void write_bound(emitter *e, int number, segment_target target, bool is_open) {
+  const segment_root *r = expression_find_root(e, target, number);
   const bool lower = target == TO_LOWER;
   const char *nowhere = spell(e, lower ? SAY_BELOW_ALL : SAY_ABOVE_ALL);
   say(e, lower ? SAY_LOWER_BOUND : SAY_UPPER_BOUND, numeral(e, number),
@@ -108,9 +108,8 @@ static void write_bound(emitter *e, int number, pass_target target, bool is_open
 }
 
 static void write_bounds(emitter *e) {
-  const pass *p = &e->plan->passes[PASS_BOUNDS];
   const symbol_list *parameters = &e->plan->law->parameters;
-  expression_open_roots(e, &of_parameters, p->roots, p->root_count);
+  expression_open_segment(e, &of_parameters, plan_segment(e->plan, PROGRAM_BOUNDS));
   say(e, SAY_BOUNDS);
   expression_lines(e);
   for (int k = 0; k < parameters->count; k++) {

@@ -5,11 +5,13 @@
 #include "generator/emit/family_loops.h"
 #include "generator/emit/family_pairs.h"
 #include "generator/emit/family_unrolled.h"
+#include "generator/emit/law_functions.h"
+#include "generator/emit/strip.h"
 #include "generator/plan/program_facts.h"
 
 /* Particles at a time. Long chunks read the planes of large families in long pieces; what a pass
    keeps between its segments should stay in the first cache. */
-static int chunk_of(const family_pass *p) {
+static int chunk_of(const program_pass *p) {
   enum { LONGEST = 512, KEPT = 16384 }; /* B */
   int chunk = LONGEST;
   if (p->plane_count > 0 || program_is_paired(p)) return FAMILY_CHUNK;
@@ -19,15 +21,16 @@ static int chunk_of(const family_pass *p) {
 }
 
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
-static void write_loops(emitter *e, const family_pass *p) {
+static void write_loops(emitter *e, const program_pass *p) {
   static void (*const forms[])(emitter *,
                                const segment *) = {[OVER_PARTICLES] = family_loops_particles,
                                                    [OVER_NEIGHBOURS] = family_loops_neighbours,
                                                    [OVER_BONDS] = family_loops_neighbours,
                                                    [OVER_PAIRS] = family_pairs};
-  const bool rows = e->plan->form == FAMILY_WRITTEN_OUT;
+  const bool rows = e->plan->form == FORM_UNROLLED;
   say(e, SAY_CHUNK, numeral(e, chunk_of(p)));
-  if (program_sum_count(&e->plan->step) > 0 && !program_is_paired(p)) say(e, SAY_RETURN_IF_AHEAD);
+  if (program_sum_count(&e->plan->programs[PROGRAM_STEP]) > 0 && !program_is_paired(p))
+    say(e, SAY_RETURN_IF_AHEAD);
   for (int k = 0; k < p->slot_count; k++)
     say(e, SAY_KEEP_SLOT, numeral(e, k));
   for (int k = 0; k < p->plane_count; k++)
@@ -40,12 +43,12 @@ static void write_loops(emitter *e, const family_pass *p) {
   if (rows) say(e, SAY_END, "  ");
 }
 
-static const char *pass_name(const emitter *e, const family_program *q, int number) {
+static const char *pass_name(const emitter *e, const kernel_program *q, int number) {
   return spell(e, SAY_PASS_NAME, q->name, numeral(e, number));
 }
 
-static void write_pass(emitter *e, const family_program *q, int number) {
-  const bool unrolled = q == &e->plan->step && e->plan->form == FAMILY_WRITTEN_OUT;
+static void write_pass(emitter *e, const kernel_program *q, int number) {
+  const bool unrolled = q == &e->plan->programs[PROGRAM_STEP] && e->plan->form == FORM_UNROLLED;
   if (unrolled) say(e, SAY_UNROLLED_REMARK, numeral(e, e->plan->law->neighbours));
   kernel_function_begin(&e->parts, e->out, "PL_PASS", pass_name(e, q, number),
                         spell(e, SAY_OVER_FAMILY));
@@ -54,7 +57,7 @@ static void write_pass(emitter *e, const family_program *q, int number) {
   kernel_function_end(&e->parts, e->out);
 }
 
-static void write_program(emitter *e, const family_program *q) {
+static void write_program(emitter *e, const kernel_program *q) {
   const char *passes = NULL, *shared = NULL;
   for (int k = 0; k < q->pass_count; k++) {
     write_pass(e, q, k);
@@ -66,9 +69,20 @@ static void write_program(emitter *e, const family_program *q) {
   say(e, SAY_PROGRAM_TABLES, q->name, passes, shared);
 }
 
+static void write_strips(emitter *e) {
+  const kernel_program *p = e->plan->programs;
+  for (int task = PROGRAM_STEP; task <= PROGRAM_OBSERVE; task++)
+    strip_pass(e, p[task].passes[0].segments, p[task].name);
+  law_functions_of_states(e);
+}
+
 void programs_functions(emitter *e) {
+  if (e->plan->form == FORM_STRIPS) {
+    write_strips(e);
+    return;
+  }
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
-  write_program(e, &e->plan->step);
-  write_program(e, &e->plan->observe);
+  write_program(e, &e->plan->programs[PROGRAM_STEP]);
+  write_program(e, &e->plan->programs[PROGRAM_OBSERVE]);
 }

@@ -13,7 +13,7 @@ static bool is_damage(const emitter *e, int field) {
   return e->plan->law->fields.items[field]->kind == SYMBOL_DAMAGE;
 }
 
-bool stages_is_of_change(const emitter *e, const pass_root *r) {
+bool stages_is_of_change(const emitter *e, const segment_root *r) {
   if (r->target == TO_FIELD) return is_damage(e, r->index);
   if (r->target != TO_DISSIPATED_STATE || !e->plan->law->fields.count) return false;
   for (int f = 0; f < e->plan->law->fields.count; f++)
@@ -21,11 +21,11 @@ bool stages_is_of_change(const emitter *e, const pass_root *r) {
   return true;
 }
 
-bool stages_in_result_array(const pass_root *r) {
+bool stages_in_result_array(const segment_root *r) {
   return r->target == TO_FORCE || r->target == TO_OBSERVED;
 }
 
-bool stages_give(const emitter *e, const stages *s, int stage, const pass_root *r) {
+bool stages_give(const emitter *e, const stages *s, int stage, const segment_root *r) {
   if (stage < stages_last(s)) return false;
   if (!s->changes) return true;
   if (stage > stages_last(s)) return stages_is_of_change(e, r);

@@ -60,10 +60,10 @@ static inline bool stages_is_line(const emitter *e, ir_node n) {
   return e->name[n] && !expression_is_uniform(e, n) && ir_operation(e->graph, n) != IR_INPUT;
 }
 /* A result whose array is a buffer until the last stage writes it. */
-bool stages_in_result_array(const pass_root *r);
+bool stages_in_result_array(const segment_root *r);
 /* A result of the stage behind the last, which most steps leave as it is nearly everywhere: damage,
    and energy that nothing but damage takes. */
-bool stages_is_of_change(const emitter *e, const pass_root *r);
+bool stages_is_of_change(const emitter *e, const segment_root *r);
 
 /* The stage that ends with what the pass gives, in every part. */
 static inline int stages_last(const stages *s) {
@@ -71,7 +71,7 @@ static inline int stages_last(const stages *s) {
 }
 /* Whether the pass gives a result in that stage: all in the last one but those of a change. New
    damage is asked for there, too. */
-bool stages_give(const emitter *e, const stages *s, int stage, const pass_root *r);
+bool stages_give(const emitter *e, const stages *s, int stage, const segment_root *r);
 /* Whether the stage takes a node from an earlier one. That of changes takes results from the one
    before it, and computes what else that has again: it is rare. */
 static inline bool stages_take(const stages *s, ir_node n, int stage) {

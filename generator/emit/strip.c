@@ -54,9 +54,9 @@ static void write_cut(emitter *e, const stages *s, const char *name) {
   free(usual);
 }
 
-void strip_pass(emitter *e, const pass *p, const char *name) {
+void strip_pass(emitter *e, const segment *a, const char *name) {
   c_text loops = {0};
-  expression_open_roots(e, &scope_of_strips, p->roots, p->root_count);
+  expression_open_segment(e, &scope_of_strips, a);
   stages *s = loop_cutting_plan(e, e->plan->cutting);
   describe(s, &loops);
   say(e, SAY_REMARK, loops.text);
@@ -77,29 +77,23 @@ void strip_pass(emitter *e, const pass *p, const char *name) {
 static void describe_stages(const stages *s, FILE *out) {
   for (int k = 0; k < s->count; k++) {
     const stage_cost *c = &s->cost[k];
-    fprintf(out,
-            "    loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
-            "%.0f cycles for eight bonds%s\n",
-            k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
-            k > stages_last(s) ? "; only where damage changed" : "");
+    fprintf(
+        out,
+        "      loop %d: %d operations, %d divisions, %d loads, %d stores, a chain of %d cycles; "
+        "%.0f cycles for eight bonds%s\n",
+        k + 1, c->operations, c->divisions, c->loads, c->stores, c->chain, c->cycles,
+        k > stages_last(s) ? "; only where damage changed" : "");
   }
 }
 
-void strip_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out) {
-  static const bool over_strips[PASS_COUNT] = {
-#define X(pass, member, task) [pass] = true,
-      STRIP_PASSES(X)
-#undef X
-  };
-  const pass *a = &p->passes[kind];
-  if (!over_strips[kind] || !a->root_count) return;
+void strip_describe_loops(const kernel_plan *p, const segment *a, FILE *out) {
   emitter e;
   c_text text = {0};
   emitter_begin(&e, p, &text);
-  expression_open_roots(&e, &scope_of_strips, a->roots, a->root_count);
+  expression_open_segment(&e, &scope_of_strips, a);
   stages *s = loop_cutting_plan(&e, p->cutting);
   describe(s, &text);
-  fprintf(out, "  loops  %s\n", text.text);
+  fprintf(out, "    %-12s %s\n", "loops", text.text);
   describe_stages(s, out);
   stages_free(s);
   expression_close(&e);

@@ -11,9 +11,9 @@
 
 #include "generator/target/expression.h"
 
-void strip_pass(emitter *e, const pass *p, const char *name);
+void strip_pass(emitter *e, const segment *a, const char *name);
 /* How the loop of a pass over strips is cut into stages, and what that is estimated to cost: for
-   --dump=passes. Nothing for other passes. */
-void strip_describe_loops(const kernel_plan *p, pass_kind kind, FILE *out);
+   --dump=passes. */
+void strip_describe_loops(const kernel_plan *p, const segment *a, FILE *out);
 
 #endif

@@ -15,15 +15,15 @@ static const struct {
     [TO_OBSERVED] = {SAY_STRIP_OBSERVED, SAY_OBSERVED_ARRAY, LEAVES_ZERO},
 };
 
-const char *strip_array(const emitter *e, const pass_root *r) {
+const char *strip_array(const emitter *e, const segment_root *r) {
   return spell(e, targets[r->target].name, numeral(e, r->index));
 }
 
-static const char *member_of(const emitter *e, const pass_root *r) {
+static const char *member_of(const emitter *e, const segment_root *r) {
   return spell(e, targets[r->target].member, numeral(e, r->index));
 }
 
-void strip_declare_array(emitter *e, const pass_root *r, const char *value) {
+void strip_declare_array(emitter *e, const segment_root *r, const char *value) {
   say(e, SAY_DECLARE, "  ", spell(e, SAY_WRITTEN), strip_array(e, r), value);
 }
 
@@ -36,7 +36,7 @@ void strip_declare_fields(emitter *e, bool only_read) {
   for (int k = 0; k < e->root_count && only_read; k++)
     if (e->roots[k].target == TO_FIELD) read[e->roots[k].index] = 0;
   for (int f = 0; f < fields; f++) {
-    const pass_root field = {.target = TO_FIELD, .index = f};
+    const segment_root field = {.target = TO_FIELD, .index = f};
     if (read[f])
       say(e, SAY_DECLARE, "  ", spell(e, SAY_READ), strip_array(e, &field), member_of(e, &field));
   }
@@ -57,7 +57,7 @@ void strip_declare_protection(emitter *e) {
     }
 }
 
-void strip_store(emitter *e, const pass_root *r) {
+void strip_store(emitter *e, const segment_root *r) {
   const char *at = spell(e, SAY_HERE, strip_array(e, r));
   if (e->dropped && e->dropped[r->node]) {
     say(e, SAY_STORE, "    ", at, e->name[r->node]);

@@ -9,7 +9,7 @@
 /* --- buffers ---------------------------------------------------------------------------------- */
 
 /* The root whose array is result array `number`. */
-static const pass_root *root_of_array(const emitter *e, int number) {
+static const segment_root *root_of_array(const emitter *e, int number) {
   int arrays = 0;
   for (int k = 0; k < e->root_count; k++)
     if (stages_in_result_array(&e->roots[k]) && arrays++ == number) return &e->roots[k];
@@ -108,7 +108,7 @@ static void write_question(emitter *e, const stages *s, const char *name) {
 static void write_changes(emitter *e) {
   const char *changes = NULL;
   for (int k = 0; k < e->root_count; k++) {
-    const pass_root *r = &e->roots[k];
+    const segment_root *r = &e->roots[k];
     if (r->target == TO_FIELD && stages_is_of_change(e, r))
       changes = words_join(e->memory, changes, " | ",
                            spell(e, SAY_CHANGE, bits(e, r->node), strip_array(e, r)));

@@ -27,10 +27,8 @@ static bool is_limit(const ir *g, ir_node choice) {
 static int find_guards(const kernel_plan *p, ir_node *guards) {
   const ir *g = p->graph;
   const int nodes = ir_count(g);
-  const pass *states = &p->passes[PASS_STATES];
-  unsigned char *marks = must_calloc((size_t)nodes + 1, 1);
-  for (int k = 0; k < states->root_count; k++)
-    ir_mark(g, &states->roots[k].node, 1, marks);
+  if (p->form != FORM_STRIPS) return 0;
+  unsigned char *marks = segment_needed(g, plan_segment(p, PROGRAM_STATES));
   for (ir_node n = 0; n < nodes; n++)
     if (marks[n] && ir_operation(g, n) == IR_SELECT && !is_limit(g, n) &&
         !ir_is_uniform(g, ir_operand(g, n, 0)))

@@ -3,17 +3,10 @@
 #ifndef PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 #define PERILAT_GENERATOR_INTERPRETED_FAMILY_H
 
-#include "generator/plan/plan.h"
-
-typedef struct family_runner family_runner;
-
-/* Working space for one caller at a time. inputs[k] is the input node that stands for uniform k.
-   The plan must outlive it. */
-family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs);
-void family_runner_free(family_runner *r);
+#include "generator/interpreter/runner.h"
 
 /* Pass `number` of a program, as a pl_family_function. No allocation. */
-void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
-                       const pl_family *family);
+void interpreted_family(runner *r, program_task task, int number, const double *uniforms,
+                        const pl_family *family);
 
 #endif

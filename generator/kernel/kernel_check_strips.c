@@ -120,16 +120,14 @@ static void fill_bonds(strip_arrays *a, const double *parameters, uint64_t *seed
 /* --- the functions ---------------------------------------------------------------------------- */
 
 typedef struct strip_pass {
+  program_task task;
   const char *name;
   size_t function; /* offset in pl_law */
-  bool forces, ledger, observes;
 } strip_pass;
 
 static const strip_pass passes[] = {
-#define X(pass, member, task)                                                                      \
-  {#member, offsetof(pl_law, member), .forces = (task) != STRIP_OBSERVE,                           \
-   .ledger = (task) == STRIP_LEDGER, .observes = (task) == STRIP_OBSERVE},
-    STRIP_PASSES(X)
+#define X(task, member) {task, #member, offsetof(pl_law, member)},
+    STRIP_PROGRAMS(X)
 #undef X
 };
 
@@ -172,9 +170,9 @@ static void run_pass(const law_readers *l, const strip_arrays *a, const strip_pa
 static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison *c) {
   const pl_law *kernel = a->law;
   const char *energies[2] = {"dissipated_state", "dissipated_rate"};
-  for (int k = 0; p->forces && k < kernel->force_planes; k++)
+  for (int k = 0; p->task != PROGRAM_OBSERVE && k < kernel->force_planes; k++)
     comparison_add(c, p->name, "force", k, a->force[0][k], a->force[1][k], SITES);
-  for (int k = 0; p->observes && k <= kernel->output_count; k++)
+  for (int k = 0; p->task == PROGRAM_OBSERVE && k <= kernel->output_count; k++)
     comparison_add(c, p->name, k ? kernel->outputs[k - 1].name : "stored energy", -1,
                    a->observed[0][k], a->observed[1][k], SITES);
   for (int k = 0; k < a->kept_planes; k++) {
@@ -186,9 +184,9 @@ static void compare_pass(const strip_arrays *a, const strip_pass *p, comparison 
 
 static bool may_change(const strip_arrays *a, const strip_pass *p, int plane, long q) {
   if (!(a->flags[q] & PL_PRESENT(DIRECTION))) return false;
-  if (plane >= a->law->field_count) return p->ledger;
+  if (plane >= a->law->field_count) return p->task == PROGRAM_LEDGER;
   bool damage = a->law->fields[plane].kind == PL_FIELD_DAMAGE;
-  return p->forces && !(damage && (a->flags[q] & PL_PROTECTED(DIRECTION)));
+  return p->task != PROGRAM_OBSERVE && !(damage && (a->flags[q] & PL_PROTECTED(DIRECTION)));
 }
 
 /* Both readers share one graph, so what it means to be absent or protected is checked on its own.
@@ -198,8 +196,8 @@ static void find_misplaced(const strip_arrays *a, const strip_pass *p, compariso
     for (long q = 0; q < SITES; q++)
       c->misplaced += !may_change(a, p, k, q) &&
                       memcmp(&a->kept[0][k][q], &a->before[k][q], sizeof(double)) != 0;
-  double *const *written = p->forces ? a->force[0] : a->observed[0];
-  const int planes = p->forces ? a->law->force_planes : 1 + a->law->output_count;
+  double *const *written = p->task != PROGRAM_OBSERVE ? a->force[0] : a->observed[0];
+  const int planes = p->task != PROGRAM_OBSERVE ? a->law->force_planes : 1 + a->law->output_count;
   for (int k = 0; k < planes; k++)
     for (long q = 0; q < SITES; q++)
       c->misplaced += !(a->flags[q] & PL_PRESENT(DIRECTION)) && written[k][q] != 0;

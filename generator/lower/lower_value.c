@@ -117,43 +117,20 @@ static ir_node lower_option_test(lowering *c, const expr *e) {
   return ir_constant(c->graph, decided_to_hold(c->law, e));
 }
 
-static ir_node lower_comparison(ir *g, binary_op op, ir_node a, ir_node b) {
-  switch (op) {
-  case OP_EQ:
-    return ir_binary(g, IR_EQ, a, b);
-  case OP_NE:
-    return ir_unary(g, IR_NOT, ir_binary(g, IR_EQ, a, b));
-  case OP_LT:
-    return ir_binary(g, IR_LT, a, b);
-  case OP_LE:
-    return ir_binary(g, IR_LE, a, b);
-  case OP_GT:
-    return ir_binary(g, IR_LT, b, a);
-  default:
-    return ir_binary(g, IR_LE, b, a);
-  }
-}
-
 static ir_node lower_scalar_binary(ir *g, binary_op op, ir_node a, ir_node b) {
-  switch (op) {
-  case OP_OR:
-    return ir_binary(g, IR_OR, a, b);
-  case OP_AND:
-    return ir_binary(g, IR_AND, a, b);
-  case OP_ADD:
-    return ir_add(g, a, b);
-  case OP_SUB:
-    return ir_sub(g, a, b);
-  case OP_MUL:
-  case OP_CONTRACT: /* of bending quantities, which have one component in a plane */
-    return ir_mul(g, a, b);
-  case OP_DIV:
-    return ir_div(g, a, b);
-  case OP_POW:
-    return ir_power(g, a, b);
-  default:
-    return lower_comparison(g, op, a, b);
-  }
+  static const struct {
+    ir_op by;
+    operator_reading reading;
+  } computed[] = {
+#define X(code, text, operation, reading) [OP_##code] = {IR_##operation, reading},
+      TREE_BINARY_OPERATORS(X)
+#undef X
+  };
+  const ir_op by = computed[op].by;
+  const operator_reading reading = computed[op].reading;
+  if (by == IR_POW) return ir_power(g, a, b);
+  const ir_node result = reading == READ_EXCHANGED ? ir_binary(g, by, b, a) : ir_binary(g, by, a, b);
+  return reading == READ_NEGATED ? ir_unary(g, IR_NOT, result) : result;
 }
 
 static components lower_binary(lowering *c, const expr *e) {

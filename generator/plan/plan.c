@@ -9,9 +9,10 @@
 #include "generator/plan/plan_strips.h"
 #include "generator/plan/program_facts.h"
 
-kernel_plan *plan_begin(const law *l) {
+kernel_plan *plan_begin(const law *l, kernel_form form) {
   kernel_plan *plan = must_calloc(1, sizeof *plan);
   plan->law = l;
+  plan->form = form;
   plan->graph = ir_new();
   ir_set_sources(plan->graph, l->sources);
   plan->memory = arena_new();
@@ -23,6 +24,7 @@ static kernel_plan *finish(kernel_plan *plan, bool good, diagnostics *d) {
     plan_free(plan);
     return NULL;
   }
+  plan_count_cost(plan);
   plan_hoist(plan);
   return plan;
 }
@@ -39,12 +41,10 @@ static void keep_variation(kernel_plan *plan, const law_variation *v) {
   plan->variation.varying = varying;
 }
 
-static kernel_plan *plan_families(const law *l, const law_variation *v, family_form form,
+static kernel_plan *plan_families(const law *l, const law_variation *v, kernel_form form,
                                   diagnostics *d) {
-  kernel_plan *plan = plan_begin(l);
+  kernel_plan *plan = plan_begin(l, form);
   keep_variation(plan, v);
-  plan->kind = PL_STATE;
-  plan->form = form;
   return finish(plan, plan_programs(plan, d), d);
 }
 
@@ -60,32 +60,26 @@ static bool is_for_pairs(const law *l) {
 
 kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagnostics *d) {
   enum { MOST_WRITTEN_OUT = 18 };
-  if (l->irregular || l->neighbours == 0) return plan_families(l, v, FAMILY_LOOPS, d);
+  if (l->irregular || l->neighbours == 0) return plan_families(l, v, FORM_LOOPS, d);
   if (is_for_pairs(l)) {
-    kernel_plan *plan = plan_families(l, v, FAMILY_PAIRS, d);
-    if (!plan || program_sum_count(&plan->step) > 0) return plan;
+    kernel_plan *plan = plan_families(l, v, FORM_PAIRS, d);
+    if (!plan || program_sum_count(&plan->programs[PROGRAM_STEP]) > 0) return plan;
     plan_free(plan); /* nothing is the same or opposite at both ends */
   }
   const bool few = l->neighbours <= MOST_WRITTEN_OUT;
-  return plan_families(l, v, few ? FAMILY_WRITTEN_OUT : FAMILY_LOOPS, d);
+  return plan_families(l, v, few ? FORM_UNROLLED : FORM_LOOPS, d);
 }
 
 kernel_plan *plan_kernel_varying(const law *l, const law_variation *v, diagnostics *d) {
   if (l->tree->law == LAW_STATE) return plan_kernel_of_families(l, v, d);
   bool micropolar = l->tree->law == LAW_MICROPOLAR_BOND;
   bool twists = micropolar && l->setting == SETTING_SPACE;
-  kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l);
+  kernel_plan *plan = plan_begin(twists ? law_twisting(l) : l, FORM_STRIPS);
   keep_variation(plan, v);
-  plan->kind = micropolar ? PL_MICROPOLAR : PL_CENTRAL;
   plan->dimensions = 2;
   plan->dof = (micropolar ? 3 : 2) + twists;
   plan->force_planes = (micropolar ? 4 : 2) + twists;
-  plan = finish(plan, plan_strips(plan, d), d);
-  if (!plan) return NULL;
-  ir_cost cost = plan_cost(plan, &plan->passes[PASS_ROWS]);
-  plan->flops_per_bond = cost.additions + cost.multiplications + cost.selects;
-  plan->divisions_per_bond = cost.divisions;
-  return plan;
+  return finish(plan, plan_strips(plan, d), d);
 }
 
 void plan_free(kernel_plan *p) {

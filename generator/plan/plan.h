@@ -8,59 +8,32 @@
 #include "generator/plan/segment.h"
 #include "runtime/kernel.h"
 
-/* What is done over strips of bonds. */
-typedef enum strip_task { STRIP_STEP, STRIP_LEDGER, STRIP_OBSERVE } strip_task;
+/* Programs over strips, of one pass with one segment. X(program, member of pl_law) */
+#define STRIP_PROGRAMS(X)                                                                          \
+  X(PROGRAM_STEP, rows)                                                                            \
+  X(PROGRAM_LEDGER, rows_ledger)                                                                   \
+  X(PROGRAM_OBSERVE, rows_observe)
 
-/* The functions over strips. X(pass, member of pl_law, task) */
-#define STRIP_PASSES(X)                                                                            \
-  X(PASS_ROWS, rows, STRIP_STEP)                                                                   \
-  X(PASS_ROWS_LEDGER, rows_ledger, STRIP_LEDGER)                                                   \
-  X(PASS_ROWS_OBSERVE, rows_observe, STRIP_OBSERVE)
+typedef enum program_task {
+  PROGRAM_STEP,    /* forces and new fields */
+  PROGRAM_LEDGER,  /* the same, and the energies that are lost */
+  PROGRAM_OBSERVE, /* stored energy and outputs */
+  PROGRAM_STATES,  /* a bond alone, state by state (pl_states) */
+  PROGRAM_TANGENT, /* its derivatives */
+  PROGRAM_BOUNDS,  /* of parameters */
+  PROGRAM_COUNT
+} program_task;
 
-typedef enum pass_kind {
-#define X(pass, member, task) pass,
-  STRIP_PASSES(X)
-#undef X
-      PASS_STATES,
-  PASS_TANGENT,
-  PASS_BOUNDS,
-  PASS_COUNT
-} pass_kind;
-
-/* What a root is written to. `present` is the bond's PL_PRESENT bit; the graph does not know of it.
-   Protection is in the graph (ENDS_PROTECTED), because the force must use the damage that stays. */
-typedef enum pass_target {
-  TO_FORCE,            /* force[index] = present ? node : 0 */
-  TO_FIELD,            /* field[index] = present ? node : field[index] */
-  TO_DISSIPATED_STATE, /* dissipated_state += present ? node : 0 */
-  TO_DISSIPATED_RATE,  /* dissipated_rate += present ? node : 0 */
-  TO_OBSERVED,         /* observed[index] = present ? node : 0 */
-  TO_OUT,              /* out[index] = node */
-  TO_LOWER,
-  TO_UPPER /* lower[index], upper[index] = node; infinite where there is no bound */
-} pass_target;
-
-/* Inputs of a pass, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class knows
-   (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY stretch,
-   stretch_rate, theta_i, theta_j, length: only in PASS_STATES and PASS_TANGENT, planes of
-   pl_states.in. IR_FROM_FIELD k: field[k]. IR_FROM_ENDS: all strips.
+/* Inputs of a segment, by source: IR_FROM_PARAMETER and, of IR_FROM_QUANTITY, what a bond class
+   knows (s, spacing, t, V, m, m_i, m_j, area, shell, n): through uniforms. Of IR_FROM_QUANTITY
+   stretch, stretch_rate, theta_i, theta_j, length: only in PROGRAM_STATES and PROGRAM_TANGENT,
+   planes of pl_states.in. IR_FROM_FIELD k: field[k]. IR_FROM_ENDS: all bodies.
    IR_FROM_BOND_PARAMETER k: in strips and families parameter[k], the value of parameter varying[k]
-   in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other passes take that
-   parameter as IR_FROM_PARAMETER. */
-typedef struct pass_root {
-  ir_node node;
-  pass_target target;
-  int index; /* force plane, field, observed plane, out plane, parameter */
-} pass_root;
+   in each bond, IR_FROM_PARTICLE_PARAMETER k: of each particle; all other programs take that
+   parameter as IR_FROM_PARAMETER. The graph does not know of absent bonds; protection is in it
+   (ENDS_PROTECTED), because the force must use the damage that stays. */
 
-typedef struct pass {
-  pass_kind kind;
-  const char *name;
-  pass_root *roots;
-  int root_count;
-} pass;
-
-enum { PLAN_MOST_PASSES = 8 }; /* of a program of families */
+enum { PLAN_MOST_PASSES = 8 }; /* of a program */
 
 /* Whether loops over strips are cut into stages (stages.h). Results are the same to the bit. */
 typedef enum loop_cutting {
@@ -69,32 +42,30 @@ typedef enum loop_cutting {
   CUT_ALWAYS /* into stages as short as they can be */
 } loop_cutting;
 
-/* How the passes of a law of families go over the neighbours. */
-typedef enum family_form {
-  FAMILY_LOOPS, /* by loops, of any number of neighbours */
+/* How the loops of `step` are written, and with it all others. */
+typedef enum kernel_form {
+  FORM_STRIPS, /* loops over strips of bonds, which leave forces for both ends */
+  FORM_LOOPS,  /* families by loops over particles and neighbours, any number of these */
   /* One loop over the particles, neighbour by neighbour in its body: law->neighbours of them */
-  FAMILY_WRITTEN_OUT,
-  FAMILY_PAIRS /* by loops over bonds that add to both ends (SHARE_PAIRS) */
-} family_form;
+  FORM_UNROLLED,
+  FORM_PAIRS /* loops over bonds that add to both ends (SHARE_PAIRS) */
+} kernel_form;
 
 typedef struct kernel_plan {
   const law *law;
   law_variation variation; /* what differs in space */
   ir *graph;
-  pass passes[PASS_COUNT];
+  kernel_form form;
+  kernel_program programs[PROGRAM_COUNT]; /* without passes: there is none */
   loop_cutting cutting;
-  int kind, dimensions, dof, force_planes;
-  int rotations;     /* of a particle, behind its dimensions: dof in all */
+  int dimensions, dof, force_planes;
+  int rotations;     /* of a particle of a family, behind its dimensions: dof in all */
   ir_node *uniforms; /* [uniform_count] ascending: values hoisted into `prepare`. All nodes, inputs
                         too but no constants, with ir_place <= ON_BODY that a local node or a root
-                        of a pass other than PASS_BOUNDS reads directly: a strip reads uniforms[k]
-                        and nothing before it */
+                        of a program other than PROGRAM_BOUNDS reads directly: a loop reads
+                        uniforms[k] and nothing before it */
   int uniform_count;
-  double flops_per_bond,
-      divisions_per_bond; /* of PASS_ROWS, or of `step`, without what is hoisted */
-  /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
-  family_form form; /* of `step`, and of how chords and forces are written */
-  family_program step, observe;
+  double flops_per_bond, divisions_per_bond; /* of `step`, without what is hoisted */
   program_links links;
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */
@@ -103,8 +74,19 @@ typedef struct kernel_plan {
   arena *memory;
 } kernel_plan;
 
+/* PL_CENTRAL, PL_MICROPOLAR over strips; else PL_STATE, of families. */
+static inline int plan_kind(const kernel_plan *p) {
+  if (p->form != FORM_STRIPS) return PL_STATE;
+  return p->law->tree->law == LAW_MICROPOLAR_BOND ? PL_MICROPOLAR : PL_CENTRAL;
+}
+
+/* The segment of a program that has but one. */
+static inline segment *plan_segment(const kernel_plan *p, program_task task) {
+  return p->programs[task].passes[0].segments;
+}
+
 /* An empty plan. */
-kernel_plan *plan_begin(const law *l);
+kernel_plan *plan_begin(const law *l, kernel_form form);
 /* Plans all passes of a law: strips for laws of bonds in the plane, programs for laws of families.
    NULL with diagnostics when it cannot be compiled. */
 kernel_plan *plan_kernel(const law *l, diagnostics *d);

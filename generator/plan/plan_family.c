@@ -55,8 +55,8 @@ static ir_node bond_force(const kernel_plan *plan, const lowered_law *of) {
   ir_node f = of->N;
   if (plan->law->tree->law == LAW_STATE) {
     ir_node other = ir_make(g, IR_NEIGHBOUR, of->F, IR_NONE, IR_NONE);
-    f = plan->form == FAMILY_LOOPS ? ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other))
-                                   : in_parts(plan, of);
+    f = plan->form == FORM_LOOPS ? ir_mul(g, ir_constant(g, 0.5), ir_add(g, of->F, other))
+                                 : in_parts(plan, of);
   }
   ir_set_name(g, f, "bond_force", (span){0, 0, 0});
   return f;
@@ -84,37 +84,40 @@ static bond_actions actions_of(const kernel_plan *plan, const lowered_law *of) {
   return end_actions_in_space(g, of, e, per_length, &r);
 }
 
+void plan_want(const kernel_plan *plan, segment *wanted, ir_node node, segment_target target,
+               segment_kind over, int index) {
+  segment_add(plan->memory, wanted,
+              (segment_root){.node = node, .target = target, .over = over, .index = index});
+}
+
 /* Particles receive the opposite of the moments on the bond's ends. What is the same at both ends
    and what is the opposite are sums of their own, so that a bond can add them to both. */
 static void plan_forces_and_moments(const kernel_plan *plan, const lowered_law *of,
-                                    segment_root *roots) {
+                                    segment *wanted) {
   ir *g = plan->graph;
   const bond_actions a = actions_of(plan, of);
   for (int d = 0; d < plan->dimensions; d++)
-    roots[d] =
-        (segment_root){.node = family_sum(g, a.force[d]), .target = TO_PARTICLE_FORCE, .index = d};
+    plan_want(plan, wanted, family_sum(g, a.force[d]), TO_FORCE, OVER_PARTICLES, d);
   for (int k = 0; k < plan->rotations; k++) {
     const ir_node even = family_sum(g, a.even[k]), odd = family_sum(g, a.odd[k]);
-    roots[plan->dimensions + k] = (segment_root){.node = ir_neg(g, ir_add(g, even, odd)),
-                                                 .target = TO_PARTICLE_FORCE,
-                                                 .index = plan->dimensions + k};
+    plan_want(plan, wanted, ir_neg(g, ir_add(g, even, odd)), TO_FORCE, OVER_PARTICLES,
+              plan->dimensions + k);
   }
 }
 
-void plan_forces(const kernel_plan *plan, const lowered_law *of, segment_root *roots) {
+void plan_forces(const kernel_plan *plan, const lowered_law *of, segment *wanted) {
   ir *g = plan->graph;
   if (plan->rotations) {
-    plan_forces_and_moments(plan, of, roots);
+    plan_forces_and_moments(plan, of, wanted);
     return;
   }
   ir_node f = bond_force(plan, of);
-  const bool pairs = plan->form == FAMILY_PAIRS;
+  const bool pairs = plan->form == FORM_PAIRS;
   if (pairs) f = ir_mul(g, f, present(g, PER_LENGTH));
-  for (int d = 0; d < plan->dimensions; d++)
-    roots[d] = (segment_root){
-        .node = family_sum(g, ir_mul(g, f, present(g, (pairs ? CHORD : DIRECTION) + d))),
-        .target = TO_PARTICLE_FORCE,
-        .index = d};
+  for (int d = 0; d < plan->dimensions; d++) {
+    const ir_node along = present(g, (pairs ? CHORD : DIRECTION) + d);
+    plan_want(plan, wanted, family_sum(g, ir_mul(g, f, along)), TO_FORCE, OVER_PARTICLES, d);
+  }
 }
 
 /* The particle's share of what its bonds store, J. Without `energy W` half of force times stretch
@@ -141,43 +144,27 @@ static ir_node stored_energy(family_planner *p) {
 
 /* --- roots ------------------------------------------------------------------------------------ */
 
-typedef struct root_list {
-  segment_root *items;
-  int count;
-} root_list;
-
-static root_list new_roots(kernel_plan *plan, int most) {
-  return (root_list){arena_alloc(plan->memory, ((size_t)most + 1) * sizeof(segment_root)), 0};
-}
-
-static void want(root_list *r, ir_node node, segment_target target, int index) {
-  r->items[r->count++] = (segment_root){.node = node, .target = target, .index = index};
-}
-
-static bool is_of_particle(const symbol *s) {
-  return s->place <= ON_PARTICLE;
-}
-
-static root_list step_roots(family_planner *p) {
-  const law *l = p->plan->law;
-  root_list r = new_roots(p->plan, l->fields.count + PL_MAX_DOF);
-  for (int k = 0; k < l->fields.count; k++)
-    want(&r, p->step.fields[k],
-         is_of_particle(l->fields.items[k]) ? TO_PARTICLE_FIELD : TO_NEIGHBOUR_FIELD, k);
-  plan_forces(p->plan, &p->step, r.items + r.count);
-  r.count += p->plan->dof;
+static segment step_roots(family_planner *p) {
+  const kernel_plan *plan = p->plan;
+  segment r = {.root_count = 0};
+  for (int k = 0; k < plan->law->fields.count; k++)
+    plan_want(plan, &r, p->step.fields[k], TO_FIELD,
+              segment_kind_at(plan->law->fields.items[k]->place), k);
+  plan_forces(plan, &p->step, &r);
   return r;
 }
 
-static root_list observe_roots(family_planner *p) {
-  const law *l = p->plan->law;
-  root_list r = new_roots(p->plan, l->outputs.count + 1);
+static segment observe_roots(family_planner *p) {
+  kernel_plan *plan = p->plan;
+  const symbol_list *outputs = &plan->law->outputs;
+  segment r = {.root_count = 0};
   const ir_node stored = stored_energy(p);
-  p->plan->stores = stored != IR_NONE && l->nonconservative == NULL;
-  want(&r, stored != IR_NONE ? stored : ir_constant(p->g, 0), TO_PARTICLE_OBSERVED, 0);
-  for (int k = 0; k < l->outputs.count; k++)
-    want(&r, p->frozen.outputs[k],
-         is_of_particle(l->outputs.items[k]) ? TO_PARTICLE_OBSERVED : TO_NEIGHBOUR_OBSERVED, 1 + k);
+  plan->stores = stored != IR_NONE && plan->law->nonconservative == NULL;
+  plan_want(plan, &r, stored != IR_NONE ? stored : ir_constant(p->g, 0), TO_OBSERVED,
+            OVER_PARTICLES, 0);
+  for (int k = 0; k < outputs->count; k++)
+    plan_want(plan, &r, p->frozen.outputs[k], TO_OBSERVED,
+              segment_kind_at(outputs->items[k]->place), 1 + k);
   return r;
 }
 
@@ -202,7 +189,7 @@ static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, 
     c.chord[d] = k->chord[d];
     c.e[d] = k->now[d];
   }
-  const end_rotations r = end_rotations_in_space(g, &c, plan->form == FAMILY_PAIRS);
+  const end_rotations r = end_rotations_in_space(g, &c, plan->form == FORM_PAIRS);
   for (int axis = 0; axis < BENDING_AXES; axis++) {
     from[n] = lower_bending(g, plan->law, QUANTITY_THETA_I, axis), to[n++] = r.theta_i[axis];
     from[n] = lower_bending(g, plan->law, QUANTITY_THETA_J, axis), to[n++] = r.theta_j[axis];
@@ -220,8 +207,7 @@ static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, 
 program_motion plan_motion(const kernel_plan *plan, bool reference) {
   ir *g = plan->graph;
   const bool in_plane = plan->rotations && plan->dimensions == 2;
-  family_kinematics k =
-      kinematics_family(g, plan->dimensions, in_plane, plan->form == FAMILY_PAIRS);
+  family_kinematics k = kinematics_family(g, plan->dimensions, in_plane, plan->form == FORM_PAIRS);
   ir_node *from = arena_alloc(plan->memory, MOST_MOTION * sizeof *from);
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   int n = 0;
@@ -279,12 +265,12 @@ static program_motion masses(const kernel_plan *plan) {
   return (program_motion){from, to, mass_inputs(plan->graph, from, to)};
 }
 
-static void read_of_each(const kernel_plan *plan, const program_motion *of, root_list *r) {
+static void read_of_each(const kernel_plan *plan, const program_motion *of, segment *r) {
   ir_substitution *s = ir_substitution_new(plan->graph);
   for (int k = 0; k < of->count; k++)
     ir_substitution_add(s, of->from[k], of->to[k]);
-  for (int k = 0; k < r->count; k++)
-    if (r->items[k].node != IR_NONE) r->items[k].node = ir_substitution_apply(s, r->items[k].node);
+  for (int k = 0; k < r->root_count; k++)
+    if (r->roots[k].node != IR_NONE) r->roots[k].node = ir_substitution_apply(s, r->roots[k].node);
   ir_substitution_free(s);
 }
 
@@ -313,34 +299,33 @@ static void share_reciprocals(family_planner *p) {
   free(all);
 }
 
-static void share_reciprocals_of_roots(ir *g, root_list *r) {
-  ir_node *all = must_alloc(((size_t)r->count + 1) * sizeof *all);
-  for (int k = 0; k < r->count; k++)
-    all[k] = r->items[k].node;
-  rewrite_reciprocals(g, all, r->count, all);
-  for (int k = 0; k < r->count; k++)
-    r->items[k].node = all[k];
+static void share_reciprocals_of_roots(ir *g, segment *r) {
+  ir_node *all = segment_values(r);
+  rewrite_reciprocals(g, all, r->root_count, all);
+  segment_replace(r, all);
   free(all);
 }
 
 /* All at once: what several passes compute they compute in the same way. */
-static void rewrite_last(ir *g, root_list *step, root_list *observe) {
-  const int count = step->count + observe->count;
+static void rewrite_last(ir *g, segment *step, segment *observe) {
+  const int count = step->root_count + observe->root_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
-  for (int k = 0; k < count; k++)
-    all[k] = k < step->count ? step->items[k].node : observe->items[k - step->count].node;
+  for (int k = 0; k < step->root_count; k++)
+    all[k] = step->roots[k].node;
+  for (int k = 0; k < observe->root_count; k++)
+    all[step->root_count + k] = observe->roots[k].node;
   rewrite_choices(g, all, count, all);
   rewrite_factors(g, all, count, all);
   rewrite_fused(g, all, count, all);
-  for (int k = 0; k < count; k++)
-    *(k < step->count ? &step->items[k].node : &observe->items[k - step->count].node) = all[k];
+  segment_replace(step, all);
+  segment_replace(observe, all + step->root_count);
   free(all);
 }
 
 /* Of what both ends of a bond in space see alike fused products would tell nothing: where one end
    computes it, they are fused later. */
 static void fuse_motion(const kernel_plan *plan, program_motion *motion) {
-  if (plan->rotations == 3 && plan->form == FAMILY_PAIRS) return;
+  if (plan->rotations == 3 && plan->form == FORM_PAIRS) return;
   ir_node *to = arena_alloc(plan->memory, MOST_MOTION * sizeof *to);
   rewrite_fused(plan->graph, motion->to, motion->count, to);
   motion->to = to;
@@ -352,11 +337,10 @@ typedef struct input_search {
   bool found;
 } input_search;
 
-static void look_for_input(void *context, const ir_node *roots, int root_count) {
+static void look_for_input(void *context, const segment *a) {
   input_search *c = context;
   const ir *g = c->plan->graph;
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  ir_mark(g, roots, root_count, needed);
+  unsigned char *needed = segment_needed(g, a);
   for (ir_node n = 0; n < ir_count(g) && !c->found; n++)
     c->found = needed[n] && ir_operation(g, n) == IR_INPUT && c->wanted(g, n);
   free(needed);
@@ -382,24 +366,6 @@ static bool is_mass(const ir *g, ir_node input) {
          ends_origins[ir_input_index(g, input)].array == FROM_MASS;
 }
 
-/* Operations of all segments of a step that are done for each neighbour; what is done once for both
-   ends counts half. */
-static void count_cost(kernel_plan *plan) {
-  for (int k = 0; k < plan->step.pass_count; k++)
-    for (int s = 0; s < plan->step.passes[k].segment_count; s++) {
-      const segment *a = &plan->step.passes[k].segments[s];
-      if (a->kind == OVER_PARTICLES) continue;
-      ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-      for (int r = 0; r < a->root_count; r++)
-        nodes[r] = a->roots[r].node;
-      ir_cost cost = ir_count_cost(plan->graph, nodes, a->root_count, ON_BOND);
-      const double part = a->kind == OVER_NEIGHBOURS ? 1 : 0.5;
-      plan->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
-      plan->divisions_per_bond += part * cost.divisions;
-      free(nodes);
-    }
-}
-
 /* Whether ends of bonds share what is the same for both: on lattices, where reading what the other
    end has left is cheap. Laws that keep fields on bonds in space have families of a long horizon
    (lps: 122): what their bonds share would fill no cache, and where nothing is known of the lattice
@@ -409,10 +375,9 @@ static program_sharing sharing(const family_planner *p) {
   const law *l = p->plan->law;
   bool on_bonds = false;
   for (int k = 0; k < l->fields.count; k++)
-    on_bonds = on_bonds || !is_of_particle(l->fields.items[k]);
-  if (p->plan->form == FAMILY_PAIRS) return SHARE_PAIRS;
-  if (p->plan->form == FAMILY_WRITTEN_OUT)
-    return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
+    on_bonds = on_bonds || l->fields.items[k]->place > ON_PARTICLE;
+  if (p->plan->form == FORM_PAIRS) return SHARE_PAIRS;
+  if (p->plan->form == FORM_UNROLLED) return p->plan->dimensions == 2 ? SHARE_MOST : SHARE_MORE;
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
 
@@ -450,7 +415,7 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     return false;
   }
   share_reciprocals(&p);
-  root_list step = step_roots(&p), observe = observe_roots(&p);
+  segment step = step_roots(&p), observe = observe_roots(&p);
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(p.g, &step, &observe);
@@ -462,11 +427,13 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     read_of_each(plan, &each, &observe);
     motion_of_each(plan, &each, &motion);
   }
-  program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
-                sharing(&p), &plan->links);
-  program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
+  kernel_program *programs = plan->programs;
+  program_build(&programs[PROGRAM_STEP], "step", p.g, plan->memory, &step, &motion, sharing(&p),
+                &plan->links);
+  program_build(&programs[PROGRAM_OBSERVE], "observe", p.g, plan->memory, &observe, &motion,
                 SHARE_NOTHING, &plan->links);
-  if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
+  if (programs[PROGRAM_STEP].pass_count > PLAN_MOST_PASSES ||
+      programs[PROGRAM_OBSERVE].pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",
                 PLAN_MOST_PASSES);
@@ -475,6 +442,5 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   plan->reads_shape = reads(plan, is_shape);
   plan->reads_share = reads(plan, is_share);
   plan->reads_mass = reads(plan, is_mass);
-  count_cost(plan);
   return true;
 }

@@ -6,30 +6,22 @@
 #include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
 
-static void visit_program(const family_program *q, plan_visitor visit, void *context) {
-  for (int k = 0; k < q->pass_count; k++)
-    for (int s = 0; s < q->passes[k].segment_count; s++) {
-      const segment *a = &q->passes[k].segments[s];
-      ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-      for (int r = 0; r < a->root_count; r++)
-        nodes[r] = a->roots[r].node;
-      visit(context, nodes, a->root_count);
-      free(nodes);
-    }
+segment *plan_single(kernel_plan *p, program_task task, const char *name, segment_kind kind) {
+  program_pass *pass = arena_alloc(p->memory, sizeof *pass);
+  segment *a = arena_alloc(p->memory, sizeof *a);
+  *a = (segment){.kind = kind};
+  *pass = (program_pass){.segments = a, .segment_count = 1};
+  p->programs[task] = (kernel_program){.name = name, .passes = pass, .pass_count = 1};
+  return a;
 }
 
 void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
-  for (int k = 0; k < PASS_COUNT; k++) {
-    const pass *a = &p->passes[k];
-    if (k == PASS_BOUNDS) continue;
-    ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-    for (int r = 0; r < a->root_count; r++)
-      nodes[r] = a->roots[r].node;
-    visit(context, nodes, a->root_count);
-    free(nodes);
-  }
-  visit_program(&p->step, visit, context);
-  visit_program(&p->observe, visit, context);
+  for (int task = 0; task < PROGRAM_BOUNDS; task++)
+    for (int k = 0; k < p->programs[task].pass_count; k++) {
+      const program_pass *pass = &p->programs[task].passes[k];
+      for (int s = 0; s < pass->segment_count; s++)
+        visit(context, &pass->segments[s]);
+    }
 }
 
 bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {
@@ -53,13 +45,12 @@ typedef struct hoisting {
   unsigned char *hoisted;
 } hoisting;
 
-static void mark_hoisted_of_roots(void *context, const ir_node *roots, int root_count) {
+static void mark_hoisted_of_roots(void *context, const segment *a) {
   const hoisting *h = context;
   const ir *g = h->graph;
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
-  ir_mark(g, roots, root_count, needed);
-  for (int k = 0; k < root_count; k++)
-    mark_hoisted(g, roots[k], h->hoisted);
+  unsigned char *needed = segment_needed(g, a);
+  for (int k = 0; k < a->root_count; k++)
+    mark_hoisted(g, a->roots[k].node, h->hoisted);
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_is_uniform(g, n)) continue;
     for (int k = 0; k < ir_arity(ir_operation(g, n)); k++)
@@ -81,11 +72,24 @@ void plan_hoist(kernel_plan *p) {
   free(hoisted);
 }
 
-ir_cost plan_cost(const kernel_plan *p, const pass *a) {
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, ON_PARTICLE);
+ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least) {
+  ir_node *nodes = segment_values(a);
+  ir_cost cost = ir_count_cost(p->graph, nodes, a->root_count, at_least);
   free(nodes);
   return cost;
+}
+
+/* Of families what is done once for both ends counts half. */
+void plan_count_cost(kernel_plan *p) {
+  const bool strips = p->form == FORM_STRIPS;
+  const kernel_program *step = &p->programs[PROGRAM_STEP];
+  for (int k = 0; k < step->pass_count; k++)
+    for (int s = 0; s < step->passes[k].segment_count; s++) {
+      const segment *a = &step->passes[k].segments[s];
+      if (a->kind == OVER_PARTICLES) continue;
+      const ir_cost cost = plan_cost(p, a, strips ? ON_PARTICLE : ON_BOND);
+      const double part = strips || a->kind == OVER_NEIGHBOURS ? 1 : 0.5;
+      p->flops_per_bond += part * (cost.additions + cost.multiplications + cost.selects);
+      p->divisions_per_bond += part * cost.divisions;
+    }
 }

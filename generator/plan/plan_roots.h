@@ -1,11 +1,14 @@
-/* The roots of a plan: what its strips and segments compute. */
+/* The roots of a plan: what the segments of its programs compute. */
 #ifndef PERILAT_GENERATOR_PLAN_ROOTS_H
 #define PERILAT_GENERATOR_PLAN_ROOTS_H
 
 #include "generator/plan/plan.h"
 
-/* Every root of the plan that a strip or a segment computes, in order. */
-typedef void (*plan_visitor)(void *context, const ir_node *roots, int root_count);
+/* A program of one pass with one segment; its segment. */
+segment *plan_single(kernel_plan *p, program_task task, const char *name, segment_kind kind);
+
+/* Every segment of the plan but that of bounds, in order. */
+typedef void (*plan_visitor)(void *context, const segment *a);
 void plan_visit(const kernel_plan *p, plan_visitor visit, void *context);
 
 /* Whether forces or new fields depend on the stretch rate. */
@@ -13,7 +16,9 @@ bool plan_reads_rates(const kernel_plan *p, const lowered_law *step);
 
 /* Chooses the uniforms, once all roots are known. */
 void plan_hoist(kernel_plan *p);
-/* What the roots of a pass cost for each bond. */
-ir_cost plan_cost(const kernel_plan *p, const pass *a);
+/* What the roots of a segment cost each time: operations placed `at_least` so locally. */
+ir_cost plan_cost(const kernel_plan *p, const segment *a, placement at_least);
+/* What a step costs for each bond: of a strip, or of either side of it. */
+void plan_count_cost(kernel_plan *p);
 
 #endif

@@ -12,15 +12,6 @@
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/plan_roots.h"
 
-static const char *const pass_names[PASS_COUNT] = {
-#define X(pass, member, task) [pass] = #member,
-    STRIP_PASSES(X)
-#undef X
-        [PASS_STATES] = "states",
-    [PASS_TANGENT] = "tangent",
-    [PASS_BOUNDS] = "bounds",
-};
-
 typedef struct planner {
   kernel_plan *plan;
   lowered_law step;   /* protectable, reciprocals shared */
@@ -143,7 +134,7 @@ static seen_law see_law(planner *p) {
   ir *g = p->plan->graph;
   const law *l = p->plan->law;
   arena *memory = p->plan->memory;
-  const bond_kinematics k = kinematics_bond(g, p->plan->kind == PL_MICROPOLAR, l->twists);
+  const bond_kinematics k = kinematics_bond(g, plan_kind(p->plan) == PL_MICROPOLAR, l->twists);
   seen_law t = {.step = p->step};
   const size_t most = (size_t)(PL_STATE_INPUTS + 1 + p->plan->variation.varying_count);
   ir_node *from = arena_alloc(memory, most * sizeof *from);
@@ -180,55 +171,42 @@ static ir_node with_new_fields(planner *p, const seen_law *t, ir_node n) {
   return result;
 }
 
-/* --- passes ----------------------------------------------------------------------------------- */
+/* --- programs --------------------------------------------------------------------------------- */
 
-static pass *begin_pass(kernel_plan *p, pass_kind kind, int most_roots) {
-  pass *a = &p->passes[kind];
-  a->kind = kind;
-  a->name = pass_names[kind];
-  a->roots = arena_alloc(p->memory, ((size_t)most_roots + 1) * sizeof *a->roots);
-  a->root_count = 0;
-  return a;
+static void want(kernel_plan *p, segment *a, ir_node node, segment_target target, int index) {
+  segment_add(p->memory, a,
+              (segment_root){.node = node, .target = target, .over = a->kind, .index = index});
 }
 
-static void write_root(pass *a, ir_node node, pass_target target, int index) {
-  a->roots[a->root_count++] = (pass_root){node, target, index};
-}
-
-static void plan_step(planner *p, const seen_law *t, pass_kind kind) {
-  int fields = p->plan->law->fields.count;
-  pass *a = begin_pass(p->plan, kind, PL_MAX_PLANES + fields + 2);
+static void plan_step(planner *p, const seen_law *t, segment *a) {
   const ir_node planes[] = {t->force.f_x, t->force.f_y, t->force.moment_i, t->force.moment_j,
                             t->force.twisting};
   for (int k = 0; k < p->plan->force_planes; k++)
-    write_root(a, planes[k], TO_FORCE, k);
-  for (int k = 0; k < fields; k++)
-    write_root(a, t->step.fields[k], TO_FIELD, k);
+    want(p->plan, a, planes[k], TO_FORCE, k);
+  for (int k = 0; k < p->plan->law->fields.count; k++)
+    want(p->plan, a, t->step.fields[k], TO_FIELD, k);
 }
 
 /* Energy lost to damage and plastic flow: what the bond held with the old fields less what it holds
    with the new ones, both at the present deformation. Lost to rate terms: their power over the
    step. */
-static void plan_ledger(planner *p, const seen_law *t, pass_kind kind) {
+static void plan_ledger(planner *p, const seen_law *t, segment *a) {
   ir *g = p->plan->graph;
-  plan_step(p, t, kind);
-  pass *a = &p->plan->passes[kind];
+  plan_step(p, t, a);
   ir_node kept = with_new_fields(p, t, t->stored), zero = ir_constant(g, 0);
   ir_node lost = kept == t->stored ? zero : ir_sub(g, t->stored, kept);
   ir_node rate_lost = zero;
   if (t->rate_power != IR_NONE)
     rate_lost =
         ir_mul(g, with_new_fields(p, t, t->rate_power), kinematics_input(g, ENDS_TIME_STEP));
-  write_root(a, lost, TO_DISSIPATED_STATE, 0);
-  write_root(a, rate_lost, TO_DISSIPATED_RATE, 0);
+  want(p->plan, a, lost, TO_DISSIPATED_STATE, 0);
+  want(p->plan, a, rate_lost, TO_DISSIPATED_RATE, 0);
 }
 
-static void plan_observe(planner *p, const seen_law *t, pass_kind kind) {
-  int outputs = p->plan->law->outputs.count;
-  pass *a = begin_pass(p->plan, kind, 1 + outputs);
-  write_root(a, t->stored, TO_OBSERVED, 0);
-  for (int k = 0; k < outputs; k++)
-    write_root(a, t->outputs[k], TO_OBSERVED, 1 + k);
+static void plan_observe(planner *p, const seen_law *t, segment *a) {
+  want(p->plan, a, t->stored, TO_OBSERVED, 0);
+  for (int k = 0; k < p->plan->law->outputs.count; k++)
+    want(p->plan, a, t->outputs[k], TO_OBSERVED, 1 + k);
 }
 
 /* The step law of a bond that is not protected, and not twisted. */
@@ -245,13 +223,13 @@ static lowered_law unprotected_step(planner *p) {
 }
 
 static void plan_states(planner *p, const lowered_law *bare) {
-  int fields = p->plan->law->fields.count;
-  pass *a = begin_pass(p->plan, PASS_STATES, PL_STATE_RESULTS + fields);
+  segment *a = plan_single(p->plan, PROGRAM_STATES, "states", OVER_BONDS);
   ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
-    write_root(a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT, k);
-  for (int k = 0; k < fields; k++)
-    write_root(a, bare->fields[k], TO_OUT, PL_STATE_RESULTS + k);
+    want(p->plan, a, results[k] == IR_NONE ? ir_constant(p->plan->graph, 0) : results[k], TO_OUT,
+         k);
+  for (int k = 0; k < p->plan->law->fields.count; k++)
+    want(p->plan, a, bare->fields[k], TO_OUT, PL_STATE_RESULTS + k);
 }
 
 /* d(result)/d(stretch): the present length follows the stretch, L = s (1 + stretch). */
@@ -264,26 +242,26 @@ static ir_node slope(ir *g, ir_node result, builtin_quantity by) {
 
 static void plan_tangent(planner *p, const lowered_law *bare) {
   ir *g = p->plan->graph;
-  pass *a = begin_pass(p->plan, PASS_TANGENT, PL_TANGENTS);
+  segment *a = plan_single(p->plan, PROGRAM_TANGENT, "tangent", OVER_BONDS);
   ir_node results[PL_STATE_RESULTS] = {bare->N, bare->M_i[0], bare->M_j[0]};
   for (int k = 0; k < PL_STATE_RESULTS; k++)
     for (int q = 0; q < PL_STATE_RATES; q++) {
       ir_node d = results[k] == IR_NONE ? ir_constant(g, 0) : slope(g, results[k], law_motion[q]);
       rewrite_zero(g, &d, 1, NULL, 0, &d);
-      write_root(a, d, TO_OUT, k * PL_STATE_RATES + q);
+      want(p->plan, a, d, TO_OUT, k * PL_STATE_RATES + q);
     }
 }
 
 bool plan_bounds(kernel_plan *p, diagnostics *d) {
   const law *l = p->law;
-  pass *a = begin_pass(p, PASS_BOUNDS, 2 * l->parameters.count);
+  segment *a = plan_single(p, PROGRAM_BOUNDS, "bounds", OVER_BODY);
   for (int k = 0; k < l->parameters.count; k++) {
     const bounds *in = &l->parameters.items[k]->declared->in;
     ir_node lower = lower_bound(p->graph, l, in->lower, -INFINITY, d);
     ir_node upper = lower_bound(p->graph, l, in->upper, INFINITY, d);
     if (lower == IR_NONE || upper == IR_NONE) return false;
-    write_root(a, lower, TO_LOWER, k);
-    write_root(a, upper, TO_UPPER, k);
+    want(p, a, lower, TO_LOWER, k);
+    want(p, a, upper, TO_UPPER, k);
   }
   return true;
 }
@@ -302,11 +280,11 @@ static bool lower_both(planner *p, diagnostics *d) {
 bool plan_strips(kernel_plan *plan, diagnostics *d) {
   planner p = {.plan = plan};
   if (!lower_both(&p, d)) return false;
-  static void (*const plan_strip[])(planner *, const seen_law *, pass_kind) = {
-      [STRIP_STEP] = plan_step, [STRIP_LEDGER] = plan_ledger, [STRIP_OBSERVE] = plan_observe};
+  static void (*const plan_strip[])(planner *, const seen_law *, segment *) = {
+      [PROGRAM_STEP] = plan_step, [PROGRAM_LEDGER] = plan_ledger, [PROGRAM_OBSERVE] = plan_observe};
   const seen_law seen = see_law(&p);
-#define X(pass, member, task) plan_strip[task](&p, &seen, pass);
-  STRIP_PASSES(X)
+#define X(task, member) plan_strip[task](&p, &seen, plan_single(plan, task, #member, OVER_BONDS));
+  STRIP_PROGRAMS(X)
 #undef X
   lowered_law bare = unprotected_step(&p);
   plan->stores = plan->law->nonconservative == NULL;

@@ -1,4 +1,4 @@
-/* The passes of a law of bonds: what is done over strips, and state by state. */
+/* The programs of a law of bonds: what is done over strips, and state by state. */
 #ifndef PERILAT_GENERATOR_PLAN_STRIPS_H
 #define PERILAT_GENERATOR_PLAN_STRIPS_H
 
@@ -6,7 +6,7 @@
 
 /* Fills in a plan of strips. False after a diagnostic. */
 bool plan_strips(kernel_plan *plan, diagnostics *d);
-/* Bounds of parameters as PASS_BOUNDS, of any law. False after a diagnostic. */
+/* Bounds of parameters as PROGRAM_BOUNDS, of any law. False after a diagnostic. */
 bool plan_bounds(kernel_plan *p, diagnostics *d);
 
 #endif

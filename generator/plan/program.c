@@ -38,8 +38,7 @@ static int level_of(builder *b, ir_node n) {
 typedef struct pass_view {
   builder *b;
   int now;
-  const segment_root *roots; /* [root_count] of the program */
-  int root_count;
+  const segment *wanted; /* of the program */
   node_map seen, parity; /* parity + 1 of what a sum adds up; of sums as the pass sees them */
 } pass_view;
 
@@ -47,9 +46,11 @@ typedef struct pass_view {
    read; or NULL. */
 static const segment_root *field_before(const pass_view *v, ir_node n) {
   if (v->b->sharing != SHARE_PAIRS) return NULL;
-  for (int k = 0; k < v->root_count; k++)
-    if (v->roots[k].node == n && v->roots[k].target == TO_NEIGHBOUR_FIELD)
-      return level_of(v->b, n) < v->now ? &v->roots[k] : NULL;
+  for (int k = 0; k < v->wanted->root_count; k++) {
+    const segment_root *r = &v->wanted->roots[k];
+    if (r->node == n && r->target == TO_FIELD && r->over == OVER_NEIGHBOURS)
+      return level_of(v->b, n) < v->now ? r : NULL;
+  }
   return NULL;
 }
 
@@ -82,64 +83,73 @@ static ir_node seen_in_pass(pass_view *v, ir_node n) {
 
 /* --- the whole -------------------------------------------------------------------------------- */
 
-static void build_pass(builder *b, family_pass *pass, int now, const segment_root *roots,
-                       int root_count) {
-  pass_view v = {.b = b, .now = now, .roots = roots, .root_count = root_count};
-  segment_root *wanted =
-      must_alloc(((size_t)root_count + MOST_LINKS + (size_t)b->shared_count) * sizeof *wanted);
-  int count = 0, links = b->link_count;
-  for (int k = 0; k < root_count; k++)
-    if (level_of(b, roots[k].node) == now) {
-      wanted[count] = roots[k];
-      if (b->sharing == SHARE_PAIRS)
-        wanted[count].parity = program_parity_of_root(b, roots[k].node);
-      count++;
-    }
+/* What a pass leaves to later ones. */
+static void want_links(builder *b, segment *wanted, int now, int links) {
   for (int k = 0; k < links; k++)
     if (level_of(b, b->link[k]) == now)
-      wanted[count++] =
-          (segment_root){.node = b->link[k],
-                         .target = is_of_one_particle(b->g, b->link[k]) ? TO_LINK : TO_BOND_LINK,
-                         .index = b->link_number[k]};
+      segment_add(b->memory, wanted,
+                  (segment_root){.node = b->link[k],
+                                 .target = TO_LINK,
+                                 .over = is_of_one_particle(b->g, b->link[k]) ? OVER_PARTICLES
+                                                                              : OVER_NEIGHBOURS,
+                                 .index = b->link_number[k]});
   for (int k = 0; k < b->shared_count; k++)
     if (level_of(b, b->shared[k]) == now)
-      wanted[count++] =
-          (segment_root){.node = b->shared[k], .target = TO_SHARED, .index = b->first_shared + k};
-  for (int k = 0; k < count; k++) {
-    bool of_link = wanted[k].target == TO_LINK && is_leaf(b->g, wanted[k].node);
-    if (!of_link) wanted[k].node = seen_in_pass(&v, wanted[k].node);
-  }
-  program_schedule(b->g, b->memory, pass, wanted, count, &v.parity, b->sharing == SHARE_PAIRS);
-  map_clear(&v.seen);
-  map_clear(&v.parity);
-  free(wanted);
+      segment_add(b->memory, wanted,
+                  (segment_root){.node = b->shared[k],
+                                 .target = TO_SHARED,
+                                 .over = OVER_BONDS,
+                                 .index = b->first_shared + k});
 }
 
-void program_build(family_program *out, const char *name, ir *g, arena *memory,
-                   const segment_root *roots, int root_count, const program_motion *motion,
-                   program_sharing sharing, program_links *links) {
+static void build_pass(builder *b, program_pass *pass, int now, const segment *roots) {
+  const bool pairs = b->sharing == SHARE_PAIRS;
+  const int links = b->link_count;
+  pass_view v = {.b = b, .now = now, .wanted = roots};
+  segment wanted = {.root_count = 0};
+  for (int k = 0; k < roots->root_count; k++) {
+    segment_root r = roots->roots[k];
+    if (level_of(b, r.node) != now) continue;
+    if (pairs) r.parity = program_parity_of_root(b, r.node);
+    segment_add(b->memory, &wanted, r);
+  }
+  want_links(b, &wanted, now, links);
+  for (int k = 0; k < wanted.root_count; k++) {
+    segment_root *r = &wanted.roots[k];
+    const bool of_link =
+        r->target == TO_LINK && r->over == OVER_PARTICLES && is_leaf(b->g, r->node);
+    if (!of_link) r->node = seen_in_pass(&v, r->node);
+  }
+  program_schedule(b->g, b->memory, pass, &wanted, &v.parity, pairs);
+  map_clear(&v.seen);
+  map_clear(&v.parity);
+}
+
+void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
+                   const segment *wanted, const program_motion *motion, program_sharing sharing,
+                   program_links *links) {
   /* What other programs leave stays as it is, so that what a pass may rely on where no run comes
      stays true. */
   builder b = {.g = g, .memory = memory, .sharing = sharing, .links = *links};
   b.link = arena_alloc(memory, MOST_LINKS * sizeof *b.link);
   b.link_number = arena_alloc(memory, MOST_LINKS * sizeof *b.link_number);
-  segment_root *own = arena_alloc(memory, ((size_t)root_count + 1) * sizeof *own);
+  segment own = {.root_count = 0};
   int last = 0;
-  for (int k = 0; k < root_count; k++) {
-    own[k] = roots[k];
-    own[k].node = program_resolve(&b, roots[k].node);
+  for (int k = 0; k < wanted->root_count; k++) {
+    segment_add(memory, &own, wanted->roots[k]);
+    own.roots[k].node = program_resolve(&b, wanted->roots[k].node);
   }
-  program_substitute(&b, own, root_count, motion->from, motion->to, motion->count);
-  if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) program_share(&b, own, root_count);
-  for (int k = 0; k < root_count; k++) {
-    int level = level_of(&b, own[k].node);
+  program_substitute(&b, &own, motion->from, motion->to, motion->count);
+  if (sharing != SHARE_NOTHING && sharing != SHARE_PAIRS) program_share(&b, &own);
+  for (int k = 0; k < own.root_count; k++) {
+    int level = level_of(&b, own.roots[k].node);
     last = level > last ? level : last;
   }
-  *out = (family_program){.name = name, .pass_count = last + 1};
+  *out = (kernel_program){.name = name, .pass_count = last + 1};
   out->passes = arena_alloc(memory, (size_t)out->pass_count * sizeof *out->passes);
   memset(out->passes, 0, (size_t)out->pass_count * sizeof *out->passes);
   for (int p = last; p >= 0; p--) /* a pass may ask earlier ones for more links */
-    build_pass(&b, &out->passes[p], p, own, root_count);
+    build_pass(&b, &out->passes[p], p, &own);
   assert(!b.shared_count || b.first_shared + b.shared_count <= MOST_SHARED);
   if (b.shared_count) program_find_vanishing(g, out);
   if (b.links.of_particles > links->of_particles) links->of_particles = b.links.of_particles;

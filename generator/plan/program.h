@@ -35,16 +35,16 @@ typedef struct program_motion {
   int count;
 } program_motion;
 
-/* Makes a program of `roots`, which speak of one particle and of the bond to one neighbour in the
-   terms of lower.h; their targets are the final ones (TO_PARTICLE_..., TO_NEIGHBOUR_...).
+/* Makes a program of the roots of `wanted`, over particles and over neighbours, which speak of one
+   particle and of the bond to one neighbour in the terms of lower.h.
    IR_NEIGHBOUR(x) becomes what the neighbour computes for x, to the bit: values of particles that
    go over a family are links, and so are values toward a neighbour that are dear; all others are
    evaluated again with both sides exchanged. Motion is substituted after that, since stretch and
    length are the same from either side. `memory` holds the program; *links is raised to what it
    needs. What is the same from either end of a bond, or differs by its sign, is evaluated once
    where that pays, as `sharing` says. */
-void program_build(family_program *out, const char *name, ir *g, arena *memory,
-                   const segment_root *roots, int root_count, const program_motion *motion,
-                   program_sharing sharing, program_links *links);
+void program_build(kernel_program *out, const char *name, ir *g, arena *memory,
+                   const segment *wanted, const program_motion *motion, program_sharing sharing,
+                   program_links *links);
 
 #endif

@@ -1,10 +1,11 @@
 #include "generator/plan/program_absent.h"
 
 #include "generator/plan/node_map.h"
+#include "generator/plan/program_facts.h"
 
 typedef struct absent_search {
   const ir *g;
-  family_program *program;
+  kernel_program *program;
   node_map *finite, *zero; /* [passes] of nodes as the pass sees them */
 } absent_search;
 
@@ -13,25 +14,10 @@ static bool is_shared(const ir *g, ir_node n) {
          (ir_input_source(g, n) == IR_FROM_SHARED || ir_input_source(g, n) == IR_FROM_SHARED_ODD);
 }
 
-/* The root that writes to `target`, number `index`, and its pass: the last one before *pass; NULL:
-   none. */
-static segment_root *writer_of(const absent_search *s, segment_target target, int index,
-                               int *pass) {
-  while (--*pass >= 0) {
-    const family_pass *p = &s->program->passes[*pass];
-    for (int k = 0; k < p->segment_count; k++)
-      for (int r = 0; r < p->segments[k].root_count; r++) {
-        segment_root *root = &p->segments[k].roots[r];
-        if (root->target == target && root->index == index) return root;
-      }
-  }
-  return NULL;
-}
-
 static bool is_finite(absent_search *s, int pass, ir_node n);
 
 static bool is_finite_slot(absent_search *s, int pass, int slot) {
-  const family_pass *p = &s->program->passes[pass];
+  const program_pass *p = &s->program->passes[pass];
   for (int k = 0; k < p->segment_count; k++)
     for (int r = 0; r < p->segments[k].root_count; r++) {
       const segment_root *root = &p->segments[k].roots[r];
@@ -56,7 +42,7 @@ static bool is_finite_input(absent_search *s, int pass, ir_node n) {
     return is_finite_slot(s, pass, index);
   case IR_FROM_LINK:
   case IR_FROM_NEIGHBOUR_LINK: {
-    const segment_root *root = writer_of(s, TO_LINK, index, &pass);
+    const segment_root *root = program_writer(s->program, IR_FROM_LINK, index, &pass);
     return root && is_finite(s, pass, root->node);
   }
   default:
@@ -109,7 +95,8 @@ static void leave_zeros(absent_search *s, int pass, ir_node n) {
   for (ir_node m = 0; m <= n; m++) {
     int writer = pass;
     if (!needed[m] || !is_shared(s->g, m)) continue;
-    segment_root *root = writer_of(s, TO_SHARED, ir_input_index(s->g, m), &writer);
+    segment_root *root =
+        program_writer(s->program, IR_FROM_SHARED, ir_input_index(s->g, m), &writer);
     if (is_zero(s, writer, root->node))
       leave_zeros(s, writer, root->node);
     else
@@ -131,7 +118,7 @@ static void look_at_segment(absent_search *s, int pass, segment *a) {
   }
 }
 
-void program_find_vanishing(const ir *g, family_program *p) {
+void program_find_vanishing(const ir *g, kernel_program *p) {
   absent_search s = {.g = g,
                      .program = p,
                      .finite = must_calloc((size_t)p->pass_count, sizeof *s.finite),

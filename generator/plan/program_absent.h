@@ -11,6 +11,6 @@
 
 /* Finds the sums that need not ask for absent bonds, and the shared values that owners leave as 0
    there (segment_root.vanishes). */
-void program_find_vanishing(const ir *g, family_program *p);
+void program_find_vanishing(const ir *g, kernel_program *p);
 
 #endif

@@ -6,23 +6,23 @@
 
 /* --- bonds that add to both ends -------------------------------------------------------------- */
 
-bool program_is_paired(const family_pass *p) {
+bool program_is_paired(const program_pass *p) {
   for (int k = 0; k < p->segment_count; k++)
     if (p->segments[k].kind == OVER_PAIRS) return true;
   return false;
 }
 
-bool program_pairs_field(const family_program *p, int field) {
+bool program_pairs_field(const kernel_program *p, int field) {
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++) {
       const segment *a = &p->passes[k].segments[s];
       for (int r = 0; r < a->root_count && a->kind == OVER_PAIRS; r++)
-        if (a->roots[r].target == TO_NEIGHBOUR_FIELD && a->roots[r].index == field) return true;
+        if (a->roots[r].target == TO_FIELD && a->roots[r].index == field) return true;
     }
   return false;
 }
 
-int program_sum_count(const family_program *p) {
+int program_sum_count(const kernel_program *p) {
   int most = 0;
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++) {
@@ -33,7 +33,7 @@ int program_sum_count(const family_program *p) {
   return most;
 }
 
-int program_constant_sums(const ir *g, const family_program *p, const segment *before) {
+int program_constant_sums(const ir *g, const kernel_program *p, const segment *before) {
   int count = 0;
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++) {
@@ -49,10 +49,8 @@ int program_constant_sums(const ir *g, const family_program *p, const segment *b
 
 /* Marks the conditions that the segment expects to hold; false without one. */
 static bool mark_expected(const ir *g, const segment *a, unsigned char *conditions) {
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  unsigned char *needed = segment_needed(g, a);
   bool any = false;
-  for (int k = 0; k < a->root_count; k++)
-    ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_is_uniform(g, n) || !ir_is_expected_choice(g, n)) continue;
     conditions[ir_operand(g, n, 0)] = 1;
@@ -62,7 +60,7 @@ static bool mark_expected(const ir *g, const segment *a, unsigned char *conditio
   return any;
 }
 
-const segment *program_asks(const ir *g, const family_program *p) {
+const segment *program_asks(const ir *g, const kernel_program *p) {
   unsigned char *conditions = must_calloc((size_t)ir_count(g) + 1, 1);
   const segment *found = NULL;
   for (int k = 0; k < p->pass_count && !found; k++)
@@ -86,7 +84,7 @@ static bool is_of_motion(const ir *g, ir_node n) {
   return is;
 }
 
-bool program_is_told(const ir *g, const family_program *p, const segment *a) {
+bool program_is_told(const ir *g, const kernel_program *p, const segment *a) {
   const segment *asks = program_asks(g, p);
   if (!asks || asks == a) return false;
   unsigned char *asked = must_calloc((size_t)ir_count(g) + 1, 1),
@@ -102,7 +100,7 @@ bool program_is_told(const ir *g, const family_program *p, const segment *a) {
 
 /* --- what passes read of each other ----------------------------------------------------------- */
 
-uint64_t program_shared_by(const family_pass *p) {
+uint64_t program_shared_by(const program_pass *p) {
   uint64_t shared = 0;
   for (int k = 0; k < p->segment_count; k++)
     for (int r = 0; r < p->segments[k].root_count; r++)
@@ -120,17 +118,15 @@ static bool is_shared(ir_source from) {
 }
 
 static bool segment_reads(const ir *g, const segment *a, bool (*wanted)(ir_source from)) {
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  unsigned char *needed = segment_needed(g, a);
   bool does = false;
-  for (int k = 0; k < a->root_count; k++)
-    ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g) && !does; n++)
     does = needed[n] && ir_operation(g, n) == IR_INPUT && wanted(ir_input_source(g, n));
   free(needed);
   return does;
 }
 
-unsigned program_at_hand(const ir *g, const family_program *p) {
+unsigned program_at_hand(const ir *g, const kernel_program *p) {
   unsigned others = 0;
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++)
@@ -138,7 +134,7 @@ unsigned program_at_hand(const ir *g, const family_program *p) {
   return ~others & ((1u << p->pass_count) - 1);
 }
 
-unsigned program_upward(const ir *g, const family_program *p) {
+unsigned program_upward(const ir *g, const kernel_program *p) {
   unsigned others = 0;
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++) {
@@ -150,20 +146,24 @@ unsigned program_upward(const ir *g, const family_program *p) {
   return ~others & ((1u << p->pass_count) - 1);
 }
 
-/* The last pass before `pass` that leaves what the input reads; -1: no pass does. */
-static int writer_of(const ir *g, const family_program *p, ir_node input, int pass) {
-  static const segment_target targets[IR_SOURCE_COUNT] = {
-      [IR_FROM_LINK] = TO_LINK,           [IR_FROM_NEIGHBOUR_LINK] = TO_LINK,
-      [IR_FROM_BOND_LINK] = TO_BOND_LINK, [IR_FROM_NEIGHBOUR_BOND_LINK] = TO_BOND_LINK,
-      [IR_FROM_SHARED] = TO_SHARED,       [IR_FROM_SHARED_ODD] = TO_SHARED};
-  const segment_target target = targets[ir_input_source(g, input)];
-  for (int k = pass - 1; k >= 0 && target != TO_SLOT; k--)
-    for (int s = 0; s < p->passes[k].segment_count; s++)
-      for (int r = 0; r < p->passes[k].segments[s].root_count; r++) {
-        const segment_root *root = &p->passes[k].segments[s].roots[r];
-        if (root->target == target && root->index == ir_input_index(g, input)) return k;
-      }
-  return -1;
+segment_root *program_writer(const kernel_program *p, ir_source from, int index, int *pass) {
+  static const struct {
+    segment_kind over; /* OVER_BODY: no pass leaves it */
+    segment_target target;
+  } left[IR_SOURCE_COUNT] = {[IR_FROM_LINK] = {OVER_PARTICLES, TO_LINK},
+                             [IR_FROM_NEIGHBOUR_LINK] = {OVER_PARTICLES, TO_LINK},
+                             [IR_FROM_BOND_LINK] = {OVER_NEIGHBOURS, TO_LINK},
+                             [IR_FROM_NEIGHBOUR_BOND_LINK] = {OVER_NEIGHBOURS, TO_LINK},
+                             [IR_FROM_SHARED] = {OVER_BONDS, TO_SHARED},
+                             [IR_FROM_SHARED_ODD] = {OVER_BONDS, TO_SHARED}};
+  while (left[from].over != OVER_BODY && --*pass >= 0)
+    for (int s = 0; s < p->passes[*pass].segment_count; s++) {
+      const segment *a = &p->passes[*pass].segments[s];
+      for (int r = 0; r < a->root_count && a->kind == left[from].over; r++)
+        if (a->roots[r].target == left[from].target && a->roots[r].index == index)
+          return &a->roots[r];
+    }
+  return NULL;
 }
 
 static int reaches_behind(unsigned at_hand, int from, int to) {
@@ -175,18 +175,16 @@ static int reaches_behind(unsigned at_hand, int from, int to) {
 
 /* Reaches of rows from a link of an earlier pass, the farthest that the segment reads, to where
    that pass now is. */
-static int reaches_of_segment(const ir *g, const family_program *p, unsigned at_hand, int pass,
+static int reaches_of_segment(const ir *g, const kernel_program *p, unsigned at_hand, int pass,
                               const segment *a) {
-  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  unsigned char *needed = segment_needed(g, a);
   int most = 0;
-  for (int k = 0; k < a->root_count; k++)
-    ir_mark(g, &a->roots[k].node, 1, needed);
   for (ir_node n = 0; n < ir_count(g); n++) {
     if (!needed[n] || ir_operation(g, n) != IR_INPUT) continue;
     const ir_source from = ir_input_source(g, n);
-    const int writer = writer_of(g, p, n, pass);
+    int writer = pass;
     const bool own = from == IR_FROM_LINK || from == IR_FROM_BOND_LINK || a->kind == OVER_BONDS;
-    if (writer < 0) continue;
+    if (!program_writer(p, from, ir_input_index(g, n), &writer)) continue;
     const int reaches = reaches_behind(at_hand, writer, pass) + !own;
     most = reaches > most ? reaches : most;
   }
@@ -194,7 +192,7 @@ static int reaches_of_segment(const ir *g, const family_program *p, unsigned at_
   return most;
 }
 
-int program_reaches_spared(const ir *g, const family_program *p) {
+int program_reaches_spared(const ir *g, const kernel_program *p) {
   const unsigned at_hand = program_at_hand(g, p);
   int most = 0;
   for (int k = 0; k < p->pass_count; k++)

@@ -222,20 +222,19 @@ ir_node program_resolve(builder *b, ir_node n) {
 
 /* --- substitution ----------------------------------------------------------------------------- */
 
-void program_substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
-                        const ir_node *to, int pair_count) {
-  int count = root_count + b->link_count;
+void program_substitute(builder *b, segment *wanted, const ir_node *from, const ir_node *to,
+                        int pair_count) {
+  const int root_count = wanted->root_count, count = root_count + b->link_count;
   ir_node *all = must_alloc(((size_t)count + 1) * sizeof *all);
   for (int k = 0; k < root_count; k++)
-    all[k] = roots[k].node;
+    all[k] = wanted->roots[k].node;
   for (int k = 0; k < b->link_count; k++)
     all[root_count + k] = b->link[k];
   ir_substitute(b->g, all, count, from, to, pair_count, all);
   map_clear(&b->linked);
   map_clear(&b->mirrored);
   map_clear(&b->reduced);
-  for (int k = 0; k < root_count; k++)
-    roots[k].node = all[k];
+  segment_replace(wanted, all);
   for (int k = 0; k < b->link_count; k++) {
     b->link[k] = all[root_count + k];
     map_set(&b->linked, b->link[k], k);

@@ -26,7 +26,7 @@ int program_cost_again(const ir *g, ir_node n, int most);
 ir_node program_made_again(ir *g, ir_node n, const ir_node *operand);
 
 /* Puts to[k] in place of from[k] in the roots and in what links hold. */
-void program_substitute(builder *b, segment_root *roots, int root_count, const ir_node *from,
-                        const ir_node *to, int pair_count);
+void program_substitute(builder *b, segment *wanted, const ir_node *from, const ir_node *to,
+                        int pair_count);
 
 #endif

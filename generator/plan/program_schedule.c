@@ -8,7 +8,7 @@
 typedef struct scheduler {
   ir *g;
   arena *memory;
-  family_pass *pass;
+  program_pass *pass;
   node_map phase, slot, plane;
   const node_map *parity; /* of sums, as pass_view has it */
   bool pairs;
@@ -40,17 +40,6 @@ static segment *neighbours_in(scheduler *s, int loop) {
   return &s->pass->segments[2 * loop + 1];
 }
 
-static void add_root(scheduler *s, segment *to, segment_root root) {
-  if (to->root_count == to->root_capacity) {
-    int capacity = to->root_capacity ? 2 * to->root_capacity : 8;
-    segment_root *roots = arena_alloc(s->memory, (size_t)capacity * sizeof *roots);
-    if (to->root_count) memcpy(roots, to->roots, (size_t)to->root_count * sizeof *roots);
-    to->roots = roots;
-    to->root_capacity = capacity;
-  }
-  to->roots[to->root_count++] = root;
-}
-
 static segment_target target_of_reduction(ir_op op) {
   return op == IR_FAMILY_SUM ? TO_SUM : op == IR_FAMILY_MAX ? TO_LARGEST : TO_SMALLEST;
 }
@@ -68,15 +57,17 @@ static ir_node slot_of(scheduler *s, ir_node n) {
     map_set(&s->slot, n, slot);
     ir_op op = ir_operation(s->g, n);
     if (ir_is_reduction(op))
-      add_root(
-          s, neighbours_in(s, phase_of(s, n) - 1),
+      segment_add(
+          s->memory, neighbours_in(s, phase_of(s, n) - 1),
           (segment_root){.node = ir_operand(s->g, n, 0),
                          .target = target_of_reduction(op),
+                         .over = OVER_NEIGHBOURS,
                          .index = slot,
                          .parity = map_get(s->parity, n) >= 0 ? map_get(s->parity, n) - 1 : 0});
     else
-      add_root(s, particles_after(s, phase_of(s, n)),
-               (segment_root){.node = n, .target = TO_SLOT, .index = slot});
+      segment_add(
+          s->memory, particles_after(s, phase_of(s, n)),
+          (segment_root){.node = n, .target = TO_SLOT, .over = OVER_PARTICLES, .index = slot});
   }
   return ir_input(s->g, IR_FROM_SLOT, slot, name_of(s, n, "slot", slot), ON_PARTICLE);
 }
@@ -86,8 +77,9 @@ static ir_node plane_of(scheduler *s, ir_node n) {
   if (plane < 0) {
     plane = s->pass->plane_count++;
     map_set(&s->plane, n, plane);
-    add_root(s, neighbours_in(s, phase_of(s, n)),
-             (segment_root){.node = n, .target = TO_PLANE, .index = plane});
+    segment_add(
+        s->memory, neighbours_in(s, phase_of(s, n)),
+        (segment_root){.node = n, .target = TO_PLANE, .over = OVER_NEIGHBOURS, .index = plane});
   }
   return ir_input(s->g, IR_FROM_PLANE, plane, name_of(s, n, "plane", plane), ON_NEIGHBOUR);
 }
@@ -161,11 +153,7 @@ static void view_segment(scheduler *s, segment *a, int loop) {
   map_clear(&v.seen);
 }
 
-static bool is_over_neighbours(segment_target target) {
-  return target >= TO_SUM && target != TO_SHARED;
-}
-
-static void drop_empty_segments(family_pass *p) {
+static void drop_empty_segments(program_pass *p) {
   int kept = 0;
   for (int k = 0; k < p->segment_count; k++)
     if (p->segments[k].root_count) p->segments[kept++] = p->segments[k];
@@ -176,18 +164,15 @@ static void drop_empty_segments(family_pass *p) {
 
 /* Where one end computes a value, products and sums may round once. */
 static void fuse_segment(ir *g, segment *a) {
-  ir_node *nodes = must_alloc(((size_t)a->root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < a->root_count; k++)
-    nodes[k] = a->roots[k].node;
-  rewrite_fused(g, nodes, a->root_count, nodes);
-  for (int k = 0; k < a->root_count; k++)
-    a->roots[k].node = nodes[k];
-  free(nodes);
+  ir_node *values = segment_values(a);
+  rewrite_fused(g, values, a->root_count, values);
+  segment_replace(a, values);
+  free(values);
 }
 
 /* A pass whose one loop over neighbours the two ends of a bond would do alike does it bond by bond:
    what the far end gets is complete when its turn comes. */
-static void pair_ends(ir *g, family_pass *p) {
+static void pair_ends(ir *g, program_pass *p) {
   segment *loop = NULL;
   int sums = 0;
   for (int k = 0; k < p->segment_count; k++) {
@@ -197,13 +182,12 @@ static void pair_ends(ir *g, family_pass *p) {
   }
   for (int k = 0; loop && k < loop->root_count; k++) {
     const segment_root *r = &loop->roots[k];
-    if (!(r->target == TO_SUM && r->parity) && !(r->target == TO_NEIGHBOUR_FIELD && r->parity == 1))
-      return;
+    if (!(r->target == TO_SUM && r->parity) && !(r->target == TO_FIELD && r->parity == 1)) return;
   }
   if (!loop) return;
   loop->kind = OVER_PAIRS;
   for (int k = 0; k < loop->root_count; k++) {
-    loop->roots[k].paired = true;
+    loop->roots[k].over = OVER_PAIRS;
     if (loop->roots[k].target == TO_SUM) loop->roots[k].sum = sums++;
   }
   fuse_segment(g, loop);
@@ -211,11 +195,12 @@ static void pair_ends(ir *g, family_pass *p) {
 
 /* --- the pass --------------------------------------------------------------------------------- */
 
-void program_schedule(ir *g, arena *memory, family_pass *pass, const segment_root *roots,
-                      int root_count, const node_map *parity, bool pairs) {
+void program_schedule(ir *g, arena *memory, program_pass *pass, const segment *wanted,
+                      const node_map *parity, bool pairs) {
   scheduler s = {.g = g, .memory = memory, .pass = pass, .parity = parity, .pairs = pairs};
-  for (int k = 0; k < root_count; k++) {
-    int loops = phase_of(&s, roots[k].node) + is_over_neighbours(roots[k].target);
+  for (int k = 0; k < wanted->root_count; k++) {
+    const segment_root *r = &wanted->roots[k];
+    int loops = phase_of(&s, r->node) + (r->over == OVER_NEIGHBOURS);
     s.loop_count = loops > s.loop_count ? loops : s.loop_count;
   }
   pass->segment_count = 2 * s.loop_count + 2; /* behind them that of the bonds */
@@ -225,12 +210,13 @@ void program_schedule(ir *g, arena *memory, family_pass *pass, const segment_roo
     pass->segments[k].kind = k % 2 ? OVER_NEIGHBOURS : OVER_PARTICLES;
   segment *bonds = &pass->segments[pass->segment_count - 1];
   bonds->kind = OVER_BONDS;
-  for (int k = 0; k < root_count; k++) {
-    int phase = phase_of(&s, roots[k].node);
-    segment *in = roots[k].target == TO_SHARED          ? bonds
-                  : is_over_neighbours(roots[k].target) ? neighbours_in(&s, phase)
-                                                        : particles_after(&s, phase);
-    add_root(&s, in, roots[k]);
+  for (int k = 0; k < wanted->root_count; k++) {
+    const segment_root *r = &wanted->roots[k];
+    const int phase = phase_of(&s, r->node);
+    segment *in = r->over == OVER_BONDS        ? bonds
+                  : r->over == OVER_NEIGHBOURS ? neighbours_in(&s, phase)
+                                               : particles_after(&s, phase);
+    segment_add(memory, in, *r);
   }
   view_segment(&s, bonds, 0);
   for (int k = pass->segment_count - 2; k >= 0; k--)

@@ -108,15 +108,15 @@ static void count_users(builder *b, ir_node n) {
 
 /* Chooses b->shared: of what is dear and the same or opposite from either end of a bond, operands
    first, what is still dear given those before. */
-static void choose_shared(builder *b, const segment_root *roots, int root_count) {
+static void choose_shared(builder *b, const segment *wanted) {
   node_list found = {must_alloc(MOST_LINKS * sizeof(ir_node)), 0};
   node_map seen = {0};
-  for (int k = 0; k < root_count; k++)
-    count_users(b, roots[k].node);
+  for (int k = 0; k < wanted->root_count; k++)
+    count_users(b, wanted->roots[k].node);
   for (int k = 0; k < b->link_count; k++)
     count_users(b, b->link[k]);
-  for (int k = 0; k < root_count; k++)
-    find_shareable(b, roots[k].node, &seen, &found);
+  for (int k = 0; k < wanted->root_count; k++)
+    find_shareable(b, wanted->roots[k].node, &seen, &found);
   for (int k = 0; k < b->link_count; k++)
     find_shareable(b, b->link[k], &seen, &found);
   qsort(found.items, (size_t)found.count, sizeof *found.items, by_number);
@@ -162,12 +162,12 @@ static ir_node product_of(builder *b, const term_list *t, const term_list *other
 }
 
 /* The factors that all components of the force have. */
-static bool find_common(builder *b, const segment_root *roots, int root_count, term_list *common) {
+static bool find_common(builder *b, const segment *wanted, term_list *common) {
   bool any = false;
-  for (int k = 0; k < root_count; k++) {
+  for (int k = 0; k < wanted->root_count; k++) {
     term_list now;
-    if (roots[k].target != TO_PARTICLE_FORCE) continue;
-    if (!factors_of_force(b, &roots[k], &now)) return false;
+    if (wanted->roots[k].target != TO_FORCE) continue;
+    if (!factors_of_force(b, &wanted->roots[k], &now)) return false;
     if (!any) *common = now;
     any = true;
     int kept = 0;
@@ -180,25 +180,25 @@ static bool find_common(builder *b, const segment_root *roots, int root_count, t
 
 /* What all components of the force have as a factor, the same from either end, that no earlier pass
    can know: the force of a bond over its length. IR_NONE: nothing that is worth it. */
-static ir_node common_factor(builder *b, const segment_root *roots, int root_count) {
+static ir_node common_factor(builder *b, const segment *wanted) {
   enum { DEAR = 4 }; /* a store and two loads, of fewer values than it is computed from */
   term_list common = {.count = 0};
-  if (!find_common(b, roots, root_count, &common)) return IR_NONE;
+  if (!find_common(b, wanted, &common)) return IR_NONE;
   const ir_node product = product_of(b, &common, &common, true);
   const bool late = !is_plain(b, product) && cost_beyond(b, product, DEAR) >= DEAR;
   return late && program_parity(b, product) == 1 ? product : IR_NONE;
 }
 
 /* Puts `input` in its place. */
-static void put_factor(builder *b, segment_root *roots, int root_count, ir_node factor,
-                       ir_node input) {
+static void put_factor(builder *b, segment *wanted, ir_node factor, ir_node input) {
   term_list of_factor = {.count = 0}, now;
   if (!program_terms(b, factor, false, 1, &of_factor)) return;
-  for (int k = 0; k < root_count; k++) {
-    if (roots[k].target != TO_PARTICLE_FORCE || !factors_of_force(b, &roots[k], &now)) continue;
+  for (int k = 0; k < wanted->root_count; k++) {
+    if (wanted->roots[k].target != TO_FORCE || !factors_of_force(b, &wanted->roots[k], &now))
+      continue;
     const ir_node rest = product_of(b, &now, &of_factor, false);
-    roots[k].node = ir_make(b->g, IR_FAMILY_SUM,
-                            rest == IR_NONE ? input : ir_mul(b->g, rest, input), IR_NONE, IR_NONE);
+    wanted->roots[k].node = ir_make(
+        b->g, IR_FAMILY_SUM, rest == IR_NONE ? input : ir_mul(b->g, rest, input), IR_NONE, IR_NONE);
   }
 }
 
@@ -213,23 +213,23 @@ static ir_node shared_input(builder *b, int k) {
 
 /* What follows from links and is the same from either end, too: its owner computes it in a pass of
    its own. In the plane that pass costs more than the few bonds spare. */
-static void share_factor(builder *b, segment_root *roots, int root_count) {
+static void share_factor(builder *b, segment *wanted) {
   if (b->first_shared + b->shared_count >= MOST_SHARED) return;
-  const ir_node factor = common_factor(b, roots, root_count);
+  const ir_node factor = common_factor(b, wanted);
   if (factor == IR_NONE) return;
   b->shared[b->shared_count++] = factor;
-  put_factor(b, roots, root_count, factor, shared_input(b, b->shared_count - 1));
+  put_factor(b, wanted, factor, shared_input(b, b->shared_count - 1));
 }
 
 /* Values that the ends of bonds share become inputs. */
-void program_share(builder *b, segment_root *roots, int root_count) {
-  choose_shared(b, roots, root_count);
+void program_share(builder *b, segment *wanted) {
+  choose_shared(b, wanted);
   b->first_shared = 2 * b->links.of_bonds;
   ir_node *inputs = must_alloc(((size_t)b->shared_count + 1) * sizeof *inputs);
   for (int k = 0; k < b->shared_count; k++)
     inputs[k] = shared_input(b, k);
-  program_substitute(b, roots, root_count, b->shared, inputs, b->shared_count);
+  program_substitute(b, wanted, b->shared, inputs, b->shared_count);
   free(inputs);
-  if (b->sharing == SHARE_MORE) share_factor(b, roots, root_count);
+  if (b->sharing == SHARE_MORE) share_factor(b, wanted);
   b->links.of_bonds += (b->shared_count + 1) / 2;
 }

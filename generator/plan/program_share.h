@@ -12,6 +12,6 @@
 #include "generator/plan/program_builder.h"
 
 /* Values that the ends of bonds share become inputs of the roots, as b->sharing says. */
-void program_share(builder *b, segment_root *roots, int root_count);
+void program_share(builder *b, segment *wanted);
 
 #endif

@@ -1,6 +1,44 @@
 #include "generator/plan/segment.h"
 
+#include <stdlib.h>
+#include <string.h>
+
 #include "generator/lower/kinematics.h"
+
+/* --- roots ------------------------------------------------------------------------------------ */
+
+void segment_add(arena *memory, segment *a, segment_root root) {
+  if (a->root_count == a->root_capacity) {
+    const int capacity = a->root_capacity ? 2 * a->root_capacity : 8;
+    segment_root *roots = arena_alloc(memory, (size_t)capacity * sizeof *roots);
+    if (a->root_count) memcpy(roots, a->roots, (size_t)a->root_count * sizeof *roots);
+    a->roots = roots;
+    a->root_capacity = capacity;
+  }
+  a->roots[a->root_count++] = root;
+}
+
+ir_node *segment_values(const segment *a) {
+  ir_node *values = must_alloc(((size_t)a->root_count + 1) * sizeof *values);
+  for (int k = 0; k < a->root_count; k++)
+    values[k] = a->roots[k].node;
+  return values;
+}
+
+void segment_replace(segment *a, const ir_node *values) {
+  for (int k = 0; k < a->root_count; k++)
+    a->roots[k].node = values[k];
+}
+
+unsigned char *segment_needed(const ir *g, const segment *a) {
+  unsigned char *needed = must_calloc((size_t)ir_count(g) + 1, 1);
+  ir_node *values = segment_values(a);
+  ir_mark(g, values, a->root_count, needed);
+  free(values);
+  return needed;
+}
+
+/* --- sums of products ------------------------------------------------------------------------- */
 
 /* A constant of the class, or a sum of such and of displacements. */
 static bool is_finite(const ir *g, ir_node n) {
@@ -15,7 +53,7 @@ static bool is_finite(const ir *g, ir_node n) {
 bool segment_fuses(const ir *g, const segment_root *r) {
   if (r->target != TO_SUM || ir_operation(g, r->node) != IR_MUL || ir_is_uniform(g, r->node))
     return false;
-  return !r->paired || is_finite(g, ir_operand(g, r->node, 0)) ||
+  return r->over != OVER_PAIRS || is_finite(g, ir_operand(g, r->node, 0)) ||
          is_finite(g, ir_operand(g, r->node, 1));
 }
 
@@ -25,7 +63,7 @@ int segment_nodes(const ir *g, const segment *a, ir_node *nodes) {
     const segment_root *r = &a->roots[k];
     nodes[k] = r->node;
     if (!segment_fuses(g, r)) continue;
-    const int second = !r->paired || is_finite(g, ir_operand(g, r->node, 1));
+    const int second = r->over != OVER_PAIRS || is_finite(g, ir_operand(g, r->node, 1));
     nodes[k] = ir_operand(g, r->node, 1 - second);
     nodes[count++] = ir_operand(g, r->node, second);
   }

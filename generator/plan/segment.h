@@ -1,7 +1,9 @@
-/* What a program of a law of families is made of: passes of segments, and what segments write. */
+/* What a kernel is made of: programs of passes, passes of segments, and what segments write. A
+   segment computes its roots for one thing after the other: a particle, a neighbour, a bond. */
 #ifndef PERILAT_GENERATOR_SEGMENT_H
 #define PERILAT_GENERATOR_SEGMENT_H
 
+#include "dsl/base/arena.h"
 #include "generator/ir/ir.h"
 
 /* Particles that the segments of a pass take at a time on the interpreter; in C it may be more
@@ -9,37 +11,47 @@
 enum { FAMILY_CHUNK = 64 };
 
 typedef enum segment_kind {
+  OVER_BODY, /* once */
   OVER_PARTICLES,
   OVER_NEIGHBOURS,
-  OVER_BONDS,
-  OVER_PAIRS /* bond by bond: sums of both ends, and fields at both ends */
+  OVER_BONDS, /* of a strip, or those that the particles of a chunk own; single states */
+  OVER_PAIRS  /* bond by bond: sums of both ends, and fields at both ends */
 } segment_kind;
 
-/* What a root of a segment is written to. Over neighbours an absent bond adds nothing to a
-   reduction and gives 0 to a field and to what is observed. */
+/* The kind that computes values of a place for all particles. */
+static inline segment_kind segment_kind_at(placement on) {
+  return on <= ON_PARTICLE ? OVER_PARTICLES : OVER_NEIGHBOURS;
+}
+
+/* What a root of a segment is written to: an array of the segment's particles or bonds, of pl_strip
+   or pl_family, or one toward each of the neighbours. Where a bond is absent a reduction, or a
+   loss, gets nothing; a field of a strip stays; fields toward neighbours, forces and what is
+   observed are 0. */
 typedef enum segment_target {
-  TO_SLOT,              /* slot[index] = node */
-  TO_LINK,              /* link[index] = node */
-  TO_PARTICLE_FIELD,    /* new_field[index] = node */
-  TO_PARTICLE_FORCE,    /* force[index] = node */
-  TO_PARTICLE_OBSERVED, /* observed[index] = node */
-  TO_SUM,               /* slot[index] += node; the slot begins with 0 */
-  TO_LARGEST,           /* slot[index] = max(slot, node); begins with -inf */
-  TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
-  TO_PLANE,             /* plane[index][neighbour] = node */
-  TO_BOND_LINK,         /* bond_link[index][neighbour] = node */
-  TO_SHARED,            /* shared value `index` of an owned bond = node (program_shared_place) */
-  TO_NEIGHBOUR_FIELD,   /* new_field[index][neighbour] = node */
-  TO_NEIGHBOUR_OBSERVED /* observed[index][neighbour] = node */
+  TO_FORCE,            /* force[index] = node */
+  TO_FIELD,            /* field[index] = node, of families new_field */
+  TO_DISSIPATED_STATE, /* dissipated_state += node */
+  TO_DISSIPATED_RATE,  /* dissipated_rate += node */
+  TO_OBSERVED,         /* observed[index] = node */
+  TO_OUT,              /* out[index] = node, behind these new_field: of single states */
+  TO_LOWER,
+  TO_UPPER,    /* lower[index], upper[index] = node; infinite where there is no bound */
+  TO_SLOT,     /* slot[index] = node */
+  TO_SUM,      /* slot[index] += node; the slot begins with 0 */
+  TO_LARGEST,  /* slot[index] = max(slot, node); begins with -inf */
+  TO_SMALLEST, /* slot[index] = min(slot, node); begins with inf */
+  TO_PLANE,    /* plane[index][neighbour] = node */
+  TO_LINK,     /* link[index] = node, or bond_link[index][neighbour] */
+  TO_SHARED    /* shared value `index` of an owned bond = node (program_shared_place) */
 } segment_target;
 
 typedef struct segment_root {
   ir_node node;
   segment_target target;
-  int index;
-  int parity;  /* at the other end of the bond: 1: the same; -1: the opposite; 0: something else */
-  bool paired; /* of OVER_PAIRS */
-  int sum;     /* of those: which pl_family.sum TO_SUM adds to at the far end */
+  segment_kind over; /* what it is written for: its segment's kind */
+  int index;         /* force plane, field, observed plane, out plane, parameter, slot, ... */
+  int parity; /* at the other end of the bond: 1: the same; -1: the opposite; 0: something else */
+  int sum;    /* OVER_PAIRS: which pl_family.sum TO_SUM adds to at the far end */
   /* Where the bond is absent TO_SHARED writes 0, TO_SUM adds what is 0 by itself, and does not
      ask. */
   bool vanishes;
@@ -47,8 +59,8 @@ typedef struct segment_root {
 
 /* Whether it matters for a root over neighbours or bonds that the bond exists. */
 static inline bool segment_asks(const segment_root *r) {
-  const bool plain = r->target == TO_PLANE || r->target == TO_BOND_LINK;
-  return r->target >= TO_SUM && !plain && (r->target == TO_SHARED ? r->vanishes : !r->vanishes);
+  if (r->over <= OVER_PARTICLES || r->target == TO_PLANE || r->target == TO_LINK) return false;
+  return r->target == TO_SHARED ? r->vanishes : !r->vanishes;
 }
 
 typedef struct segment {
@@ -57,17 +69,17 @@ typedef struct segment {
   int root_count, root_capacity;
 } segment;
 
-typedef struct family_pass {
+typedef struct program_pass {
   segment *segments;
   int segment_count;
   int slot_count, plane_count;
-} family_pass;
+} program_pass;
 
-typedef struct family_program {
-  const char *name; /* step, observe */
-  family_pass *passes;
+typedef struct kernel_program {
+  const char *name; /* of its function, or what those of its passes begin with */
+  program_pass *passes;
   int pass_count;
-} family_program;
+} kernel_program;
 
 /* What both ends of a bond share. */
 typedef enum program_sharing {
@@ -98,10 +110,17 @@ static inline shared_place program_shared_place(int index) {
   return (shared_place){index / 2, index % 2 != 0};
 }
 
+void segment_add(arena *memory, segment *a, segment_root root);
+/* [root_count], to be freed; and new ones in their place. */
+ir_node *segment_values(const segment *a);
+void segment_replace(segment *a, const ir_node *values);
+/* Marks [ir_count] the nodes that the roots need; to be freed. */
+unsigned char *segment_needed(const ir *g, const segment *a);
+
 /* A sum of what is the same for all bonds of a class: it does not change from step to step
    (pl_family.constant_sum). */
 static inline bool segment_is_constant(const ir *g, const segment_root *r) {
-  return r->paired && r->target == TO_SUM && ir_is_uniform(g, r->node);
+  return r->over == OVER_PAIRS && r->target == TO_SUM && ir_is_uniform(g, r->node);
 }
 
 /* A sum of products, which differ from bond to bond, adds each with one rounding. Of pairs one

@@ -29,7 +29,7 @@ static bool is_constant(const emitter *e, ir_node n) {
   return ir_operation(e->graph, n) == IR_CONSTANT;
 }
 
-const pass_root *expression_find_root(const emitter *e, pass_target target, int index) {
+const segment_root *expression_find_root(const emitter *e, segment_target target, int index) {
   for (int k = 0; k < e->root_count; k++)
     if (e->roots[k].target == target && e->roots[k].index == index) return &e->roots[k];
   return NULL;
@@ -177,13 +177,11 @@ void expression_open(emitter *e, const scope *in, const ir_node *nodes, int coun
   open_nodes(e, in, nodes, count);
 }
 
-void expression_open_roots(emitter *e, const scope *in, const pass_root *roots, int root_count) {
-  ir_node *nodes = must_alloc(((size_t)root_count + 1) * sizeof *nodes);
-  for (int k = 0; k < root_count; k++)
-    nodes[k] = roots[k].node;
-  e->roots = roots;
-  e->root_count = root_count;
-  open_nodes(e, in, nodes, root_count);
+void expression_open_segment(emitter *e, const scope *in, const segment *a) {
+  ir_node *nodes = must_alloc((2 * (size_t)a->root_count + 1) * sizeof *nodes);
+  e->roots = a->roots;
+  e->root_count = a->root_count;
+  open_nodes(e, in, nodes, segment_nodes(e->graph, a, nodes));
   free(nodes);
 }
 

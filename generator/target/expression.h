@@ -49,8 +49,8 @@ struct emitter {
 
   /* the function or the segment that is written */
   const scope *scope;
-  void *form;             /* the form's own; forms cast it back */
-  const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */
+  void *form;                /* the form's own; forms cast it back */
+  const segment_root *roots; /* [root_count] of a segment */
   int root_count;
   unsigned relies; /* reliance, together */
   c_names names;
@@ -71,10 +71,10 @@ const char *numeral(const emitter *e, int number);
 void emitter_begin(emitter *e, const kernel_plan *plan, c_text *out);
 void emitter_end(emitter *e);
 
-/* Begins and ends a function or a segment that computes these nodes: decides which get a line and a
-   name. */
+/* Begins and ends a function that computes these nodes, or those of a segment: decides which get a
+   line and a name. */
 void expression_open(emitter *e, const scope *in, const ir_node *nodes, int count);
-void expression_open_roots(emitter *e, const scope *in, const pass_root *roots, int root_count);
+void expression_open_segment(emitter *e, const scope *in, const segment *a);
 void expression_close(emitter *e);
 
 /* A value loaded from `uniforms`; in `prepare` the same node is computed. */
@@ -106,6 +106,6 @@ void expression_line(emitter *e, ir_node n);
 void expression_lines(emitter *e);
 
 /* NULL without such a root. */
-const pass_root *expression_find_root(const emitter *e, pass_target target, int index);
+const segment_root *expression_find_root(const emitter *e, segment_target target, int index);
 
 #endif

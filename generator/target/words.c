@@ -49,7 +49,7 @@ void words_reserve(c_names *names) {
       "UNIFORMS",    "are_equal",     "some_marked", "store_at_ends"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(names, own[k]);
-#define X(pass, member, task) c_names_reserve(names, #member "_unusual");
-  STRIP_PASSES(X)
+#define X(task, member) c_names_reserve(names, #member "_unusual");
+  STRIP_PROGRAMS(X)
 #undef X
 }

@@ -186,6 +186,34 @@ static void shipped_laws_pass_with_any_seed_and_all_guards_are_reached(void **st
   check_folder_quiet(MODELS, "", 12, 4);
 }
 
+/* A line of the text is one condition, of laws of bonds and of families, however often it is
+   called. */
+static void conditions_of_a_function_count_once(void **state) {
+  (void)state;
+  static const char *const laws[] = {
+      "law central bond\n%s  force N = a*(cut(stretch) + cut(2*stretch))\nend model\n",
+      "law state\n  for plane_stress\n%s  force state F[j] = a*(cut(stretch[j]) + "
+      "cut(2*stretch[j]))"
+      "\nend model\n"};
+  for (size_t k = 0; k < sizeof laws / sizeof *laws; k++) {
+    char lines[600], text[700];
+    model m;
+    physics_report r;
+    snprintf(lines, sizeof lines, laws[k],
+             "  parameter a = 40 [MN] in (0, inf)\n"
+             "  parameter rho = 2300 [kg/m^3] in (0, inf)\n"
+             "  function cut(x) = | x            when x <= 1e-3\n"
+             "                    | 5e-4 + x/2   otherwise\n");
+    snprintf(text, sizeof text, "model twice\n  %s", lines);
+    open_text(&m, text);
+    physics_check(m.law, NULL, &m.said, &r);
+    assert_int_equal(m.said.errors, 0);
+    assert_int_equal(r.guards, 1);
+    assert_int_equal(r.guards_reached, 1);
+    model_close(&m);
+  }
+}
+
 /* Every choice of every option of a law, too. */
 static void check_choices_quiet(const char *name, int *tried) {
   model first, m;
@@ -424,6 +452,7 @@ int main(void) {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(broken_laws_are_caught_and_legal_ones_pass),
       cmocka_unit_test(shipped_laws_pass_with_any_seed_and_all_guards_are_reached),
+      cmocka_unit_test(conditions_of_a_function_count_once),
       cmocka_unit_test(shipped_laws_pass_with_any_option),
       cmocka_unit_test(legal_laws_pass_with_any_seed),
       cmocka_unit_test(a_check_evaluates_few_states),

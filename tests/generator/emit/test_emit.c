@@ -19,6 +19,7 @@
 #include "generator/ir/interpret.h"
 #include "generator/kernel/toolchain.h"
 #include "generator/kernel/toolchain_compiler.h"
+#include "generator/plan/plan_roots.h"
 #include "generator/target/c_text.h"
 
 #define ERROR_SIZE 2000
@@ -100,7 +101,6 @@ typedef struct hand_made {
   source_set sources;
   law law;
   kernel_plan plan;
-  pass_root roots[PASS_COUNT][ROOM];
 } hand_made;
 
 static symbol hand_symbol(symbol_kind kind, const char *name, double initial) {
@@ -113,6 +113,7 @@ static hand_made *hand_new(const char *parameter, const char *field) {
   hand_made *h = calloc(1, sizeof *h);
   assert_non_null(h);
   h->tree.name = "by_hand";
+  h->tree.law = LAW_MICROPOLAR_BOND;
   h->symbols[0] = hand_symbol(SYMBOL_PARAMETER, parameter, 0.25);
   h->symbols[0].declared = &h->declared;
   h->symbols[1] = hand_symbol(SYMBOL_DAMAGE, field, 0);
@@ -127,24 +128,30 @@ static hand_made *hand_new(const char *parameter, const char *field) {
   h->law.outputs = (symbol_list){h->outputs, 1};
   h->plan = (kernel_plan){.law = &h->law,
                           .graph = ir_new(),
-                          .kind = PL_MICROPOLAR,
+                          .memory = arena_new(),
                           .dimensions = 2,
                           .dof = 3,
                           .force_planes = 4};
-  for (int k = 0; k < PASS_COUNT; k++)
-    h->plan.passes[k] = (pass){.kind = (pass_kind)k, .name = "", .roots = h->roots[k]};
+#define X(task, member) plan_single(&h->plan, task, #member, OVER_BONDS);
+  STRIP_PROGRAMS(X)
+#undef X
+  plan_single(&h->plan, PROGRAM_STATES, "states", OVER_BONDS);
+  plan_single(&h->plan, PROGRAM_TANGENT, "tangent", OVER_BONDS);
+  plan_single(&h->plan, PROGRAM_BOUNDS, "bounds", OVER_BODY);
   return h;
 }
 
 static void hand_free(hand_made *h) {
   ir_free(h->plan.graph);
+  arena_free(h->plan.memory);
   free(h->plan.uniforms);
   free(h);
 }
 
-static void add_root(hand_made *h, pass_kind kind, ir_node n, pass_target target, int index) {
-  pass *p = &h->plan.passes[kind];
-  h->roots[kind][p->root_count++] = (pass_root){n, target, index};
+static void add_root(hand_made *h, program_task task, ir_node n, segment_target target, int index) {
+  segment *a = plan_segment(&h->plan, task);
+  segment_add(h->plan.memory, a,
+              (segment_root){.node = n, .target = target, .over = a->kind, .index = index});
 }
 
 /* Body nodes that others read. */
@@ -302,9 +309,9 @@ static void every_operation_has_the_bits_of_the_interpreter(void **state) {
   assert_true(count > 500);
   for (int begin = 0; begin < count; begin += ROOM) {
     int n = count - begin < ROOM ? count - begin : ROOM;
-    h->plan.passes[PASS_STATES].root_count = 0;
+    plan_segment(&h->plan, PROGRAM_STATES)->root_count = 0;
     for (int k = 0; k < n; k++)
-      add_root(h, PASS_STATES, all[begin + k], TO_OUT, k);
+      add_root(h, PROGRAM_STATES, all[begin + k], TO_OUT, k);
     for (int k = 0; k < n - 3; k++)
       h->lists[k] = &h->symbols[1];
     h->law.fields = (symbol_list){h->lists, n > 3 ? n - 3 : 0};
@@ -346,7 +353,7 @@ static ir_node bilinear_damage(ir *g, const bond_kinematics *k, ir_node twice_i,
 }
 
 /* The micropolar law with bilinear softening and damping, as one pass over strips. */
-static void plan_strips(hand_made *h, pass_kind kind) {
+static void plan_strips(hand_made *h, program_task task) {
   ir *g = h->plan.graph;
   bond_kinematics k = kinematics_bond(g, true, false);
   ir_node two = number(g, 2), one = number(g, 1);
@@ -363,16 +370,16 @@ static void plan_strips(hand_made *h, pass_kind kind) {
   ir_node M_i = named(g, ir_mul(g, stiffness, twice_i), "M_i");
   ir_node M_j = named(g, ir_mul(g, stiffness, twice_j), "M_j");
   bond_forces f = kinematics_forces(g, &k, N, M_i, M_j);
-  add_root(h, kind, f.f_x, TO_FORCE, 0);
-  add_root(h, kind, f.f_y, TO_FORCE, 1);
-  add_root(h, kind, f.moment_i, TO_FORCE, 2);
-  add_root(h, kind, f.moment_j, TO_FORCE, 3);
-  add_root(h, kind, omega, TO_FIELD, 0);
+  add_root(h, task, f.f_x, TO_FORCE, 0);
+  add_root(h, task, f.f_y, TO_FORCE, 1);
+  add_root(h, task, f.moment_i, TO_FORCE, 2);
+  add_root(h, task, f.moment_j, TO_FORCE, 3);
+  add_root(h, task, omega, TO_FIELD, 0);
 }
 
 static hand_made *beam_new(void) {
   hand_made *h = hand_new("EA", "omega");
-  plan_strips(h, PASS_ROWS);
+  plan_strips(h, PROGRAM_STEP);
   find_uniforms(h);
   return h;
 }
@@ -496,7 +503,7 @@ static void hostile_names_do_no_harm(void **state) {
   ir_node x = ir_input(g, IR_FROM_ENDS, ENDS_U_IX, "q", ON_BOND), total = x;
   for (int k = 0; k < COUNT; k++)
     total = named(g, ir_add(g, total, ir_mul(g, x, parameter(g, k, names[k]))), names[k]);
-  add_root(h, PASS_ROWS, total, TO_FORCE, 0);
+  add_root(h, PROGRAM_STEP, total, TO_FORCE, 0);
   find_uniforms(h);
   char *text = text_of(h), *loaded_text;
   free(compiler_says(text, "gcc", "-Wall -Wextra -Werror -o /dev/null"));

@@ -269,7 +269,7 @@ static char *law_of_names(const name_list *names, int first, int end, bool damag
   return text;
 }
 
-static void compiles_for(const char *text, int neighbours, family_form form) {
+static void compiles_for(const char *text, int neighbours, kernel_form form) {
   char error[2000] = "";
   loaded_kernel kernel = {0};
   tested_law *t = open_law(text);
@@ -297,13 +297,13 @@ static void the_loops_own_names_may_be_a_laws(void **state) {
     add_identifiers(&names, words[k]);
   assert_true(names.count > 50);
   char *elastic = law_of_names(&names, 0, names.count, false);
-  compiles_for(elastic, 0, FAMILY_LOOPS);
-  compiles_for(elastic, 6, FAMILY_WRITTEN_OUT);
+  compiles_for(elastic, 0, FORM_LOOPS);
+  compiles_for(elastic, 6, FORM_UNROLLED);
   free(elastic);
   for (int first = 0; first < names.count; first += 24) {
     const int end = first + 24 < names.count ? first + 24 : names.count;
     char *damaged = law_of_names(&names, first, end, true);
-    compiles_for(damaged, 18, FAMILY_PAIRS);
+    compiles_for(damaged, 18, FORM_PAIRS);
     free(damaged);
   }
 }

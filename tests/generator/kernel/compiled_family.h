@@ -58,7 +58,7 @@ static inline void check_family_law_in(const char *path, const law_choice *choic
                                        long states) {
   model m;
   const pl_law *kernel = open_kernel_for(&m, path, choice, &setting, irregular, neighbours);
-  assert_int_equal(kernel->neighbours, m.plan->form == FAMILY_WRITTEN_OUT ? neighbours : 0);
+  assert_int_equal(kernel->neighbours, m.plan->form == FORM_UNROLLED ? neighbours : 0);
   assert_int_equal(kernel->topology, irregular ? PL_LIST : PL_ROWS);
   if (choice) printf("%s = %s, ", choice->option, choice->choice);
   if (irregular) printf("irregular, ");

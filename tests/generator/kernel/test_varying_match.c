@@ -18,7 +18,7 @@ typedef struct case_of {
   law_setting setting;
   bool irregular;
   int neighbours;
-  family_form form;
+  kernel_form form;
 } case_of;
 
 /* All parameters but the density, which belongs to the particles' masses. */
@@ -52,14 +52,14 @@ static void check_case(const case_of *c) {
 static void kernels_of_varying_parameters_match(void **state) {
   (void)state;
   static const case_of cases[] = {
-      {"models/splm_elastic", SETTING_PLANE_STRESS, false, 6, FAMILY_WRITTEN_OUT},
-      {"models/splm_elastic", SETTING_SPACE, true, 0, FAMILY_LOOPS},
-      {"models/lps", SETTING_PLANE_STRAIN, false, 28, FAMILY_PAIRS},
-      {"models/eps", SETTING_SPACE, false, 0, FAMILY_LOOPS},
-      {"models/pmb", SETTING_SPACE, false, 18, FAMILY_PAIRS},
-      {"models/cohesive", SETTING_PLANE_STRESS, true, 0, FAMILY_LOOPS},
-      {"models/cohesive", SETTING_SPACE, false, 12, FAMILY_PAIRS},
-      {"tests/generator/families/stored", SETTING_SPACE, false, 6, FAMILY_WRITTEN_OUT}};
+      {"models/splm_elastic", SETTING_PLANE_STRESS, false, 6, FORM_UNROLLED},
+      {"models/splm_elastic", SETTING_SPACE, true, 0, FORM_LOOPS},
+      {"models/lps", SETTING_PLANE_STRAIN, false, 28, FORM_PAIRS},
+      {"models/eps", SETTING_SPACE, false, 0, FORM_LOOPS},
+      {"models/pmb", SETTING_SPACE, false, 18, FORM_PAIRS},
+      {"models/cohesive", SETTING_PLANE_STRESS, true, 0, FORM_LOOPS},
+      {"models/cohesive", SETTING_SPACE, false, 12, FORM_PAIRS},
+      {"tests/generator/families/stored", SETTING_SPACE, false, 6, FORM_UNROLLED}};
   for (size_t k = 0; k < sizeof cases / sizeof *cases; k++)
     check_case(&cases[k]);
 }

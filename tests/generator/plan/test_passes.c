@@ -432,7 +432,7 @@ static void uniform_values_are_hoisted(void **state) {
   unsigned char *hoisted = calloc((size_t)ir_count(g), 1);
   for (int k = 0; k < t->plan->uniform_count; k++)
     hoisted[t->plan->uniforms[k]] = 1;
-  const pass *rows = &t->plan->passes[PASS_ROWS];
+  const segment *rows = plan_segment(t->plan, PROGRAM_STEP);
   for (int r = 0; r < rows->root_count; r++) {
     unsigned char *needed = calloc((size_t)ir_count(g), 1);
     ir_mark(g, &rows->roots[r].node, 1, needed);
@@ -468,7 +468,7 @@ static void the_dump_names_passes_and_hoisted_values(void **state) {
       "pass tangent\n",
       "pass bounds\n",
       " EA\n",
-      "writes force x, force y, end moment i, end moment j, omega",
+      "writes       force x, force y, end moment i, end moment j, field omega",
       "dissipated by rates",
       "stored energy",
       "lower bound of alpha3",

@@ -9,7 +9,7 @@
 #include "generator/plan/program_facts.h"
 #include "tests/generator/plan/family_text.h"
 
-static int loops_of(const family_pass *p) {
+static int loops_of(const program_pass *p) {
   int loops = 0;
   for (int k = 0; k < p->segment_count; k++)
     loops += p->segments[k].kind == OVER_NEIGHBOURS;
@@ -17,7 +17,7 @@ static int loops_of(const family_pass *p) {
 }
 
 /* Values that the ends of a bond share; only the first pass finds them. */
-static int shared_by(const family_program *p) {
+static int shared_by(const kernel_program *p) {
   int count = 0;
   for (int at = 0; at < p->pass_count; at++)
     for (int k = 0; k < p->passes[at].segment_count; k++) {
@@ -36,7 +36,8 @@ static void one_sum_needs_one_pass_and_one_loop(void **state) {
   (void)state;
   tested_law *t =
       open_program("", "  force state F[j] = a*stretch[j]\n  output all = sum(stretch[j])\n");
-  const family_program *step = &t->plan->step, *observe = &t->plan->observe;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP],
+                       *observe = &t->plan->programs[PROGRAM_OBSERVE];
   assert_int_equal(
       step->pass_count,
       2); /* the first is over bonds: 1/length, which stretch and direction are made of */
@@ -81,10 +82,10 @@ static void ends_share_what_is_the_same_for_both(void **state) {
              "  w = norm(stretch)\n  p[j] = previous(p[j])\n  output seen = w + sum(p[j])\n",
              laws[k].lines);
     tested_law *t = open_program("", text);
-    if (shared_by(&t->plan->step) != 1 + laws[k].shared)
-      fail_msg("%d values are shared, not %d:\n%s", shared_by(&t->plan->step), 1 + laws[k].shared,
-               laws[k].lines);
-    assert_int_equal(shared_by(&t->plan->observe), 0);
+    if (shared_by(&t->plan->programs[PROGRAM_STEP]) != 1 + laws[k].shared)
+      fail_msg("%d values are shared, not %d:\n%s", shared_by(&t->plan->programs[PROGRAM_STEP]),
+               1 + laws[k].shared, laws[k].lines);
+    assert_int_equal(shared_by(&t->plan->programs[PROGRAM_OBSERVE]), 0);
     close_law(t);
   }
 }
@@ -96,11 +97,11 @@ static void long_horizons_share_nothing(void **state) {
                                     "  force state F[j] = (1 - w[j])*a*stretch[j]\n",
                            *const whole = "  force state F[j] = a*stretch[j]\n";
   tested_law *t = open_program("  for space\n", broken);
-  assert_int_equal(shared_by(&t->plan->step), 0);
-  assert_int_equal(t->plan->step.pass_count, 1);
+  assert_int_equal(shared_by(&t->plan->programs[PROGRAM_STEP]), 0);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 1);
   close_law(t);
   t = open_program("  for space\n", whole);
-  assert_int_equal(shared_by(&t->plan->step), 1);
+  assert_int_equal(shared_by(&t->plan->programs[PROGRAM_STEP]), 1);
   close_law(t);
 }
 
@@ -120,17 +121,17 @@ static tested_law *open_large(const char *lines) {
   return open_family(122, lines);
 }
 
-static const segment *pairs_of(const family_pass *p) {
+static const segment *pairs_of(const program_pass *p) {
   for (int k = 0; k < p->segment_count; k++)
     if (p->segments[k].kind == OVER_PAIRS) return &p->segments[k];
   return NULL;
 }
 
-static void assert_form(int neighbours, const char *lines, family_form expected) {
+static void assert_form(int neighbours, const char *lines, kernel_form expected) {
   tested_law *t = open_family(neighbours, lines);
   if (t->plan->form != expected)
     fail_msg("form %d, not %d, for %d neighbours:\n%s", t->plan->form, expected, neighbours, lines);
-  assert_int_equal(program_sum_count(&t->plan->step) > 0, expected == FAMILY_PAIRS);
+  assert_int_equal(program_sum_count(&t->plan->programs[PROGRAM_STEP]) > 0, expected == FORM_PAIRS);
   close_law(t);
 }
 
@@ -144,15 +145,15 @@ static void families_have_the_form_that_suits(void **state) {
                                     "  force state F[j] = (1 - w[j])*a*stretch[j]\n";
   static const char *const of_ends = "  state p on neighbour = 0\n  p[j] = previous(p[j])\n"
                                      "  force state F[j] = (1 - p[j])*a*stretch[j]\n";
-  assert_form(0, plain, FAMILY_LOOPS);
-  assert_form(0, broken, FAMILY_LOOPS);
-  assert_form(12, plain, FAMILY_WRITTEN_OUT);
-  assert_form(14, plain, FAMILY_PAIRS);
-  assert_form(6, broken, FAMILY_PAIRS);
-  assert_form(122, broken, FAMILY_PAIRS);
-  assert_form(12, of_ends, FAMILY_WRITTEN_OUT);
-  assert_form(18, of_ends, FAMILY_WRITTEN_OUT);
-  assert_form(26, of_ends, FAMILY_LOOPS);
+  assert_form(0, plain, FORM_LOOPS);
+  assert_form(0, broken, FORM_LOOPS);
+  assert_form(12, plain, FORM_UNROLLED);
+  assert_form(14, plain, FORM_PAIRS);
+  assert_form(6, broken, FORM_PAIRS);
+  assert_form(122, broken, FORM_PAIRS);
+  assert_form(12, of_ends, FORM_UNROLLED);
+  assert_form(18, of_ends, FORM_UNROLLED);
+  assert_form(26, of_ends, FORM_LOOPS);
 }
 
 /* Where many bonds meet in space, one end computes the force over the length, when both sums are
@@ -161,7 +162,7 @@ static void one_end_computes_the_force_of_a_bond(void **state) {
   (void)state;
   tested_law *t =
       open_family(12, "  force state F[j] = a*stretch[j]/(1 + sum(stretch[j])*stretch[j])\n");
-  const family_program *step = &t->plan->step;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP];
   assert_int_equal(step->pass_count, 4);
   assert_int_equal(step->passes[2].segment_count, 1);
   const segment *bonds = &step->passes[2].segments[0];
@@ -172,11 +173,11 @@ static void one_end_computes_the_force_of_a_bond(void **state) {
   assert_int_equal(program_reaches_spared(t->plan->graph, step), 1);
   close_law(t);
   t = open_family(12, "  force state F[j] = a*stretch[j]\n"); /* nothing that passes would add */
-  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 2);
   close_law(t);
   /* each end has its part; what is left costs less than to share it */
   t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
-  assert_int_equal(t->plan->step.pass_count, 3);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 3);
   close_law(t);
 }
 
@@ -188,7 +189,7 @@ static void bonds_of_large_families_add_to_both_ends(void **state) {
                              "         | 0 otherwise\n"
                              "  d = sum((1 - w[j])*stretch[j])\n"
                              "  force state F[j] = (1 - w[j])*(a*stretch[j] + b*d)\n");
-  const family_program *step = &t->plan->step;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP];
   assert_int_equal(step->pass_count, 2);
   assert_int_equal(program_sum_count(step), 3);
   assert_true(program_pairs_field(step, 0));
@@ -210,7 +211,7 @@ static void particles_of_large_families_give_their_parts(void **state) {
   (void)state;
   tested_law *t = open_large("  w = sum(s**2)\n  d = sum(s**2*stretch[j])/w\n"
                              "  force state F[j] = s**2*(a*(stretch[j] - d/3) + b*d)/w\n");
-  const family_program *step = &t->plan->step;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP];
   assert_int_equal(step->pass_count, 2);
   assert_int_equal(t->plan->links.of_particles, 2);
   assert_int_equal(program_constant_sums(t->plan->graph, step, NULL), 1);
@@ -228,9 +229,9 @@ static void forces_that_are_not_linear_stay_whole(void **state) {
   (void)state;
   tested_law *t = open_large("  d = sum(stretch[j])\n"
                              "  force state F[j] = max(a*stretch[j] - b*d, a*stretch[j])\n");
-  assert_int_equal(t->plan->step.pass_count, 2);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 2);
   assert_int_equal(t->plan->links.of_particles, 1);
-  assert_non_null(pairs_of(&t->plan->step.passes[1]));
+  assert_non_null(pairs_of(&t->plan->programs[PROGRAM_STEP].passes[1]));
   close_law(t);
 }
 
@@ -241,7 +242,7 @@ static void ends_that_differ_are_no_pair(void **state) {
                              "  p[j] = max(previous(p[j]), abs(stretch[j])*(1 - previous(w)))\n"
                              "  w = mean(p[j])\n"
                              "  force state F[j] = (1 - w)*a*stretch[j]\n");
-  const family_program *step = &t->plan->step;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP];
   assert_null(pairs_of(&step->passes[0]));
   assert_false(program_pairs_field(step, 0));
   assert_non_null(pairs_of(&step->passes[step->pass_count - 1])); /* the mean of both forces */
@@ -251,14 +252,14 @@ static void ends_that_differ_are_no_pair(void **state) {
 static void a_sum_that_the_neighbour_has_too_is_a_link_and_a_second_pass(void **state) {
   (void)state;
   tested_law *t = open_program("", "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
-  assert_int_equal(t->plan->step.pass_count, 3);
-  assert_int_equal(loops_of(&t->plan->step.passes[1]), 1);
-  assert_int_equal(loops_of(&t->plan->step.passes[2]), 1);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 3);
+  assert_int_equal(loops_of(&t->plan->programs[PROGRAM_STEP].passes[1]), 1);
+  assert_int_equal(loops_of(&t->plan->programs[PROGRAM_STEP].passes[2]), 1);
   assert_int_equal(t->plan->links.of_particles, 1);
   close_law(t);
 }
 
-static int count_asking(const family_program *p, segment_target target) {
+static int count_asking(const kernel_program *p, segment_target target) {
   int count = 0;
   for (int k = 0; k < p->pass_count; k++)
     for (int s = 0; s < p->passes[k].segment_count; s++)
@@ -274,11 +275,12 @@ static int count_asking(const family_program *p, segment_target target) {
 static void owners_leave_zeros_for_absent_bonds(void **state) {
   (void)state;
   tested_law *t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(stretch[j])\n");
-  assert_int_equal(count_asking(&t->plan->step, TO_SUM), 0);
-  assert_int_equal(count_asking(&t->plan->step, TO_SHARED), 2); /* stretch, 1/length */
+  assert_int_equal(count_asking(&t->plan->programs[PROGRAM_STEP], TO_SUM), 0);
+  assert_int_equal(count_asking(&t->plan->programs[PROGRAM_STEP], TO_SHARED),
+                   2); /* stretch, 1/length */
   close_law(t);
   t = open_family(12, "  force state F[j] = a*stretch[j] + b*sum(exp(stretch[j]))\n");
-  assert_int_equal(count_asking(&t->plan->step, TO_SUM),
+  assert_int_equal(count_asking(&t->plan->programs[PROGRAM_STEP], TO_SUM),
                    1 + 3); /* exp may be no number in forces, too */
   close_law(t);
 }
@@ -290,14 +292,15 @@ static void a_dear_value_toward_the_neighbour_is_kept(void **state) {
                                    "  x[j] = stretch[j]/1e-3\n"
                                    "  hard[j] = exp(x[j]) - exp(-x[j]) + tanh(x[j])\n"
                                    "  force state F[j] = (1 - previous(w))*a*hard[j]\n");
-  assert_int_equal(t->plan->step.pass_count, 3);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 3);
   assert_int_equal(t->plan->links.of_particles, 0);
-  assert_int_equal(t->plan->links.of_bonds, 1 + (shared_by(&t->plan->step) + 1) / 2);
+  assert_int_equal(t->plan->links.of_bonds,
+                   1 + (shared_by(&t->plan->programs[PROGRAM_STEP]) + 1) / 2);
   close_law(t);
   t = open_program("", "  x[j] = stretch[j]/1e-3\n" /* the same on both sides */
                        "  force state F[j] = a*(exp(x[j]) - exp(-x[j]) + tanh(x[j]))\n");
-  assert_int_equal(t->plan->step.pass_count, 2);
-  assert_int_equal(t->plan->links.of_bonds, (shared_by(&t->plan->step) + 1) / 2);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 2);
+  assert_int_equal(t->plan->links.of_bonds, (shared_by(&t->plan->programs[PROGRAM_STEP]) + 1) / 2);
   close_law(t);
 }
 
@@ -305,7 +308,7 @@ static void neighbours_of_neighbours_need_a_pass_more(void **state) {
   (void)state;
   tested_law *t = open_program("", "  near = sum(stretch[j])\n  far = sum(near[j])\n"
                                    "  force state F[j] = a*stretch[j] + b*far\n");
-  assert_int_equal(t->plan->step.pass_count, 4);
+  assert_int_equal(t->plan->programs[PROGRAM_STEP].pass_count, 4);
   assert_int_equal(t->plan->links.of_particles, 3); /* two of the step, one that observing leaves */
   close_law(t);
 }
@@ -319,10 +322,10 @@ static void dear_values_are_kept_in_planes(void **state) {
                                        "  output d = norm(deviator(p))\n");
   tested_law *dear = open_program("", "  force state F[j] = a*stretch[j]\n"
                                       "  output d = norm(deviator(stretch))\n");
-  assert_int_equal(loops_of(&cheap->plan->observe.passes[0]), 2);
-  assert_int_equal(cheap->plan->observe.passes[0].plane_count, 0);
-  assert_int_equal(loops_of(&dear->plan->observe.passes[0]), 2);
-  assert_int_equal(dear->plan->observe.passes[0].plane_count, 1);
+  assert_int_equal(loops_of(&cheap->plan->programs[PROGRAM_OBSERVE].passes[0]), 2);
+  assert_int_equal(cheap->plan->programs[PROGRAM_OBSERVE].passes[0].plane_count, 0);
+  assert_int_equal(loops_of(&dear->plan->programs[PROGRAM_OBSERVE].passes[0]), 2);
+  assert_int_equal(dear->plan->programs[PROGRAM_OBSERVE].passes[0].plane_count, 1);
   close_law(cheap);
   close_law(dear);
 }
@@ -337,14 +340,14 @@ static void planes_are_few(void **state) {
              "  x%d[j] = exp(%d*stretch[j])\n  output o%d = norm(deviator(x%d))\n", k, k, k, k);
   }
   tested_law *t = open_program("", lines);
-  const family_pass *observe = &t->plan->observe.passes[0];
+  const program_pass *observe = &t->plan->programs[PROGRAM_OBSERVE].passes[0];
   assert_int_equal(loops_of(observe), 2);
   assert_in_range(observe->plane_count, 1, 16);
   close_law(t);
 }
 
 /* The example of program.h and program_schedule.h. */
-static void assert_segment(const family_pass *p, int number, segment_kind kind,
+static void assert_segment(const program_pass *p, int number, segment_kind kind,
                            segment_target first, int roots) {
   assert_true(number < p->segment_count);
   const segment *a = &p->segments[number];
@@ -359,7 +362,8 @@ static void the_example_has_the_segments_that_are_said(void **state) {
                            "  parameter E = 30 [GPa] in (0, inf)\n"
                            "  theta = mean(stretch[j])\n"
                            "  force state F[j] = E*spacing*t*(stretch[j] + theta)\nend model\n");
-  const family_program *step = &t->plan->step, *observe = &t->plan->observe;
+  const kernel_program *step = &t->plan->programs[PROGRAM_STEP],
+                       *observe = &t->plan->programs[PROGRAM_OBSERVE];
   assert_int_equal(step->pass_count, 3);
   assert_segment(&step->passes[0], 0, OVER_NEIGHBOURS, TO_SUM, 1);
   assert_segment(&step->passes[0], 1, OVER_PARTICLES, TO_LINK, 2);
@@ -367,7 +371,7 @@ static void the_example_has_the_segments_that_are_said(void **state) {
   assert_segment(&step->passes[1], 0, OVER_NEIGHBOURS, TO_SUM, 1);
   assert_segment(&step->passes[1], 1, OVER_PARTICLES, TO_LINK, 1);
   assert_segment(&step->passes[2], 0, OVER_NEIGHBOURS, TO_SUM, 2);
-  assert_segment(&step->passes[2], 1, OVER_PARTICLES, TO_PARTICLE_FORCE, 2);
+  assert_segment(&step->passes[2], 1, OVER_PARTICLES, TO_FORCE, 2);
   assert_string_equal(ir_name(t->plan->graph, step->passes[0].segments[2].roots[0].node),
                       "per_length");
   assert_int_equal(observe->pass_count, 1);
@@ -375,7 +379,7 @@ static void the_example_has_the_segments_that_are_said(void **state) {
   assert_segment(&observe->passes[0], 0, OVER_NEIGHBOURS, TO_PLANE, 3);
   assert_segment(&observe->passes[0], 1, OVER_PARTICLES, TO_SLOT, 1);
   assert_segment(&observe->passes[0], 2, OVER_NEIGHBOURS, TO_SUM, 1);
-  assert_segment(&observe->passes[0], 3, OVER_PARTICLES, TO_PARTICLE_OBSERVED, 1);
+  assert_segment(&observe->passes[0], 3, OVER_PARTICLES, TO_OBSERVED, 1);
   close_law(t);
 }
 

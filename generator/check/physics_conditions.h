@@ -1,0 +1,27 @@
+/* The conditions of a law's text, of its case lines and then of its flows: which depend on the
+   state, and how each was seen. */
+#ifndef PERILAT_GENERATOR_PHYSICS_CONDITIONS_H
+#define PERILAT_GENERATOR_PHYSICS_CONDITIONS_H
+
+#include "generator/check/physics.h"
+#include "generator/lower/lowered.h"
+
+typedef struct law_conditions {
+  const lowered_text *text;
+  int count;             /* lines, then flows */
+  ir_node *node;         /* [count]; IR_NONE: it always holds */
+  unsigned char *varies; /* [count] with the state */
+  unsigned char *seen;   /* [count] 1: false, 2: true */
+} law_conditions;
+
+/* Of a text whose nodes are of graph g; the arrays live in `memory`. */
+law_conditions conditions_new(const lowered_text *t, const ir *g, arena *memory);
+
+static inline void conditions_see(law_conditions *all, int k, bool holds) {
+  all->seen[k] |= holds ? 2 : 1;
+}
+
+/* Those of one line count once, however often its function is called. */
+void conditions_count(const law_conditions *all, physics_report *report);
+
+#endif

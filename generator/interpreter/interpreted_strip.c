@@ -1,0 +1,127 @@
+#include "generator/interpreter/interpreted_strip.h"
+
+#include <string.h>
+
+#include "generator/lower/law_inputs.h"
+
+enum { LANES = RUNNER_LANES };
+
+static int lanes_left(long count, long first) {
+  return count - first < LANES ? (int)(count - first) : LANES;
+}
+
+static void evaluate(runner *r, program_task task, int count) {
+  interpreter *run = r->run[task][0][0];
+  if (run) interpreter_run(run, &r->in, count, r->result);
+}
+
+/* --- strips ----------------------------------------------------------------------------------- */
+
+static const double *motion_of(const pl_strip *s, const ends_origin *o) {
+  switch (o->array) {
+  case FROM_DISPLACEMENT:
+    return o->owner == OF_I ? s->displacement_i[o->component] : s->displacement_j[o->component];
+  case FROM_VELOCITY:
+    return o->owner == OF_I ? s->velocity_i[o->component] : s->velocity_j[o->component];
+  default:
+    return NULL;
+  }
+}
+
+/* Arrays that strips, or a law without rotations, do not have stay NULL: no root needs them. */
+static void point_at_bonds(runner *r, const pl_strip *s, long first, int count) {
+  const double **ends = r->at[IR_FROM_ENDS];
+  for (int k = 0; k < ENDS_COUNT; k++) {
+    const double *array = motion_of(s, &ends_origins[k]);
+    ends[k] = array ? array + first : NULL;
+  }
+  for (int lane = 0; lane < count; lane++)
+    r->protection[0][lane] = s->flags[first + lane] & PL_PROTECTED(s->direction) ? 1 : 0;
+  ends[ENDS_PROTECTED] = r->protection[0];
+  ends[ENDS_TIME_STEP] = &s->time_step;
+  for (int k = 0; k < r->plan->law->fields.count; k++)
+    r->at[IR_FROM_FIELD][k] = s->field[k] + first;
+  for (int k = 0; k < r->plan->variation.varying_count; k++)
+    r->at[IR_FROM_BOND_PARAMETER][k] = s->parameter[k] + first;
+}
+
+static void store(const segment_root *r, const pl_strip *s, long first, int count,
+                  const double *from) {
+  const int64_t *flags = s->flags + first;
+  const int64_t present = PL_PRESENT(s->direction);
+  for (int k = 0; k < count; k++) {
+    bool here = (flags[k] & present) != 0;
+    long at = first + k;
+    switch (r->target) {
+    case TO_FORCE:
+      s->force[r->index][at] = here ? from[k] : 0;
+      break;
+    case TO_FIELD:
+      if (here) s->field[r->index][at] = from[k];
+      break;
+    case TO_DISSIPATED_STATE:
+      s->dissipated_state[at] += here ? from[k] : 0;
+      break;
+    case TO_DISSIPATED_RATE:
+      s->dissipated_rate[at] += here ? from[k] : 0;
+      break;
+    default:
+      s->observed[r->index][at] = here ? from[k] : 0;
+    }
+  }
+}
+
+void interpreted_strip(runner *r, program_task task, const double *uniforms, const pl_strip *s) {
+  const segment *a = plan_segment(r->plan, task);
+  runner_take_uniforms(r, uniforms);
+  for (long first = 0; first < s->count; first += LANES) {
+    const int count = lanes_left(s->count, first);
+    point_at_bonds(r, s, first, count);
+    evaluate(r, task, count);
+    for (int k = 0; k < a->root_count; k++)
+      store(&a->roots[k], s, first, count, r->result[k]);
+  }
+}
+
+/* --- single states ---------------------------------------------------------------------------- */
+
+void interpreted_states(runner *r, program_task task, const double *uniforms, const pl_states *s) {
+  const int results = task == PROGRAM_TANGENT ? PL_TANGENTS : PL_STATE_RESULTS;
+  const segment *a = plan_segment(r->plan, task);
+  runner_take_uniforms(r, uniforms);
+  for (long first = 0; first < s->count; first += LANES) {
+    const int now = lanes_left(s->count, first);
+    for (int k = 0; k < PL_STATE_INPUTS; k++)
+      r->at[IR_FROM_QUANTITY][law_motion[k]] = s->in[k] + first;
+    for (int k = 0; k < r->plan->law->fields.count; k++)
+      r->at[IR_FROM_FIELD][k] = s->field[k] + first;
+    evaluate(r, task, now);
+    for (int k = 0; k < a->root_count; k++) {
+      const int index = a->roots[k].index;
+      double *to = index < results ? s->out[index] : s->new_field[index - results];
+      memcpy(to + first, r->result[k], (size_t)now * sizeof(double));
+    }
+  }
+}
+
+/* --- values of a bond class, bounds ----------------------------------------------------------- */
+
+void interpreted_prepare(runner *r, const double *parameters, const pl_bond_class *bonds,
+                         double *uniforms) {
+  if (!r->prepare) return;
+  law_class_values(bonds, r->of_class);
+  for (int k = 0; k < LAW_CHORD; k++)
+    r->at[IR_FROM_ENDS][law_chord[k]] = &bonds->chord[k];
+  runner_take_parameters(r, parameters);
+  interpreter_run(r->prepare, &r->in, 1, r->result);
+  for (int k = 0; k < r->plan->uniform_count; k++)
+    uniforms[k] = r->result[k][0];
+}
+
+void interpreted_bounds(runner *r, const double *parameters, double *lower, double *upper) {
+  const segment *a = plan_segment(r->plan, PROGRAM_BOUNDS);
+  runner_take_parameters(r, parameters);
+  evaluate(r, PROGRAM_BOUNDS, 1);
+  for (int k = 0; k < a->root_count; k++)
+    (a->roots[k].target == TO_LOWER ? lower : upper)[a->roots[k].index] = r->result[k][0];
+}
