@@ -67,6 +67,11 @@ static void announce_modulus(const run *r, int interaction, double implied) {
   print_quantity(" (E = ", asked, "Pa was asked for)");
 }
 
+/* Of one of several laws. */
+static void announce_part(long bonds, const char *name) {
+  printf(" of %ld bond%s as `%s`", bonds, bonds == 1 ? "" : "s", name);
+}
+
 static void announce_law(const run *r, int interaction) {
   const deck_interaction *of = &r->deck->interactions[interaction];
   const rows *w = simulation_rows(r->simulation, of->lattice);
@@ -78,8 +83,7 @@ static void announce_law(const run *r, int interaction) {
     printf(" (%s)", strncmp(path, "./", 2) == 0 ? path + 2 : path);
   }
   if (of->material->beside)
-    printf(" of %ld bonds as `%s`", simulation_law_rows(r->simulation, interaction)->bond_count,
-           of->name);
+    announce_part(simulation_law_rows(r->simulation, interaction)->bond_count, of->name);
   if (w->list) {
     announce_uniform_strain(r, interaction);
     return;
