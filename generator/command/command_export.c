@@ -14,6 +14,10 @@
 #include "generator/kernel/model.h"
 #include "generator/results/result_table.h"
 #include "runtime/base/whole_file.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
+#include "runtime/result/result_read.h"
 
 static const char program[] = "perilat export";
 

@@ -15,6 +15,10 @@
 #include "generator/kernel/standard_input.h"
 #include "generator/results/result_table.h"
 #include "generator/run/run.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
+#include "runtime/result/result_read.h"
 
 /* --- --builtins ------------------------------------------------------------------------------- */
 

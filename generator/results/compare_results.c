@@ -11,6 +11,10 @@
 #include "dsl/base/elementary.h"
 #include "generator/kernel/document.h"
 #include "generator/results/result_table.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
+#include "runtime/result/result_read.h"
 
 enum { SAME = 0, WRONG = 1, DIFFERENT = 2 };
 

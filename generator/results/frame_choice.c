@@ -14,6 +14,7 @@
 #include "runtime/plot/canvas.h"
 #include "runtime/plot/plot_curve.h"
 #include "runtime/plot/plot_map.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 enum { VALUE_TEXT = 64, CAPTION_TEXT = 128 };

@@ -5,6 +5,9 @@
 
 #include "generator/kernel/document.h"
 #include "generator/kernel/model.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_read.h"
 
 result_file *table_open(const char *command, const char *path) {
   if (!file_suits(path, FILES(RESULT), command, "a result, which `perilat run` makes")) return NULL;

@@ -3,7 +3,9 @@
 #ifndef PERILAT_GENERATOR_RESULT_TABLE_H
 #define PERILAT_GENERATOR_RESULT_TABLE_H
 
-#include "runtime/result/result_read.h"
+#include <stdbool.h>
+
+#include "runtime/result/result_file.h"
 
 /* NULL after a message. `command` as the person typed it, "perilat export". */
 result_file *table_open(const char *command, const char *path);

@@ -7,6 +7,10 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/particles/particle_table.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
 #include "runtime/result/result_read.h"
 
 /* --- tables ----------------------------------------------------------------------------------- */

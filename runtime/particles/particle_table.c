@@ -8,6 +8,7 @@
 
 #include "dsl/base/arena.h"
 #include "runtime/base/ordinary_file.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 #define FARTHEST 1e30 /* m, m^2, m^3: squares and cubes of sums are finite */

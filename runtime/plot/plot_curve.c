@@ -11,6 +11,8 @@
 #include "runtime/plot/plot_axes.h"
 #include "runtime/plot/plot_beside.h"
 #include "runtime/plot/plot_curve.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_find.h"
 #include "runtime/result/result_read.h"
 
 enum { MOST_CURVES = 64 };

@@ -9,6 +9,10 @@
 #include "dsl/base/elementary.h"
 #include "runtime/base/quantity.h"
 #include "runtime/plot/canvas.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
 #include "runtime/result/result_read.h"
 
 /* --- reading ---------------------------------------------------------------------------------- */

@@ -14,6 +14,8 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 #define SAID_SIZE 20000

@@ -124,26 +124,35 @@ static void assert_sums_are_those_observed(const sweep *w, bond_forces *f) {
   sums_free(&s);
 }
 
-/* In any form that laws of models/ take on rows and on lists. What was observed stays. */
-static void they_add_up_to_the_forces_on_particles(void **state) {
-  (void)state;
+/* In any form that laws of models/ take on rows and on lists: the body of each deck, shaken. */
+static void of_each_deck(void (*check)(const deck_case *c, sweep *w, bond_forces *f)) {
   for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
     deck_case c;
     assert_true(deck_case_text(&c, decks[n]));
     sweep *w = simulation_state(c.simulation, 0);
     shake(w);
     bond_forces *f = bond_forces_new(w);
-    sweep_observe(w);
-    assert_sums_are_those_observed(w, f);
-    uint64_t before = bits_of_fields(w);
-    assert_true(sweep_step(w));
-    sweep_observe(w);
-    before = bits_of_fields(w);
-    assert_sums_are_those_observed(w, f);
-    assert_int_equal(bits_of_fields(w), before);
+    check(&c, w, f);
     bond_forces_free(f);
     deck_case_close(&c);
   }
+}
+
+static void check_sums(const deck_case *c, sweep *w, bond_forces *f) {
+  (void)c;
+  sweep_observe(w);
+  assert_sums_are_those_observed(w, f);
+  assert_true(sweep_step(w));
+  sweep_observe(w);
+  const uint64_t before = bits_of_fields(w);
+  assert_sums_are_those_observed(w, f);
+  assert_int_equal(bits_of_fields(w), before);
+}
+
+/* What was observed stays. */
+static void they_add_up_to_the_forces_on_particles(void **state) {
+  (void)state;
+  of_each_deck(check_sums);
 }
 
 typedef struct chosen {
@@ -180,58 +189,50 @@ static void compare(void *to, const bond_force *b) {
   }
 }
 
+static void check_chosen(const deck_case *c, sweep *w, bond_forces *f) {
+  (void)c;
+  const rows *g = w->body->lattice;
+  uint64_t *wanted = calloc((size_t)g->size, sizeof *wanted);
+  chosen all = chosen_new(g, wanted);
+  for (long q = 0; q < g->size; q++)
+    if (fabs(g->x[q] - 0.02) < 0.012) wanted[q] = UINT64_C(0x5b) * (uint64_t)(q % 5);
+  bond_forces_find(f, -1);
+  bond_forces_each(f, NULL, keep, &all);
+  bond_forces_each(f, wanted, compare, &all);
+  chosen_free(&all);
+  free(wanted);
+}
+
 static void those_asked_for_are_as_among_all(void **state) {
   (void)state;
-  for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
-    deck_case c;
-    assert_true(deck_case_text(&c, decks[n]));
-    sweep *w = simulation_state(c.simulation, 0);
-    const rows *g = w->body->lattice;
-    shake(w);
-    bond_forces *f = bond_forces_new(w);
-    uint64_t *wanted = calloc((size_t)g->size, sizeof *wanted);
-    chosen all = chosen_new(g, wanted);
-    for (long q = 0; q < g->size; q++)
-      if (fabs(g->x[q] - 0.02) < 0.012) wanted[q] = UINT64_C(0x5b) * (uint64_t)(q % 5);
-    bond_forces_find(f, -1);
-    bond_forces_each(f, NULL, keep, &all);
-    bond_forces_each(f, wanted, compare, &all);
-    chosen_free(&all);
-    free(wanted);
-    bond_forces_free(f);
-    deck_case_close(&c);
-  }
+  of_each_deck(check_chosen);
 }
 
 /* The same shaken body by the graph of the law, read node by node. */
+static void check_interpreter(const deck_case *c, sweep *w, bond_forces *f) {
+  const rows *g = w->body->lattice;
+  pl_law *read = plan_interpreted(c->model.plan);
+  sweep *other = interaction_new(g, read, c->law.parameters, w->body->time_step, 1, false, true);
+  uint64_t *all_bonds = calloc((size_t)g->size, sizeof *all_bonds);
+  chosen all = chosen_new(g, all_bonds);
+  memset(all_bonds, 0xff, (size_t)g->size * sizeof *all_bonds);
+  other->parameter = w->parameter;
+  shake(other);
+  bond_forces *others = bond_forces_new(other);
+  bond_forces_find(f, -1);
+  bond_forces_find(others, -1);
+  bond_forces_each(f, NULL, keep, &all);
+  bond_forces_each(others, NULL, compare, &all);
+  chosen_free(&all);
+  free(all_bonds);
+  bond_forces_free(others);
+  sweep_free(other);
+  plan_interpreted_free(read);
+}
+
 static void the_interpreter_finds_the_same_bits(void **state) {
   (void)state;
-  for (size_t n = 0; n < sizeof decks / sizeof *decks; n++) {
-    deck_case c;
-    assert_true(deck_case_text(&c, decks[n]));
-    sweep *w = simulation_state(c.simulation, 0);
-    const rows *g = w->body->lattice;
-    pl_law *read = plan_interpreted(c.model.plan);
-    sweep *other = interaction_new(g, read, c.law.parameters, w->body->time_step, 1, false, true);
-    uint64_t *all_bonds = calloc((size_t)g->size, sizeof *all_bonds);
-    chosen all = chosen_new(g, all_bonds);
-    memset(all_bonds, 0xff, (size_t)g->size * sizeof *all_bonds);
-    shake(w);
-    other->parameter = w->parameter;
-    shake(other);
-    bond_forces *f = bond_forces_new(w), *others = bond_forces_new(other);
-    bond_forces_find(f, -1);
-    bond_forces_find(others, -1);
-    bond_forces_each(f, NULL, keep, &all);
-    bond_forces_each(others, NULL, compare, &all);
-    chosen_free(&all);
-    free(all_bonds);
-    bond_forces_free(f);
-    bond_forces_free(others);
-    sweep_free(other);
-    plan_interpreted_free(read);
-    deck_case_close(&c);
-  }
+  of_each_deck(check_interpreter);
 }
 
 int main(void) {

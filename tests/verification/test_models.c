@@ -13,6 +13,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 static const double f_t = 3e6, G_f = 80, thickness = 0.1; /* Pa, N/m, m */

@@ -13,6 +13,8 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 static const double E = 24.86e9, nu = 0.2, rho = 2323, eps_t = 1.26e-4, thickness = 0.127; /* SI */

@@ -20,6 +20,7 @@
 #include <cmocka.h>
 
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 #define DECK SOURCE_DIR "/examples/notched_beam/d3_s6.35.nml"

@@ -13,6 +13,8 @@
 #include <signal.h>
 #include <time.h>
 
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "tests/generator/command_tools.h"
 
 #define COUNT(table) (sizeof(table) / sizeof *(table))

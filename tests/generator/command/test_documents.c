@@ -12,6 +12,8 @@
 
 #include <math.h>
 
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_read.h"
 #include "tests/dsl/json_valid.h"
 #include "tests/generator/command_tools.h"
 

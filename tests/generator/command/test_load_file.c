@@ -11,6 +11,8 @@
 #include <math.h>
 #include <stdbool.h>
 
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_read.h"
 #include "tests/generator/command_tools.h"
 
 #define PULSE "# a pulse\ntime, w\n0, 0.25\n2e-4, 1\n5e-4, -0.5\n"

@@ -19,6 +19,7 @@
 #include "generator/drive/drive_path.h"
 #include "generator/drive/drive_table.h"
 #include "generator/kernel/model.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 
 enum { TEXT = 65536 };

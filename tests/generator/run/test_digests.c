@@ -19,6 +19,9 @@
 
 #include "dsl/base/arena.h"
 #include "dsl/base/sha256.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
 #include "runtime/result/result_read.h"
 
 #define FOLDER SOURCE_DIR "/tests/generator/run/digests/"

@@ -10,6 +10,8 @@
 
 #include <math.h>
 
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "tests/generator/command_tools.h"
 
 #define PLATE_OF(E, more)                                                                          \

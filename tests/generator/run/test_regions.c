@@ -9,6 +9,8 @@
 
 #include <cmocka.h>
 
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "tests/generator/command_tools.h"
 #include "tests/generator/material_cases.h"
 #include "tests/runtime/hand_over.h"

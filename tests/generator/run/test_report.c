@@ -12,6 +12,8 @@
 
 #include "runtime/plot/plot_frame.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_read.h"
 #include "tests/generator/command_tools.h"
 
 /* A beam pushed down: the load is negative where nothing turns it round. */

@@ -10,6 +10,7 @@
 
 #include <cmocka.h>
 
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 #include "tests/generator/command_tools.h"
 

@@ -11,6 +11,8 @@
 
 #include "generator/ir/random_values.h"
 #include "runtime/interaction/joint.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
 #include "runtime/result/result_read.h"
 #include "tests/generator/command_tools.h"
 #include "tests/runtime/hand_over.h"

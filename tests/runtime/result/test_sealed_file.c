@@ -16,6 +16,10 @@
 
 #include "dsl/base/hash.h"
 #include "runtime/result/hdf5_tools.h"
+#include "runtime/result/result_fields.h"
+#include "runtime/result/result_file.h"
+#include "runtime/result/result_find.h"
+#include "runtime/result/result_names.h"
 #include "runtime/result/result_read.h"
 #include "runtime/result/sealed_file.h"
 #include "tests/runtime/result/file_tools.h"

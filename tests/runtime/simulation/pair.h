@@ -35,6 +35,11 @@ static inline double end_time(void) {
   return 7 / frequency();
 }
 
+/* So many of its steps, s. */
+static inline double step_of(double steps) {
+  return steps * end_time() / STEPS;
+}
+
 /* What the right particle, or another series, should be at time t after what begins at `start`. */
 typedef struct motion {
   const char *groups; /* a format: start, in s */
@@ -46,7 +51,7 @@ typedef struct motion {
 
 static inline small_run open_run(const motion *m, int steps) {
   char groups[2048], text[4096];
-  const double start = m->start * end_time() / STEPS;
+  const double start = step_of(m->start);
   snprintf(groups, sizeof groups, m->groups, start, start, start);
   snprintf(text, sizeof text,
            "&simulation end_time = %.17g step = %.17g /\n" PAIR "%s"
@@ -65,7 +70,7 @@ static inline small_run open_run(const motion *m, int steps) {
 /* Largest error over the run, in parts of the motion's size. */
 static inline double error_of(const motion *m, int steps) {
   small_run r = open_run(m, steps);
-  const double start = m->start * end_time() / STEPS, *time, *values;
+  const double start = step_of(m->start), *time, *values;
   assert_int_equal(small_go(&r), STEP_END);
   const long samples = simulation_history(r.simulation, &time);
   assert_int_equal(samples, steps + 1);
@@ -89,6 +94,27 @@ static inline void falls_with_the_square(const motion *m) {
                 fine, order);
   assert_true(coarse < 0.02);
   assert_true(fine < 1e-12 || (order > 1.6 && order < 2.4));
+}
+
+/* Reactions after each quarter of a quasi-static run, in parts of 100 N. */
+static inline void expect_quarters(const char *load, const double expected[5]) {
+  char text[2048];
+  snprintf(text, sizeof text,
+           "&simulation end_time = 1 /\n&relaxation increments = 4 tolerance = 1e-9 /\n" PAIR FIXED
+           "%s&monitor name = 'r' kind = 'reaction' region = 'left' component = 'x' scale = -1 /\n"
+           "&output frames = 0 /\n",
+           load);
+  small_run r;
+  small_open(&r, &elastic_bar, text);
+  if (!r.simulation) small_print(&r);
+  assert_non_null(r.simulation);
+  assert_int_equal(small_go(&r), STEP_END);
+  const double *held;
+  simulation_series(r.simulation, small_series(&r, "r"), NULL, &held);
+  for (int k = 0; k < 5; k++)
+    if (!(fabs(held[k] / 100 - expected[k]) <= 1e-6))
+      fail_msg("%s: %g instead of %g after %d", load, held[k] / 100, expected[k], k);
+  small_close(&r);
 }
 
 #endif

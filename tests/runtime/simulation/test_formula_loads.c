@@ -7,17 +7,10 @@
 
 #include <cmocka.h>
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/simulation_save.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/simulation/pair.h"
 #include "tests/runtime/simulation/same_runs.h"
-
-static double step_of(double steps) {
-  return steps * end_time() / STEPS;
-}
 
 /* --- against closed forms --------------------------------------------------------------------- */
 
@@ -219,22 +212,14 @@ static void threads_and_interruptions_keep_the_bits(void **state) {
   assert_int_equal(small_go(&straight), STEP_END);
   const long total = simulation_step_count(straight.simulation);
   for (int k = 1; k < 4; k++) {
-    char path[] = "/tmp/formula_loads_XXXXXX", error[512];
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    close(file);
-    frame_mark frames = {0};
     small_run first, second;
     open_block(&first, BLOCK(VARIED), k + 1);
     open_block(&second, BLOCK(VARIED), 4 - k);
-    simulation_advance(first.simulation, k * total / 4, NULL);
-    assert_true(simulation_save(first.simulation, path, "x", &frames, error, sizeof error));
-    assert_true(simulation_restore(second.simulation, path, "x", &frames, error, sizeof error));
+    hand_over(first.simulation, k * total / 4, second.simulation);
     assert_int_equal(small_go(&second), STEP_END);
     same_runs(&straight, &second);
     small_close(&first);
     small_close(&second);
-    unlink(path);
   }
   small_close(&straight);
 }
@@ -248,25 +233,9 @@ static void increments_follow_formulas(void **state) {
       "&drive region = 'right' component = 'x' formula = '%.17g [m]*(t/1 [s])**2' /\n",
       "&drive region = 'right' component = 'x' formula = '2*%.17g [m/s]*(t/1 [s])' /\n"};
   for (size_t n = 0; n < sizeof loads / sizeof *loads; n++) {
-    char load[512], text[2048];
+    char load[512];
     snprintf(load, sizeof load, loads[n], 100 / stiffness());
-    snprintf(
-        text, sizeof text,
-        "&simulation end_time = 1 /\n&relaxation increments = 4 tolerance = 1e-9 /\n" PAIR FIXED
-        "%s&monitor name = 'r' kind = 'reaction' region = 'left' component = 'x' scale = -1 "
-        "/\n&output frames = 0 /\n",
-        load);
-    small_run r;
-    small_open(&r, &elastic_bar, text);
-    if (!r.simulation) small_print(&r);
-    assert_non_null(r.simulation);
-    assert_int_equal(small_go(&r), STEP_END);
-    const double *held;
-    simulation_series(r.simulation, small_series(&r, "r"), NULL, &held);
-    for (int k = 0; k < 5; k++)
-      if (!(fabs(held[k] / 100 - k * k / 16.0) <= 1e-6))
-        fail_msg("%s: %g after %d", load, held[k] / 100, k);
-    small_close(&r);
+    expect_quarters(load, (double[]){0, 1 / 16.0, 4 / 16.0, 9 / 16.0, 1});
   }
 }
 

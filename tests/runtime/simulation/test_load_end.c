@@ -7,21 +7,14 @@
 
 #include <cmocka.h>
 
-#include <stdlib.h>
-#include <unistd.h>
-
 #include "runtime/interaction/sweep.h"
-#include "runtime/simulation/simulation_save.h"
+#include "tests/runtime/hand_over.h"
 #include "tests/runtime/simulation/pair.h"
 #include "tests/runtime/simulation/same_runs.h"
 
 /* In coarse steps; in fine ones, a quarter as long, as far from the nearest instant. */
 static const double ends[] = {40, 40.2, 40 + 1 / 3.0, 40 + 2 / 3.0, 40.8};
 enum { END_COUNT = sizeof ends / sizeof *ends };
-
-static double step_of(double steps) {
-  return steps * end_time() / STEPS;
-}
 
 /* --- forces ----------------------------------------------------------------------------------- */
 
@@ -241,48 +234,19 @@ static void a_run_goes_on_as_if_it_had_not_stopped(void **state) {
   small_run whole = open_run(&m, STEPS);
   assert_int_equal(small_go(&whole), STEP_END);
   for (int stop = 39; stop <= 42; stop++) {
-    char path[] = "/tmp/load_end_XXXXXX", error[512];
-    const int file = mkstemp(path);
-    assert_true(file >= 0);
-    frame_mark frames = {0};
     small_run first = open_run(&m, STEPS), second = open_run(&m, STEPS);
-    simulation_advance(first.simulation, stop, NULL);
-    assert_true(simulation_save(first.simulation, path, "x", &frames, error, sizeof error));
-    assert_true(simulation_restore(second.simulation, path, "x", &frames, error, sizeof error));
+    hand_over(first.simulation, stop, second.simulation);
     assert_int_equal(small_go(&second), STEP_END);
     same_runs(&whole, &second);
     small_close(&first);
     small_close(&second);
-    close(file);
-    unlink(path);
   }
   small_close(&whole);
 }
 
 /* --- quasi-static runs ------------------------------------------------------------------------ */
 
-/* Reactions after each quarter, in parts of the full load. What ends with an increment is there at
-   its end. */
-static void expect_quarters(const char *load, const double expected[5]) {
-  char text[2048];
-  snprintf(text, sizeof text,
-           "&simulation end_time = 1 /\n&relaxation increments = 4 tolerance = 1e-9 /\n" PAIR FIXED
-           "%s&monitor name = 'r' kind = 'reaction' region = 'left' component = 'x' scale = -1 /\n"
-           "&output frames = 0 /\n",
-           load);
-  small_run r;
-  small_open(&r, &elastic_bar, text);
-  if (!r.simulation) small_print(&r);
-  assert_non_null(r.simulation);
-  assert_int_equal(small_go(&r), STEP_END);
-  const double *held;
-  simulation_series(r.simulation, small_series(&r, "r"), NULL, &held);
-  for (int k = 0; k < 5; k++)
-    if (!(fabs(held[k] / 100 - expected[k]) <= 1e-6))
-      fail_msg("%s: %g instead of %g after %d", load, held[k] / 100, expected[k], k);
-  small_close(&r);
-}
-
+/* What ends with an increment is there at its end. */
 static void loads_end_with_increments(void **state) {
   (void)state;
   char drive[512];

@@ -1,0 +1,128 @@
+#include "runtime/result/result_find.h"
+
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+#include "dsl/base/characters.h"
+#include "dsl/base/diagnostics.h"
+#include "runtime/result/result_sets.h"
+
+/* --- what there is ---------------------------------------------------------------------------- */
+
+static herr_t list_one(hid_t group, const char *name, const H5L_info_t *info, void *names) {
+  (void)group, (void)info;
+  result_names_add(names, "", name);
+  return 0;
+}
+
+result_names result_list(result_file *f, const char *group) {
+  result_names n = {0};
+  if (H5Lexists(f->file, group, H5P_DEFAULT) <= 0) return n;
+  hid_t g = H5Gopen2(f->file, group, H5P_DEFAULT);
+  if (g < 0) return n;
+  H5Literate(g, H5_INDEX_NAME, H5_ITER_INC, NULL, list_one, &n);
+  H5Gclose(g);
+  return n;
+}
+
+static bool is_group(const result_file *f, const char *path) {
+  hid_t g = H5Gopen2(f->file, path, H5P_DEFAULT);
+  if (g >= 0) H5Gclose(g);
+  return g >= 0;
+}
+
+result_names result_members(result_file *f, const char *group) {
+  result_names all = {0}, outer = result_list(f, group);
+  for (int k = 0; k < outer.count; k++) {
+    char path[512];
+    if (strcmp(outer.items[k], "time") == 0) continue;
+    snprintf(path, sizeof path, "%.250s/%.250s", group, outer.items[k]);
+    if (!is_group(f, path)) {
+      result_names_add(&all, "", outer.items[k]);
+      continue;
+    }
+    result_names inner = result_list(f, path);
+    for (int i = 0; i < inner.count; i++)
+      result_names_add(&all, outer.items[k], inner.items[i]);
+    result_names_free(&inner);
+  }
+  result_names_free(&outer);
+  result_names_index(&all);
+  return all;
+}
+
+const result_names *result_names_in(result_file *f, const char *group) {
+  const named_group k = strcmp(group, "/frames") == 0 ? FIELDS : HISTORIES;
+  if (!f->listed[k]) f->known[k] = result_members(f, group);
+  f->listed[k] = true;
+  return &f->known[k];
+}
+
+bool result_is_quasi_static(result_file *f) {
+  return result_names_find(result_names_in(f, "/history"), "relaxation_steps") >= 0;
+}
+
+/* --- what is meant ---------------------------------------------------------------------------- */
+
+/* Appends to the sentence, as far as there is room. */
+static void add_text(char *text, size_t size, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+static void add_text(char *text, size_t size, const char *format, ...) {
+  const size_t used = strlen(text);
+  va_list values;
+  va_start(values, format);
+  vsnprintf(text + used, size - used, format, values);
+  va_end(values);
+}
+
+enum { OF_PARTICLES = 1, OF_BONDS = 2 }; /* the latter lie in folders */
+static void add_names(char *text, size_t size, const result_names *n, int which) {
+  int count = 0;
+  for (int k = 0; k < n->count; k++)
+    if (which & (strchr(n->items[k], '/') ? OF_BONDS : OF_PARTICLES))
+      add_text(text, size, "%s%s", count++ ? ", " : "", name_shown(n->items[k]));
+  if (!count) add_text(text, size, "none");
+}
+
+static void no_such_name(result_file *f, const char *group, const char *given, char *error,
+                         size_t size) {
+  const bool of_frames = strcmp(group, "/frames") == 0;
+  const result_names *n = result_names_in(f, group);
+  const char *near = result_names_near(n, given);
+  snprintf(error, size, "`%s` has no %s `%s`; ", f->path, of_frames ? "field" : "history", given);
+  if (near) add_text(error, size, "did you mean `%s`? ", name_shown(near));
+  if (of_frames) {
+    add_text(error, size, "fields of particles: ");
+    add_names(error, size, n, OF_PARTICLES);
+    add_text(error, size, "; of bonds: ");
+    add_names(error, size, n, OF_BONDS);
+  } else {
+    add_text(error, size, "it has ");
+    add_names(error, size, n, OF_PARTICLES | OF_BONDS);
+  }
+}
+
+/* How many have a field of that name on their bonds. */
+static int interactions_with(const result_names *n, const char *field) {
+  int count = 0;
+  for (int k = 0; k < n->count; k++)
+    count += strchr(n->items[k], '/') && strcmp(result_names_last(n->items[k]), field) == 0;
+  return count;
+}
+
+bool result_find(result_file *f, const char *group, const char *given, char *name, size_t size,
+                 char *error, size_t error_size) {
+  const result_names *n = result_names_in(f, group);
+  const int k = result_names_find(n, given);
+  const bool is_time = k < 0 && strcmp(group, "/history") == 0 && strcmp(given, "time") == 0;
+  snprintf(name, size, "%s", k < 0 ? given : n->items[k]);
+  if (k >= 0 || is_time) return true;
+  const char *field = strncmp(given, "*/", 2) == 0 ? given + 2 : given;
+  if (strcmp(group, "/frames") == 0 && interactions_with(n, field) > 0) {
+    snprintf(name, size, "*/%s", field);
+    return true;
+  }
+  no_such_name(f, group, given, error, error_size);
+  return false;
+}
