@@ -107,6 +107,7 @@ const char *family_root_array(const emitter *e, const segment_root *r, const fam
                                [TO_PARTICLE_FIELD] = SAY_NEW_FIELD,
                                [TO_PARTICLE_FORCE] = SAY_FORCE,
                                [TO_PARTICLE_OBSERVED] = SAY_OBSERVED,
+                               [TO_PARTICLE_LOST] = SAY_LOST,
                                [TO_NEIGHBOUR_FIELD] = SAY_NEW_FIELD_TOWARD,
                                [TO_NEIGHBOUR_OBSERVED] = SAY_OBSERVED_TOWARD,
                                [TO_PLANE] = SAY_PLANE,

@@ -49,6 +49,9 @@ static const char *root_name(const kernel_plan *p, const segment_root *r, char *
   case TO_PARTICLE_FORCE:
     snprintf(text, size, "force %s", axes[r->index]);
     break;
+  case TO_PARTICLE_LOST:
+    snprintf(text, size, "lost to %s", r->index == PL_LOST_TO_STATES ? "states" : "rates");
+    break;
   case TO_PARTICLE_FIELD:
   case TO_NEIGHBOUR_FIELD:
     snprintf(text, size, "field %s", p->law->fields.items[r->index]->name);
@@ -159,7 +162,7 @@ static void dump_program(const kernel_plan *p, const family_program *q, FILE *ou
     const family_pass *now = &q->passes[k];
     fprintf(out, "pass %s %d: %d slots, %d planes\n", q->name, k, now->slot_count,
             now->plane_count);
-    if (q == &p->step && p->form == FAMILY_WRITTEN_OUT)
+    if (q != &p->observe && p->form == FAMILY_WRITTEN_OUT)
       fprintf(out, "  loops  one over the particles, %d neighbours written out\n",
               p->law->neighbours);
     for (int s = 0; s < now->segment_count; s++)
@@ -169,6 +172,7 @@ static void dump_program(const kernel_plan *p, const family_program *q, FILE *ou
 
 void plan_dump_programs(const kernel_plan *p, FILE *out) {
   dump_program(p, &p->step, out);
+  dump_program(p, &p->ledger, out);
   dump_program(p, &p->observe, out);
 }
 
@@ -187,8 +191,8 @@ static void dump_segment_nodes(const kernel_plan *p, const segment *a, FILE *out
 }
 
 void plan_dump_programs_ir(const kernel_plan *p, FILE *out) {
-  const family_program *programs[] = {&p->step, &p->observe};
-  for (int q = 0; q < 2; q++)
+  const family_program *programs[] = {&p->step, &p->ledger, &p->observe};
+  for (int q = 0; q < 3; q++)
     for (int k = 0; k < programs[q]->pass_count; k++)
       for (int s = 0; s < programs[q]->passes[k].segment_count; s++) {
         const segment *a = &programs[q]->passes[k].segments[s];

@@ -27,7 +27,7 @@ static void write_loops(emitter *e, const family_pass *p) {
                                                    [OVER_PAIRS] = family_pairs};
   const bool rows = e->plan->form == FAMILY_WRITTEN_OUT;
   say(e, SAY_CHUNK, numeral(e, chunk_of(p)));
-  if (program_sum_count(&e->plan->step) > 0 && !program_is_paired(p)) say(e, SAY_RETURN_IF_AHEAD);
+  if (e->plan->sum_count > 0 && !program_is_paired(p)) say(e, SAY_RETURN_IF_AHEAD);
   for (int k = 0; k < p->slot_count; k++)
     say(e, SAY_KEEP_SLOT, numeral(e, k));
   for (int k = 0; k < p->plane_count; k++)
@@ -45,7 +45,7 @@ static const char *pass_name(const emitter *e, const family_program *q, int numb
 }
 
 static void write_pass(emitter *e, const family_program *q, int number) {
-  const bool unrolled = q == &e->plan->step && e->plan->form == FAMILY_WRITTEN_OUT;
+  const bool unrolled = q != &e->plan->observe && e->plan->form == FAMILY_WRITTEN_OUT;
   if (unrolled) say(e, SAY_UNROLLED_REMARK, numeral(e, e->plan->law->neighbours));
   kernel_function_begin(&e->parts, e->out, "PL_PASS", pass_name(e, q, number),
                         spell(e, SAY_OVER_FAMILY));
@@ -56,6 +56,7 @@ static void write_pass(emitter *e, const family_program *q, int number) {
 
 static void write_program(emitter *e, const family_program *q) {
   const char *passes = NULL, *shared = NULL;
+  e->program = q;
   for (int k = 0; k < q->pass_count; k++) {
     write_pass(e, q, k);
     passes = words_join(e->memory, passes, ", ", pass_name(e, q, k));
@@ -70,5 +71,6 @@ void programs_functions(emitter *e) {
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
   write_program(e, &e->plan->step);
+  if (e->plan->ledger.pass_count) write_program(e, &e->plan->ledger);
   write_program(e, &e->plan->observe);
 }

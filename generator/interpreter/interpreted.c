@@ -272,30 +272,26 @@ static void run_bounds(const pl_law *kernel, const double *parameters, double *l
 /* --- programs of families --------------------------------------------------------------------- */
 
 static void run_family(const pl_law *kernel, const double *uniforms, const pl_family *family,
-                       bool observe, int number) {
+                       runner_program which, int number) {
   worker *w = borrow(kernel);
-  family_runner_run(w->family, observe, number, uniforms, family);
+  family_runner_run(w->family, which, number, uniforms, family);
   give_back(w);
 }
 
 /* One function for each pass that a program may have. */
 #define PASS_NUMBERS(X) X(0) X(1) X(2) X(3) X(4) X(5) X(6) X(7)
-#define X(n)                                                                                       \
-  static void run_step_##n(const pl_law *k, const double *u, const pl_family *f) {                 \
-    run_family(k, u, f, false, n);                                                                 \
-  }                                                                                                \
-  static void run_observe_##n(const pl_law *k, const double *u, const pl_family *f) {              \
-    run_family(k, u, f, true, n);                                                                  \
+#define RUN(name, which, n)                                                                        \
+  static void run_##name##_##n(const pl_law *k, const double *u, const pl_family *f) {             \
+    run_family(k, u, f, which, n);                                                                 \
   }
+#define X(n)                                                                                       \
+  RUN(step, PROGRAM_STEP, n) RUN(ledger, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
 PASS_NUMBERS(X)
 #undef X
-static const pl_family_function step_passes[PLAN_MOST_PASSES] = {
-#define X(n) run_step_##n,
-    PASS_NUMBERS(X)
-#undef X
-};
-static const pl_family_function observe_passes[PLAN_MOST_PASSES] = {
-#define X(n) run_observe_##n,
+static const pl_family_function passes_of[PROGRAM_COUNT][PLAN_MOST_PASSES] = {
+#define X(n)                                                                                       \
+  [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_ledger_##n,                          \
+  [PROGRAM_OBSERVE][n] = run_observe_##n,
     PASS_NUMBERS(X)
 #undef X
 };
@@ -402,14 +398,16 @@ static void describe(interpreted *p) {
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
-  p->law.sum_count = program_sum_count(&plan->step);
+  p->law.sum_count = plan->sum_count;
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step = program_facts(p->memory, plan->graph, &plan->step, step_passes);
-  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, observe_passes);
+  p->law.step = program_facts(p->memory, plan->graph, &plan->step, passes_of[PROGRAM_STEP]);
+  if (plan->ledger.pass_count)
+    p->law.ledger = program_facts(p->memory, plan->graph, &plan->ledger, passes_of[PROGRAM_LEDGER]);
+  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, passes_of[PROGRAM_OBSERVE]);
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */

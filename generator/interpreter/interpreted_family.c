@@ -15,7 +15,7 @@ _Static_assert(FAMILY_CHUNK == INTERPRET_LANES, "a chunk is what the interpreter
 struct family_runner {
   const kernel_plan *plan;
   arena *memory;
-  interpreter ***run[2]; /* [program][pass][segment] */
+  interpreter ***run[PROGRAM_COUNT]; /* [program][pass][segment] */
   const double **parameters, **bond_parameters, **particle_parameters, **neighbour_parameters,
       **fields, **new_fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
       **neighbour_bond_links, **shared, **shared_odd, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
@@ -32,7 +32,8 @@ struct family_runner {
 };
 
 static const family_program *program_of(const kernel_plan *p, int which) {
-  return which ? &p->observe : &p->step;
+  const family_program *programs[PROGRAM_COUNT] = {&p->step, &p->ledger, &p->observe};
+  return programs[which];
 }
 
 /* --- making ----------------------------------------------------------------------------------- */
@@ -53,7 +54,7 @@ static interpreter *segment_interpreter(family_runner *r, const segment *a, cons
 
 static void make_interpreters(family_runner *r, const ir_node *inputs, int *slots, int *planes,
                               int *roots) {
-  for (int which = 0; which < 2; which++) {
+  for (int which = 0; which < PROGRAM_COUNT; which++) {
     const family_program *q = program_of(r->plan, which);
     r->run[which] = arena_alloc(r->memory, ((size_t)q->pass_count + 1) * sizeof(interpreter **));
     for (int k = 0; k < q->pass_count; k++) {
@@ -120,7 +121,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
 
 void family_runner_free(family_runner *r) {
   if (!r) return;
-  for (int which = 0; which < 2; which++) {
+  for (int which = 0; which < PROGRAM_COUNT; which++) {
     const family_program *q = program_of(r->plan, which);
     for (int k = 0; k < q->pass_count; k++)
       for (int s = 0; s < q->passes[k].segment_count; s++)
@@ -329,6 +330,8 @@ static double *target_of(family_runner *r, const segment_root *root, const pl_fa
     return f->new_field[root->index] + first;
   case TO_PARTICLE_FORCE:
     return f->force[root->index] + first;
+  case TO_PARTICLE_LOST:
+    return f->lost[root->index] + first;
   case TO_PARTICLE_OBSERVED:
     return f->observed[root->index] + first;
   case TO_NEIGHBOUR_FIELD:
@@ -449,14 +452,14 @@ static void run_segment(family_runner *r, interpreter *run, const family_pass *n
   if (a->kind == OVER_PAIRS) take_sums(r, a, f, first, lanes);
 }
 
-void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
+void family_runner_run(family_runner *r, runner_program which, int number, const double *uniforms,
                        const pl_family *f) {
-  const family_pass *now = &program_of(r->plan, observe)->passes[number];
+  const family_pass *now = &program_of(r->plan, which)->passes[number];
   if (f->ahead_only && !program_is_paired(now)) return;
   for (long first = 0; first < f->count; first += LANES) {
     const long left = f->count - first, lanes = left < LANES ? left / PL_LANES * PL_LANES : LANES;
     for (int s = 0; s < now->segment_count; s++) {
-      run_segment(r, r->run[observe][number][s], now, &now->segments[s], f, first, lanes, uniforms);
+      run_segment(r, r->run[which][number][s], now, &now->segments[s], f, first, lanes, uniforms);
       if (f->ahead_only && now->segments[s].kind == OVER_PAIRS) break;
     }
   }

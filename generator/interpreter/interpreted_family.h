@@ -6,6 +6,12 @@
 #include "generator/plan/plan.h"
 
 typedef struct family_runner family_runner;
+typedef enum runner_program {
+  PROGRAM_STEP,
+  PROGRAM_LEDGER,
+  PROGRAM_OBSERVE,
+  PROGRAM_COUNT
+} runner_program;
 
 /* Working space for one caller at a time. inputs[k] is the input node that stands for uniform k.
    The plan must outlive it. */
@@ -13,7 +19,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs);
 void family_runner_free(family_runner *r);
 
 /* Pass `number` of a program, as a pl_family_function. No allocation. */
-void family_runner_run(family_runner *r, bool observe, int number, const double *uniforms,
+void family_runner_run(family_runner *r, runner_program which, int number, const double *uniforms,
                        const pl_family *family);
 
 #endif

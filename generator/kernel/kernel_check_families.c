@@ -26,7 +26,7 @@ typedef struct body {
   double **parameter; /* [varying][SIZE], on bonds as many for each neighbour */
   double *share;      /* [SIZE] */
   double **before;    /* [fields] */
-  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **sum[2];
+  double **after[2], **link[2], **bond_link[2], **force[2], **observed[2], **lost[2], **sum[2];
   uint64_t **marks[MARKS];                     /* [fields][SIZE] as in pl_family */
   uint64_t *bonds, *incoming, *held, *unusual; /* [SIZE] */
   long offset[2 * PL_MAX_DIRECTIONS];          /* rows */
@@ -90,6 +90,7 @@ static body body_new(const pl_law *law, int neighbours) {
     b.bond_link[side] = planes_new(law->bond_link_count, (long)neighbours * SIZE);
     b.force[side] = planes_new(law->dof, SIZE);
     b.observed[side] = observed_new(&b);
+    b.lost[side] = planes_new(PL_LOSSES, SIZE);
     b.sum[side] = planes_new(law->sum_count, SIZE);
   }
   for (int k = 0; k < MARKS; k++)
@@ -117,6 +118,7 @@ static void body_free(body *b) {
     planes_free(b->bond_link[side], b->law->bond_link_count);
     planes_free(b->force[side], b->law->dof);
     planes_free(b->observed[side], 1 + b->law->output_count);
+    planes_free(b->lost[side], PL_LOSSES);
     planes_free(b->sum[side], b->law->sum_count);
   }
   for (int k = 0; k < MARKS; k++) {
@@ -331,6 +333,7 @@ static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
   settle_pieces(b, side);
   planes_poison(b->force[side], b->law->dof, SIZE);
+  planes_poison(b->lost[side], PL_LOSSES, SIZE);
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }
@@ -405,7 +408,8 @@ static void run_part(const law_readers *l, const body *b, int side, pl_family_fu
                  .held_near = any_held(b),
                  .unusual = b->unusual + site / PL_LANES,
                  .share = b->share + site,
-                 .time_step = 1.7e-7};
+                 .time_step = 1.7e-7,
+                 .lost = {b->lost[side][0] + site, b->lost[side][1] + site}};
   f.shape = (const double *const *)from_site(&s, b->shape, PL_SHAPE_PLANES(law->dimensions), site);
   f.old_field = (const double *const *)from_site(&s, b->before, law->field_count, site);
   f.parameter = (const double *const *)from_site(&s, b->parameter, law->varying_count, site);
@@ -435,11 +439,18 @@ static void run_before(const law_readers *l, const body *b, int side, pl_family_
   run_part(l, b, side, pass, -REACH, REACH, true);
 }
 
-static void run_program(const law_readers *l, const body *b, int side, bool observe) {
-  const pl_program *p = observe ? &l->law[side]->observe : &l->law[side]->step;
+typedef enum program_kind { PROGRAM_STEP, PROGRAM_LEDGER, PROGRAM_OBSERVE, PROGRAMS } program_kind;
+
+static const pl_program *program_of(const pl_law *law, program_kind which) {
+  const pl_program *programs[PROGRAMS] = {&law->step, &law->ledger, &law->observe};
+  return programs[which];
+}
+
+static void run_program(const law_readers *l, const body *b, int side, program_kind which) {
+  const pl_program *p = program_of(l->law[side], which);
   poison(b, side);
   for (int k = 0; k < p->pass_count; k++) {
-    if (b->law->sum_count && !observe) run_before(l, b, side, p->pass[k]);
+    if (b->law->sum_count && which != PROGRAM_OBSERVE) run_before(l, b, side, p->pass[k]);
     if (side == 0) {
       run_part(l, b, side, p->pass[k], 0, CUT, false);
       run_part(l, b, side, p->pass[k], CUT, SITES - CUT, false);
@@ -467,13 +478,19 @@ static void compare_links(comparison *c, const body *b, const char *program) {
                    (long)b->neighbours * SIZE);
 }
 
-static void compare_step(comparison *c, const body *b) {
+static void compare_step(comparison *c, const body *b, const char *program) {
   const pl_law *law = b->law;
-  compare_links(c, b, "step");
+  compare_links(c, b, program);
   for (int f = 0; f < law->field_count; f++)
-    compare_values(c, b, "step", &law->fields[f], b->after[0][f], b->after[1][f]);
+    compare_values(c, b, program, &law->fields[f], b->after[0][f], b->after[1][f]);
   for (int d = 0; d < law->dof; d++)
-    comparison_add(c, "step", "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
+    comparison_add(c, program, "force", d, b->force[0][d] + MARGIN, b->force[1][d] + MARGIN, SITES);
+}
+
+/* Of the ledger, beside what a step finds: that has to be the same. */
+static void compare_losses(comparison *c, const body *b) {
+  for (int k = 0; k < PL_LOSSES; k++)
+    comparison_add(c, "ledger", "lost", k, b->lost[0][k] + MARGIN, b->lost[1][k] + MARGIN, SITES);
 }
 
 static void compare_observe(comparison *c, const body *b) {
@@ -542,19 +559,28 @@ static void find_misplaced_observe(comparison *c, const body *b) {
     c->misplaced += written_for_absent(b, &b->law->outputs[k], b->observed[0][1 + k]);
 }
 
+static void check_program(const law_readers *l, const body *b, program_kind which,
+                          comparison *c) {
+  if (program_of(b->law, which)->pass_count == 0) return;
+  for (int side = 0; side < 2; side++)
+    run_program(l, b, side, which);
+  if (which == PROGRAM_OBSERVE) {
+    compare_observe(c, b);
+    find_misplaced_observe(c, b);
+    return;
+  }
+  compare_step(c, b, which == PROGRAM_STEP ? "step" : "ledger");
+  find_misplaced_step(c, b);
+  if (which == PROGRAM_LEDGER) compare_losses(c, b);
+}
+
 long kernel_check_families(const law_readers *l, long wanted, uint64_t *seed, comparison *c) {
   body b = body_new(l->law[0], l->classes);
   long done = 0;
   for (; done < wanted; done += (long)SITES * l->classes) {
     draw_body(&b, l->bonds, l->parameters, seed);
-    for (int side = 0; side < 2; side++)
-      run_program(l, &b, side, false);
-    compare_step(c, &b);
-    find_misplaced_step(c, &b);
-    for (int side = 0; side < 2; side++)
-      run_program(l, &b, side, true);
-    compare_observe(c, &b);
-    find_misplaced_observe(c, &b);
+    for (int program = 0; program < PROGRAMS; program++)
+      check_program(l, &b, (program_kind)program, c);
   }
   body_free(&b);
   return done;

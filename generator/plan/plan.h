@@ -95,7 +95,9 @@ typedef struct kernel_plan {
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
   family_form form; /* of `step`, and of how chords and forces are written */
   family_program step, observe;
+  family_program ledger; /* pl_law: `step` and what is lost in it; without passes: nothing is */
   program_links links;
+  int sum_count, constant_sum_count; /* pl_law */
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */
   bool stores, reads_rates; /* pl_law */

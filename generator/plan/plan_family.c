@@ -11,7 +11,9 @@
 #include "generator/lower/lower_energy.h"
 #include "generator/lower/lower_inputs.h"
 #include "generator/plan/particle_parts.h"
+#include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
+#include "generator/plan/program_facts.h"
 
 typedef struct family_planner {
   kernel_plan *plan;
@@ -21,8 +23,18 @@ typedef struct family_planner {
 
 /* Stand for the motion until it is known: components of the present direction; 1/length and chord,
    of which it is the product (where forces act along reference directions: of the reference
-   bond); what end_rotations.h has of a bond in space. */
-enum { DIRECTION, PER_LENGTH = 3, CHORD, BENT = 7, ALONG = 11, TURN, PRESENT_COUNT = TURN + 3 };
+   bond); what end_rotations.h has of a bond in space; how quickly the ends of one in the plane turn
+   against it. */
+enum {
+  DIRECTION,
+  PER_LENGTH = 3,
+  CHORD,
+  BENT = 7,
+  ALONG = 11,
+  TURN,
+  TURNING = TURN + 3,
+  PRESENT_COUNT = TURNING + 2
+};
 
 static ir_node present(ir *g, int which) {
   return ir_input(g, IR_FROM_QUANTITY, QUANTITY_COUNT + 2 * BENDING_AXES + which, "e", ON_BOND);
@@ -181,6 +193,25 @@ static root_list observe_roots(family_planner *p) {
   return r;
 }
 
+/* What the step does, and what is lost in it; empty where nothing can be, or
+   it is not known. */
+static root_list ledger_roots(family_planner *p, const law_energy *of, const root_list *step) {
+  const int fields = p->plan->law->fields.count;
+  ir_node lost[PL_LOSSES], *new_fields = must_alloc(((size_t)fields + 1) * sizeof *new_fields);
+  root_list r = new_roots(p->plan, step->count + PL_LOSSES);
+  for (int k = 0; k < fields; k++)
+    new_fields[k] = step->items[k].node;
+  const bool loses = fields > 0 || p->plan->reads_rates;
+  if (p->plan->stores && loses && plan_losses(p->plan, of, new_fields, lost)) {
+    for (int k = 0; k < step->count; k++)
+      r.items[r.count++] = step->items[k];
+    for (int k = 0; k < PL_LOSSES; k++)
+      want(&r, lost[k], TO_PARTICLE_LOST, k);
+  }
+  free(new_fields);
+  return r;
+}
+
 /* --- motion ----------------------------------------------------------------------------------- */
 
 enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
@@ -188,7 +219,9 @@ enum { MOST_MOTION = 4 + PRESENT_COUNT + 2 * BENDING_AXES };
 static int motion_in_plane(ir *g, const family_kinematics *k, ir_node *from, ir_node *to) {
   from[0] = lower_quantity(g, QUANTITY_THETA_I), to[0] = k->theta_i;
   from[1] = lower_quantity(g, QUANTITY_THETA_J), to[1] = k->theta_j;
-  return 2;
+  for (int end = 0; end < 2; end++)
+    from[2 + end] = present(g, TURNING + end), to[2 + end] = k->theta_rate[end];
+  return 4;
 }
 
 static int motion_in_space(const kernel_plan *plan, const family_kinematics *k, ir_node *from,
@@ -399,6 +432,26 @@ static program_sharing sharing(const family_planner *p) {
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
 
+/* Takes the place of the step: it has the same links. */
+static void build_ledger(family_planner *p, const root_list *r, const program_motion *motion) {
+  kernel_plan *plan = p->plan;
+  program_links links = {0, 0};
+  program_build(&plan->ledger, "ledger", p->g, plan->memory, r->items, r->count, motion, sharing(p),
+                &links);
+  if (links.of_particles > plan->links.of_particles) plan->links.of_particles = links.of_particles;
+  if (links.of_bonds > plan->links.of_bonds) plan->links.of_bonds = links.of_bonds;
+}
+
+static void count_sums(kernel_plan *plan) {
+  const family_program *programs[] = {&plan->step, &plan->ledger};
+  for (int k = 0; k < 2; k++) {
+    const int sums = program_sum_count(programs[k]),
+              constant = program_constant_sums(plan->graph, programs[k], NULL);
+    if (sums > plan->sum_count) plan->sum_count = sums;
+    if (constant > plan->constant_sum_count) plan->constant_sum_count = constant;
+  }
+}
+
 static bool reads_thickness(const family_planner *p) {
   const law *l = p->plan->law;
   ir_node t = lower_quantity(p->g, QUANTITY_T), *forces[LOWERED_FORCES];
@@ -432,24 +485,34 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
     diag_hint(d, "say `for plane_stress` after `law state`, or give another value `when space`");
     return false;
   }
+  law_energy energy = {.frozen = &p.frozen,
+                       .stored = stored_energy(&p),
+                       .theta_rate = {IR_NONE, IR_NONE},
+                       .forces = plan_force_fields(plan, &p.step, &p.frozen)};
+  for (int end = 0; end < 2 && plan->rotations && plan->dimensions == 2; end++)
+    energy.theta_rate[end] = present(p.g, TURNING + end);
   share_reciprocals(&p);
   root_list step = step_roots(&p), observe = observe_roots(&p);
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(p.g, &step, &observe);
+  root_list ledger = ledger_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular) {
     const program_motion list = list_inputs(plan);
     read_from_lists(plan, &list, &step);
     read_from_lists(plan, &list, &observe);
+    read_from_lists(plan, &list, &ledger);
     motion_from_lists(plan, &list, &motion);
   }
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 sharing(&p), &plan->links);
+  if (ledger.count) build_ledger(&p, &ledger, &motion);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
                 SHARE_NOTHING, &plan->links);
-  if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES) {
+  if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES ||
+      plan->ledger.pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",
                 PLAN_MOST_PASSES);
@@ -458,5 +521,6 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   plan->reads_shape = reads(plan, is_shape);
   plan->reads_share = reads(plan, is_share);
   count_cost(plan);
+  count_sums(plan);
   return true;
 }

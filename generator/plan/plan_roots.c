@@ -30,6 +30,7 @@ void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
   }
   visit_program(&p->step, visit, context);
   visit_program(&p->observe, visit, context);
+  visit_program(&p->ledger, visit, context);
 }
 
 bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {

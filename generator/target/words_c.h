@@ -160,6 +160,8 @@
   X(NEW_FIELD_TOWARD, "family->new_field[$1]$2 + $3*family->new_plane")                            \
   X(FORCE, "family->force[$1]$2")                                                                  \
   X(OBSERVED, "family->observed[$1]$2")                                                            \
+  X(LOST, "family->lost[$1]$2")                                                                    \
+  X(FAMILY_TIME_STEP, "family->time_step")                                                         \
   X(OBSERVED_TOWARD, "family->observed[$1]$2 + $3*family->new_plane")                              \
   X(LINK, "family->link[$1]$2")                                                                    \
   X(BOND_LINK, "family->bond_link[$1]$2 + $3*family->link_plane")                                  \

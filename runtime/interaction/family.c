@@ -78,6 +78,20 @@ static int64_t kick_row(const sweep *w, body_block *b, int row, bool moving) {
   return bad;
 }
 
+/* What the passes have just found of a row's particles is lost for good. Values at sites that store
+   nothing mean nothing. */
+static void book_losses(sweep *w, int row) {
+  const long start = body_start(w->body, row), count = w->body->count[row];
+  const unsigned char *stores = family_of(w)->stores + start;
+  const double *state = w->lost_state + start, *rate = w->lost_rate + start;
+  double *to_state = w->dissipated_state + start, *to_rate = w->dissipated_rate + start;
+  INDEPENDENT
+  for (long q = 0; q < count; q++) {
+    to_state[q] += stores[q] ? state[q] : 0;
+    to_rate[q] += stores[q] ? rate[q] : 0;
+  }
+}
+
 /* Work against the bonds: the force of a state counts over half of the way to it and half of the
    way from it (ledger.h). */
 static double work_over(const body *w, int row, int component, const double *v) {
@@ -95,6 +109,7 @@ static void move_rows(sweep *w, int block, int first, int last) {
       motion_note_bad(of, b, row, 0);
       continue;
     }
+    if (w->lost_state) book_losses(w, row);
     for (int d = 0; d < of->dof && of->works; d++)
       of->row_internal[row] += work_over(of, row, d, of->velocity[d] + body_start(of, row)) +
                                work_over(of, row, d, b->next + d * of->lattice->pitch);
@@ -108,7 +123,7 @@ static int program_stages(const family *f, const pl_program *program) {
 }
 
 static void run_program(sweep *w, const pl_program *program, int stage, int block) {
-  const bool pairs = family_of(w)->pairs && program == &w->law->step;
+  const bool pairs = family_of(w)->pairs && program == family_of(w)->march;
   if (family_of(w)->windows)
     family_window_run(w, program, block, NULL);
   else if (pairs)
@@ -121,7 +136,7 @@ static void step_in_windows(sweep *w, int stage, int block) {
   const body_block *b = &w->body->blocks[block];
   int first, last;
   if (stage == 0) {
-    family_window_run(w, &w->law->step, block, move_rows);
+    family_window_run(w, family_of(w)->march, block, move_rows);
     return;
   }
   family_window_inner(w, block, &first, &last);
@@ -134,14 +149,14 @@ static void step(sweep *w, int stage, int block) {
   if (stage == 0) w->body->blocks[block].bad_site = -1;
   if (family_of(w)->windows)
     step_in_windows(w, stage, block);
-  else if (stage < w->law->step.pass_count)
-    run_program(w, &w->law->step, stage, block);
+  else if (stage < family_of(w)->march->pass_count)
+    run_program(w, family_of(w)->march, stage, block);
   else
     move_rows(w, block, b->first, b->last);
 }
 
 static void find_forces(sweep *w, int stage, int block) {
-  run_program(w, &w->law->step, stage, block);
+  run_program(w, family_of(w)->march, stage, block);
 }
 
 /* What was new is now at hand. */
@@ -164,6 +179,14 @@ static bool stores(const rows *g, long site) {
   return g->present[site] && (g->bonds[site] || rows_degree(g, site) > 0);
 }
 
+/* What the law takes in the state observed is 0 where nothing is stored. */
+static void sum_losses(sweep *w, int row) {
+  const long start = body_start(w->body, row), count = w->body->count[row];
+  for (long q = start; q < start + count; q++)
+    if (!family_of(w)->stores[q]) w->lost_state[q] = w->lost_rate[q] = 0;
+  sweep_sum_losses(w, row);
+}
+
 static double stored_in_row(const sweep *w, int row) {
   const long start = body_start(w->body, row);
   double sum = 0;
@@ -178,6 +201,7 @@ static void observe_rows(sweep *w, int block) {
     kick_row(w, b, row, false);
     motion_observe(w->body, b, row);
     w->body->observed[row].stored = stored_in_row(w, row);
+    if (w->lost_state) sum_losses(w, row);
   }
 }
 
@@ -185,10 +209,10 @@ static void observe_rows(sweep *w, int block) {
    again by the next one. Then energy and outputs with these. */
 static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
-  const int forces = program_stages(f, &w->law->step),
+  const int forces = program_stages(f, f->march),
             all = forces + program_stages(f, &w->law->observe);
   if (stage < forces)
-    run_program(w, &w->law->step, stage, block);
+    run_program(w, f->march, stage, block);
   else if (stage < all)
     run_program(w, &w->law->observe, stage - forces, block);
   else
@@ -235,6 +259,15 @@ static void new_shares(sweep *w, family *f) {
     f->whole[q] = 1;
 }
 
+static void new_losses(sweep *w, family *f) {
+  const rows *g = w->body->lattice;
+  f->march = &w->law->ledger;
+  sweep_new_losses(w);
+  f->stores = must_calloc((size_t)g->size, 1);
+  for (long q = 0; q < g->size; q++)
+    f->stores[q] = stores(g, q);
+}
+
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->body->lattice->size;
@@ -277,6 +310,7 @@ static void free_own(sweep *w) {
   family_windows_free(w, f->windows);
   family_pairs_free(w, f->pairs);
   free(f->observed);
+  free(f->stores);
   free(f->blocks);
   free(f->uniforms);
   free(f);
@@ -294,9 +328,11 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
   assert(law->neighbours == 0 || law->neighbours == 2 * w->body->lattice->directions);
+  f->march = &law->step;
+  if (w->body->ledger && sweep_books_losses(law)) new_losses(w, f);
   f->neighbours = 2 * w->body->lattice->directions;
   f->reach = reach_of(w->body->lattice);
-  assert(law->step.pass_count <= FAMILY_MOST_PASSES);
+  assert(f->march->pass_count <= FAMILY_MOST_PASSES);
   f->uniforms = family_uniforms(law, w->body->lattice, parameters);
   new_planes(w, f);
   new_blocks(w, f);
@@ -305,7 +341,7 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   f->pairs = family_pairs_new(w, f);
   f->windows = f->pairs ? NULL : family_windows(w, f);
   if (!f->windows) new_links(w, f);
-  const int forces = program_stages(f, &law->step), looks = program_stages(f, &law->observe);
+  const int forces = program_stages(f, f->march), looks = program_stages(f, &law->observe);
   return (sweep_engine){.step_stages = forces + 1,
                         .force_stages = forces,
                         .observe_stages = forces + looks + 1,

@@ -25,12 +25,14 @@ struct family_window;
 struct family_pairs;
 
 typedef struct family {
+  const pl_program *march;       /* of the law: `step`, or in its place `ledger` */
   int neighbours, reach;         /* rows between a particle and its farthest neighbour */
   double *uniforms;              /* [neighbours][uniform_count]; lists: [uniform_count] */
   double **link;                 /* [links][size]; NULL where blocks have windows */
   double **bond_link;            /* [bond_links][neighbours * size]; the same */
   double **observed;             /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES];   /* [size]; NULL unless the law reads them */
+  unsigned char *stores;         /* [size] 1 where a particle has bonds; where losses are kept */
   double *whole;                 /* [size] 1, the share of all particles; NULL as before */
   family_block *blocks;          /* [block_count] */
   struct family_window *windows; /* [block_count]; NULL: links of the whole body are kept */

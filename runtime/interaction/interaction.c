@@ -11,6 +11,6 @@ sweep *interaction_new(const rows *lattice, const pl_law *law, const double *par
                       families ? BODY_SHARE_ROWS : BODY_SHARE_SITES);
   of->ledger = ledger;
   of->forces = ledger || forces;
-  of->works = ledger && families;
+  of->works = ledger && !sweep_books_losses(law);
   return sweep_new(of, law, parameters, families ? family_engine : pairwise_engine);
 }

@@ -43,8 +43,8 @@ struct sweep {
      owned */
   double *const *parameter;
   const double *share; /* [size] of laws that read it (pl_family); NULL: 1 everywhere; not owned */
-  /* [size] J at the site that owns the bond, of all steps and of what the law takes in the state
-     observed; NULL without ledger and for laws of families. */
+  /* [size] J at the site that owns the bond, of laws of families at each particle half of its bonds':
+     of all steps, and of what the law takes in the state observed; NULL where they are not kept. */
   double *dissipated_state, *dissipated_rate, *lost_state, *lost_rate;
   sweep_engine engine;
 };
@@ -78,6 +78,13 @@ void sweep_observe(sweep *w);
 /* Value in a bond of a field, an output, or a parameter that stands on bonds or neighbours; of a
    law of families the mean of both sides. */
 double sweep_bond_value(const sweep *w, const double *values, const rows_bond *bond);
+/* For engines: makes the arrays of losses; sums those of a row, since the start and in the state
+   observed. */
+void sweep_new_losses(sweep *w);
+void sweep_sum_losses(sweep *w, int row);
+/* Whether the law says what it loses. */
+bool sweep_books_losses(const pl_law *law);
+
 /* An output in the state observed last: values[sweep_planes * size], defined where bonds or
    particles are. */
 void sweep_output(sweep *w, int output, double *values);

@@ -16,17 +16,14 @@ const char *const ledger_words[LEDGER_COUNT] = {
 };
 
 const char *ledger_unchecked(const pl_law *law) {
+  const bool loses = law->kind == PL_STATE && (law->field_count > 0 || law->reads_rates);
   if (!law->stores) return "the law has no stored energy";
-  if (law->kind != PL_STATE) return NULL;
-  if (law->field_count > 0)
-    return "what the states and the damage of a law of families take is not counted by itself";
-  return law->reads_rates ? "what the rate terms of a law of families take is not counted by itself"
-                          : NULL;
+  return loses && !sweep_books_losses(law) ? "the law does not say what it takes" : NULL;
 }
 
-/* What the law has taken by states, damage and, in families, rate terms. */
+/* What the law has taken by states and damage. */
 static double taken(const ledger *g, const pl_law *law, const body_totals *t, double lost) {
-  if (law->kind != PL_STATE) return t->dissipated_state;
+  if (sweep_books_losses(law)) return t->dissipated_state;
   return ledger_unchecked(law) ? lost - g->lost : 0;
 }
 
