@@ -248,8 +248,8 @@ typedef struct pl_family {
   const uint64_t *const *old_filled; /* [field_count] of old_field */
   uint64_t *const *new_filled;       /* [field_count] of new_field; written with it */
   uint64_t *const *settled;          /* [field_count] read, and written with new_field */
-  /* Of `ledger`: [count] J, written: what the particle's halves of its bonds lose in this step. Where
-     there is no particle, or one without bonds, it means nothing. */
+  /* Of `ledger`: [count] J, added to: what the particle's halves of its bonds lose in this step.
+     Where there is no particle, or one without bonds, it means nothing. */
   double *lost[PL_LOSSES];
 } pl_family;
 

@@ -118,14 +118,20 @@ static void write_programs(c_text *out, const kernel_plan *p) {
              ".reads_shape = %d,\n    .pairwise = %d,\n",
              p->law->irregular ? "PL_LIST" : "PL_ROWS",
              p->form == FAMILY_WRITTEN_OUT ? p->law->neighbours : 0, p->links.of_particles,
-             p->links.of_bonds, p->sum_count, p->constant_sum_count, p->reads_shape,
+             p->links.of_bonds, program_sum_count(&p->step),
+             program_constant_sums(p->graph, &p->step, NULL), p->reads_shape,
              p->law->tree->law != LAW_STATE);
   if (p->variation.varying_count && p->law->tree->law == LAW_STATE)
     c_text_add(out, "    .varying_place = PL_ON_PARTICLE,\n");
   if (p->reads_share) c_text_add(out, "    .reads_share = 1,\n");
   write_program(out, p, &p->step);
-  if (p->ledger.pass_count) write_program(out, p, &p->ledger);
   write_program(out, p, &p->observe);
+  if (p->losses.pass_count) {
+    arena *memory = arena_new();
+    const family_program ledger = program_joined(memory, "ledger", &p->step, &p->losses);
+    write_program(out, p, &ledger);
+    arena_free(memory);
+  }
 }
 
 void descriptor_entry(const kernel_plan *p, c_text *out) {

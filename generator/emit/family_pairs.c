@@ -33,7 +33,7 @@ static bool is_constant(const emitter *e, const segment_root *r) {
 
 void family_pairs_functions(emitter *e) {
   for (int f = 0; f < e->plan->law->fields.count; f++)
-    if (program_pairs_field(&e->plan->step, f) || program_pairs_field(&e->plan->ledger, f)) {
+    if (program_pairs_field(&e->plan->step, f)) {
       say(e, SAY_FIELD_FUNCTIONS, numeral(e, FAMILY_CHUNK));
       return;
     }
@@ -46,7 +46,7 @@ static const char *marked_field(const emitter *e, ir_node n) {
   if (ir_operation(e->graph, n) != IR_INPUT) return NULL;
   const ir_source from = ir_input_source(e->graph, n);
   if (from != IR_FROM_FIELD && from != IR_FROM_NEW_FIELD) return NULL;
-  if (!program_pairs_field(e->program, ir_input_index(e->graph, n))) return NULL;
+  if (!program_pairs_field(&e->plan->step, ir_input_index(e->graph, n))) return NULL;
   return from == IR_FROM_FIELD ? "old" : "new";
 }
 
@@ -108,8 +108,8 @@ static pair_loops loops_of(const emitter *e, const segment *a) {
                   .node = must_alloc(size * sizeof *l.node),
                   .kept = must_alloc(size * sizeof *l.kept),
                   .to_keep = must_alloc(size * sizeof *l.to_keep)};
-  l.finds_out = program_asks(e->graph, e->program) == a;
-  l.knows = program_is_told(e->graph, e->program, a);
+  l.finds_out = program_asks(e->graph, &e->plan->step) == a;
+  l.knows = program_is_told(e->graph, &e->plan->step, a);
   l.one = l.knows || !expects(e);
   l.count = segment_nodes(e->graph, a, l.node);
   for (int k = 0; k < a->root_count; k++) {
@@ -309,7 +309,7 @@ static void write_second(emitter *e, const pair_loops *l) {
 
 /* What the particles have got from behind; from then on the sums are 0 for the next pass. */
 static void write_ends(emitter *e, const segment *a) {
-  int number = program_constant_sums(e->graph, e->program, a);
+  int number = program_constant_sums(e->graph, &e->plan->step, a);
   for (int k = 0; k < a->root_count; k++) {
     const segment_root *r = &a->roots[k];
     const bool constant = is_constant(e, r);

@@ -162,7 +162,7 @@ static void dump_program(const kernel_plan *p, const family_program *q, FILE *ou
     const family_pass *now = &q->passes[k];
     fprintf(out, "pass %s %d: %d slots, %d planes\n", q->name, k, now->slot_count,
             now->plane_count);
-    if (q != &p->observe && p->form == FAMILY_WRITTEN_OUT)
+    if (q == &p->step && p->form == FAMILY_WRITTEN_OUT)
       fprintf(out, "  loops  one over the particles, %d neighbours written out\n",
               p->law->neighbours);
     for (int s = 0; s < now->segment_count; s++)
@@ -172,7 +172,7 @@ static void dump_program(const kernel_plan *p, const family_program *q, FILE *ou
 
 void plan_dump_programs(const kernel_plan *p, FILE *out) {
   dump_program(p, &p->step, out);
-  dump_program(p, &p->ledger, out);
+  dump_program(p, &p->losses, out);
   dump_program(p, &p->observe, out);
 }
 
@@ -191,7 +191,7 @@ static void dump_segment_nodes(const kernel_plan *p, const segment *a, FILE *out
 }
 
 void plan_dump_programs_ir(const kernel_plan *p, FILE *out) {
-  const family_program *programs[] = {&p->step, &p->ledger, &p->observe};
+  const family_program *programs[] = {&p->step, &p->losses, &p->observe};
   for (int q = 0; q < 3; q++)
     for (int k = 0; k < programs[q]->pass_count; k++)
       for (int s = 0; s < programs[q]->passes[k].segment_count; s++) {

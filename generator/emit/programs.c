@@ -18,6 +18,28 @@ static int chunk_of(const family_pass *p) {
   return chunk;
 }
 
+static bool has_marks(const emitter *e) {
+  for (int f = 0; f < e->plan->law->fields.count; f++)
+    if (program_pairs_field(&e->plan->step, f)) return true;
+  return false;
+}
+
+/* Whether a chunk's fields have not changed in the step; by their marks where they have such. */
+static void unchanged_functions(emitter *e) {
+  const kernel_plan *p = e->plan;
+  if (!p->loses_by_own_fields) return;
+  say(e, has_marks(e) ? SAY_IS_SETTLED : SAY_ARE_EQUAL);
+  say(e, SAY_UNCHANGED_BEGIN);
+  for (int f = 0; f < p->law->fields.count; f++) {
+    const bool on_particle = p->law->fields.items[f]->place <= ON_PARTICLE;
+    if (program_pairs_field(&p->step, f))
+      say(e, SAY_UNCHANGED_MARKS, numeral(e, f));
+    else
+      say(e, SAY_UNCHANGED_PLANES, numeral(e, f), on_particle ? "1" : "family->neighbours");
+  }
+  say(e, SAY_UNCHANGED_END);
+}
+
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
 static void write_loops(emitter *e, const family_pass *p) {
   static void (*const forms[])(emitter *,
@@ -27,13 +49,14 @@ static void write_loops(emitter *e, const family_pass *p) {
                                                    [OVER_PAIRS] = family_pairs};
   const bool rows = e->plan->form == FAMILY_WRITTEN_OUT;
   say(e, SAY_CHUNK, numeral(e, chunk_of(p)));
-  if (e->plan->sum_count > 0 && !program_is_paired(p)) say(e, SAY_RETURN_IF_AHEAD);
+  if (program_sum_count(&e->plan->step) > 0 && !program_is_paired(p)) say(e, SAY_RETURN_IF_AHEAD);
   for (int k = 0; k < p->slot_count; k++)
     say(e, SAY_KEEP_SLOT, numeral(e, k));
   for (int k = 0; k < p->plane_count; k++)
     say(e, SAY_KEEP_PLANE, numeral(e, k));
   say(e, rows ? SAY_OVER_ROWS : SAY_ONE_RUN);
   say(e, SAY_OVER_CHUNKS);
+  if (p == e->plan->losses.passes && e->plan->loses_by_own_fields) say(e, SAY_NEXT_IF_UNCHANGED);
   for (int k = 0; k < p->segment_count; k++)
     forms[p->segments[k].kind](e, &p->segments[k]);
   say(e, SAY_END, "  ");
@@ -45,7 +68,7 @@ static const char *pass_name(const emitter *e, const family_program *q, int numb
 }
 
 static void write_pass(emitter *e, const family_program *q, int number) {
-  const bool unrolled = q != &e->plan->observe && e->plan->form == FAMILY_WRITTEN_OUT;
+  const bool unrolled = q == &e->plan->step && e->plan->form == FAMILY_WRITTEN_OUT;
   if (unrolled) say(e, SAY_UNROLLED_REMARK, numeral(e, e->plan->law->neighbours));
   kernel_function_begin(&e->parts, e->out, "PL_PASS", pass_name(e, q, number),
                         spell(e, SAY_OVER_FAMILY));
@@ -54,23 +77,38 @@ static void write_pass(emitter *e, const family_program *q, int number) {
   kernel_function_end(&e->parts, e->out);
 }
 
-static void write_program(emitter *e, const family_program *q) {
-  const char *passes = NULL, *shared = NULL;
-  e->program = q;
+typedef struct program_tables {
+  const char *passes, *shared;
+} program_tables;
+
+static void list_passes(emitter *e, const family_program *q, program_tables *t) {
   for (int k = 0; k < q->pass_count; k++) {
-    write_pass(e, q, k);
-    passes = words_join(e->memory, passes, ", ", pass_name(e, q, k));
-    shared = words_join(
-        e->memory, shared, ", ",
+    t->passes = words_join(e->memory, t->passes, ", ", pass_name(e, q, k));
+    t->shared = words_join(
+        e->memory, t->shared, ", ",
         arena_printf(e->memory, "UINT64_C(%" PRIu64 ")", program_shared_by(&q->passes[k])));
   }
-  say(e, SAY_PROGRAM_TABLES, q->name, passes, shared);
+}
+
+/* `after` NULL: none. */
+static void write_program(emitter *e, const char *name, const family_program *q,
+                          const family_program *after) {
+  program_tables t = {NULL, NULL};
+  if (after) list_passes(e, after, &t);
+  for (int k = 0; k < q->pass_count; k++)
+    write_pass(e, q, k);
+  list_passes(e, q, &t);
+  say(e, SAY_PROGRAM_TABLES, name, t.passes, t.shared);
 }
 
 void programs_functions(emitter *e) {
   say(e, SAY_UNIFORM_COUNT, numeral(e, e->plan->uniform_count));
   family_pairs_functions(e);
-  write_program(e, &e->plan->step);
-  if (e->plan->ledger.pass_count) write_program(e, &e->plan->ledger);
-  write_program(e, &e->plan->observe);
+  const kernel_plan *p = e->plan;
+  write_program(e, p->step.name, &p->step, NULL);
+  if (p->losses.pass_count) {
+    unchanged_functions(e);
+    write_program(e, "ledger", &p->losses, &p->step);
+  }
+  write_program(e, p->observe.name, &p->observe, NULL);
 }

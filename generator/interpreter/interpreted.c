@@ -284,14 +284,13 @@ static void run_family(const pl_law *kernel, const double *uniforms, const pl_fa
   static void run_##name##_##n(const pl_law *k, const double *u, const pl_family *f) {             \
     run_family(k, u, f, which, n);                                                                 \
   }
-#define X(n)                                                                                       \
-  RUN(step, PROGRAM_STEP, n) RUN(ledger, PROGRAM_LEDGER, n) RUN(observe, PROGRAM_OBSERVE, n)
+#define X(n) RUN(step, RUN_STEP, n) RUN(losses, RUN_LOSSES, n) RUN(observe, RUN_OBSERVE, n)
 PASS_NUMBERS(X)
 #undef X
-static const pl_family_function passes_of[PROGRAM_COUNT][PLAN_MOST_PASSES] = {
+static const pl_family_function passes_of[RUN_PROGRAMS][PLAN_MOST_PASSES] = {
 #define X(n)                                                                                       \
-  [PROGRAM_STEP][n] = run_step_##n, [PROGRAM_LEDGER][n] = run_ledger_##n,                          \
-  [PROGRAM_OBSERVE][n] = run_observe_##n,
+  [RUN_STEP][n] = run_step_##n, [RUN_LOSSES][n] = run_losses_##n,                                  \
+  [RUN_OBSERVE][n] = run_observe_##n,
     PASS_NUMBERS(X)
 #undef X
 };
@@ -353,6 +352,17 @@ static pl_program program_facts(arena *memory, const ir *g, const family_program
                       .shared = shared};
 }
 
+/* The passes of a step, then those of its losses. */
+static pl_program ledger_facts(arena *memory, const kernel_plan *plan) {
+  const family_program ledger = program_joined(memory, "ledger", &plan->step, &plan->losses);
+  pl_family_function *passes =
+      arena_alloc(memory, ((size_t)ledger.pass_count + 1) * sizeof *passes);
+  for (int k = 0; k < ledger.pass_count; k++)
+    passes[k] = k < plan->step.pass_count ? passes_of[RUN_STEP][k]
+                                          : passes_of[RUN_LOSSES][k - plan->step.pass_count];
+  return program_facts(memory, plan->graph, &ledger, passes);
+}
+
 static void describe(interpreted *p) {
   const kernel_plan *plan = p->plan;
   const law *l = plan->law;
@@ -398,16 +408,15 @@ static void describe(interpreted *p) {
   p->law.tangent = NULL;
   p->law.link_count = plan->links.of_particles;
   p->law.bond_link_count = plan->links.of_bonds;
-  p->law.sum_count = plan->sum_count;
+  p->law.sum_count = program_sum_count(&plan->step);
   p->law.reads_shape = plan->reads_shape;
   p->law.reads_share = plan->reads_share;
   p->law.varying_place = l->tree->law == LAW_STATE ? PL_ON_PARTICLE : PL_ON_BOND;
   p->law.pairwise = l->tree->law != LAW_STATE;
   p->law.topology = l->irregular ? PL_LIST : PL_ROWS;
-  p->law.step = program_facts(p->memory, plan->graph, &plan->step, passes_of[PROGRAM_STEP]);
-  if (plan->ledger.pass_count)
-    p->law.ledger = program_facts(p->memory, plan->graph, &plan->ledger, passes_of[PROGRAM_LEDGER]);
-  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, passes_of[PROGRAM_OBSERVE]);
+  p->law.step = program_facts(p->memory, plan->graph, &plan->step, passes_of[RUN_STEP]);
+  p->law.observe = program_facts(p->memory, plan->graph, &plan->observe, passes_of[RUN_OBSERVE]);
+  if (plan->losses.pass_count) p->law.ledger = ledger_facts(p->memory, plan);
 }
 
 /* --- making and freeing ----------------------------------------------------------------------- */

@@ -15,7 +15,7 @@ _Static_assert(FAMILY_CHUNK == INTERPRET_LANES, "a chunk is what the interpreter
 struct family_runner {
   const kernel_plan *plan;
   arena *memory;
-  interpreter ***run[PROGRAM_COUNT]; /* [program][pass][segment] */
+  interpreter ***run[RUN_PROGRAMS]; /* [program][pass][segment] */
   const double **parameters, **bond_parameters, **particle_parameters, **neighbour_parameters,
       **fields, **new_fields, **neighbour_fields, **links, **neighbour_links, **bond_links,
       **neighbour_bond_links, **shared, **shared_odd, **slots, **planes, *shape[PL_SHAPE_PLANES(3)],
@@ -32,7 +32,7 @@ struct family_runner {
 };
 
 static const family_program *program_of(const kernel_plan *p, int which) {
-  const family_program *programs[PROGRAM_COUNT] = {&p->step, &p->ledger, &p->observe};
+  const family_program *programs[RUN_PROGRAMS] = {&p->step, &p->losses, &p->observe};
   return programs[which];
 }
 
@@ -54,7 +54,7 @@ static interpreter *segment_interpreter(family_runner *r, const segment *a, cons
 
 static void make_interpreters(family_runner *r, const ir_node *inputs, int *slots, int *planes,
                               int *roots) {
-  for (int which = 0; which < PROGRAM_COUNT; which++) {
+  for (int which = 0; which < RUN_PROGRAMS; which++) {
     const family_program *q = program_of(r->plan, which);
     r->run[which] = arena_alloc(r->memory, ((size_t)q->pass_count + 1) * sizeof(interpreter **));
     for (int k = 0; k < q->pass_count; k++) {
@@ -121,7 +121,7 @@ family_runner *family_runner_new(const kernel_plan *p, const ir_node *inputs) {
 
 void family_runner_free(family_runner *r) {
   if (!r) return;
-  for (int which = 0; which < PROGRAM_COUNT; which++) {
+  for (int which = 0; which < RUN_PROGRAMS; which++) {
     const family_program *q = program_of(r->plan, which);
     for (int k = 0; k < q->pass_count; k++)
       for (int s = 0; s < q->passes[k].segment_count; s++)
@@ -365,6 +365,9 @@ static void store(family_runner *r, const segment_root *root, const double *valu
         to[q] = present ? pl_fma(value[q], factor[q], to[q]) : to[q];
       else
         to[q] += present ? value[q] : 0;
+      break;
+    case TO_PARTICLE_LOST:
+      to[q] += value[q];
       break;
     case TO_LARGEST:
       to[q] = present ? pl_max(to[q], value[q]) : to[q];

@@ -6,12 +6,7 @@
 #include "generator/plan/plan.h"
 
 typedef struct family_runner family_runner;
-typedef enum runner_program {
-  PROGRAM_STEP,
-  PROGRAM_LEDGER,
-  PROGRAM_OBSERVE,
-  PROGRAM_COUNT
-} runner_program;
+typedef enum runner_program { RUN_STEP, RUN_LOSSES, RUN_OBSERVE, RUN_PROGRAMS } runner_program;
 
 /* Working space for one caller at a time. inputs[k] is the input node that stands for uniform k.
    The plan must outlive it. */

@@ -333,7 +333,8 @@ static void poison(const body *b, int side) {
   poison_values(b->after[side], b, b->law->fields, b->law->field_count);
   settle_pieces(b, side);
   planes_poison(b->force[side], b->law->dof, SIZE);
-  planes_poison(b->lost[side], PL_LOSSES, SIZE);
+  for (int k = 0; k < PL_LOSSES; k++)
+    memset(b->lost[side][k], 0, SIZE * sizeof(double));
   planes_poison(b->observed[side], 1, SIZE);
   poison_values(b->observed[side] + 1, b, b->law->outputs, b->law->output_count);
 }

@@ -63,7 +63,7 @@ kernel_plan *plan_kernel_of_families(const law *l, const law_variation *v, diagn
   if (l->irregular || l->neighbours == 0) return plan_families(l, v, FAMILY_LOOPS, d);
   if (is_for_pairs(l)) {
     kernel_plan *plan = plan_families(l, v, FAMILY_PAIRS, d);
-    if (!plan || plan->sum_count > 0) return plan;
+    if (!plan || program_sum_count(&plan->step) > 0) return plan;
     plan_free(plan); /* nothing is the same or opposite at both ends */
   }
   const bool few = l->neighbours <= MOST_WRITTEN_OUT;

@@ -95,9 +95,10 @@ typedef struct kernel_plan {
   /* Laws of families (kind PL_STATE): of the passes above only PASS_BOUNDS has roots. */
   family_form form; /* of `step`, and of how chords and forces are written */
   family_program step, observe;
-  family_program ledger; /* pl_law: `step` and what is lost in it; without passes: nothing is */
+  family_program losses; /* what pl_law.ledger does beside `step`; may have no passes */
+  /* What is lost follows from fields of the particle's own: nothing is where none has changed. */
+  bool loses_by_own_fields;
   program_links links;
-  int sum_count, constant_sum_count; /* pl_law */
   bool reads_shape;         /* inverse shape matrices */
   bool reads_share;         /* shares of particles */
   bool stores, reads_rates; /* pl_law */

@@ -13,7 +13,6 @@
 #include "generator/plan/particle_parts.h"
 #include "generator/plan/plan_losses.h"
 #include "generator/plan/plan_roots.h"
-#include "generator/plan/program_facts.h"
 
 typedef struct family_planner {
   kernel_plan *plan;
@@ -193,21 +192,17 @@ static root_list observe_roots(family_planner *p) {
   return r;
 }
 
-/* What the step does, and what is lost in it; empty where nothing can be, or
-   it is not known. */
-static root_list ledger_roots(family_planner *p, const law_energy *of, const root_list *step) {
+/* What is lost in the step with these roots; empty where nothing can be, or it is not known. */
+static root_list loss_roots(family_planner *p, const law_energy *of, const root_list *step) {
   const int fields = p->plan->law->fields.count;
+  const bool loses = fields > 0 || p->plan->reads_rates;
   ir_node lost[PL_LOSSES], *new_fields = must_alloc(((size_t)fields + 1) * sizeof *new_fields);
-  root_list r = new_roots(p->plan, step->count + PL_LOSSES);
+  root_list r = new_roots(p->plan, PL_LOSSES);
   for (int k = 0; k < fields; k++)
     new_fields[k] = step->items[k].node;
-  const bool loses = fields > 0 || p->plan->reads_rates;
-  if (p->plan->stores && loses && plan_losses(p->plan, of, new_fields, lost)) {
-    for (int k = 0; k < step->count; k++)
-      r.items[r.count++] = step->items[k];
+  if (p->plan->stores && loses && plan_losses(p->plan, of, new_fields, lost))
     for (int k = 0; k < PL_LOSSES; k++)
       want(&r, lost[k], TO_PARTICLE_LOST, k);
-  }
   free(new_fields);
   return r;
 }
@@ -389,6 +384,13 @@ static bool reads(const kernel_plan *plan, bool (*wanted)(const ir *g, ir_node i
   return c.found;
 }
 
+static bool program_reads(const kernel_plan *plan, const family_program *q,
+                          bool (*wanted)(const ir *g, ir_node input)) {
+  input_search c = {.plan = plan, .wanted = wanted};
+  plan_visit_program(q, look_for_input, &c);
+  return c.found;
+}
+
 static bool is_shape(const ir *g, ir_node input) {
   return ir_input_source(g, input) == IR_FROM_SHAPE;
 }
@@ -432,24 +434,19 @@ static program_sharing sharing(const family_planner *p) {
   return !l->irregular && (p->plan->dimensions == 2 || !on_bonds) ? SHARE_DEAR : SHARE_NOTHING;
 }
 
-/* Takes the place of the step: it has the same links. */
-static void build_ledger(family_planner *p, const root_list *r, const program_motion *motion) {
-  kernel_plan *plan = p->plan;
-  program_links links = {0, 0};
-  program_build(&plan->ledger, "ledger", p->g, plan->memory, r->items, r->count, motion, sharing(p),
-                &links);
-  if (links.of_particles > plan->links.of_particles) plan->links.of_particles = links.of_particles;
-  if (links.of_bonds > plan->links.of_bonds) plan->links.of_bonds = links.of_bonds;
+static bool is_of_neighbours_fields(const ir *g, ir_node input) {
+  return ir_input_source(g, input) == IR_FROM_NEIGHBOUR_FIELD;
 }
 
-static void count_sums(kernel_plan *plan) {
-  const family_program *programs[] = {&plan->step, &plan->ledger};
-  for (int k = 0; k < 2; k++) {
-    const int sums = program_sum_count(programs[k]),
-              constant = program_constant_sums(plan->graph, programs[k], NULL);
-    if (sums > plan->sum_count) plan->sum_count = sums;
-    if (constant > plan->constant_sum_count) plan->constant_sum_count = constant;
-  }
+/* It computes new fields once more: seldom, where a pass can tell that none have changed. */
+static void build_losses(family_planner *p, const root_list *r, const program_motion *motion) {
+  kernel_plan *plan = p->plan;
+  program_build(&plan->losses, "losses", p->g, plan->memory, r->items, r->count, motion,
+                SHARE_NOTHING, &plan->links);
+  plan->loses_by_own_fields =
+      plan->losses.pass_count == 1 &&
+      ir_is_number(p->g, r->items[PL_LOST_TO_RATES].node, 0) &&
+      !program_reads(plan, &plan->losses, is_of_neighbours_fields);
 }
 
 static bool reads_thickness(const family_planner *p) {
@@ -496,23 +493,23 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   plan->reads_rates = plan_reads_rates(plan, &p.step);
   share_reciprocals_of_roots(p.g, &observe);
   rewrite_last(p.g, &step, &observe);
-  root_list ledger = ledger_roots(&p, &energy, &step);
+  root_list losses = loss_roots(&p, &energy, &step);
   program_motion motion = plan_motion(plan, p.step.along_reference);
   fuse_motion(plan, &motion);
   if (l->irregular) {
     const program_motion list = list_inputs(plan);
     read_from_lists(plan, &list, &step);
     read_from_lists(plan, &list, &observe);
-    read_from_lists(plan, &list, &ledger);
+    read_from_lists(plan, &list, &losses);
     motion_from_lists(plan, &list, &motion);
   }
   program_build(&plan->step, "step", p.g, plan->memory, step.items, step.count, &motion,
                 sharing(&p), &plan->links);
-  if (ledger.count) build_ledger(&p, &ledger, &motion);
+  if (losses.count) build_losses(&p, &losses, &motion);
   program_build(&plan->observe, "observe", p.g, plan->memory, observe.items, observe.count, &motion,
                 SHARE_NOTHING, &plan->links);
   if (plan->step.pass_count > PLAN_MOST_PASSES || plan->observe.pass_count > PLAN_MOST_PASSES ||
-      plan->ledger.pass_count > PLAN_MOST_PASSES) {
+      plan->losses.pass_count > PLAN_MOST_PASSES) {
     diag_report(d, DIAG_NOT_SUPPORTED, l->tree->law_where,
                 "values of neighbours of neighbours are needed more than %d deep in one step",
                 PLAN_MOST_PASSES);
@@ -521,6 +518,5 @@ bool plan_programs(kernel_plan *plan, diagnostics *d) {
   plan->reads_shape = reads(plan, is_shape);
   plan->reads_share = reads(plan, is_share);
   count_cost(plan);
-  count_sums(plan);
   return true;
 }

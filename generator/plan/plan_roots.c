@@ -6,7 +6,7 @@
 #include "generator/lower/lower.h"
 #include "generator/lower/lower_inputs.h"
 
-static void visit_program(const family_program *q, plan_visitor visit, void *context) {
+void plan_visit_program(const family_program *q, plan_visitor visit, void *context) {
   for (int k = 0; k < q->pass_count; k++)
     for (int s = 0; s < q->passes[k].segment_count; s++) {
       const segment *a = &q->passes[k].segments[s];
@@ -28,9 +28,9 @@ void plan_visit(const kernel_plan *p, plan_visitor visit, void *context) {
     visit(context, nodes, a->root_count);
     free(nodes);
   }
-  visit_program(&p->step, visit, context);
-  visit_program(&p->observe, visit, context);
-  visit_program(&p->ledger, visit, context);
+  plan_visit_program(&p->step, visit, context);
+  plan_visit_program(&p->losses, visit, context);
+  plan_visit_program(&p->observe, visit, context);
 }
 
 bool plan_reads_rates(const kernel_plan *plan, const lowered_law *step) {

@@ -7,6 +7,7 @@
 /* Every root of the plan that a strip or a segment computes, in order. */
 typedef void (*plan_visitor)(void *context, const ir_node *roots, int root_count);
 void plan_visit(const kernel_plan *p, plan_visitor visit, void *context);
+void plan_visit_program(const family_program *q, plan_visitor visit, void *context);
 
 /* Whether forces or new fields depend on the stretch rate. */
 bool plan_reads_rates(const kernel_plan *p, const lowered_law *step);

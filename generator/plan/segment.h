@@ -23,7 +23,7 @@ typedef enum segment_target {
   TO_PARTICLE_FIELD,    /* new_field[index] = node */
   TO_PARTICLE_FORCE,    /* force[index] = node */
   TO_PARTICLE_OBSERVED, /* observed[index] = node */
-  TO_PARTICLE_LOST,     /* lost[index] = node */
+  TO_PARTICLE_LOST,     /* lost[index] += node */
   TO_SUM,               /* slot[index] += node; the slot begins with 0 */
   TO_LARGEST,           /* slot[index] = max(slot, node); begins with -inf */
   TO_SMALLEST,          /* slot[index] = min(slot, node); begins with inf */
@@ -65,7 +65,7 @@ typedef struct family_pass {
 } family_pass;
 
 typedef struct family_program {
-  const char *name; /* step, ledger, observe */
+  const char *name; /* step, losses, observe */
   family_pass *passes;
   int pass_count;
 } family_program;

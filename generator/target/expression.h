@@ -48,7 +48,6 @@ struct emitter {
   kernel_parts parts;
 
   /* the function or the segment that is written */
-  const family_program *program; /* of families: whose pass that is */
   const scope *scope;
   void *form;             /* the form's own; forms cast it back */
   const pass_root *roots; /* [root_count] of a pass over strips; NULL for a segment */

@@ -46,7 +46,8 @@ void words_reserve(c_names *names) {
       "unusual",     "owned",         "owner",       "sign",         "zeros",
       "got",         "link_to",       "changed",     "constant",     "above",
       "large",       "told",          "before",      "group",        "lent",
-      "UNIFORMS",    "are_equal",     "some_marked", "store_at_ends"};
+      "UNIFORMS",    "are_equal",     "some_marked", "store_at_ends", "is_settled",
+      "is_unchanged"};
   for (size_t k = 0; k < sizeof own / sizeof *own; k++)
     c_names_reserve(names, own[k]);
 #define X(pass, member, task) c_names_reserve(names, #member "_unusual");

@@ -78,20 +78,6 @@ static int64_t kick_row(const sweep *w, body_block *b, int row, bool moving) {
   return bad;
 }
 
-/* What the passes have just found of a row's particles is lost for good. Values at sites that store
-   nothing mean nothing. */
-static void book_losses(sweep *w, int row) {
-  const long start = body_start(w->body, row), count = w->body->count[row];
-  const unsigned char *stores = family_of(w)->stores + start;
-  const double *state = w->lost_state + start, *rate = w->lost_rate + start;
-  double *to_state = w->dissipated_state + start, *to_rate = w->dissipated_rate + start;
-  INDEPENDENT
-  for (long q = 0; q < count; q++) {
-    to_state[q] += stores[q] ? state[q] : 0;
-    to_rate[q] += stores[q] ? rate[q] : 0;
-  }
-}
-
 /* Work against the bonds: the force of a state counts over half of the way to it and half of the
    way from it (ledger.h). */
 static double work_over(const body *w, int row, int component, const double *v) {
@@ -109,7 +95,6 @@ static void move_rows(sweep *w, int block, int first, int last) {
       motion_note_bad(of, b, row, 0);
       continue;
     }
-    if (w->lost_state) book_losses(w, row);
     for (int d = 0; d < of->dof && of->works; d++)
       of->row_internal[row] += work_over(of, row, d, of->velocity[d] + body_start(of, row)) +
                                work_over(of, row, d, b->next + d * of->lattice->pitch);
@@ -146,7 +131,10 @@ static void step_in_windows(sweep *w, int stage, int block) {
 
 static void step(sweep *w, int stage, int block) {
   const body_block *b = &w->body->blocks[block];
-  if (stage == 0) w->body->blocks[block].bad_site = -1;
+  if (stage == 0) {
+    w->body->blocks[block].bad_site = -1;
+    family_of(w)->blocks[block].aside = false;
+  }
   if (family_of(w)->windows)
     step_in_windows(w, stage, block);
   else if (stage < family_of(w)->march->pass_count)
@@ -155,7 +143,19 @@ static void step(sweep *w, int stage, int block) {
     move_rows(w, block, b->first, b->last);
 }
 
+/* What the law takes in the state observed, to begin with; no part of what has been lost for good. */
+static void look_aside(sweep *w, int block) {
+  const body_block *b = &w->body->blocks[block];
+  family_of(w)->blocks[block].aside = true;
+  for (int row = b->first; row < b->last && w->lost_state; row++) {
+    const size_t bytes = (size_t)w->body->count[row] * sizeof(double);
+    memset(w->lost_state + body_start(w->body, row), 0, bytes);
+    memset(w->lost_rate + body_start(w->body, row), 0, bytes);
+  }
+}
+
 static void find_forces(sweep *w, int stage, int block) {
+  if (stage == 0) look_aside(w, block);
   run_program(w, family_of(w)->march, stage, block);
 }
 
@@ -179,11 +179,13 @@ static bool stores(const rows *g, long site) {
   return g->present[site] && (g->bonds[site] || rows_degree(g, site) > 0);
 }
 
-/* What the law takes in the state observed is 0 where nothing is stored. */
+/* At the other sites what passes have added means nothing. */
 static void sum_losses(sweep *w, int row) {
-  const long start = body_start(w->body, row), count = w->body->count[row];
-  for (long q = start; q < start + count; q++)
-    if (!family_of(w)->stores[q]) w->lost_state[q] = w->lost_rate[q] = 0;
+  double *const energies[] = {w->dissipated_state, w->dissipated_rate, w->lost_state, w->lost_rate};
+  const long start = body_start(w->body, row);
+  for (long q = start; q < start + w->body->count[row]; q++)
+    for (int k = 0; k < 4 && !stores(w->body->lattice, q); k++)
+      energies[k][q] = 0;
   sweep_sum_losses(w, row);
 }
 
@@ -211,6 +213,7 @@ static void observe(sweep *w, int stage, int block) {
   const family *f = family_of(w);
   const int forces = program_stages(f, f->march),
             all = forces + program_stages(f, &w->law->observe);
+  if (stage == 0) look_aside(w, block);
   if (stage < forces)
     run_program(w, f->march, stage, block);
   else if (stage < all)
@@ -259,15 +262,6 @@ static void new_shares(sweep *w, family *f) {
     f->whole[q] = 1;
 }
 
-static void new_losses(sweep *w, family *f) {
-  const rows *g = w->body->lattice;
-  f->march = &w->law->ledger;
-  sweep_new_losses(w);
-  f->stores = must_calloc((size_t)g->size, 1);
-  for (long q = 0; q < g->size; q++)
-    f->stores[q] = stores(g, q);
-}
-
 static void new_planes(sweep *w, family *f) {
   const pl_law *law = w->law;
   const long size = w->body->lattice->size;
@@ -310,7 +304,6 @@ static void free_own(sweep *w) {
   family_windows_free(w, f->windows);
   family_pairs_free(w, f->pairs);
   free(f->observed);
-  free(f->stores);
   free(f->blocks);
   free(f->uniforms);
   free(f);
@@ -328,8 +321,9 @@ sweep_engine family_engine(sweep *w, const double *parameters) {
   const pl_law *law = w->law;
   family *f = must_calloc(1, sizeof *f);
   assert(law->neighbours == 0 || law->neighbours == 2 * w->body->lattice->directions);
-  f->march = &law->step;
-  if (w->body->ledger && sweep_books_losses(law)) new_losses(w, f);
+  const bool losses = w->body->ledger && sweep_books_losses(law);
+  f->march = losses ? &law->ledger : &law->step;
+  if (losses) sweep_new_losses(w);
   f->neighbours = 2 * w->body->lattice->directions;
   f->reach = reach_of(w->body->lattice);
   assert(f->march->pass_count <= FAMILY_MOST_PASSES);

@@ -64,8 +64,9 @@ void family_run_part(const sweep *w, int block, row_part at, pl_family *run) {
   run->held = w->body->lattice->held + start;
   if (w->law->reads_share) run->share = (w->share ? w->share : family_of(w)->whole) + start;
   if (w->lost_state) {
-    run->lost[PL_LOST_TO_STATES] = w->lost_state + start;
-    run->lost[PL_LOST_TO_RATES] = w->lost_rate + start;
+    const bool aside = family_of(w)->blocks[block].aside;
+    run->lost[PL_LOST_TO_STATES] = (aside ? w->lost_state : w->dissipated_state) + start;
+    run->lost[PL_LOST_TO_RATES] = (aside ? w->lost_rate : w->dissipated_rate) + start;
   }
   point_at_neighbours(w->body->lattice, at.row, start, run);
   for (int d = 0; d < w->body->dof; d++) {

@@ -13,6 +13,7 @@ enum { FAMILY_ROWS_ALIKE = 2 }; /* rows to the next in which neighbours may stan
 
 typedef struct family_block { /* pointers to the run at hand, for the law */
   bool observing; /* the observe program reads the fields that the step program has just found */
+  bool aside;     /* the passes at hand are not a step's: what is lost is so in the state observed */
   const double **old_field;
   double **new_field, **link, **bond_link, **observed;
   const double **parameter;
@@ -32,7 +33,6 @@ typedef struct family {
   double **bond_link;            /* [bond_links][neighbours * size]; the same */
   double **observed;             /* [1 + outputs][planes * size] */
   double *shape[SHAPE_PLANES];   /* [size]; NULL unless the law reads them */
-  unsigned char *stores;         /* [size] 1 where a particle has bonds; where losses are kept */
   double *whole;                 /* [size] 1, the share of all particles; NULL as before */
   family_block *blocks;          /* [block_count] */
   struct family_window *windows; /* [block_count]; NULL: links of the whole body are kept */
