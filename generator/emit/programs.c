@@ -18,26 +18,29 @@ static int chunk_of(const family_pass *p) {
   return chunk;
 }
 
-static bool has_marks(const emitter *e) {
+/* Fields that have marks, or have none. */
+static int fields_with(const emitter *e, bool marks) {
+  int count = 0;
   for (int f = 0; f < e->plan->law->fields.count; f++)
-    if (program_pairs_field(&e->plan->step, f)) return true;
-  return false;
+    count += program_pairs_field(&e->plan->step, f) == marks;
+  return count;
 }
 
-/* Whether a chunk's fields have not changed in the step; by their marks where they have such. */
-static void unchanged_functions(emitter *e) {
+/* What of a chunk's fields has changed in the step; by their marks where they have such. */
+static void write_changes(emitter *e) {
   const kernel_plan *p = e->plan;
   if (!p->loses_by_own_fields) return;
-  say(e, has_marks(e) ? SAY_IS_SETTLED : SAY_ARE_EQUAL);
-  say(e, SAY_UNCHANGED_BEGIN);
+  if (fields_with(e, true)) say(e, SAY_CHANGED_MARKS);
+  if (fields_with(e, false)) say(e, SAY_CHANGED_PLANE);
+  say(e, SAY_CHANGES_BEGIN);
   for (int f = 0; f < p->law->fields.count; f++) {
     const bool on_particle = p->law->fields.items[f]->place <= ON_PARTICLE;
     if (program_pairs_field(&p->step, f))
-      say(e, SAY_UNCHANGED_MARKS, numeral(e, f));
+      say(e, SAY_CHANGES_OF_MARKS, numeral(e, f));
     else
-      say(e, SAY_UNCHANGED_PLANES, numeral(e, f), on_particle ? "1" : "family->neighbours");
+      say(e, SAY_CHANGES_OF_PLANES, numeral(e, f), on_particle ? "1" : "family->neighbours");
   }
-  say(e, SAY_UNCHANGED_END);
+  say(e, SAY_CHANGES_END);
 }
 
 /* Particles and neighbours by loops: chunk by chunk, segment after segment. */
@@ -56,9 +59,11 @@ static void write_loops(emitter *e, const family_pass *p) {
     say(e, SAY_KEEP_PLANE, numeral(e, k));
   say(e, rows ? SAY_OVER_ROWS : SAY_ONE_RUN);
   say(e, SAY_OVER_CHUNKS);
-  if (p == e->plan->losses.passes && e->plan->loses_by_own_fields) say(e, SAY_NEXT_IF_UNCHANGED);
+  const bool seldom = p == e->plan->losses.passes && e->plan->loses_by_own_fields;
+  if (seldom) say(e, SAY_IF_CHANGED);
   for (int k = 0; k < p->segment_count; k++)
     forms[p->segments[k].kind](e, &p->segments[k]);
+  if (seldom) say(e, SAY_END, "    ");
   say(e, SAY_END, "  ");
   if (rows) say(e, SAY_END, "  ");
 }
@@ -107,7 +112,7 @@ void programs_functions(emitter *e) {
   const kernel_plan *p = e->plan;
   write_program(e, p->step.name, &p->step, NULL);
   if (p->losses.pass_count) {
-    unchanged_functions(e);
+    write_changes(e);
     write_program(e, "ledger", &p->losses, &p->step);
   }
   write_program(e, p->observe.name, &p->observe, NULL);

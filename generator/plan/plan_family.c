@@ -443,10 +443,9 @@ static void build_losses(family_planner *p, const root_list *r, const program_mo
   kernel_plan *plan = p->plan;
   program_build(&plan->losses, "losses", p->g, plan->memory, r->items, r->count, motion,
                 SHARE_NOTHING, &plan->links);
-  plan->loses_by_own_fields =
-      plan->losses.pass_count == 1 &&
-      ir_is_number(p->g, r->items[PL_LOST_TO_RATES].node, 0) &&
-      !program_reads(plan, &plan->losses, is_of_neighbours_fields);
+  plan->loses_by_own_fields = plan->losses.pass_count == 1 &&
+                              ir_is_number(p->g, r->items[PL_LOST_TO_RATES].node, 0) &&
+                              !program_reads(plan, &plan->losses, is_of_neighbours_fields);
 }
 
 static bool reads_thickness(const family_planner *p) {

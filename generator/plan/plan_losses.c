@@ -124,10 +124,8 @@ static ir_node difference(ir *g, ir_node a, ir_node b) {
     const ir_node first = difference(g, with[0], of[0]), second = difference(g, with[1], of[1]);
     return ir_make(g, op, first, second, IR_NONE);
   }
-  if (with[1] == of[1])
-    return ir_make(g, op, difference(g, with[0], of[0]), with[1], IR_NONE);
-  if (op == IR_MUL && with[0] == of[0])
-    return ir_mul(g, with[0], difference(g, with[1], of[1]));
+  if (with[1] == of[1]) return ir_make(g, op, difference(g, with[0], of[0]), with[1], IR_NONE);
+  if (op == IR_MUL && with[0] == of[0]) return ir_mul(g, with[0], difference(g, with[1], of[1]));
   return ir_sub(g, a, b);
 }
 
@@ -174,7 +172,8 @@ bool plan_losses(const kernel_plan *plan, const law_energy *of, const ir_node *n
   bool known;
   force_parts old = parts_of(plan, of->frozen, of->theta_rate);
   at_zero_rate(g, &old);
-  ir_node before[2 + MOST_PARTS] = {of->stored, rate_power(plan, of, &known)}, after[2 + MOST_PARTS];
+  ir_node before[2 + MOST_PARTS] = {of->stored, rate_power(plan, of, &known)},
+                     after[2 + MOST_PARTS];
   const int count = 2 + old.count;
   if (!known) return false;
   memcpy(before + 2, old.force, (size_t)old.count * sizeof *before);

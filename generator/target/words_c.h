@@ -4,13 +4,6 @@
 #define PERILAT_GENERATOR_WORDS_C_H
 
 /* clang-format off */
-#define ARE_EQUAL_IN_C                                                                             \
-    "static int are_equal(const double *a, const double *b, long lanes) {\n"                       \
-    "  uint64_t differ = 0;\n"                                                                     \
-    "  for (long q = 0; q < lanes; q++)\n"                                                         \
-    "    differ |= pl_to_bits(a[q]) ^ pl_to_bits(b[q]);\n"                                         \
-    "  return differ == 0;\n"                                                                      \
-    "}\n\n"
 #define C_WORDS(X)                                                                                 \
   X(NOTHING, "")                                                                                   \
   /* expressions */                                                                                \
@@ -308,7 +301,12 @@
     "    all |= mark[q / PL_LANES] ^ turned;\n"                                                    \
     "  return all;\n"                                                                              \
     "}\n\n"                                                                                        \
-    ARE_EQUAL_IN_C                                                                                 \
+    "static int are_equal(const double *a, const double *b, long lanes) {\n"                       \
+    "  uint64_t differ = 0;\n"                                                                     \
+    "  for (long q = 0; q < lanes; q++)\n"                                                         \
+    "    differ |= pl_to_bits(a[q]) ^ pl_to_bits(b[q]);\n"                                         \
+    "  return differ == 0;\n"                                                                      \
+    "}\n\n"                                                                                        \
     "/* New values toward neighbour k, at both ends. */\n"                                         \
     "static __attribute__((noinline, cold)) void store_at_ends(\n"                                 \
     "    const pl_family *family, int field, long first, long lanes, long k, const double "        \
@@ -331,31 +329,37 @@
     "  }\n"                                                                                        \
     "}\n\n")                                                                                       \
   /* losses: nothing is lost where no field has changed */                                         \
-  X(ARE_EQUAL, ARE_EQUAL_IN_C)                                                                     \
-  X(IS_SETTLED,                                                                                    \
-    "/* Toward no neighbour a field has changed: by marks of the particles' own bonds, and of "    \
-    "those that lead here. */\n"                                                                   \
-    "static inline int is_settled(const pl_family *family, int field, long first, long lanes) {\n"        \
+  X(CHANGED_PLANE, "static uint64_t changed_plane(const double *old, const double *now, "           \
+    "long lanes) {\n"                                                                              \
+    "  uint64_t bits = 0;\n"                                                                       \
+    "  for (long q = 0; q < lanes; q++)\n"                                                         \
+    "    bits |= pl_to_bits(old[q]) - pl_to_bits(now[q]);\n"                                       \
+    "  return bits;\n"                                                                             \
+    "}\n\n")                                                                                       \
+  X(CHANGED_MARKS,                                                                                 \
+    "/* By marks of the particles' own bonds, and of those that lead here. */\n"                   \
+    "static uint64_t changed_marks(const pl_family *family, long field, long first, "              \
+    "long lanes) {\n"                                                                              \
     "  const uint64_t *settled = family->settled[field];\n"                                        \
     "  const long half = family->neighbours / 2;\n"                                                \
-    "  uint64_t open = some_marked(settled + first / PL_LANES, lanes, UINT64_MAX);\n"              \
-    "  open &= (UINT64_C(1) << half) - 1;\n"                                                       \
+    "  uint64_t bits = some_marked(settled + first / PL_LANES, lanes, UINT64_MAX);\n"              \
+    "  bits &= (UINT64_C(1) << half) - 1;\n"                                                       \
     "  for (long k = 0; k < half; k++) {\n"                                                        \
     "    const long begin = (first - family->offset[k]) >> 3;\n"                                   \
     "    const long end = (first - family->offset[k] + lanes - 1) >> 3;\n"                         \
     "    for (long q = begin; q <= end; q++)\n"                                                    \
-    "      open |= ~settled[q] & UINT64_C(1) << k;\n"                                              \
+    "      bits |= ~settled[q] & UINT64_C(1) << k;\n"                                              \
     "  }\n"                                                                                        \
-    "  return open == 0;\n"                                                                        \
-    "}\n_Static_assert(PL_LANES == 8, \"eight bits of a site's number\");\n\n")                  \
-  X(UNCHANGED_BEGIN, "static inline int is_unchanged(const pl_family *family, long first, "        \
-    "long lanes) {\n  int same = 1;\n")                                                           \
-  X(UNCHANGED_MARKS, "  same = same && is_settled(family, $1, first, lanes);\n")                   \
-  X(UNCHANGED_PLANES, "  for (long k = 0; k < $2 && same; k++)\n"                                  \
-    "    same = are_equal(family->old_field[$1] + first + k*family->plane,\n"                      \
-    "                     family->new_field[$1] + first + k*family->new_plane, lanes);\n")         \
-  X(UNCHANGED_END, "  return same;\n}\n\n")                                                        \
-  X(NEXT_IF_UNCHANGED, "    if (is_unchanged(family, first, lanes)) continue;\n")                  \
+    "  return bits;\n"                                                                             \
+    "}\n_Static_assert(PL_LANES == 8, \"sites of a mark\");\n\n")                                 \
+  X(CHANGES_BEGIN, "static uint64_t changes(const pl_family *family, long first, "                 \
+    "long lanes) {\n  uint64_t bits = 0;\n")                                                      \
+  X(CHANGES_OF_MARKS, "  bits |= changed_marks(family, $1, first, lanes);\n")                      \
+  X(CHANGES_OF_PLANES, "  for (long k = 0; k < $2 && bits == 0; k++)\n"                            \
+    "    bits |= changed_plane(family->old_field[$1] + first + k*family->plane,\n"                 \
+    "                          family->new_field[$1] + first + k*family->new_plane, lanes);\n")    \
+  X(CHANGES_END, "  return bits;\n}\n\n")                                                          \
+  X(IF_CHANGED, "    if (changes(family, first, lanes) != 0) {\n")                                 \
                                                                                                    \
   /* --- before all: what the compiler is told --- */                                              \
   /* gcc would ask one question of a case several times, and of strips keep what it had better     \

@@ -232,7 +232,8 @@ static void clear_sites(const sweep *w, const family_window *v, uint64_t shared,
 static void take_places(const sweep *w, const pl_program *program, int pass, int block, int first,
                         int last) {
   const family_window *v = &family_of(w)->windows[block];
-  const uint64_t shared = program != &w->law->observe && program->shared ? program->shared[pass] : 0;
+  const uint64_t shared =
+      program != &w->law->observe && program->shared ? program->shared[pass] : 0;
   for (int row = first; row < last && shared; row++) {
     const int here = (row % v->rows + v->rows) % v->rows;
     sites *left = &v->left[pass * v->rows + here], was = *left;
